@@ -1,1 +1,28 @@
-//! Placeholder of the first commit.
+//! The solver core: the v–w single-layer material point method for saturated soil.
+//!
+//! A method is four independent operators (`method`), each sparse between points, nodes and cell
+//! centres: weights (`shape`, `stencil`), strain gradient (`stencil`), pressure divergence
+//! (`cells`) and recovery (`recovery`). A `body` joins them with points and nodes; `explicit` is
+//! the step of Zheng et al. (2021); `assembled` is the same step as one banded map where nothing
+//! moves; `run` drives either from output to output.
+//!
+//! Nothing here knows of studies, references or reports.
+
+pub mod assembled;
+pub mod body;
+pub mod cells;
+pub mod explicit;
+pub mod grid;
+pub mod limits;
+pub mod material;
+pub mod method;
+pub mod nodes;
+pub mod outcome;
+pub mod points;
+pub mod recovery;
+pub mod run;
+pub mod shape;
+pub mod snapshot;
+pub mod stability;
+pub mod stencil;
+pub mod surface;

@@ -1,0 +1,106 @@
+//! Columns drained at their top: the lattice of points and its start.
+
+use super::SceneKind;
+use crate::exact::single_mode::SingleMode;
+use crate::exact::{ColumnParameters, ExactError};
+use crate::solver::body::Problem;
+use crate::solver::grid::Grid;
+use crate::solver::material::Material;
+use crate::solver::method::Method;
+use crate::solver::nodes::Support;
+use crate::solver::points::Points;
+use serde::{Deserialize, Serialize};
+
+/// Cells above the column, so that a surface that rises stays on the grid.
+const HEADROOM: usize = 1;
+
+/// Geometry and load of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Column {
+    /// Initial height `H`, m.
+    pub height: f64,
+    /// Width, m; a one-dimensional column has none.
+    pub width: f64,
+    /// Load `q` on the surface, Pa; the amplitude of the initial pressure where there is no load.
+    pub load: f64,
+}
+
+impl Default for Column {
+    /// The seed column under 1 Pa.
+    fn default() -> Self {
+        Self { height: 1.0, width: 0.1, load: 1.0 }
+    }
+}
+
+/// The column as the exact solutions take it.
+pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
+    ColumnParameters {
+        height: column.height,
+        load: column.load,
+        youngs_modulus: soil.youngs_modulus,
+        poissons_ratio: soil.poissons_ratio,
+        porosity: soil.porosity,
+        grain_density: soil.grain_density,
+        water_density: soil.water_density,
+        water_bulk_modulus: soil.water_bulk_modulus,
+        hydraulic_conductivity: soil.hydraulic_conductivity,
+        gravity: soil.gravity,
+    }
+}
+
+/// The scene's problem on `cells` cells over the height with `points_per_cell` points each.
+///
+/// # Errors
+/// When the parameters are impossible.
+pub fn column_problem(
+    scene: SceneKind,
+    column: &Column,
+    soil: &Material,
+    method: Method,
+    cells: usize,
+    points_per_cell: usize,
+) -> Result<Problem<1>, ExactError> {
+    let cell_size = column.height / cells as f64;
+    let mut points = Points::lattice(cell_size, [cells], points_per_cell);
+    let (load, initial_gradient) = match scene {
+        SceneKind::Terzaghi => (column.load, [[start_undrained(&mut points, soil, column.load)]]),
+        SceneKind::SingleMode => {
+            start_single_mode(&mut points, column, soil)?;
+            (0.0, [[0.0]])
+        }
+    };
+    Ok(Problem {
+        grid: Grid::new(cell_size, [cells + HEADROOM]),
+        support: Support::oedometer(),
+        points,
+        material: *soil,
+        method,
+        configuration: method.configuration_or(scene.configuration()),
+        load,
+        initial_gradient,
+        pressure_scale: column.load.abs(),
+    })
+}
+
+/// The undrained equilibrium under the load: skeleton and water share one strain, which is
+/// returned, reached before any water has moved.
+fn start_undrained(points: &mut Points<1>, soil: &Material, load: f64) -> f64 {
+    let strain = -load / (soil.oedometric_modulus() + soil.coupling_modulus());
+    points.effective_stress.fill(soil.stiffness().stress(&[[strain]]));
+    points.pressure.fill(-soil.coupling_modulus() * strain);
+    strain
+}
+
+fn start_single_mode(points: &mut Points<1>, column: &Column, soil: &Material) -> Result<(), ExactError> {
+    let mode = SingleMode::compressible(&column_parameters(column, soil))?;
+    for point in 0..points.len() {
+        let zeta = 1.0 - points.initial_position[point][0] / column.height;
+        let fields = mode.fields(0.0, zeta)?;
+        let velocities = mode.velocities(0.0, zeta)?;
+        points.pressure[point] = fields.pressure;
+        points.effective_stress[point] = [[fields.effective_stress]];
+        points.solid_velocity[point] = [velocities.solid];
+        points.water_velocity[point] = [velocities.water];
+    }
+    Ok(())
+}

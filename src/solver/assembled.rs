@@ -1,0 +1,395 @@
+//! The frozen column as one banded map between grid arrays.
+//!
+//! Where weights are frozen and the material is linear, stresses are linear in the nodal
+//! displacements that strained them, and velocities mapped to the grid are all that the points'
+//! velocities are needed for:
+//!
+//! - `F_w = F_w0 − K_p U_f`, `F_m = F_0 − K_σ U_s + (F_w − F_w0)`: forces,
+//! - `v⁺ = v + Δt a(F_w, F_m, v)`: nodal velocities by forward Euler,
+//! - `v̄ ← φ (v̄ + Δt P a) + (1 − φ) P v⁺` with `P = M⁻¹ Nᵀ m N`: mapped velocities,
+//! - `U ← U + Δt v̄`, or `v⁺` without mapping back.
+//!
+//! The points are visited at outputs only. The point-wise step in `explicit` is the definition;
+//! a test holds the two together to round-off.
+
+use super::body::{Body, ShapeFunction};
+use super::explicit::{Drag, ExplicitSettings};
+use super::method::{PressureIntegration, Recovery, StrainGradient};
+
+/// Nodes that couple to one side: basis (1) + patch (1) + centre or composite (1).
+const REACH: usize = 3;
+/// Width of a band row.
+const BAND: usize = 2 * REACH + 1;
+
+type BandRow = [f64; BAND];
+
+/// A frozen one-dimensional body with its step assembled.
+#[derive(Clone, Debug)]
+pub struct AssembledColumn {
+    rows: Vec<NodeRow>,
+    /// Nodes that span the loaded surface, with the weights there.
+    surface: Vec<(usize, f64)>,
+    state: State,
+}
+
+/// Everything constant about one node.
+#[derive(Clone, Copy, Debug, Default)]
+struct NodeRow {
+    skeleton_stiffness: BandRow,
+    pressure_stiffness: BandRow,
+    projection: BandRow,
+    mixture_force: f64,
+    water_force: f64,
+    porosity: f64,
+    free: f64,
+    per_solid_mass: f64,
+    water_inertia: f64,
+    water_share: f64,
+    drag: f64,
+    // Accelerations from forces and relative velocity, for one step size and drag.
+    water_from_water_force: f64,
+    water_from_relative: f64,
+    water_from_mixture: f64,
+}
+
+/// Grid arrays with `REACH` empty places at both ends.
+#[derive(Clone, Debug, Default)]
+struct State {
+    solid_velocity: Vec<f64>,
+    water_velocity: Vec<f64>,
+    /// Displacement that strained the skeleton, m.
+    strain_displacement: Vec<f64>,
+    /// Time integral of `v_s + n(v_w − v_s)`, m.
+    flux_displacement: Vec<f64>,
+    /// Displacement of the nodes themselves, m.
+    displacement: Vec<f64>,
+    solid_acceleration: Vec<f64>,
+    water_acceleration: Vec<f64>,
+    solid_trial: Vec<f64>,
+    water_trial: Vec<f64>,
+}
+
+/// The grid arrays that a step maps to themselves, for stability analysis.
+pub const STATE_FIELDS: usize = 4;
+
+impl AssembledColumn {
+    /// Assembles the step of a body on its present operators; `None` in more than one dimension.
+    pub fn new<const D: usize, const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Option<Self> {
+        if D != 1 {
+            return None;
+        }
+        let count = body.nodes.len();
+        let mut rows = vec![NodeRow::default(); count];
+        let water_density = body.material.water_density;
+        for node in 0..count {
+            if body.nodes.is_active(node) {
+                let row = &mut rows[node];
+                row.free = body.nodes.free[node][0];
+                row.porosity = body.nodes.porosity[node];
+                row.per_solid_mass = 1.0 / body.nodes.solid_mass[node];
+                row.water_inertia = water_density * body.nodes.volume[node];
+                row.water_share = body.nodes.water_mass[node] * row.per_solid_mass;
+                row.drag = body.nodes.drag[node];
+            }
+        }
+        assemble_bands(body, &mut rows);
+        let surface = body.surface.weights(&body.grid, &body.points);
+        let mut column = Self { rows, surface, state: State::zero(count) };
+        column.read(body);
+        Some(column)
+    }
+
+    /// Takes velocities and forces of the body as the state to go on from.
+    fn read<const D: usize, const W: usize, S: ShapeFunction<W>>(&mut self, body: &Body<D, W, S>) {
+        let mut mapped = body.clone();
+        mapped.map_velocities();
+        mapped.map_forces();
+        let reference = &mapped.nodes;
+        let state = &mut self.state;
+        *state = State::zero(self.rows.len());
+        for (node, row) in self.rows.iter_mut().enumerate() {
+            row.mixture_force = reference.mixture_force[node][0];
+            row.water_force = reference.water_force[node][0];
+            state.solid_velocity[node + REACH] = reference.solid_velocity[node][0];
+            state.water_velocity[node + REACH] = reference.water_velocity[node][0];
+        }
+    }
+
+    /// Fixes step size and drag. Call before `step`.
+    pub fn set_step(&mut self, dt: f64, settings: &ExplicitSettings) {
+        for row in &mut self.rows {
+            let implicit = match settings.drag {
+                Drag::Explicit => 0.0,
+                Drag::Implicit => dt * row.drag,
+            };
+            let inertia = row.water_inertia + implicit * (1.0 + row.water_share);
+            let per_inertia = if inertia > 0.0 { row.free / inertia } else { 0.0 };
+            row.water_from_water_force = per_inertia;
+            row.water_from_relative = -row.drag * per_inertia;
+            row.water_from_mixture = implicit * row.per_solid_mass * per_inertia;
+        }
+    }
+
+    /// One step of `dt` seconds; nothing is allocated.
+    pub fn step(&mut self, dt: f64, settings: &ExplicitSettings) {
+        self.forces_and_trial_velocities(dt);
+        let (flip, pic) = (settings.flip, 1.0 - settings.flip);
+        let state = &mut self.state;
+        for (node, row) in self.rows.iter().enumerate() {
+            let at = node + REACH;
+            let solid_rate = band(&row.projection, &state.solid_acceleration, node);
+            let water_rate = band(&row.projection, &state.water_acceleration, node);
+            let mut solid = flip * (state.solid_velocity[at] + dt * solid_rate);
+            let mut water = flip * (state.water_velocity[at] + dt * water_rate);
+            if pic > 0.0 {
+                solid += pic * band(&row.projection, &state.solid_trial, node);
+                water += pic * band(&row.projection, &state.water_trial, node);
+            }
+            state.solid_velocity[at] = solid;
+            state.water_velocity[at] = water;
+            let (strain_solid, strain_water) = if settings.mapping_back {
+                (solid, water)
+            } else {
+                (state.solid_trial[at], state.water_trial[at])
+            };
+            state.strain_displacement[at] += dt * strain_solid;
+            state.flux_displacement[at] += dt * (strain_solid + row.porosity * (strain_water - strain_solid));
+            state.displacement[at] += dt * state.solid_trial[at];
+        }
+    }
+
+    fn forces_and_trial_velocities(&mut self, dt: f64) {
+        let state = &mut self.state;
+        for (node, row) in self.rows.iter().enumerate() {
+            let at = node + REACH;
+            let pressure = band(&row.pressure_stiffness, &state.flux_displacement, node);
+            let skeleton = band(&row.skeleton_stiffness, &state.strain_displacement, node);
+            let water_force = row.water_force - pressure;
+            let mixture_force = row.mixture_force - skeleton - pressure;
+            let (solid, water) = (state.solid_velocity[at], state.water_velocity[at]);
+            let water_acceleration = row.water_from_water_force * water_force
+                + row.water_from_relative * (water - solid)
+                + row.water_from_mixture * mixture_force;
+            let solid_acceleration =
+                row.free * (mixture_force * row.per_solid_mass - row.water_share * water_acceleration);
+            state.water_acceleration[at] = water_acceleration;
+            state.solid_acceleration[at] = solid_acceleration;
+            state.solid_trial[at] = solid + dt * solid_acceleration;
+            state.water_trial[at] = water + dt * water_acceleration;
+        }
+    }
+
+    /// Largest nodal velocity, m/s: not finite or absurd when the run has left.
+    pub fn largest_velocity(&self) -> f64 {
+        let both = self.state.solid_velocity.iter().chain(&self.state.water_velocity);
+        both.fold(
+            0.0,
+            |largest: f64, velocity| {
+                if velocity.is_finite() { largest.max(velocity.abs()) } else { f64::INFINITY }
+            },
+        )
+    }
+
+    /// The body at the present state, from the body that was assembled: stresses, pressures and
+    /// displacements of the points from the grid's. Velocities are known at the nodes only.
+    pub fn body_now<const D: usize, const W: usize, S: ShapeFunction<W>>(
+        &self,
+        initial: &Body<D, W, S>,
+    ) -> Body<D, W, S> {
+        let mut body = initial.clone();
+        let inner =
+            |field: &[f64]| field[REACH..REACH + self.rows.len()].iter().map(|x| [*x; D]).collect::<Vec<_>>();
+        let strained = inner(&self.state.strain_displacement);
+        let flux = inner(&self.state.flux_displacement);
+        let moved = inner(&self.state.displacement);
+        let stride = *body.grid.node_stride();
+        for cell in 0..body.cells.pressure_increment.len() {
+            if body.cells.is_occupied(cell) {
+                let coupling = body.material.water_bulk_modulus / body.cells.porosity[cell];
+                body.cells.pressure_increment[cell] =
+                    -coupling * body.cells.centre_divergence(&body.grid, cell, &flux);
+            }
+        }
+        for point in 0..body.points.len() {
+            let gradient = match body.method.strain {
+                StrainGradient::Standard => body.basis.gradient(&stride, point, &strained),
+                StrainGradient::Cmpm => body.composite.gradient(&stride, point, &strained),
+            };
+            body.points.effective_stress[point][0][0] += body.stiffness.stress(&gradient)[0][0];
+            body.points.pressure[point] += match (body.method.pressure, body.method.recovery) {
+                (PressureIntegration::Points, _) => {
+                    let porosity = body.material.porosity_at(body.points.volume_ratio[point]);
+                    -body.material.water_bulk_modulus / porosity
+                        * body.basis.divergence(&stride, point, &flux)
+                }
+                (PressureIntegration::Sri, Recovery::Constant) => {
+                    body.cells.pressure_increment[body.cells.of_point[point]]
+                }
+                (PressureIntegration::Sri, Recovery::Patch) => {
+                    body.patch.value(&body.grid, point, &body.cells.pressure_increment)
+                }
+            };
+            body.points.displacement[point][0] += body.basis.value(&stride, point, &moved)[0];
+        }
+        for node in 0..body.nodes.len() {
+            body.nodes.displacement[node][0] += moved[node][0];
+            body.nodes.solid_velocity[node][0] = self.state.solid_velocity[node + REACH];
+            body.nodes.water_velocity[node][0] = self.state.water_velocity[node + REACH];
+        }
+        body.surface_flux += body.surface.mean_of(&body.grid, &body.points, &flux);
+        body
+    }
+
+    /// Vertical displacement of the loaded surface since the assembly, m.
+    pub fn surface_displacement(&self) -> f64 {
+        self.surface.iter().map(|(node, weight)| weight * self.state.displacement[node + REACH]).sum()
+    }
+
+    /// Nodes that are free, in order: the unknowns of the stability analysis.
+    pub fn free_nodes(&self) -> Vec<usize> {
+        (0..self.rows.len()).filter(|node| self.rows[*node].free > 0.0).collect()
+    }
+
+    /// Removes loads and initial stresses, so that a step is linear and not affine.
+    pub fn without_loads(mut self) -> Self {
+        for row in &mut self.rows {
+            row.mixture_force = 0.0;
+            row.water_force = 0.0;
+        }
+        self
+    }
+
+    /// Image under one step of the state that is one in one field of one node: velocities of both
+    /// phases, straining displacement, flux displacement.
+    pub fn column_of_step(
+        &mut self,
+        field: usize,
+        node: usize,
+        dt: f64,
+        settings: &ExplicitSettings,
+        free: &[usize],
+        out: &mut [f64],
+    ) {
+        self.state = State::zero(self.rows.len());
+        // Displacements in units of what a unit velocity makes in a step, for a balanced matrix.
+        let unit = |field: usize| if field < 2 { 1.0 } else { dt };
+        self.state.field_mut(field)[node + REACH] = unit(field);
+        self.step(dt, settings);
+        for image in 0..STATE_FIELDS {
+            let values = self.state.field_mut(image);
+            for (place, node) in free.iter().enumerate() {
+                out[image * free.len() + place] = values[node + REACH] / unit(image);
+            }
+        }
+    }
+}
+
+impl State {
+    fn zero(nodes: usize) -> Self {
+        let zero = vec![0.0; nodes + 2 * REACH];
+        Self {
+            solid_velocity: zero.clone(),
+            water_velocity: zero.clone(),
+            strain_displacement: zero.clone(),
+            flux_displacement: zero.clone(),
+            displacement: zero.clone(),
+            solid_acceleration: zero.clone(),
+            water_acceleration: zero.clone(),
+            solid_trial: zero.clone(),
+            water_trial: zero,
+        }
+    }
+
+    fn field_mut(&mut self, field: usize) -> &mut Vec<f64> {
+        match field {
+            0 => &mut self.solid_velocity,
+            1 => &mut self.water_velocity,
+            2 => &mut self.strain_displacement,
+            _ => &mut self.flux_displacement,
+        }
+    }
+}
+
+/// Product of a node's band row with a padded field.
+#[inline]
+fn band(row: &BandRow, field: &[f64], node: usize) -> f64 {
+    let window = &field[node..node + BAND];
+    let mut sum = 0.0;
+    for k in 0..BAND {
+        sum += row[k] * window[k];
+    }
+    sum
+}
+
+/// `K_σ = Σ V ∇N ⊗ E_oed G`, `K_p = Σ V ∇N ⊗ R Q D`, `P = M⁻¹ Σ N m ⊗ N`.
+fn assemble_bands<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    body: &Body<D, W, S>,
+    rows: &mut [NodeRow],
+) {
+    let stride = body.grid.node_stride();
+    let modulus = body.material.oedometric_modulus();
+    let mut unit = vec![[0.0; D]; body.nodes.len()];
+    for point in 0..body.points.len() {
+        let volume = body.points.volume(point);
+        let solid =
+            body.points.initial_volume[point] * (1.0 - body.material.porosity) * body.material.grain_density;
+        let mut touched = [(0, 0.0, 0.0); 4];
+        let mut count = 0;
+        body.basis.visit(stride, point, |node, weight, gradient| {
+            touched[count] = (node, weight, gradient[0]);
+            count += 1;
+        });
+        let nearest = touched[0].0;
+        // Every node within reach of the point, tried with a unit displacement.
+        for column in nearest.saturating_sub(REACH)..(nearest + W + REACH).min(body.nodes.len()) {
+            unit[column] = [1.0; D];
+            let strain = match body.method.strain {
+                StrainGradient::Standard => body.basis.gradient(stride, point, &unit),
+                StrainGradient::Cmpm => body.composite.gradient(stride, point, &unit),
+            }[0][0];
+            let pressure = pressure_of(body, point, &unit);
+            let value = body.basis.value(stride, point, &unit)[0];
+            unit[column] = [0.0; D];
+            if strain == 0.0 && pressure == 0.0 && value == 0.0 {
+                continue;
+            }
+            for (node, weight, gradient) in &touched[..count] {
+                if column + REACH < *node || column > node + REACH {
+                    continue;
+                }
+                let place = column + REACH - node;
+                let row = &mut rows[*node];
+                row.skeleton_stiffness[place] += volume * gradient * modulus * strain;
+                row.pressure_stiffness[place] -= volume * gradient * pressure;
+                row.projection[place] += row.free * weight * solid * value * row.per_solid_mass;
+            }
+        }
+    }
+}
+
+/// Pressure at a point under a flux displacement of the nodes.
+fn pressure_of<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    body: &Body<D, W, S>,
+    point: usize,
+    flux: &[[f64; D]],
+) -> f64 {
+    let at_cell = |cell: usize| {
+        if body.cells.is_occupied(cell) {
+            let coupling = body.material.water_bulk_modulus / body.cells.porosity[cell];
+            -coupling * body.cells.centre_divergence(&body.grid, cell, flux)
+        } else {
+            0.0
+        }
+    };
+    match (body.method.pressure, body.method.recovery) {
+        (PressureIntegration::Points, _) => {
+            let porosity = body.material.porosity_at(body.points.volume_ratio[point]);
+            -body.material.water_bulk_modulus / porosity
+                * body.basis.divergence(body.grid.node_stride(), point, flux)
+        }
+        (PressureIntegration::Sri, Recovery::Constant) => at_cell(body.cells.of_point[point]),
+        (PressureIntegration::Sri, Recovery::Patch) => {
+            body.patch.entries(&body.grid, point).map(|(cell, weight)| weight * at_cell(cell)).sum()
+        }
+    }
+}

@@ -1,0 +1,323 @@
+//! The discretised body: points, nodes and the operators that join them.
+
+use super::cells::Cells;
+use super::grid::{Grid, Tensor, Vector};
+use super::material::{Continuity, Material, Stiffness};
+use super::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
+use super::nodes::{Nodes, Support};
+use super::points::Points;
+use super::recovery::PatchRows;
+use super::shape::{self, Row};
+use super::stencil::Stencils;
+use super::surface::LoadedSurface;
+
+/// A basis as the compiler sees it: rows of `W` nodes a direction.
+pub trait ShapeFunction<const W: usize>: Clone {
+    /// The row at a place (in cells), in a cell, of a point with a domain of half-length (in
+    /// cells).
+    fn row(place: f64, cell: usize, half_length: f64) -> Row<W>;
+}
+
+/// Hat functions.
+#[derive(Clone, Copy, Debug)]
+pub struct Hat;
+
+impl ShapeFunction<2> for Hat {
+    #[inline]
+    fn row(place: f64, cell: usize, _half_length: f64) -> Row<2> {
+        shape::hat(place, cell)
+    }
+}
+
+/// GIMP functions.
+#[derive(Clone, Copy, Debug)]
+pub struct Gimp;
+
+impl ShapeFunction<3> for Gimp {
+    #[inline]
+    fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
+        // A domain wider than a cell would need a fourth node; it is cut there.
+        shape::gimp(place, half_length.min(0.5))
+    }
+}
+
+/// What is to be solved: geometry, material, load and initial state, and by which operators.
+#[derive(Clone, Debug)]
+pub struct Problem<const D: usize> {
+    /// Background grid.
+    pub grid: Grid<D>,
+    /// Faces that are held.
+    pub support: Support<D>,
+    /// Points in their initial state.
+    pub points: Points<D>,
+    /// Soil.
+    pub material: Material,
+    /// Operators.
+    pub method: Method,
+    /// Configuration of the weights.
+    pub configuration: Configuration,
+    /// Load on the surface, Pa.
+    pub load: f64,
+    /// Displacement gradient of the start against the unloaded state.
+    pub initial_gradient: Tensor<D>,
+    /// Pressure that this problem is about, Pa: what leaves it a thousandfold has blown up.
+    pub pressure_scale: f64,
+}
+
+/// The discretised body during a run.
+#[derive(Clone, Debug)]
+pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
+    /// Background grid.
+    pub grid: Grid<D>,
+    /// Material points.
+    pub points: Points<D>,
+    /// Nodal fields.
+    pub nodes: Nodes<D>,
+    /// Cell fields.
+    pub cells: Cells,
+    /// Soil.
+    pub material: Material,
+    /// Stiffness of the skeleton.
+    pub stiffness: Stiffness,
+    /// Operators.
+    pub method: Method,
+    /// Configuration of the weights.
+    pub configuration: Configuration,
+    /// Loaded surface.
+    pub surface: LoadedSurface,
+    /// `N` and `∇N` between points and nodes.
+    pub basis: Stencils<D, W>,
+    /// `G` of the composite MPM.
+    pub composite: Stencils<D, 4>,
+    /// `R` of the patch recovery.
+    pub patch: PatchRows<D>,
+    /// Mixture that passed the surface since the start, `∫ v_s + n(v_w − v_s) dt`, m.
+    pub surface_flux: f64,
+    shape_function: std::marker::PhantomData<S>,
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+    /// Discretises a problem: builds operators and nodal masses on the initial configuration and
+    /// maps the points' velocities to the nodes.
+    pub fn new(problem: Problem<D>) -> Self {
+        let Problem {
+            grid, support, points, material, method, configuration, load, initial_gradient, ..
+        } = problem;
+        let count = points.len();
+        let solid_cell_mass = (0..D).map(|_| grid.cell_size).product::<f64>()
+            * (1.0 - material.porosity)
+            * material.grain_density;
+        let composite_rows = if method.strain == StrainGradient::Cmpm { count } else { 0 };
+        let patch_rows = if method.uses_patch() { count } else { 0 };
+        let mut body = Self {
+            nodes: Nodes::new(&grid, &support, solid_cell_mass),
+            cells: Cells::new(&grid, count),
+            stiffness: material.stiffness(),
+            surface: LoadedSurface::of(&points, load),
+            basis: Stencils::with_points(count),
+            composite: Stencils::with_points(composite_rows),
+            patch: PatchRows::with_points(patch_rows),
+            surface_flux: 0.0,
+            grid,
+            points,
+            material,
+            method,
+            configuration,
+            shape_function: std::marker::PhantomData,
+        };
+        body.displace(&initial_gradient);
+        body.build_operators();
+        body.map_masses();
+        body.map_velocities();
+        body
+    }
+
+    /// Displaces points and nodes by a uniform gradient; where points move, they take their
+    /// places, volumes and domains with them.
+    fn displace(&mut self, gradient: &Tensor<D>) {
+        let moved = |place: &Vector<D>| -> Vector<D> {
+            std::array::from_fn(|d| (0..D).map(|e| gradient[d][e] * place[e]).sum())
+        };
+        for node in 0..self.nodes.len() {
+            self.nodes.displacement[node] = moved(&self.grid.node_position(node));
+        }
+        let moving = self.is_moving();
+        let points = &mut self.points;
+        for point in 0..points.len() {
+            points.displacement[point] = moved(&points.initial_position[point]);
+            if moving {
+                for d in 0..D {
+                    points.position[point][d] += points.displacement[point][d];
+                    points.half_length[point][d] *= 1.0 + gradient[d][d];
+                    points.volume_ratio[point] *= 1.0 + gradient[d][d];
+                }
+            }
+        }
+    }
+
+    /// Whether points move and operators are built anew each step.
+    #[inline]
+    pub fn is_moving(&self) -> bool {
+        self.configuration == Configuration::Updated
+    }
+
+    /// Builds every operator of the method on the points' present places, and puts the load on
+    /// the surface there.
+    pub fn build_operators(&mut self) {
+        self.cells.locate(&self.grid, &self.points, self.material.porosity);
+        let per_cell = self.grid.inverse_cell_size();
+        for point in 0..self.points.len() {
+            let (position, half) = (&self.points.position[point], &self.points.half_length[point]);
+            let cell = self.grid.cell_of(position);
+            let place = self.grid.held_in_cells(position);
+            let rows = std::array::from_fn(|d| S::row(place[d], cell[d], half[d] * per_cell));
+            self.basis.set(&self.grid, point, &rows);
+            if self.method.strain == StrainGradient::Cmpm {
+                let home = self.grid.flat_cell(&cell);
+                let rows = std::array::from_fn(|d| {
+                    let stride = self.grid.cell_stride()[d];
+                    let lower = self.cells.is_occupied(home - stride);
+                    let upper = self.cells.is_occupied(home + stride);
+                    shape::composite(place[d], cell[d], lower, upper)
+                });
+                self.composite.set(&self.grid, point, &rows);
+            }
+        }
+        if self.method.uses_patch() {
+            self.patch.build(&self.grid, &self.cells, &self.points.position);
+        }
+        self.surface.apply(&self.grid, &self.points, &mut self.nodes);
+    }
+
+    /// Sums masses, volumes and drag of the points to the nodes.
+    pub fn map_masses(&mut self) {
+        self.nodes.reset_masses();
+        let soil = &self.material;
+        let (solid_fraction, unit_weight) = (1.0 - soil.porosity, soil.unit_weight_of_water());
+        let nodes = &mut self.nodes;
+        for point in 0..self.points.len() {
+            let (initial, ratio) = (self.points.initial_volume[point], self.points.volume_ratio[point]);
+            let volume = initial * ratio;
+            let pore_volume = initial * (ratio - solid_fraction);
+            let solid_mass = initial * solid_fraction * soil.grain_density;
+            let water_mass = pore_volume * soil.water_density;
+            let drag = pore_volume * unit_weight / soil.hydraulic_conductivity_at(ratio);
+            self.basis.visit(self.grid.node_stride(), point, |node, weight, _| {
+                nodes.solid_mass[node] += weight * solid_mass;
+                nodes.water_mass[node] += weight * water_mass;
+                nodes.volume[node] += weight * volume;
+                nodes.porosity[node] += weight * pore_volume;
+                nodes.drag[node] += weight * drag;
+            });
+        }
+        nodes.finish_masses();
+    }
+
+    /// Maps the velocities of both phases from the points to the nodes, weighted with mass.
+    pub fn map_velocities(&mut self) {
+        let nodes = &mut self.nodes;
+        nodes.solid_velocity.fill([0.0; D]);
+        nodes.water_velocity.fill([0.0; D]);
+        let solid_fraction = 1.0 - self.material.porosity;
+        for point in 0..self.points.len() {
+            // Densities cancel: grains weigh with (1 − n) V = (1 − n_0) V_0, water with n V.
+            let solid = self.points.initial_volume[point] * solid_fraction;
+            let water =
+                self.points.initial_volume[point] * (self.points.volume_ratio[point] - solid_fraction);
+            let (solid_velocity, water_velocity) =
+                (&self.points.solid_velocity[point], &self.points.water_velocity[point]);
+            self.basis.visit(self.grid.node_stride(), point, |node, weight, _| {
+                for d in 0..D {
+                    nodes.solid_velocity[node][d] += weight * solid * solid_velocity[d];
+                    nodes.water_velocity[node][d] += weight * water * water_velocity[d];
+                }
+            });
+        }
+        let (grain_density, water_density) = (self.material.grain_density, self.material.water_density);
+        for node in 0..nodes.len() {
+            if nodes.is_active(node) {
+                let (solid, water) =
+                    (grain_density / nodes.solid_mass[node], water_density / nodes.water_mass[node]);
+                for d in 0..D {
+                    nodes.solid_velocity[node][d] *= nodes.free[node][d] * solid;
+                    nodes.water_velocity[node][d] *= nodes.free[node][d] * water;
+                }
+            } else {
+                nodes.solid_velocity[node] = [0.0; D];
+                nodes.water_velocity[node] = [0.0; D];
+            }
+        }
+    }
+
+    /// Forces on the mixture and on the water from the points' stresses (weak form, drained
+    /// surface natural).
+    pub fn map_forces(&mut self) {
+        let nodes = &mut self.nodes;
+        nodes.mixture_force.copy_from_slice(&nodes.external_force);
+        nodes.water_force.fill([0.0; D]);
+        for point in 0..self.points.len() {
+            let volume = self.points.volume(point);
+            let pressure = volume * self.points.pressure[point];
+            let mut total = self.points.effective_stress[point];
+            for d in 0..D {
+                for e in 0..D {
+                    total[d][e] *= volume;
+                }
+                total[d][d] -= pressure;
+            }
+            self.basis.visit(self.grid.node_stride(), point, |node, _, gradient| {
+                for d in 0..D {
+                    for e in 0..D {
+                        nodes.mixture_force[node][d] -= total[d][e] * gradient[e];
+                    }
+                    nodes.water_force[node][d] += pressure * gradient[d];
+                }
+            });
+        }
+    }
+
+    /// `v_s + n (v_w − v_s)` at the nodes, with the nodal porosity: what (4) takes the divergence
+    /// of.
+    pub fn nodal_flux(&mut self) {
+        let nodes = &mut self.nodes;
+        for node in 0..nodes.len() {
+            let porosity = nodes.porosity[node];
+            for d in 0..D {
+                let solid = nodes.solid_velocity[node][d];
+                nodes.flux[node][d] = solid + porosity * (nodes.water_velocity[node][d] - solid);
+            }
+        }
+    }
+
+    /// Largest nodal velocity of either phase, m/s; infinite where one is not finite.
+    pub fn largest_velocity(&self) -> f64 {
+        let both = self.nodes.solid_velocity.iter().chain(&self.nodes.water_velocity);
+        both.flatten().fold(0.0, |largest: f64, velocity| {
+            if velocity.is_finite() { largest.max(velocity.abs()) } else { f64::INFINITY }
+        })
+    }
+
+    /// Rate of the volume that the mixture gains, a cell centre or a point's divergence, 1/s.
+    #[inline]
+    pub fn volume_rate(&self, porosity: f64, divergence: impl Fn(&[Vector<D>]) -> f64) -> f64 {
+        match self.material.continuity {
+            Continuity::Conservative => divergence(&self.nodes.flux),
+            Continuity::ConstantPorosityGradient => {
+                (1.0 - porosity) * divergence(&self.nodes.solid_velocity)
+                    + porosity * divergence(&self.nodes.water_velocity)
+            }
+        }
+    }
+}
+
+impl Method {
+    /// Whether increments come back from the cells by a patch.
+    pub fn uses_patch(&self) -> bool {
+        self.pressure == PressureIntegration::Sri && self.recovery == Recovery::Patch
+    }
+
+    /// Whether the domains of the points follow the deformation.
+    pub fn domains_follow(&self) -> bool {
+        self.basis == Basis::Cpgimp
+    }
+}

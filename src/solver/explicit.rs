@@ -1,0 +1,221 @@
+//! The explicit integrator: the eight steps of Zheng et al. (2021), section 4.
+
+use super::body::{Body, ShapeFunction};
+use super::grid::Tensor;
+use super::method::{PressureIntegration, Recovery, StrainGradient};
+use serde::{Deserialize, Serialize};
+
+/// Time level at which the drag between skeleton and water is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Drag {
+    /// Old velocities: bounds the step by the drag.
+    Explicit,
+    /// New velocities, a 2 × 2 solve a node: no bound from the drag.
+    Implicit,
+}
+
+/// Choices of the explicit integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ExplicitSettings {
+    /// Time level of the drag.
+    pub drag: Drag,
+    /// Share of the acceleration update (FLIP) in the points' velocities; the rest is
+    /// interpolated from the nodes (PIC).
+    pub flip: f64,
+    /// Whether the stresses see velocities mapped back from the updated points (the paper's
+    /// step 5) instead of the nodal velocities of step 3.
+    pub mapping_back: bool,
+}
+
+impl Default for ExplicitSettings {
+    /// The paper's: explicit drag, pure FLIP, mapping back.
+    fn default() -> Self {
+        Self { drag: Drag::Explicit, flip: 1.0, mapping_back: true }
+    }
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+    /// One explicit step of `dt` seconds.
+    pub fn explicit_step(&mut self, dt: f64, settings: &ExplicitSettings) {
+        self.reset_grid(settings); // (1)
+        self.nodal_accelerations(dt, settings.drag); // (2)
+        self.nodal_velocities(dt); // (3)
+        self.advance_points(dt, settings.flip); // (4)
+        if settings.mapping_back {
+            self.map_velocities(); // (5)
+        }
+        self.update_effective_stress(dt); // (6)
+        self.update_pressure(dt); // (7), and (8) is the next step
+    }
+
+    /// (1) Operators, masses and velocities on the points' places. Where nothing moves, the
+    /// operators stand, and velocities mapped back by the last step are already there.
+    fn reset_grid(&mut self, settings: &ExplicitSettings) {
+        if self.is_moving() {
+            self.build_operators();
+            self.map_masses();
+        }
+        if self.is_moving() || !settings.mapping_back {
+            self.map_velocities();
+        }
+    }
+
+    /// (2) Accelerations of the water, equation (1), then of the skeleton, equation (2).
+    fn nodal_accelerations(&mut self, dt: f64, drag: Drag) {
+        self.map_forces();
+        let water_density = self.material.water_density;
+        let nodes = &mut self.nodes;
+        for node in 0..nodes.len() {
+            if !nodes.is_active(node) {
+                nodes.solid_acceleration[node] = [0.0; D];
+                nodes.water_acceleration[node] = [0.0; D];
+                continue;
+            }
+            let per_solid_mass = 1.0 / nodes.solid_mass[node];
+            let (water_inertia, drag_coefficient) = (water_density * nodes.volume[node], nodes.drag[node]);
+            let water_share = nodes.water_mass[node] * per_solid_mass;
+            // The drag at the new velocities adds Δt D (a_w − a_s) with a_s from (2).
+            let implicit = match drag {
+                Drag::Explicit => 0.0,
+                Drag::Implicit => dt * drag_coefficient,
+            };
+            let per_inertia = 1.0 / (water_inertia + implicit * (1.0 + water_share));
+            for d in 0..D {
+                let relative = nodes.water_velocity[node][d] - nodes.solid_velocity[node][d];
+                let mixture = nodes.mixture_force[node][d] * per_solid_mass;
+                let force = nodes.water_force[node][d] - drag_coefficient * relative + implicit * mixture;
+                let water = nodes.free[node][d] * force * per_inertia;
+                nodes.water_acceleration[node][d] = water;
+                nodes.solid_acceleration[node][d] = nodes.free[node][d] * (mixture - water_share * water);
+            }
+        }
+    }
+
+    /// (3) Nodal velocities by forward Euler.
+    fn nodal_velocities(&mut self, dt: f64) {
+        let nodes = &mut self.nodes;
+        for node in 0..nodes.len() {
+            for d in 0..D {
+                nodes.solid_velocity[node][d] += dt * nodes.solid_acceleration[node][d];
+                nodes.water_velocity[node][d] += dt * nodes.water_acceleration[node][d];
+                nodes.displacement[node][d] += dt * nodes.solid_velocity[node][d];
+            }
+        }
+    }
+
+    /// (4) Velocities and places of the points.
+    fn advance_points(&mut self, dt: f64, flip: f64) {
+        let nodes = &self.nodes;
+        let moving = self.is_moving();
+        let pic = 1.0 - flip;
+        for point in 0..self.points.len() {
+            let (mut solid, mut solid_rate) = ([0.0; D], [0.0; D]);
+            let (mut water, mut water_rate) = ([0.0; D], [0.0; D]);
+            self.basis.visit(self.grid.node_stride(), point, |node, weight, _| {
+                for d in 0..D {
+                    solid[d] += weight * nodes.solid_velocity[node][d];
+                    water[d] += weight * nodes.water_velocity[node][d];
+                    solid_rate[d] += weight * nodes.solid_acceleration[node][d];
+                    water_rate[d] += weight * nodes.water_acceleration[node][d];
+                }
+            });
+            for d in 0..D {
+                let points = &mut self.points;
+                points.solid_velocity[point][d] =
+                    flip * (points.solid_velocity[point][d] + dt * solid_rate[d]) + pic * solid[d];
+                points.water_velocity[point][d] =
+                    flip * (points.water_velocity[point][d] + dt * water_rate[d]) + pic * water[d];
+                points.displacement[point][d] += dt * solid[d];
+                if moving {
+                    points.position[point][d] += dt * solid[d];
+                }
+            }
+        }
+    }
+
+    /// (6) Effective stress by the method's strain gradient; with moving points also volume and
+    /// domain.
+    fn update_effective_stress(&mut self, dt: f64) {
+        match self.method.strain {
+            StrainGradient::Standard => self.stress_from(dt, |body, point| {
+                body.basis.gradient(body.grid.node_stride(), point, &body.nodes.solid_velocity)
+            }),
+            StrainGradient::Cmpm => self.stress_from(dt, |body, point| {
+                body.composite.gradient(body.grid.node_stride(), point, &body.nodes.solid_velocity)
+            }),
+        }
+    }
+
+    #[inline]
+    fn stress_from(&mut self, dt: f64, velocity_gradient: impl Fn(&Self, usize) -> Tensor<D>) {
+        let moving = self.is_moving();
+        for point in 0..self.points.len() {
+            let increment = velocity_gradient(self, point).map(|row| row.map(|rate| dt * rate));
+            let stress = self.stiffness.stress(&increment);
+            for d in 0..D {
+                for e in 0..D {
+                    self.points.effective_stress[point][d][e] += stress[d][e];
+                }
+            }
+            if moving {
+                self.deform(point, &increment);
+            }
+        }
+    }
+
+    /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
+    #[inline]
+    fn deform(&mut self, point: usize, increment: &Tensor<D>) {
+        let volumetric: f64 = (0..D).map(|d| increment[d][d]).sum();
+        self.points.volume_ratio[point] *= volumetric.exp();
+        if self.method.domains_follow() {
+            for d in 0..D {
+                self.points.half_length[point][d] *= increment[d][d].exp();
+            }
+        }
+    }
+
+    /// (7) Pressure increments where the method takes the divergence, recovered to the points.
+    fn update_pressure(&mut self, dt: f64) {
+        self.nodal_flux();
+        self.surface_flux += dt * self.surface.mean_of(&self.grid, &self.points, &self.nodes.flux);
+        match (self.method.pressure, self.method.recovery) {
+            (PressureIntegration::Points, _) => self.pressure_at_points(dt),
+            (PressureIntegration::Sri, Recovery::Constant) => {
+                self.pressure_increments_at_centres(dt);
+                for point in 0..self.points.len() {
+                    self.points.pressure[point] += self.cells.pressure_increment[self.cells.of_point[point]];
+                }
+            }
+            (PressureIntegration::Sri, Recovery::Patch) => {
+                self.pressure_increments_at_centres(dt);
+                for point in 0..self.points.len() {
+                    self.points.pressure[point] +=
+                        self.patch.value(&self.grid, point, &self.cells.pressure_increment);
+                }
+            }
+        }
+    }
+
+    fn pressure_at_points(&mut self, dt: f64) {
+        for point in 0..self.points.len() {
+            let porosity = self.material.porosity_at(self.points.volume_ratio[point]);
+            let rate = self
+                .volume_rate(porosity, |field| self.basis.divergence(self.grid.node_stride(), point, field));
+            self.points.pressure[point] -= dt * self.material.water_bulk_modulus / porosity * rate;
+        }
+    }
+
+    fn pressure_increments_at_centres(&mut self, dt: f64) {
+        for cell in 0..self.cells.pressure_increment.len() {
+            if self.cells.is_occupied(cell) {
+                let porosity = self.cells.porosity[cell];
+                let rate =
+                    self.volume_rate(porosity, |field| self.cells.centre_divergence(&self.grid, cell, field));
+                self.cells.pressure_increment[cell] =
+                    -dt * self.material.water_bulk_modulus / porosity * rate;
+            }
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! A method is a choice of four independent operators and of the configuration they live on.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Weights between points and nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Basis {
+    /// Piecewise linear hat functions: the original MPM.
+    Hat,
+    /// GIMP with point domains that keep their length.
+    Ugimp,
+    /// GIMP with point domains that follow the deformation.
+    Cpgimp,
+}
+
+/// Gradient from which the effective stress takes its strain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum StrainGradient {
+    /// The gradient of the basis.
+    Standard,
+    /// Lagrange interpolant through the nodes of the cell and of its neighbours.
+    Cmpm,
+}
+
+/// Where the divergence that drives the pore pressure is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PressureIntegration {
+    /// At the points: full integration.
+    Points,
+    /// At the cell centres: selective reduced integration.
+    Sri,
+}
+
+/// How pressure increments come back from the cell centres to the points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Recovery {
+    /// Each point takes its cell's increment.
+    Constant,
+    /// Moving least squares over the surrounding block of cells (MLSA).
+    Patch,
+}
+
+/// Configuration on which weights are built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Configuration {
+    /// Points move and weights follow them.
+    Updated,
+    /// Nothing moves: infinitesimal strain on the initial configuration.
+    Frozen,
+}
+
+/// The four operators of a method; `configuration` is left to the scene where it is `None`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Method {
+    /// Weights between points and nodes.
+    pub basis: Basis,
+    /// Strain gradient for the effective stress.
+    pub strain: StrainGradient,
+    /// Place of the pressure divergence.
+    pub pressure: PressureIntegration,
+    /// Way of the pressure increment back to the points; full integration needs none.
+    pub recovery: Recovery,
+    /// Configuration of the weights, where the method insists on one.
+    pub configuration: Option<Configuration>,
+}
+
+/// The paper's ladder of methods, without prefixes: one line a method.
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 5] = [
+    ("MPM", Basis::Hat, StrainGradient::Standard, PressureIntegration::Points, Recovery::Constant),
+    ("GIMP", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Points, Recovery::Constant),
+    ("GIMP-SRI", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Constant),
+    ("GIMP-SRI-patch", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Patch),
+    ("GC-SRI-patch", Basis::Cpgimp, StrainGradient::Cmpm, PressureIntegration::Sri, Recovery::Patch),
+];
+
+impl Method {
+    /// The method of a name, with or without the prefix `u` for fixed domains.
+    pub fn named(name: &str) -> Option<Self> {
+        let (bare, fixed_domains) = match name.strip_prefix('u') {
+            Some(rest) => (rest, true),
+            None => (name, false),
+        };
+        let (_, basis, strain, pressure, recovery) = *NAMED.iter().find(|row| row.0 == bare)?;
+        let basis = match (fixed_domains, basis) {
+            (false, basis) => basis,
+            (true, Basis::Cpgimp) => Basis::Ugimp,
+            (true, _) => return None,
+        };
+        Some(Self { basis, strain, pressure, recovery, configuration: None })
+    }
+
+    /// Every name that `named` knows.
+    pub fn names() -> Vec<String> {
+        let bare = NAMED.iter().map(|row| row.0.to_owned());
+        let fixed = NAMED.iter().filter(|row| row.1 == Basis::Cpgimp).map(|row| format!("u{}", row.0));
+        bare.chain(fixed).collect()
+    }
+
+    /// Whether the weights follow moving points, given the scene's own choice.
+    pub fn configuration_or(&self, scene: Configuration) -> Configuration {
+        self.configuration.unwrap_or(scene)
+    }
+}
+
+impl fmt::Display for Method {
+    /// The name where there is one, the four choices otherwise.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let bare = Self { configuration: None, ..*self };
+        let name = Self::names().into_iter().find(|name| Self::named(name).as_ref() == Some(&bare));
+        match (name, self.configuration) {
+            (Some(name), None) => write!(out, "{name}"),
+            (Some(name), Some(configuration)) => write!(out, "{name} ({})", word(configuration)),
+            (None, configuration) => {
+                write!(out, "{}+{}+{}", word(self.basis), word(self.strain), word(self.pressure))?;
+                if self.pressure == PressureIntegration::Sri {
+                    write!(out, "+{}", word(self.recovery))?;
+                }
+                configuration.map_or(Ok(()), |choice| write!(out, " ({})", word(choice)))
+            }
+        }
+    }
+}
+
+/// The word of a choice as the study file spells it.
+fn word<C: fmt::Debug>(choice: C) -> String {
+    format!("{choice:?}").to_lowercase()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_its_own_display() {
+        for name in Method::names() {
+            assert_eq!(Method::named(&name).map(|method| method.to_string()), Some(name));
+        }
+    }
+
+    #[test]
+    fn names_that_are_none_are_refused() {
+        for name in ["", "uMPM", "gimp", "GC-SRI", "uuGIMP"] {
+            assert_eq!(Method::named(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_free_combination_tells_its_choices() {
+        let method = Method {
+            basis: Basis::Hat,
+            strain: StrainGradient::Cmpm,
+            pressure: PressureIntegration::Sri,
+            recovery: Recovery::Patch,
+            configuration: Some(Configuration::Updated),
+        };
+        assert_eq!(method.to_string(), "hat+cmpm+sri+patch (updated)");
+    }
+}

@@ -1,0 +1,170 @@
+//! Nodal fields: lumped masses, forces, velocities and accelerations of both phases.
+
+use super::grid::{Grid, Vector};
+
+/// Nodes with less than this share of a full cell's mass carry nothing: a point on a cell face
+/// leaves ghosts of 1e-30 behind.
+const MASS_CUT_OFF: f64 = 1e-14;
+
+/// Nodal fields, structure of arrays; index = flat node.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Nodes<const D: usize> {
+    /// Mass of the grains, kg.
+    pub solid_mass: Vec<f64>,
+    /// Mass of the pore water `n ρ_w V`, kg.
+    pub water_mass: Vec<f64>,
+    /// Volume of the mixture, m^D.
+    pub volume: Vec<f64>,
+    /// Porosity `Σ w V n / Σ w V`; the pore volume while it is summed.
+    pub porosity: Vec<f64>,
+    /// Drag `n γ_w V/k`, N s/m.
+    pub drag: Vec<f64>,
+    /// External force on the mixture, N.
+    pub external_force: Vec<Vector<D>>,
+    /// Internal and external force on the mixture, N.
+    pub mixture_force: Vec<Vector<D>>,
+    /// Force of the pressure gradient on the water, per volume of water times mixture volume, N.
+    pub water_force: Vec<Vector<D>>,
+    /// Velocity of the skeleton, m/s.
+    pub solid_velocity: Vec<Vector<D>>,
+    /// Velocity of the water, m/s.
+    pub water_velocity: Vec<Vector<D>>,
+    /// Acceleration of the skeleton, m/s².
+    pub solid_acceleration: Vec<Vector<D>>,
+    /// Acceleration of the water, m/s².
+    pub water_acceleration: Vec<Vector<D>>,
+    /// `v_s + n (v_w − v_s)` with the nodal porosity, m/s: its divergence drives the pressure.
+    pub flux: Vec<Vector<D>>,
+    /// Displacement of the skeleton where the grid is frozen, m.
+    pub displacement: Vec<Vector<D>>,
+    /// One where a component of the velocity is free, zero where it is fixed or nothing is there.
+    pub free: Vec<Vector<D>>,
+    /// The supports alone.
+    supports: Vec<Vector<D>>,
+    mass_cut_off: f64,
+}
+
+/// Faces of the grid whose normal velocity is zero for both phases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Support<const D: usize> {
+    /// Fixed at the lower face of a direction, and beyond it.
+    pub lower: [bool; D],
+    /// Fixed at the upper face of a direction, and beyond it.
+    pub upper: [bool; D],
+}
+
+impl<const D: usize> Support<D> {
+    /// An oedometer: rollers at the sides, fixed base, free top.
+    pub fn oedometer() -> Self {
+        let mut upper = [true; D];
+        upper[D - 1] = false;
+        Self { lower: [true; D], upper }
+    }
+}
+
+impl<const D: usize> Nodes<D> {
+    /// Zero fields on a grid, with the supports of its faces; `cell_mass` is the mass of a full
+    /// cell, kg.
+    pub fn new(grid: &Grid<D>, support: &Support<D>, cell_mass: f64) -> Self {
+        let count = grid.node_count();
+        let tolerance = 1e-6 * grid.cell_size;
+        let supports: Vec<Vector<D>> = (0..count)
+            .map(|node| {
+                let position = grid.node_position(node);
+                std::array::from_fn(|d| {
+                    let top = grid.cells[d] as f64 * grid.cell_size;
+                    let fixed = support.lower[d] && position[d] < tolerance
+                        || support.upper[d] && position[d] > top - tolerance;
+                    if fixed { 0.0 } else { 1.0 }
+                })
+            })
+            .collect();
+        let (scalars, vectors) = (vec![0.0; count], vec![[0.0; D]; count]);
+        Self {
+            solid_mass: scalars.clone(),
+            water_mass: scalars.clone(),
+            volume: scalars.clone(),
+            porosity: scalars.clone(),
+            drag: scalars,
+            external_force: vectors.clone(),
+            mixture_force: vectors.clone(),
+            water_force: vectors.clone(),
+            solid_velocity: vectors.clone(),
+            water_velocity: vectors.clone(),
+            solid_acceleration: vectors.clone(),
+            water_acceleration: vectors.clone(),
+            flux: vectors.clone(),
+            displacement: vectors,
+            free: supports.clone(),
+            supports,
+            mass_cut_off: MASS_CUT_OFF * cell_mass,
+        }
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.solid_mass.len()
+    }
+
+    /// Whether there is no node at all.
+    pub fn is_empty(&self) -> bool {
+        self.solid_mass.is_empty()
+    }
+
+    /// Clears masses before they are summed again.
+    pub fn reset_masses(&mut self) {
+        for field in
+            [&mut self.solid_mass, &mut self.water_mass, &mut self.volume, &mut self.porosity, &mut self.drag]
+        {
+            field.fill(0.0);
+        }
+    }
+
+    /// Finishes what was summed: porosities, and which components are free. Nodes without mass
+    /// are silenced: their stale accelerations would otherwise reach the points.
+    pub fn finish_masses(&mut self) {
+        for node in 0..self.len() {
+            if self.is_active(node) {
+                self.porosity[node] /= self.volume[node];
+                self.free[node] = self.supports[node];
+            } else {
+                self.porosity[node] = 0.0;
+                self.free[node] = [0.0; D];
+            }
+        }
+    }
+
+    /// Whether a node carries mass.
+    #[inline]
+    pub fn is_active(&self, node: usize) -> bool {
+        self.solid_mass[node] > self.mass_cut_off
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn supports_hold_the_base_and_the_sides_and_leave_the_top_free() {
+        let grid = Grid::new(0.1, [1, 10]);
+        let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
+        nodes.solid_mass.fill(1.0);
+        nodes.finish_masses();
+        let at = |x: usize, y: usize| nodes.free[grid.flat_node(&[x + 2, y + 2])];
+        assert_eq!(at(0, 0), [0.0, 0.0]);
+        assert_eq!(at(1, 5), [0.0, 1.0]);
+        assert_eq!(at(1, 10), [0.0, 1.0]);
+        assert_eq!(nodes.free[grid.flat_node(&[2, 1])], [0.0, 0.0], "below the base");
+    }
+
+    #[test]
+    fn a_node_with_a_ghost_of_mass_is_silent() {
+        let grid = Grid::new(0.1, [4]);
+        let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
+        nodes.solid_mass[4] = 1e-30;
+        nodes.solid_mass[5] = 1e-3;
+        nodes.finish_masses();
+        assert_eq!((nodes.free[4], nodes.free[5]), ([0.0], [1.0]));
+    }
+}

@@ -1,0 +1,88 @@
+//! What a run leaves behind: its end by name, counters, step sizes and snapshots.
+
+use super::snapshot::Snapshot;
+use serde::{Deserialize, Serialize};
+
+/// Why a run ended before its last output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FailureKind {
+    /// Velocities left their physical scale a thousandfold, or are not finite.
+    Unstable,
+    /// A point's pores closed: its volume ratio fell to that of the grains.
+    PoresClosed,
+    /// A point left the grid.
+    LeftGrid,
+    /// The run was stopped from outside or ran out of its time.
+    Stopped,
+}
+
+/// The end of a run that did not reach its last output.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Failure {
+    /// Name of the failure.
+    pub kind: FailureKind,
+    /// Step at which it was seen.
+    pub step: u64,
+    /// Time at which it was seen, s.
+    pub time: f64,
+    /// A sentence with the numbers.
+    pub reason: String,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RunStatus {
+    /// All outputs reached.
+    Ok,
+    /// Not all.
+    Failed(Failure),
+}
+
+/// Work done, in integers: the same on every machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counters {
+    /// Material points.
+    pub points: usize,
+    /// Grid nodes, ghosts included.
+    pub nodes: usize,
+    /// Time steps.
+    pub steps: u64,
+    /// Points times steps.
+    pub point_updates: u64,
+}
+
+/// Step sizes of a run, s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StepSizes {
+    /// Predicted critical step on the initial configuration.
+    pub predicted_critical: f64,
+    /// Step the rule asked for.
+    pub target: f64,
+    /// Largest step taken; outputs are hit exactly, so it is at most the target.
+    pub largest: f64,
+}
+
+/// Settlement at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HistoryPoint {
+    /// Time, s.
+    pub time: f64,
+    /// Settlement of the surface, m.
+    pub settlement: f64,
+}
+
+/// Everything a run leaves behind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// How it ended.
+    pub status: RunStatus,
+    /// State at the output times that were reached.
+    pub snapshots: Vec<Snapshot>,
+    /// Settlement over time.
+    pub history: Vec<HistoryPoint>,
+    /// Work.
+    pub counters: Counters,
+    /// Step sizes.
+    pub step_sizes: StepSizes,
+}

@@ -1,0 +1,272 @@
+//! Patch recovery (MLSA): a plane fitted to the cells around a point, evaluated at the point.
+//!
+//! Zienkiewicz & Zhu (1992); Zheng et al. (2021), section 3. The weight of a cell falls with its
+//! distance: with equal weights the recovery's Fourier symbol `(1 + 2 cos θ)/3` turns negative
+//! beyond `2π/3`, a negative stiffness that no step survives.
+
+use super::cells::Cells;
+use super::grid::{Grid, Vector};
+
+/// Cells along one direction of a patch.
+const BLOCK: usize = 3;
+/// Most cells of a patch, over the dimensions there are.
+const MOST_CELLS: usize = BLOCK * BLOCK;
+
+/// Recovery weights of every point over the `3^D` cells around its own.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PatchRows<const D: usize> {
+    /// Flat index of the lowest cell of each point's block.
+    first: Vec<usize>,
+    /// `3^D` weights a point.
+    weights: Vec<f64>,
+}
+
+impl<const D: usize> PatchRows<D> {
+    /// Room for `points` points.
+    pub fn with_points(points: usize) -> Self {
+        Self { first: vec![0; points], weights: vec![0.0; points * Self::width()] }
+    }
+
+    const fn width() -> usize {
+        BLOCK.pow(D as u32)
+    }
+
+    /// Fits the rows to the points' places and to the occupied cells.
+    pub fn build(&mut self, grid: &Grid<D>, cells: &Cells, position: &[Vector<D>]) {
+        for (point, place) in position.iter().enumerate() {
+            let home = grid.cell_of(place);
+            let first = grid.flat_cell(&home.map(|index| index - 1));
+            self.first[point] = first;
+            let mut patch = Patch::<D>::empty();
+            for block in 0..Self::width() {
+                let (cell, steps) = block_cell(grid, first, block);
+                if cells.is_occupied(cell) {
+                    let offset =
+                        std::array::from_fn(|d| (home[d] + steps[d]) as f64 - 0.5 - grid.in_cells(place[d]));
+                    patch.add(block, offset);
+                }
+            }
+            let row = &mut self.weights[point * Self::width()..(point + 1) * Self::width()];
+            patch.rows_into(row);
+        }
+    }
+
+    /// Value at a point of a field given at the cells.
+    #[inline]
+    pub fn value(&self, grid: &Grid<D>, point: usize, field: &[f64]) -> f64 {
+        let row = &self.weights[point * Self::width()..(point + 1) * Self::width()];
+        let mut value = 0.0;
+        for block in 0..Self::width() {
+            let (cell, _) = block_cell(grid, self.first[point], block);
+            value += row[block] * field[cell];
+        }
+        value
+    }
+
+    /// The cells of a point's patch with their weights.
+    pub fn entries(&self, grid: &Grid<D>, point: usize) -> impl Iterator<Item = (usize, f64)> {
+        (0..Self::width()).map(move |block| {
+            (block_cell(grid, self.first[point], block).0, self.weights[point * Self::width() + block])
+        })
+    }
+}
+
+/// Flat cell of a place in a block, and its steps from the block's lowest cell.
+#[inline]
+fn block_cell<const D: usize>(grid: &Grid<D>, first: usize, block: usize) -> (usize, [usize; D]) {
+    let mut rest = block;
+    let mut cell = first;
+    let steps = std::array::from_fn(|direction| {
+        let step = rest % BLOCK;
+        rest /= BLOCK;
+        cell += step * grid.cell_stride()[direction];
+        step
+    });
+    (cell, steps)
+}
+
+/// Cubic spline of the distance `d` in cells with radius two cells (Monaghan & Lattanzio 1985,
+/// as used in moving least squares): positive inside, smooth to zero.
+#[inline]
+fn distance_weight(distance: f64) -> f64 {
+    let q = 0.5 * distance.abs();
+    if q <= 0.5 {
+        2.0 / 3.0 - 4.0 * q * q + 4.0 * q * q * q
+    } else if q < 1.0 {
+        let rest = 1.0 - q;
+        4.0 / 3.0 * rest * rest * rest
+    } else {
+        0.0
+    }
+}
+
+/// The occupied cells around one point: weighted moments of `[1, x, y]` about the point.
+struct Patch<const D: usize> {
+    count: usize,
+    block: [usize; MOST_CELLS],
+    weight: [f64; MOST_CELLS],
+    offset: [Vector<D>; MOST_CELLS],
+}
+
+impl<const D: usize> Patch<D> {
+    fn empty() -> Self {
+        Self { count: 0, block: [0; MOST_CELLS], weight: [0.0; MOST_CELLS], offset: [[0.0; D]; MOST_CELLS] }
+    }
+
+    #[inline]
+    fn add(&mut self, block: usize, offset: Vector<D>) {
+        self.block[self.count] = block;
+        // A product over the directions, so that a column one cell wide recovers as in 1D.
+        self.weight[self.count] = offset.iter().map(|d| distance_weight(*d)).product();
+        self.offset[self.count] = offset;
+        self.count += 1;
+    }
+
+    /// Writes the weights that evaluate the fit at the point itself.
+    ///
+    /// A direction without two different cells is left out of the fit; where the cells still lie
+    /// on a line, the order drops to constant.
+    #[inline]
+    fn rows_into(&self, row: &mut [f64]) {
+        row.fill(0.0);
+        let total: f64 = self.weight[..self.count].iter().sum();
+        let mut mean = [0.0; D];
+        for k in 0..self.count {
+            for d in 0..D {
+                mean[d] += self.weight[k] * self.offset[k][d] / total;
+            }
+        }
+        let slope = self.centred_slope(&mean);
+        for k in 0..self.count {
+            let tilt: f64 = (0..D).map(|d| slope[d] * (self.offset[k][d] - mean[d])).sum();
+            row[self.block[k]] = self.weight[k] * (1.0 / total - tilt);
+        }
+    }
+
+    /// Solves the centred normal equations `C s = mean` for the slope's share of the weights.
+    #[inline]
+    fn centred_slope(&self, mean: &Vector<D>) -> Vector<D> {
+        let mut covariance = [[0.0; D]; D];
+        for k in 0..self.count {
+            for i in 0..D {
+                for j in 0..D {
+                    covariance[i][j] +=
+                        self.weight[k] * (self.offset[k][i] - mean[i]) * (self.offset[k][j] - mean[j]);
+                }
+            }
+        }
+        let mut slope = *mean;
+        for i in 0..D {
+            let first = self.offset[0][i];
+            if self.offset[..self.count].iter().all(|offset| (offset[i] - first).abs() < 0.5) {
+                covariance[i] = [0.0; D];
+                for row in &mut covariance {
+                    row[i] = 0.0;
+                }
+                covariance[i][i] = 1.0;
+                slope[i] = 0.0;
+            }
+        }
+        // Elimination without pivoting: the matrix is symmetric and not indefinite.
+        for i in 0..D {
+            let largest = covariance[i][i];
+            if largest <= 1e-12 {
+                return [0.0; D];
+            }
+            for j in i + 1..D {
+                let factor = covariance[j][i] / largest;
+                for k in i..D {
+                    covariance[j][k] -= factor * covariance[i][k];
+                }
+                slope[j] -= factor * slope[i];
+            }
+        }
+        for i in (0..D).rev() {
+            for j in i + 1..D {
+                slope[i] -= covariance[i][j] * slope[j];
+            }
+            slope[i] /= covariance[i][i];
+        }
+        slope
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::points::Points;
+    use proptest::prelude::*;
+
+    fn recovered<const D: usize>(
+        grid: &Grid<D>,
+        points: &Points<D>,
+        field: impl Fn(&Vector<D>) -> f64,
+    ) -> Vec<(f64, f64)> {
+        let mut cells = Cells::new(grid, points.len());
+        cells.locate(grid, points, 0.3);
+        let mut rows = PatchRows::with_points(points.len());
+        rows.build(grid, &cells, &points.position);
+        let at_cells: Vec<f64> = (0..grid.cell_count()).map(|cell| field(&grid.cell_centre(cell))).collect();
+        (0..points.len())
+            .map(|point| (rows.value(grid, point, &at_cells), field(&points.position[point])))
+            .collect()
+    }
+
+    proptest! {
+        #[test]
+        fn a_plane_is_recovered_exactly_in_every_cell(a in -3.0..3.0f64, b in -3.0..3.0f64, c in -3.0..3.0f64,
+                                                      jitter in proptest::collection::vec(-0.2..0.2f64, 48)) {
+            let grid = Grid::new(0.5, [3, 4]);
+            let mut points = Points::lattice(0.5, [3, 4], 2);
+            for (place, nudge) in points.position.iter_mut().zip(&jitter) {
+                place[0] += 0.5 * nudge;
+                place[1] -= 0.5 * nudge;
+            }
+            for (got, exact) in recovered(&grid, &points, |x| a + b * x[0] + c * x[1]) {
+                prop_assert!((got - exact).abs() < 1e-13, "{got} for {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_is_recovered_exactly_in_a_column_and_in_its_boundary_cells() {
+        let grid = Grid::new(0.1, [12]);
+        let points = Points::lattice(0.1, [10], 3);
+        for (got, exact) in recovered(&grid, &points, |x| 2.0 - 5.0 * x[0]) {
+            assert!((got - exact).abs() < 1e-14, "{got} for {exact}");
+        }
+    }
+
+    #[test]
+    fn too_few_cells_drop_the_order_and_never_divide_by_zero() {
+        let one_cell = recovered(&Grid::new(1.0, [1]), &Points::lattice(1.0, [1], 2), |x| 1.0 + x[0]);
+        assert_eq!(one_cell[0].0, 1.5, "one cell: its own value");
+        // A column one cell wide in 2D: the plane has no slope across.
+        let narrow = recovered(&Grid::new(1.0, [1, 4]), &Points::lattice(1.0, [1, 4], 2), |x| 3.0 * x[1]);
+        for (got, exact) in narrow {
+            assert!((got - exact).abs() < 1e-13);
+        }
+        // Cells along a diagonal lie on a line: constant, finite.
+        let mut points = Points::<2>::lattice(1.0, [2, 2], 1);
+        points.position = vec![[0.5, 0.5], [0.5, 0.5], [1.5, 1.5], [1.5, 1.5]];
+        for (got, _) in recovered(&Grid::new(1.0, [2, 2]), &points, |x| x[0] + 2.0 * x[1]) {
+            assert!(got.is_finite() && (1.5..=4.5).contains(&got));
+        }
+    }
+
+    #[test]
+    fn the_recovery_never_turns_a_pressure_wave_round() {
+        // Fourier symbol of patch recovery followed by the mean over the cell's points.
+        let grid = Grid::new(1.0, [9]);
+        for per_cell in 1..=4 {
+            let points = Points::lattice(1.0, [9], per_cell);
+            for step in 0..=32 {
+                let theta = std::f64::consts::PI * f64::from(step) / 32.0;
+                let wave = recovered(&grid, &points, |x| (theta * (x[0] - 4.5)).cos());
+                let middle = &wave[4 * per_cell..5 * per_cell];
+                let symbol: f64 = middle.iter().map(|pair| pair.0).sum::<f64>() / per_cell as f64;
+                assert!(symbol > 0.0, "symbol {symbol} at θ = {theta}, {per_cell} points a cell");
+            }
+        }
+    }
+}

@@ -1,0 +1,428 @@
+//! A run: from a problem and a schedule to snapshots, history, counters and a named end.
+
+use super::assembled::AssembledColumn;
+use super::body::{Body, Gimp, Hat, Problem, ShapeFunction};
+use super::explicit::ExplicitSettings;
+use super::limits;
+use super::method::{Basis, Configuration};
+use super::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
+use super::points::Points;
+use super::snapshot::Snapshot;
+use super::stability;
+use super::surface::LoadedSurface;
+use serde::{Deserialize, Serialize};
+
+/// Steps between two looks at whether the run has left, and between two calls of the observer.
+const WATCH_INTERVAL: u64 = 64;
+/// Velocities beyond this multiple of their scale have left.
+const BLOW_UP: f64 = 1e3;
+/// Steps after which moving points are given a new step size.
+const STEP_RENEWAL: u64 = 4096;
+/// Cells of the column on which the critical step is computed where the run has more.
+const STABILITY_CELLS: usize = 12;
+
+/// How the time step is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TimeStepRule {
+    /// Share of the predicted critical step.
+    Stable(f64),
+    /// Share of `h/c`, the fastest wave's way through a cell.
+    Courant(f64),
+    /// Seconds.
+    Seconds(f64),
+}
+
+/// Kernel of the explicit step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kernel {
+    /// One banded map where the problem allows it, the point-wise step elsewhere.
+    #[default]
+    Fastest,
+    /// The point-wise step always.
+    PointWise,
+}
+
+/// When to step and what to keep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Schedule {
+    /// Times of the snapshots, s, ascending; 0 is the start.
+    pub outputs: Vec<f64>,
+    /// Times at which the settlement is noted, s, ascending.
+    pub history: Vec<f64>,
+    /// Step size.
+    pub rule: TimeStepRule,
+    /// Choices of the integrator.
+    pub settings: ExplicitSettings,
+    /// Kernel of the step.
+    pub kernel: Kernel,
+}
+
+/// Told now and then how many steps are done, of how many; answers whether to go on.
+pub type Observer<'a> = &'a dyn Fn(u64, u64) -> bool;
+
+/// Solves a problem. Never panics and never loops for ever: what goes wrong ends the run with a
+/// named status, and what was finished before stays.
+pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
+    match problem.method.basis {
+        Basis::Hat => Run::new(Body::<D, 2, Hat>::new, problem, schedule).solve(observer),
+        Basis::Ugimp | Basis::Cpgimp => Run::new(Body::<D, 3, Gimp>::new, problem, schedule).solve(observer),
+    }
+}
+
+/// Critical step, s, of the explicit integrator on a problem's initial configuration.
+///
+/// Computed on the problem's own operators; a long column is cut to twelve cells, which moves
+/// the limit by less than a percent. Above one dimension, the safe formula.
+pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
+    let safe = limits::combined_limit(&problem.material, problem.grid.cell_size, settings.drag);
+    let problem = cut_column(problem);
+    let column = match problem.method.basis {
+        Basis::Hat => AssembledColumn::new(&Body::<D, 2, Hat>::new(problem)),
+        Basis::Ugimp | Basis::Cpgimp => AssembledColumn::new(&Body::<D, 3, Gimp>::new(problem)),
+    };
+    column.map_or(safe, |column| stability::critical_step(&column, settings, safe))
+}
+
+/// The problem on its lowest cells only, with the load on their top.
+fn cut_column<const D: usize>(problem: &Problem<D>) -> Problem<D> {
+    let mut cut = problem.clone();
+    let height = STABILITY_CELLS as f64 * problem.grid.cell_size;
+    let keep: Vec<usize> =
+        (0..cut.points.len()).filter(|point| cut.points.position[*point][D - 1] < height).collect();
+    if keep.len() < cut.points.len() {
+        cut.points = cut.points.select(&keep);
+    }
+    cut
+}
+
+struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
+    body: Body<D, W, S>,
+    column: Option<AssembledColumn>,
+    schedule: &'a Schedule,
+    start: Points<D>,
+    initial_height: f64,
+    initial_settlement: f64,
+    velocity_scale: f64,
+    steps: StepSizes,
+    counters: Counters,
+    snapshots: Vec<Snapshot>,
+    history: Vec<HistoryPoint>,
+    time: f64,
+    failure: Option<Failure>,
+}
+
+impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
+    fn new(
+        discretise: impl Fn(Problem<D>) -> Body<D, W, S>,
+        problem: Problem<D>,
+        schedule: &'a Schedule,
+    ) -> Self {
+        let critical = predicted_critical_step(&problem, &schedule.settings);
+        let target = schedule.rule.step(&problem, critical);
+        let velocity_scale = velocity_scale(&problem);
+        let initial_height = LoadedSurface::of(&problem.points, problem.load).height(&problem.points);
+        let body = discretise(problem);
+        let column = match (body.configuration, schedule.kernel) {
+            (Configuration::Frozen, Kernel::Fastest) => AssembledColumn::new(&body),
+            _ => None,
+        };
+        Self {
+            start: body.points.clone(),
+            initial_height,
+            initial_settlement: -body.surface.mean_of(&body.grid, &body.points, &body.nodes.displacement),
+            velocity_scale,
+            steps: StepSizes { predicted_critical: critical, target, largest: 0.0 },
+            counters: Counters { points: body.points.len(), nodes: body.nodes.len(), ..Counters::default() },
+            body,
+            column,
+            schedule,
+            snapshots: Vec::new(),
+            history: Vec::new(),
+            time: 0.0,
+            failure: None,
+        }
+    }
+
+    fn solve(mut self, observer: Observer<'_>) -> Outcome {
+        let schedule = self.schedule;
+        let end = schedule.outputs.last().copied().unwrap_or(0.0);
+        let expected = steps_for(end, self.steps.target);
+        for output in &schedule.outputs {
+            self.advance_to(*output, &|done| observer(done, expected));
+            if self.failure.is_some() {
+                break;
+            }
+            self.take_snapshot();
+        }
+        Outcome {
+            status: self.failure.map_or(RunStatus::Ok, RunStatus::Failed),
+            snapshots: self.snapshots,
+            history: self.history,
+            counters: self.counters,
+            step_sizes: self.steps,
+        }
+    }
+
+    /// Steps of equal size that end exactly at `output`.
+    fn advance_to(&mut self, output: f64, go_on: &dyn Fn(u64) -> bool) {
+        while self.failure.is_none() && output - self.time > 1e-9 * output {
+            let remaining = output - self.time;
+            let count = steps_for(remaining, self.steps.target * self.step_reduction());
+            let dt = remaining / count as f64;
+            let chunk = if self.body.is_moving() { count.min(STEP_RENEWAL) } else { count };
+            self.steps.largest = self.steps.largest.max(dt);
+            self.take_steps(chunk, dt, go_on);
+        }
+    }
+
+    /// Ratio by which the step shrinks as the pores close and waves get faster.
+    fn step_reduction(&self) -> f64 {
+        if !self.body.is_moving() || matches!(self.schedule.rule, TimeStepRule::Seconds(_)) {
+            return 1.0;
+        }
+        let soil = &self.body.material;
+        let least_ratio = self.body.points.volume_ratio.iter().copied().fold(1.0, f64::min);
+        let porosity = soil.porosity_at(least_ratio).max(1e-3);
+        limits::fastest_wave_speed(soil, soil.porosity) / limits::fastest_wave_speed(soil, porosity)
+    }
+
+    fn take_steps(&mut self, count: u64, dt: f64, go_on: &dyn Fn(u64) -> bool) {
+        let settings = self.schedule.settings;
+        if let Some(column) = &mut self.column {
+            column.set_step(dt, &settings);
+        }
+        let start = self.time;
+        let mut done = 0;
+        while done < count && self.failure.is_none() {
+            let some = WATCH_INTERVAL.min(count - done).min(self.steps_to_history(dt));
+            for _ in 0..some {
+                match &mut self.column {
+                    Some(column) => column.step(dt, &settings),
+                    None => self.body.explicit_step(dt, &settings),
+                }
+            }
+            done += some;
+            self.time = start + done as f64 * dt;
+            self.counters.steps += some;
+            self.counters.point_updates += some * self.counters.points as u64;
+            self.note_history();
+            self.failure = self.find_failure();
+            if self.failure.is_none() && !go_on(self.counters.steps) {
+                self.failure = Some(self.failure(FailureKind::Stopped, "stopped from outside".to_owned()));
+            }
+        }
+    }
+
+    fn steps_to_history(&self, dt: f64) -> u64 {
+        let due = self.schedule.history.get(self.history.len());
+        due.map_or(u64::MAX, |due| steps_for(due - self.time, dt))
+    }
+
+    fn note_history(&mut self) {
+        let settlement = self.settlement();
+        while self
+            .schedule
+            .history
+            .get(self.history.len())
+            .is_some_and(|due| *due <= self.time * (1.0 + 1e-12))
+        {
+            self.history.push(HistoryPoint { time: self.time, settlement });
+        }
+    }
+
+    fn settlement(&self) -> f64 {
+        match &self.column {
+            Some(column) => self.initial_settlement - column.surface_displacement(),
+            None if self.body.is_moving() => {
+                self.initial_height - self.body.surface.height(&self.body.points)
+            }
+            None => {
+                let body = &self.body;
+                -body.surface.mean_of(&body.grid, &body.points, &body.nodes.displacement)
+            }
+        }
+    }
+
+    fn take_snapshot(&mut self) {
+        let settlement = self.settlement();
+        let snapshot = match &self.column {
+            Some(column) => column.body_now(&self.body).snapshot(self.time, settlement, &self.start),
+            None => self.body.snapshot(self.time, settlement, &self.start),
+        };
+        self.snapshots.push(snapshot);
+    }
+
+    fn failure(&self, kind: FailureKind, reason: String) -> Failure {
+        Failure { kind, step: self.counters.steps, time: self.time, reason }
+    }
+
+    fn find_failure(&self) -> Option<Failure> {
+        let velocity = match &self.column {
+            Some(column) => column.largest_velocity(),
+            None => self.body.largest_velocity(),
+        };
+        if velocity > BLOW_UP * self.velocity_scale {
+            let reason = format!(
+                "a nodal velocity of {velocity:.3e} m/s, {BLOW_UP:.0} times beyond its scale of {:.3e} m/s; the step \
+                 of {:.4e} s is {:.3} of the predicted critical one",
+                self.velocity_scale,
+                self.steps.largest,
+                self.steps.largest / self.steps.predicted_critical
+            );
+            return Some(self.failure(FailureKind::Unstable, reason));
+        }
+        if self.body.is_moving() { self.find_lost_point() } else { None }
+    }
+
+    fn find_lost_point(&self) -> Option<Failure> {
+        let points = &self.body.points;
+        let grains = 1.0 - self.body.material.porosity;
+        if let Some(point) = points.volume_ratio.iter().position(|ratio| *ratio <= grains) {
+            let ratio = points.volume_ratio[point];
+            let reason = format!("point {point} has J = {ratio:.4}, its grains alone fill {grains:.4}");
+            return Some(self.failure(FailureKind::PoresClosed, reason));
+        }
+        let outside = points.position.iter().position(|position| !self.body.grid.holds(position))?;
+        let reason = format!("point {outside} is at {:?} m", points.position[outside]);
+        Some(self.failure(FailureKind::LeftGrid, reason))
+    }
+}
+
+/// Velocity, m/s, of an undrained wave or of Darcy's flow through one cell under the problem's
+/// pressure, the larger: what a sound run does not leave a thousandfold.
+fn velocity_scale<const D: usize>(problem: &Problem<D>) -> f64 {
+    let soil = &problem.material;
+    let wave = limits::undrained_wave_speed(soil);
+    let density = (1.0 - soil.porosity) * soil.grain_density + soil.porosity * soil.water_density;
+    let flow = soil.hydraulic_conductivity / soil.unit_weight_of_water() / problem.grid.cell_size;
+    problem.pressure_scale * (1.0 / (density * wave)).max(flow / soil.porosity)
+}
+
+impl TimeStepRule {
+    /// Step, s, on a problem with a predicted critical step.
+    pub fn step<const D: usize>(&self, problem: &Problem<D>, critical: f64) -> f64 {
+        match self {
+            Self::Stable(share) => share * critical,
+            Self::Courant(share) => {
+                let soil = &problem.material;
+                share * problem.grid.cell_size / limits::fastest_wave_speed(soil, soil.porosity)
+            }
+            Self::Seconds(seconds) => *seconds,
+        }
+    }
+}
+
+/// Equal steps of at most `step` that fill a duration; at least one.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "saturates, and that is the right end"
+)]
+fn steps_for(duration: f64, step: f64) -> u64 {
+    // A duration that is a whole number of steps up to round-off is that number.
+    ((duration / step) * (1.0 - 1e-12)).ceil().max(1.0) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Column, SceneKind, column_problem};
+    use crate::solver::explicit::Drag;
+    use crate::solver::material::Material;
+    use crate::solver::method::Method;
+
+    fn problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {
+        let method = Method::named(method).expect("a known method");
+        let (column, soil) = (Column::default(), Material::default());
+        column_problem(SceneKind::SingleMode, &column, &soil, method, cells, per_cell)
+            .expect("the seed column")
+    }
+
+    fn schedule(kernel: Kernel, settings: ExplicitSettings, end: f64) -> Schedule {
+        let history = vec![0.25 * end, 0.5 * end];
+        Schedule {
+            outputs: vec![0.0, 0.4 * end, end],
+            history,
+            rule: TimeStepRule::Stable(0.6),
+            settings,
+            kernel,
+        }
+    }
+
+    #[test]
+    fn the_assembled_column_is_the_point_wise_step_to_round_off() {
+        for name in ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"] {
+            for (drag, flip, mapping_back) in
+                [(Drag::Explicit, 1.0, true), (Drag::Implicit, 1.0, false), (Drag::Implicit, 0.99, true)]
+            {
+                let settings = ExplicitSettings { drag, flip, mapping_back };
+                let end = 0.02;
+                let fast = run(problem(name, 7, 3), &schedule(Kernel::Fastest, settings, end), &|_, _| true);
+                let plain =
+                    run(problem(name, 7, 3), &schedule(Kernel::PointWise, settings, end), &|_, _| true);
+                assert_eq!(fast.counters, plain.counters);
+                assert_eq!(fast.status, RunStatus::Ok);
+                let (fast, plain) = (fast.snapshots[2].clone(), plain.snapshots[2].clone());
+                for (a, b) in [
+                    (&fast.points.pressure, &plain.points.pressure),
+                    (&fast.points.effective_stress, &plain.points.effective_stress),
+                    (&fast.points.displacement, &plain.points.displacement),
+                    (&fast.nodes.displacement, &plain.nodes.displacement),
+                    (&vec![fast.settlement], &vec![plain.settlement]),
+                    (&vec![fast.totals.surface_flux], &vec![plain.totals.surface_flux]),
+                ] {
+                    let scale = b.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
+                    for (x, y) in a.iter().zip(b) {
+                        assert!((x - y).abs() <= 1e-10 * scale, "{name} {settings:?}: {x} for {y}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn outputs_are_hit_and_history_is_noted() {
+        let outcome = run(
+            problem("GIMP", 5, 2),
+            &schedule(Kernel::Fastest, ExplicitSettings::default(), 0.01),
+            &|_, _| true,
+        );
+        let times: Vec<f64> = outcome.snapshots.iter().map(|snapshot| snapshot.time).collect();
+        assert_eq!(times[0], 0.0);
+        assert!((times[1] - 0.004).abs() < 1e-15 && (times[2] - 0.01).abs() < 1e-15);
+        assert_eq!(outcome.history.len(), 2);
+        assert!((outcome.history[0].time / 0.0025 - 1.0).abs() < 0.02);
+        assert!(outcome.step_sizes.largest <= 0.6 * outcome.step_sizes.predicted_critical * (1.0 + 1e-12));
+    }
+
+    #[test]
+    fn a_step_beyond_the_limit_ends_with_a_name_and_below_it_runs() {
+        for (share, stable) in [(0.97, true), (1.03, false)] {
+            for name in ["GIMP", "GIMP-SRI-patch", "GC-SRI-patch"] {
+                for mapping_back in [true, false] {
+                    let settings = ExplicitSettings { mapping_back, ..ExplicitSettings::default() };
+                    let mut schedule = schedule(Kernel::Fastest, settings, 0.3);
+                    schedule.rule = TimeStepRule::Stable(share);
+                    let outcome = run(problem(name, 8, 2), &schedule, &|_, _| true);
+                    match outcome.status {
+                        RunStatus::Ok => assert!(stable, "{name} {share} {mapping_back}"),
+                        RunStatus::Failed(failure) => {
+                            assert!(!stable, "{name} {share} {mapping_back}");
+                            assert_eq!(failure.kind, FailureKind::Unstable);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_observer_can_stop_a_run() {
+        let schedule = schedule(Kernel::Fastest, ExplicitSettings::default(), 0.1);
+        let outcome = run(problem("GIMP", 5, 2), &schedule, &|done, _| done < 100);
+        let RunStatus::Failed(failure) = outcome.status else { panic!("not stopped") };
+        assert_eq!((failure.kind, failure.step), (FailureKind::Stopped, 128));
+        assert_eq!(outcome.snapshots.len(), 1, "what was finished stays");
+    }
+}
