@@ -1,0 +1,74 @@
+//! What the exact solutions refuse, in sentences.
+
+use thiserror::Error;
+
+/// Why an exact solution gives no number.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ExactError {
+    /// A quantity that must be positive is zero, negative or not finite.
+    #[error("the {quantity} must be positive and finite, got {value}")]
+    NotPositive {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// Value that was given.
+        value: f64,
+    },
+    /// Porosity outside the open interval (0, 1).
+    #[error("the porosity must lie between 0 and 1, got {0}")]
+    Porosity(f64),
+    /// Poisson's ratio outside (−1, ½).
+    #[error("Poisson's ratio must lie between -1 and 0.5, got {0}")]
+    PoissonsRatio(f64),
+    /// Negative or non-finite time factor.
+    #[error("the time factor must be finite and not negative, got {0}")]
+    TimeFactor(f64),
+    /// Relative depth outside [0, 1].
+    #[error("the relative depth must lie between 0 (drained surface) and 1 (base), got {0}")]
+    Depth(f64),
+    /// Degree of consolidation outside [0, 1).
+    #[error("the degree of consolidation must be at least 0 and below 1, got {0}")]
+    Degree(f64),
+    /// A name that is no reference.
+    #[error("there is no reference named `{0}`")]
+    UnknownReference(String),
+    /// A load under which large-strain consolidation would end with a negative porosity.
+    #[error(
+        "the load would press out more water than the pores hold: m_v q = {load} must stay below \
+         -ln(1 - n) = {limit} for a porosity of {porosity}"
+    )]
+    LoadClosesPores {
+        /// `m_v q`.
+        load: f64,
+        /// `−ln(1 − n_0)`.
+        limit: f64,
+        /// Initial porosity `n_0`.
+        porosity: f64,
+    },
+}
+
+/// Passes a positive finite `value` on, refuses any other.
+pub(super) fn positive(quantity: &'static str, value: f64) -> Result<f64, ExactError> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(ExactError::NotPositive { quantity, value })
+    }
+}
+
+/// Passes a finite `time_factor ≥ 0` on, refuses any other.
+pub(super) fn checked_time_factor(time_factor: f64) -> Result<f64, ExactError> {
+    if time_factor.is_finite() && time_factor >= 0.0 {
+        Ok(time_factor)
+    } else {
+        Err(ExactError::TimeFactor(time_factor))
+    }
+}
+
+/// Passes a relative depth `0 ≤ zeta ≤ 1` on, refuses any other.
+pub(super) fn checked_depth(zeta: f64) -> Result<f64, ExactError> {
+    if (0.0..=1.0).contains(&zeta) {
+        Ok(zeta)
+    } else {
+        Err(ExactError::Depth(zeta))
+    }
+}

@@ -1,0 +1,224 @@
+//! The door: a reference by its name, its fields by time factor and depth.
+
+use core::fmt;
+use core::str::FromStr;
+
+use super::error::ExactError;
+use super::parameters::ColumnParameters;
+use super::single_mode::SingleMode;
+use super::terzaghi::Terzaghi;
+use super::xie_leo::XieLeo;
+
+/// Which exact solution a run is held against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum ReferenceKind {
+    /// Terzaghi's column with compressible water.
+    Terzaghi,
+    /// Terzaghi's column of the textbooks, with incompressible water.
+    TerzaghiIncompressible,
+    /// Decay of the slowest mode, with compressible water.
+    SingleMode,
+    /// Large strain after Xie & Leo, with incompressible water.
+    XieLeo,
+}
+
+impl ReferenceKind {
+    /// All kinds, in the order of the documentation.
+    pub const ALL: [Self; 4] = [
+        Self::Terzaghi,
+        Self::TerzaghiIncompressible,
+        Self::SingleMode,
+        Self::XieLeo,
+    ];
+
+    /// Name in study files and tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Terzaghi => "terzaghi",
+            Self::TerzaghiIncompressible => "terzaghi-incompressible",
+            Self::SingleMode => "single-mode",
+            Self::XieLeo => "xie-leo",
+        }
+    }
+}
+
+impl fmt::Display for ReferenceKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.name())
+    }
+}
+
+impl FromStr for ReferenceKind {
+    type Err = ExactError;
+
+    fn from_str(name: &str) -> Result<Self, ExactError> {
+        Self::ALL
+            .into_iter()
+            .find(|kind| kind.name() == name)
+            .ok_or_else(|| ExactError::UnknownReference(name.to_owned()))
+    }
+}
+
+/// Fields at one depth and time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldValues {
+    /// Excess pore pressure, compression positive, Pa.
+    pub pressure: f64,
+    /// Vertical effective (Cauchy) stress, *tension positive*: `p − q` under a load, Pa.
+    pub effective_stress: f64,
+    /// Displacement of the solid, upward positive, from the unloaded state before `t = 0`
+    /// (single mode: from the state at `t = 0`), m.
+    pub displacement: f64,
+}
+
+/// How far a reference itself can be trusted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Number of terms (modes, images, unknowns) used.
+    pub terms: usize,
+    /// Bound on the truncation error of the pressure over the load, the worst over the depth.
+    pub tail_bound: f64,
+}
+
+/// An exact solution for one set of parameters.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    kind: ReferenceKind,
+    solution: Solution,
+}
+
+/// What stands behind the door.
+#[derive(Clone, Debug)]
+enum Solution {
+    Terzaghi(Terzaghi),
+    SingleMode(SingleMode),
+    XieLeo(XieLeo),
+}
+
+/// One `match` for all that every solution answers.
+macro_rules! ask {
+    ($reference:expr, $solution:ident => $answer:expr) => {
+        match &$reference.solution {
+            Solution::Terzaghi($solution) => $answer,
+            Solution::SingleMode($solution) => $answer,
+            Solution::XieLeo($solution) => $answer,
+        }
+    };
+}
+
+impl Reference {
+    /// The reference `kind` of a column; those that must be computed in advance are, for
+    /// `time_factors`.
+    ///
+    /// # Errors
+    /// When the parameters are impossible or outside the solution's range, or a time factor is
+    /// negative or not finite.
+    pub fn new(
+        kind: ReferenceKind,
+        parameters: &ColumnParameters,
+        time_factors: &[f64],
+    ) -> Result<Self, ExactError> {
+        for &time_factor in time_factors {
+            super::error::checked_time_factor(time_factor)?;
+        }
+        let solution = match kind {
+            ReferenceKind::Terzaghi => Solution::Terzaghi(Terzaghi::compressible(parameters)?),
+            ReferenceKind::TerzaghiIncompressible => {
+                Solution::Terzaghi(Terzaghi::incompressible(parameters)?)
+            }
+            ReferenceKind::SingleMode => {
+                Solution::SingleMode(SingleMode::compressible(parameters)?)
+            }
+            ReferenceKind::XieLeo => Solution::XieLeo(XieLeo::new(parameters)?),
+        };
+        Ok(Self { kind, solution })
+    }
+
+    /// Which solution this is.
+    pub fn kind(&self) -> ReferenceKind {
+        self.kind
+    }
+
+    /// Its name in study files and tables.
+    pub fn name(&self) -> &'static str {
+        self.kind.name()
+    }
+
+    /// Pressure, effective stress and displacement at the Lagrangian depth `zeta`.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
+    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        ask!(self, solution => solution.fields(time_factor, zeta))
+    }
+
+    /// Settlement of the surface, downward positive, m.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        ask!(self, solution => solution.settlement(time_factor))
+    }
+
+    /// Degree of consolidation by settlement, `s(t)/s(∞)`.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
+        ask!(self, solution => solution.degree_of_consolidation(time_factor))
+    }
+
+    /// Terms used at a time factor and the bound on what they leave out.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        ask!(self, solution => solution.accuracy(time_factor))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_parse_back() {
+        for kind in ReferenceKind::ALL {
+            assert_eq!(kind.name().parse(), Ok(kind));
+        }
+        let error = "terzagi".parse::<ReferenceKind>().unwrap_err();
+        assert_eq!(error.to_string(), "there is no reference named `terzagi`");
+    }
+
+    #[test]
+    fn every_reference_agrees_with_itself() {
+        let column = ColumnParameters {
+            height: 2.0,
+            load: 1.0e5,
+            ..ColumnParameters::default()
+        };
+        let times = [0.05, 0.3, 1.0];
+        for kind in ReferenceKind::ALL {
+            let reference = Reference::new(kind, &column, &times).unwrap();
+            assert_eq!(reference.name(), kind.name());
+            for time_factor in times {
+                let surface = reference.fields(time_factor, 0.0).unwrap();
+                let settlement = reference.settlement(time_factor).unwrap();
+                let degree = reference.degree_of_consolidation(time_factor).unwrap();
+                assert!((surface.displacement + settlement).abs() < 1e-12 * settlement);
+                assert!(surface.pressure.abs() < 1e-9);
+                assert!((0.0..=1.0).contains(&degree));
+                assert!(reference.accuracy(time_factor).unwrap().tail_bound < 1e-12);
+                let base = reference.fields(time_factor, 1.0).unwrap();
+                assert!(base.displacement.abs() < 1e-15);
+            }
+            assert!(reference.fields(-1.0, 0.5).is_err());
+            assert!(reference.fields(f64::NAN, 0.5).is_err());
+            assert!(reference.fields(0.1, 1.5).is_err());
+            assert!(reference.fields(0.1, f64::NAN).is_err());
+            assert!(reference.settlement(-0.1).is_err());
+            assert!(reference.accuracy(f64::INFINITY).is_err());
+            assert!(Reference::new(kind, &column, &[-1.0]).is_err());
+        }
+    }
+}
