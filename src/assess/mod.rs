@@ -4,4 +4,6 @@
 //! What has no value is returned as a named reason, never as a number that could pass a test.
 
 pub mod norms;
+pub mod orders;
 pub mod oscillation;
+pub mod series;

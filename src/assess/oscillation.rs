@@ -267,7 +267,7 @@ mod tests {
 
     #[test]
     fn the_energy_of_single_modes_goes_to_its_side() {
-        let (count, exact) = (32, vec![1.0; 32]);
+        let (count, exact) = (32_usize, vec![1.0; 32]);
         for mode in 1..count {
             let wave: Vec<f64> = (0..count)
                 .map(|i| 1.0 + (PI * mode as f64 * (i as f64 + 0.5) / count as f64).cos())
