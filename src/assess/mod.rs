@@ -1,1 +1,11 @@
-//! Placeholder of the first commit.
+//! From computed numbers to judgements: norms, oscillation, orders, floors, verdicts, cost.
+//!
+//! Everything here is mathematics on plain numbers: nothing knows of solvers, studies or files.
+//! What has no value is returned as a named reason, never as a number that could pass a test.
+
+pub mod floor;
+pub mod norms;
+pub mod orders;
+pub mod oscillation;
+pub mod series;
+pub mod two_terms;

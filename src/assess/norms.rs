@@ -1,0 +1,393 @@
+//! Volume-weighted norms of the error of a sampled field, absolute and relative.
+//!
+//! The same pointwise error reads as order 2.5, 2.0 or 1.5 by what is called "the L2 norm", so
+//! every norm here carries its formula, and all are means over the volume: a pointwise `h²` error
+//! has norm `h²` times a constant, whatever the number of samples.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// How the error of a field is turned into one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Norm {
+    /// Mean of the absolute error over the volume.
+    L1,
+    /// Root of the mean squared error over the volume.
+    L2,
+    /// Largest absolute error among the samples; weights only decide which samples count.
+    Linf,
+    /// Relative error of a single number, such as a settlement.
+    Relative,
+}
+
+/// Why a norm has no value.
+#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
+pub enum UndefinedNorm {
+    /// There are no samples.
+    #[error("the field has no samples")]
+    Empty,
+    /// The three lists are of different lengths.
+    #[error("{computed} computed values, {exact} exact values and {volumes} volumes do not match")]
+    LengthMismatch {
+        /// Number of computed values.
+        computed: usize,
+        /// Number of exact values.
+        exact: usize,
+        /// Number of volumes.
+        volumes: usize,
+    },
+    /// A value is NaN or infinite.
+    #[error("the {which} value of sample {index} is not finite")]
+    NotFinite {
+        /// `computed` or `exact`.
+        which: String,
+        /// Place in the list, from 0.
+        index: usize,
+    },
+    /// A volume is NaN, infinite or negative.
+    #[error("the volume of sample {index} is negative or not finite")]
+    BadVolume {
+        /// Place in the list, from 0.
+        index: usize,
+    },
+    /// The volumes add up to nothing.
+    #[error("the volumes add up to zero")]
+    NoVolume,
+    /// A relative norm was asked for, and the exact field is zero.
+    #[error("the exact field is zero: an error relative to it means nothing")]
+    ZeroExact,
+    /// [`Norm::Relative`] was asked of more than one number.
+    #[error("a relative error is of one number, not of {samples} samples")]
+    NotScalar {
+        /// Number of samples given.
+        samples: usize,
+    },
+    /// The result is beyond the range of a double.
+    #[error("the norm overflows")]
+    Overflow,
+}
+
+/// A name that is no norm.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("unknown norm `{0}`: one of l1, l2, linf, relative")]
+pub struct UnknownNorm(pub String);
+
+impl Norm {
+    /// Every norm, in the order of reports.
+    pub const ALL: [Self; 4] = [Self::L1, Self::L2, Self::Linf, Self::Relative];
+
+    /// Name in study files and records.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::L1 => "l1",
+            Self::L2 => "l2",
+            Self::Linf => "linf",
+            Self::Relative => "relative",
+        }
+    }
+
+    /// Formula of the relative form, for reports; `x` computed, `x̂` exact, `V` volume.
+    pub const fn formula(self) -> &'static str {
+        match self {
+            Self::L1 => "Σ V|x − x̂| / Σ V|x̂|",
+            Self::L2 => "√(Σ V(x − x̂)²) / √(Σ V x̂²)",
+            Self::Linf => "max|x − x̂| / max|x̂|",
+            Self::Relative => "|x − x̂| / |x̂|",
+        }
+    }
+
+    /// Formula of the absolute form, for reports; in the unit of the field.
+    pub const fn absolute_formula(self) -> &'static str {
+        match self {
+            Self::L1 => "Σ V|x − x̂| / Σ V",
+            Self::L2 => "√(Σ V(x − x̂)² / Σ V)",
+            Self::Linf => "max|x − x̂|",
+            Self::Relative => "|x − x̂|",
+        }
+    }
+}
+
+impl fmt::Display for Norm {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.name())
+    }
+}
+
+impl FromStr for Norm {
+    type Err = UnknownNorm;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Self::ALL
+            .into_iter()
+            .find(|norm| norm.name() == text)
+            .ok_or_else(|| UnknownNorm(text.to_owned()))
+    }
+}
+
+/// Norm of `computed − exact`, in the unit of the field ([`Norm::absolute_formula`]).
+///
+/// Samples of zero volume count in no norm.
+///
+/// # Errors
+/// [`UndefinedNorm`] when the lists are empty, do not match, or hold what is not a number.
+pub fn absolute_error(
+    norm: Norm,
+    computed: &[f64],
+    exact: &[f64],
+    volumes: &[f64],
+) -> Result<f64, UndefinedNorm> {
+    check(norm, computed, exact, volumes)?;
+    let difference = differences(computed, exact);
+    finite(mean_norm(norm, &difference, volumes))
+}
+
+/// Norm of `computed − exact` over the same norm of `exact` ([`Norm::formula`]).
+///
+/// # Errors
+/// [`UndefinedNorm`] as for [`absolute_error`], and when the exact field is zero.
+pub fn relative_error(
+    norm: Norm,
+    computed: &[f64],
+    exact: &[f64],
+    volumes: &[f64],
+) -> Result<f64, UndefinedNorm> {
+    check(norm, computed, exact, volumes)?;
+    let size = finite(mean_norm(norm, exact, volumes))?;
+    if size == 0.0 {
+        return Err(UndefinedNorm::ZeroExact);
+    }
+    let difference = differences(computed, exact);
+    finite(finite(mean_norm(norm, &difference, volumes))? / size)
+}
+
+/// Relative error of one number, `|x − x̂| / |x̂|`.
+///
+/// # Errors
+/// [`UndefinedNorm`] when either number is not finite or the exact one is zero.
+pub fn relative_error_of_number(computed: f64, exact: f64) -> Result<f64, UndefinedNorm> {
+    relative_error(Norm::Relative, &[computed], &[exact], &[1.0])
+}
+
+fn differences(computed: &[f64], exact: &[f64]) -> Vec<f64> {
+    computed
+        .iter()
+        .zip(exact)
+        .map(|(computed, exact)| computed - exact)
+        .collect()
+}
+
+/// The norm as a mean over the volume, scaled by the largest entry so that squares of very small
+/// or very large fields neither vanish nor overflow.
+fn mean_norm(norm: Norm, field: &[f64], volumes: &[f64]) -> f64 {
+    let counted = || {
+        field
+            .iter()
+            .zip(volumes)
+            .filter(|(_, volume)| **volume > 0.0)
+    };
+    let largest = counted().map(|(value, _)| value.abs()).fold(0.0, f64::max);
+    if largest == 0.0 || !largest.is_finite() {
+        return largest;
+    }
+    let largest_volume = volumes.iter().copied().fold(0.0, f64::max);
+    let mean = |power: i32| {
+        let total: f64 = counted().map(|(_, volume)| volume / largest_volume).sum();
+        let sum: f64 = counted()
+            .map(|(value, volume)| volume / largest_volume * (value / largest).abs().powi(power))
+            .sum();
+        sum / total
+    };
+    match norm {
+        Norm::L1 => largest * mean(1),
+        Norm::L2 => largest * mean(2).sqrt(),
+        Norm::Linf | Norm::Relative => largest,
+    }
+}
+
+fn finite(value: f64) -> Result<f64, UndefinedNorm> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(UndefinedNorm::Overflow)
+    }
+}
+
+fn check(
+    norm: Norm,
+    computed: &[f64],
+    exact: &[f64],
+    volumes: &[f64],
+) -> Result<(), UndefinedNorm> {
+    if computed.len() != exact.len() || computed.len() != volumes.len() {
+        return Err(UndefinedNorm::LengthMismatch {
+            computed: computed.len(),
+            exact: exact.len(),
+            volumes: volumes.len(),
+        });
+    }
+    if computed.is_empty() {
+        return Err(UndefinedNorm::Empty);
+    }
+    if norm == Norm::Relative && computed.len() > 1 {
+        return Err(UndefinedNorm::NotScalar {
+            samples: computed.len(),
+        });
+    }
+    for (which, values) in [("computed", computed), ("exact", exact)] {
+        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+            return Err(UndefinedNorm::NotFinite {
+                which: which.to_owned(),
+                index,
+            });
+        }
+    }
+    if let Some(index) = volumes
+        .iter()
+        .position(|volume| !volume.is_finite() || *volume < 0.0)
+    {
+        return Err(UndefinedNorm::BadVolume { index });
+    }
+    if !volumes.iter().any(|volume| *volume > 0.0) {
+        return Err(UndefinedNorm::NoVolume);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A field with a pointwise error of `h²` times a smooth shape, on uneven volumes.
+    fn manufactured(cells: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let h = 1.0 / cells as f64;
+        let mut field = (Vec::new(), Vec::new(), Vec::new());
+        for cell in 0..cells {
+            for (offset, share) in [(0.3, 0.6), (0.8, 0.4)] {
+                let place = (cell as f64 + offset) * h;
+                let exact = 1.0 + place;
+                field.0.push(exact + h * h);
+                field.1.push(exact);
+                field.2.push(share * h);
+            }
+        }
+        field
+    }
+
+    #[test]
+    fn a_pointwise_second_order_error_reads_two_in_every_norm() {
+        for norm in [Norm::L1, Norm::L2, Norm::Linf] {
+            let absolute: Vec<f64> = [10, 20]
+                .into_iter()
+                .map(|cells| {
+                    let (computed, exact, volumes) = manufactured(cells);
+                    absolute_error(norm, &computed, &exact, &volumes).unwrap()
+                })
+                .collect();
+            assert!(
+                ((absolute[0] / absolute[1]).log2() - 2.0).abs() < 1e-9,
+                "{norm}: {absolute:?}"
+            );
+            assert!(
+                (absolute[0] - 0.01).abs() < 1e-12,
+                "{norm}: {}",
+                absolute[0]
+            );
+
+            let relative: Vec<f64> = [1000, 2000]
+                .into_iter()
+                .map(|cells| {
+                    let (computed, exact, volumes) = manufactured(cells);
+                    relative_error(norm, &computed, &exact, &volumes).unwrap()
+                })
+                .collect();
+            assert!(
+                ((relative[0] / relative[1]).log2() - 2.0).abs() < 1e-3,
+                "{norm}: {relative:?}"
+            );
+        }
+        let errors =
+            [0.01, 0.0025].map(|error| relative_error_of_number(2.0 + error, 2.0).unwrap());
+        assert!(((errors[0] / errors[1]).log2() - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn values_are_those_of_the_formulas() {
+        let (computed, exact, volumes) = ([1.0, 3.0], [2.0, 1.0], [3.0, 1.0]);
+        let absolute = |norm| absolute_error(norm, &computed, &exact, &volumes).unwrap();
+        let relative = |norm| relative_error(norm, &computed, &exact, &volumes).unwrap();
+        assert!((absolute(Norm::L1) - 5.0 / 4.0).abs() < 1e-15);
+        assert!((absolute(Norm::L2) - (7.0_f64 / 4.0).sqrt()).abs() < 1e-15);
+        assert!((absolute(Norm::Linf) - 2.0).abs() < 1e-15);
+        assert!((relative(Norm::L1) - 5.0 / 7.0).abs() < 1e-15);
+        assert!((relative(Norm::L2) - (7.0_f64 / 13.0).sqrt()).abs() < 1e-15);
+        assert!((relative(Norm::Linf) - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_has_no_value_is_named() {
+        let undefined = |computed: &[f64], exact: &[f64], volumes: &[f64]| {
+            relative_error(Norm::L2, computed, exact, volumes).unwrap_err()
+        };
+        assert_eq!(undefined(&[], &[], &[]), UndefinedNorm::Empty);
+        assert_eq!(undefined(&[1.0], &[0.0], &[1.0]), UndefinedNorm::ZeroExact);
+        assert_eq!(undefined(&[1.0], &[1.0], &[0.0]), UndefinedNorm::NoVolume);
+        assert_eq!(
+            undefined(&[1.0], &[1.0], &[-1.0]),
+            UndefinedNorm::BadVolume { index: 0 }
+        );
+        assert_eq!(
+            undefined(&[1.0], &[1.0], &[f64::NAN]),
+            UndefinedNorm::BadVolume { index: 0 }
+        );
+        assert_eq!(
+            undefined(&[f64::MAX], &[-f64::MAX], &[1.0]),
+            UndefinedNorm::Overflow
+        );
+        assert!(matches!(
+            undefined(&[1.0], &[1.0, 2.0], &[1.0]),
+            UndefinedNorm::LengthMismatch { .. }
+        ));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(matches!(
+                undefined(&[1.0, bad], &[1.0; 2], &[1.0; 2]),
+                UndefinedNorm::NotFinite { index: 1, .. }
+            ));
+            assert!(matches!(
+                undefined(&[1.0; 2], &[1.0, bad], &[1.0; 2]),
+                UndefinedNorm::NotFinite { index: 1, .. }
+            ));
+        }
+        let many = relative_error(Norm::Relative, &[1.0; 2], &[1.0; 2], &[1.0; 2]);
+        assert_eq!(many, Err(UndefinedNorm::NotScalar { samples: 2 }));
+    }
+
+    #[test]
+    fn very_small_and_very_large_fields_keep_their_error() {
+        for scale in [1e-300, 1.0, 1e300] {
+            let error = relative_error(
+                Norm::L2,
+                &[1.1 * scale, 1.1 * scale],
+                &[scale; 2],
+                &[1.0; 2],
+            );
+            assert!((error.unwrap() - 0.1).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn names_parse_back() {
+        for norm in Norm::ALL {
+            assert_eq!(norm.name().parse::<Norm>(), Ok(norm));
+        }
+        assert!(
+            "L2".parse::<Norm>()
+                .unwrap_err()
+                .to_string()
+                .contains("l1, l2, linf, relative")
+        );
+    }
+}
