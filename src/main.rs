@@ -1,2 +1,7 @@
-//! The door.
-fn main() {}
+//! The door: everything behind it is in the library.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    oedometer::cli::main()
+}

@@ -9,3 +9,4 @@ pub mod orders;
 pub mod oscillation;
 pub mod series;
 pub mod two_terms;
+pub mod measure;

@@ -1,1 +1,81 @@
-//! Placeholder of the first commit.
+//! The command line: one file a subcommand, exit codes in one place.
+//!
+//! Data goes to standard output, everything else to standard error.
+
+mod accept;
+mod check;
+mod exact;
+mod exit;
+mod list;
+mod overrides;
+mod plan;
+mod progress;
+mod report;
+mod run;
+mod solve;
+
+pub use exit::Exit;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Verifies coupled material point solvers for saturated soil against exact solutions.
+#[derive(Debug, Parser)]
+#[command(name = "oedometer", version, about, after_help = exit::HELP, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run studies: one JSON record a case, one tidy CSV a study
+    Run(run::Arguments),
+    /// Run what is missing and render the whole report
+    Report(report::Arguments),
+    /// Judge studies by their expectations and by their golden values
+    Check(check::Arguments),
+    /// Take the present values of a study as its golden values
+    Accept(accept::Arguments),
+    /// Print an exact solution
+    Exact(exact::Arguments),
+    /// Solve one case and print its errors
+    Solve(solve::Arguments),
+    /// List the cases of studies with their hashes
+    Plan(plan::Arguments),
+    /// List scenes, methods, references and shipped studies
+    List,
+}
+
+/// Parses the command line, runs the command, and turns its end into an exit code.
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are asked for, and no usage error.
+            let exit = if error.use_stderr() { Exit::Usage } else { Exit::Pass };
+            let _ = error.print();
+            return exit.into();
+        }
+    };
+    let result = match arguments.command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Accept(arguments) => accept::run(&arguments),
+        Command::Exact(arguments) => exact::run(&arguments),
+        Command::Solve(arguments) => solve::run(&arguments),
+        Command::Plan(arguments) => plan::run(&arguments),
+        Command::List => list::run(),
+    };
+    match result {
+        Ok(exit) => exit.into(),
+        Err(error) => {
+            let failure = exit::Failure::of(&error);
+            if !failure.is_silent {
+                eprintln!("{}", exit::sentence(&error));
+            }
+            failure.exit.into()
+        }
+    }
+}

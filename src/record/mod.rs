@@ -1,1 +1,254 @@
-//! Placeholder of the first commit.
+//! The record of one case: the waist between solving and everything that is made of it.
+//!
+//! A record is plain data on disk. Tables, plots, verdicts and goldens read records and never a
+//! live solver, so that a report can be made again without solving.
+
+mod provenance;
+mod store;
+
+pub use provenance::Provenance;
+pub use store::{RecordStore, StoreError, write_whole};
+
+use crate::assess::norms::Norm;
+use crate::solver::outcome::{Counters, Failure, StepSizes};
+use crate::solver::snapshot::Snapshot;
+use crate::study::Case;
+use serde::{Deserialize, Serialize};
+
+/// Version of the record's layout.
+pub const SCHEMA: u32 = 1;
+
+/// A measured quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Excess pore pressure.
+    Pressure,
+    /// Vertical effective stress.
+    EffectiveStress,
+    /// Vertical displacement of the skeleton.
+    Displacement,
+    /// Settlement of the surface.
+    Settlement,
+}
+
+impl Quantity {
+    /// Every quantity.
+    pub const ALL: [Self; 4] = [Self::Pressure, Self::EffectiveStress, Self::Displacement, Self::Settlement];
+
+    /// Name in study files, records and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pressure => "pressure",
+            Self::EffectiveStress => "effective_stress",
+            Self::Displacement => "displacement",
+            Self::Settlement => "settlement",
+        }
+    }
+}
+
+/// Where a quantity is sampled: it decides the order that is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sample {
+    /// At the material points.
+    Points,
+    /// Means of cells at their centres.
+    Centres,
+    /// At the nodes.
+    Nodes,
+    /// At the loaded surface.
+    Surface,
+}
+
+impl Sample {
+    /// Every sample.
+    pub const ALL: [Self; 4] = [Self::Points, Self::Centres, Self::Nodes, Self::Surface];
+
+    /// Name in study files, records and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Points => "points",
+            Self::Centres => "centres",
+            Self::Nodes => "nodes",
+            Self::Surface => "surface",
+        }
+    }
+}
+
+/// How a case ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// Every output reached.
+    Ok,
+    /// Ended before, by name.
+    Failed(Failure),
+}
+
+impl Status {
+    /// `ok`, or the failure's name.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Ok => "ok".to_owned(),
+            Self::Failed(failure) => failure.kind.name().to_owned(),
+        }
+    }
+}
+
+/// One wall time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WallSample {
+    /// Seconds of wall time.
+    pub seconds: f64,
+    /// Whether nothing else of this program ran meanwhile; only such samples are compared.
+    pub alone: bool,
+}
+
+/// Dimensionless groups that say which theory can hold.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Groups {
+    /// `n E_oed/K_w`: share of the water's storage.
+    pub storage: f64,
+    /// `m_vl q`: finite strain.
+    pub finite_strain: f64,
+    /// `c_v/(H V)` with the undrained wave's speed `V`: inertia.
+    pub inertia: f64,
+    /// Largest step over the predicted critical one.
+    pub step_over_limit: f64,
+}
+
+/// What the start must be, and is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StartChecks {
+    /// Points there are.
+    pub points: usize,
+    /// Points there should be: cells times points a cell.
+    pub points_expected: usize,
+    /// Volume over that of the column, minus one.
+    pub volume_error: f64,
+    /// Mean pore pressure at the start over `q/(1 + n E_oed/K_w)`, minus one; for a scene without
+    /// load over its own start.
+    pub undrained_pressure_error: f64,
+    /// Largest unbalanced nodal force of the start over the load.
+    pub unbalanced_force: f64,
+}
+
+/// Balances at one output.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Balance {
+    /// Time factor.
+    pub time_factor: f64,
+    /// Mass of the grains on the grid over its start, minus one.
+    pub solid_mass_drift: f64,
+    /// Water that left less the loss of pore space and the water's expansion, over what left.
+    pub water_imbalance: f64,
+    /// Sum of internal forces over the sum of their sizes.
+    pub internal_force_imbalance: f64,
+    /// Root mean square of `(σ' − p + q)/q` over the points.
+    pub equilibrium_residual: f64,
+}
+
+/// One measured error.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ErrorRow {
+    /// Time factor.
+    pub time_factor: f64,
+    /// What.
+    pub quantity: Quantity,
+    /// Where.
+    pub sample: Sample,
+    /// In which norm.
+    pub norm: Norm,
+    /// Against which reference.
+    pub reference: ReferenceName,
+    /// Relative error; settlement with its sign.
+    pub value: f64,
+    /// Absolute error over the load, or over the final settlement.
+    pub absolute: f64,
+}
+
+/// A reference by its name: records outlive the enumeration.
+pub type ReferenceName = String;
+
+/// Settlement over time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HistoryRow {
+    /// Time factor.
+    pub time_factor: f64,
+    /// Settlement over the final settlement of the scene's own reference.
+    pub degree_of_consolidation: f64,
+}
+
+/// How far a reference itself can be trusted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReferenceUse {
+    /// Name.
+    pub name: ReferenceName,
+    /// Most terms used at any output.
+    pub terms: usize,
+    /// Largest tail bound at any output, over the load.
+    pub tail_bound: f64,
+}
+
+/// Everything known of one case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Version of this layout.
+    pub schema: u32,
+    /// Identity of the case.
+    pub hash: String,
+    /// All inputs.
+    pub case: Case,
+    /// How it ended.
+    pub status: Status,
+    /// Work done.
+    pub counters: Counters,
+    /// Step sizes, s.
+    pub step_sizes: StepSizes,
+    /// Wall times, all of them: kept beside the record and not in it, for they change from day to
+    /// day and the record does not.
+    #[serde(skip)]
+    pub wall: Vec<WallSample>,
+    /// Dimensionless groups.
+    pub groups: Groups,
+    /// Start checks, where the start was reached.
+    pub start: Option<StartChecks>,
+    /// Balances at each output.
+    pub balance: Vec<Balance>,
+    /// Errors against every reference of the scene.
+    pub errors: Vec<ErrorRow>,
+    /// Settlement over time.
+    pub history: Vec<HistoryRow>,
+    /// References used.
+    pub references: Vec<ReferenceUse>,
+    /// State at each output.
+    pub snapshots: Vec<Snapshot>,
+    /// What made this record.
+    pub provenance: Provenance,
+}
+
+impl Record {
+    /// The error of a quantity, where it was measured.
+    pub fn error(
+        &self,
+        quantity: Quantity,
+        sample: Sample,
+        norm: Norm,
+        reference: &str,
+        time_factor: f64,
+    ) -> Option<&ErrorRow> {
+        self.errors.iter().find(|row| {
+            row.quantity == quantity
+                && row.sample == sample
+                && row.norm == norm
+                && row.reference == reference
+                && row.time_factor == time_factor
+        })
+    }
+
+    /// Wall times of runs that had the machine to themselves, s.
+    pub fn wall_alone(&self) -> Vec<f64> {
+        self.wall.iter().filter(|sample| sample.alone).map(|sample| sample.seconds).collect()
+    }
+}

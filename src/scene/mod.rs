@@ -61,6 +61,14 @@ impl SceneKind {
         }
     }
 
+    /// Whether a load acts, so that `σ' − p = −q` at rest.
+    pub fn is_loaded(self) -> bool {
+        match self {
+            Self::Terzaghi => true,
+            Self::SingleMode => false,
+        }
+    }
+
     /// Why a reference is not the scene's own, where it is a second one.
     pub fn model_difference(self, reference: ReferenceKind) -> Option<&'static str> {
         match (self, reference) {

@@ -17,6 +17,18 @@ pub enum FailureKind {
     Stopped,
 }
 
+impl FailureKind {
+    /// Name in records and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Unstable => "unstable",
+            Self::PoresClosed => "pores-closed",
+            Self::LeftGrid => "left-grid",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
 /// The end of a run that did not reach its last output.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
@@ -77,6 +89,8 @@ pub struct HistoryPoint {
 pub struct Outcome {
     /// How it ended.
     pub status: RunStatus,
+    /// State at the start.
+    pub start: Snapshot,
     /// State at the output times that were reached.
     pub snapshots: Vec<Snapshot>,
     /// Settlement over time.

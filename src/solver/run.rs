@@ -146,6 +146,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
 
     fn solve(mut self, observer: Observer<'_>) -> Outcome {
         let schedule = self.schedule;
+        let start = self.snapshot();
         let end = schedule.outputs.last().copied().unwrap_or(0.0);
         let expected = steps_for(end, self.steps.target);
         for output in &schedule.outputs {
@@ -153,9 +154,10 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             if self.failure.is_some() {
                 break;
             }
-            self.take_snapshot();
+            self.snapshots.push(self.snapshot());
         }
         Outcome {
+            start,
             status: self.failure.map_or(RunStatus::Ok, RunStatus::Failed),
             snapshots: self.snapshots,
             history: self.history,
@@ -244,13 +246,12 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         }
     }
 
-    fn take_snapshot(&mut self) {
+    fn snapshot(&self) -> Snapshot {
         let settlement = self.settlement();
-        let snapshot = match &self.column {
+        match &self.column {
             Some(column) => column.body_now(&self.body).snapshot(self.time, settlement, &self.start),
             None => self.body.snapshot(self.time, settlement, &self.start),
-        };
-        self.snapshots.push(snapshot);
+        }
     }
 
     fn failure(&self, kind: FailureKind, reason: String) -> Failure {

@@ -57,6 +57,8 @@ pub struct Totals {
     /// Sum of the internal forces on all nodes over the sum of their sizes: zero to round-off by
     /// the partition of unity.
     pub internal_force_imbalance: f64,
+    /// Largest force on a free node that nothing balances, N.
+    pub unbalanced_force: f64,
 }
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
@@ -136,7 +138,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 .sum::<f64>()
                 / soil.water_bulk_modulus,
             internal_force_imbalance: self.internal_force_imbalance(),
+            unbalanced_force: self.unbalanced_force(),
         }
+    }
+
+    fn unbalanced_force(&self) -> f64 {
+        let mut body = self.clone();
+        body.map_forces();
+        let forces = body.nodes.mixture_force.iter().flatten().zip(body.nodes.free.iter().flatten());
+        forces.fold(0.0, |largest: f64, (force, free)| largest.max((force * free).abs()))
     }
 
     fn internal_force_imbalance(&self) -> f64 {

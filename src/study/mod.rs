@@ -1,1 +1,18 @@
-//! Placeholder of the first commit.
+//! Studies: what was typed (`file`), what will run (`check`, `sweep`, `case`), and the runner.
+
+mod case;
+mod check;
+mod diagnostic;
+mod expectation;
+mod file;
+mod runner;
+mod shipped;
+mod sweep;
+
+pub use case::{Case, IntegratorKind};
+pub use check::{Study, Tier};
+pub use diagnostic::{Diagnostic, StudyError};
+pub use expectation::{Axis, Band, Expectation, LevelBound, StrictFailure};
+pub use file::StudySource;
+pub use runner::{Progress, RunOptions, RunReport, Shard, TimingReport, run_case, run_study, time_study};
+pub use shipped::shipped_studies;

@@ -1,0 +1,50 @@
+//! Tells the program what it was built from: a hash of its sources, commit, compiler, target.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn main() {
+    let mut sources = vec![PathBuf::from("Cargo.lock")];
+    collect(Path::new("src"), &mut sources);
+    sources.sort();
+    let mut hasher = blake3::Hasher::new();
+    for path in &sources {
+        println!("cargo:rerun-if-changed={}", path.display());
+        hasher.update(path.to_string_lossy().as_bytes());
+        hasher.update(&std::fs::read(path).unwrap_or_default());
+    }
+    println!("cargo:rerun-if-changed=src");
+    println!("cargo:rerun-if-changed=.git/HEAD");
+    println!("cargo:rerun-if-changed=.git/index");
+    let sources_hash = hasher.finalize().to_hex();
+    let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
+    tell("SOURCES", &sources_hash[..16]);
+    tell("COMMIT", &output("git", &["rev-parse", "--short=12", "HEAD"]));
+    let changed = output("git", &["status", "--porcelain", "--", "src", "Cargo.toml", "Cargo.lock"]);
+    tell("DIRTY", if changed.is_empty() { "false" } else { "true" });
+    tell("COMPILER", &output(&rustc, &["--version"]));
+    tell("TARGET", &std::env::var("TARGET").unwrap_or_default());
+    tell("PROFILE", &std::env::var("PROFILE").unwrap_or_default());
+}
+
+fn tell(name: &str, value: &str) {
+    println!("cargo:rustc-env=OEDOMETER_{name}={value}");
+}
+
+/// First line of what a command prints; empty where it cannot be asked.
+fn output(command: &str, arguments: &[&str]) -> String {
+    let output = Command::new(command).args(arguments).output().ok().filter(|output| output.status.success());
+    let text = output.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
+    text.lines().next().unwrap_or_default().trim().to_owned()
+}
+
+fn collect(folder: &Path, sources: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            collect(&path, sources);
+        } else {
+            sources.push(path);
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! From a run to its record: errors against every reference, start checks, balances, groups.
+
+use super::norms::{self, Norm};
+use crate::exact::{ExactError, Reference, ReferenceKind};
+use crate::record::{
+    Balance, ErrorRow, Groups, HistoryRow, Provenance, Quantity, Record, ReferenceUse, SCHEMA, Sample, StartChecks,
+    Status,
+};
+use crate::scene::{SceneKind, column_parameters};
+use crate::solver::limits;
+use crate::solver::outcome::{Outcome, RunStatus};
+use crate::solver::snapshot::{Samples, Snapshot};
+use crate::study::Case;
+
+/// Norms of a field's error.
+const FIELD_NORMS: [Norm; 3] = [Norm::L1, Norm::L2, Norm::Linf];
+
+/// The record of a run; wall times are added by who measured them.
+///
+/// # Errors
+/// When a reference refuses the case's parameters.
+pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) -> Result<Record, ExactError> {
+    let parameters = column_parameters(&case.column, &case.material);
+    let references: Vec<Reference> = references
+        .iter()
+        .map(|kind| Reference::new(*kind, &parameters, &case.time_factors))
+        .collect::<Result<_, _>>()?;
+    let mut errors = Vec::new();
+    for (time_factor, snapshot) in case.time_factors.iter().zip(&outcome.snapshots) {
+        for reference in &references {
+            errors.extend(snapshot_errors(case, reference, *time_factor, snapshot)?);
+        }
+    }
+    let balance = case
+        .time_factors
+        .iter()
+        .zip(&outcome.snapshots)
+        .map(|(time_factor, snapshot)| balance(case, *time_factor, &outcome.start, snapshot))
+        .collect();
+    let final_settlement = references.first().map_or(Ok(f64::NAN), |own| own.settlement(LONG_AFTER))?;
+    let history = outcome
+        .history
+        .iter()
+        .map(|point| HistoryRow {
+            time_factor: parameters.time_factor(point.time),
+            degree_of_consolidation: point.settlement / final_settlement,
+        })
+        .collect();
+    Ok(Record {
+        schema: SCHEMA,
+        hash: case.hash(),
+        case: case.clone(),
+        status: match outcome.status {
+            RunStatus::Ok => Status::Ok,
+            RunStatus::Failed(failure) => Status::Failed(failure),
+        },
+        counters: outcome.counters,
+        step_sizes: outcome.step_sizes,
+        wall: Vec::new(),
+        groups: groups(case, outcome.step_sizes.largest / outcome.step_sizes.predicted_critical),
+        start: Some(start_checks(case, &references, &outcome.start)?),
+        balance,
+        errors,
+        history,
+        references: references.iter().map(|one| reference_use(case, one)).collect::<Result<_, _>>()?,
+        snapshots: outcome.snapshots,
+        provenance: Provenance::of_this_program(),
+    })
+}
+
+/// Time factor by which every column is consolidated to round-off.
+const LONG_AFTER: f64 = 50.0;
+
+/// Every error of a snapshot against a reference; where a relative error is not defined, for the
+/// exact field is zero, there is no row.
+fn snapshot_errors(
+    case: &Case,
+    reference: &Reference,
+    time_factor: f64,
+    snapshot: &Snapshot,
+) -> Result<Vec<ErrorRow>, ExactError> {
+    let load = case.column.load;
+    let final_settlement = reference.settlement(LONG_AFTER)?;
+    let mut rows = Vec::new();
+    for (sample, samples) in
+        [(Sample::Points, &snapshot.points), (Sample::Centres, &snapshot.centres), (Sample::Nodes, &snapshot.nodes)]
+    {
+        let exact = exact_samples(case, reference, time_factor, samples)?;
+        for (quantity, computed, exact, scale) in [
+            (Quantity::Pressure, &samples.pressure, &exact.pressure, load),
+            (Quantity::EffectiveStress, &samples.effective_stress, &exact.effective_stress, load),
+            (Quantity::Displacement, &samples.displacement, &exact.displacement, final_settlement),
+        ] {
+            for norm in FIELD_NORMS {
+                let relative = norms::relative_error(norm, computed, exact, &samples.volume);
+                let absolute = norms::absolute_error(norm, computed, exact, &samples.volume);
+                if let (Ok(value), Ok(absolute)) = (relative, absolute) {
+                    rows.push(ErrorRow {
+                        time_factor,
+                        quantity,
+                        sample,
+                        norm,
+                        reference: reference.name().to_owned(),
+                        value,
+                        absolute: absolute / scale,
+                    });
+                }
+            }
+        }
+    }
+    let exact = reference.settlement(time_factor)?;
+    let value = snapshot.settlement / exact - 1.0;
+    if value.is_finite() {
+        rows.push(ErrorRow {
+            time_factor,
+            quantity: Quantity::Settlement,
+            sample: Sample::Surface,
+            norm: Norm::Relative,
+            reference: reference.name().to_owned(),
+            value,
+            absolute: (snapshot.settlement - exact) / final_settlement,
+        });
+    }
+    Ok(rows)
+}
+
+/// The exact fields at the Lagrangian places of the samples.
+pub fn exact_samples(
+    case: &Case,
+    reference: &Reference,
+    time_factor: f64,
+    samples: &Samples,
+) -> Result<Samples, ExactError> {
+    let depth = |height: f64| (1.0 - height / case.column.height).clamp(0.0, 1.0);
+    let mut exact = Samples { initial_height: samples.initial_height.clone(), ..Samples::default() };
+    let displaced = samples.displacement_height.as_ref().unwrap_or(&samples.initial_height);
+    for (height, displaced) in samples.initial_height.iter().zip(displaced) {
+        let fields = reference.fields(time_factor, depth(*height))?;
+        exact.pressure.push(fields.pressure);
+        exact.effective_stress.push(fields.effective_stress);
+        exact.displacement.push(reference.fields(time_factor, depth(*displaced))?.displacement);
+    }
+    Ok(exact)
+}
+
+fn groups(case: &Case, step_over_limit: f64) -> Groups {
+    let soil = &case.material;
+    Groups {
+        storage: soil.oedometric_modulus() / soil.coupling_modulus(),
+        finite_strain: case.column.load / soil.oedometric_modulus(),
+        inertia: soil.coefficient_of_consolidation() / (case.column.height * limits::undrained_wave_speed(soil)),
+        step_over_limit,
+    }
+}
+
+fn start_checks(case: &Case, references: &[Reference], start: &Snapshot) -> Result<StartChecks, ExactError> {
+    let soil = &case.material;
+    let load = case.column.load;
+    let mut pressure_error: f64 = 0.0;
+    for (pressure, height) in start.points.pressure.iter().zip(&start.points.initial_height) {
+        let expected = match case.scene {
+            // Written out here, and not taken from the solver or the reference: this is the check.
+            SceneKind::Terzaghi => {
+                load / (1.0 + soil.porosity * soil.oedometric_modulus() / soil.water_bulk_modulus)
+            }
+            SceneKind::SingleMode => match references.first() {
+                Some(own) => own.fields(0.0, 1.0 - height / case.column.height)?.pressure,
+                None => *pressure,
+            },
+        };
+        pressure_error = pressure_error.max((pressure - expected).abs() / load);
+    }
+    Ok(StartChecks {
+        points: start.points.pressure.len(),
+        points_expected: case.cells * case.points_per_cell,
+        volume_error: start.totals.volume / case.column.height - 1.0,
+        undrained_pressure_error: pressure_error,
+        unbalanced_force: start.totals.unbalanced_force / load,
+    })
+}
+
+fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) -> Balance {
+    let load = case.column.load;
+    let applied = if case.scene.is_loaded() { load } else { 0.0 };
+    let stresses = now.points.effective_stress.iter().zip(&now.points.pressure);
+    let squares: f64 = stresses.map(|(stress, pressure)| ((stress - pressure + applied) / load).powi(2)).sum();
+    let outflow = now.totals.surface_flux + now.settlement - start.settlement;
+    let excess = now.totals.surface_flux - now.totals.water_expansion;
+    Balance {
+        time_factor,
+        solid_mass_drift: now.totals.solid_mass / start.totals.solid_mass - 1.0,
+        water_imbalance: if outflow == 0.0 { excess } else { excess / outflow },
+        internal_force_imbalance: now.totals.internal_force_imbalance,
+        equilibrium_residual: (squares / now.points.pressure.len() as f64).sqrt(),
+    }
+}
+
+fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, ExactError> {
+    let mut entry = ReferenceUse { name: reference.name().to_owned(), terms: 0, tail_bound: 0.0 };
+    for time_factor in &case.time_factors {
+        let accuracy = reference.accuracy(*time_factor)?;
+        entry.terms = entry.terms.max(accuracy.terms);
+        entry.tail_bound = entry.tail_bound.max(accuracy.tail_bound);
+    }
+    Ok(entry)
+}

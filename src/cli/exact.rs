@@ -1,0 +1,154 @@
+//! `oedometer exact`: an exact solution as numbers.
+
+use super::exit::{Ended, Exit};
+use super::overrides;
+use crate::exact::{ColumnParameters, Reference, ReferenceKind, consolidation};
+use crate::scene::column_parameters;
+use clap::ValueEnum;
+use std::io::Write;
+
+/// Depths printed where none are asked for.
+const DEFAULT_DEPTHS: &str = "0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1";
+
+/// Output format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// One row a time factor and depth, 17 significant digits.
+    Csv,
+    /// The same with terms used and tail bounds.
+    Json,
+}
+
+/// Arguments of `exact`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Exact solution: terzaghi (compressible water), terzaghi-incompressible, single-mode, …
+    scene: String,
+    /// Time factors T_v = c_v t/H², comma-separated
+    #[arg(long, default_value = "0.05,0.1,0.2,0.5,1.0", value_name = "LIST", allow_hyphen_values = true)]
+    time_factor: String,
+    /// Time factors at which these degrees of consolidation (by settlement) are reached, instead
+    #[arg(long, value_name = "LIST", conflicts_with = "time_factor", allow_hyphen_values = true)]
+    degree: Option<String>,
+    /// Lagrangian depths ζ below the drained surface, comma-separated
+    #[arg(long, default_value = DEFAULT_DEPTHS, value_name = "LIST", allow_hyphen_values = true)]
+    zeta: String,
+    /// Set a dotted key of a study file, like material.porosity=0.45
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    assignments: Vec<String>,
+    /// Output format
+    #[arg(long, value_enum, default_value_t = Format::Csv)]
+    format: Format,
+}
+
+/// One printed row.
+#[derive(serde::Serialize)]
+struct Row {
+    time_factor: f64,
+    zeta: f64,
+    pressure_ratio: f64,
+    settlement_ratio: f64,
+    degree_of_consolidation: f64,
+}
+
+/// Truncation at one time factor.
+#[derive(serde::Serialize)]
+struct Truncation {
+    time_factor: f64,
+    terms: usize,
+    tail_bound: f64,
+}
+
+#[derive(serde::Serialize)]
+struct ExactJson<'a> {
+    reference: &'a str,
+    rows: &'a [Row],
+    accuracy: &'a [Truncation],
+}
+
+/// Evaluates and prints.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    let kind: ReferenceKind = arguments.scene.parse().map_err(|_| {
+        let names: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
+        Ended::usage(format!("no exact solution is called `{}`; there are {}", arguments.scene, names.join(", ")))
+    })?;
+    let parameters = parameters_of(&arguments.assignments)?;
+    let depths = overrides::numbers("--zeta", &arguments.zeta)?;
+    let time_factors = match &arguments.degree {
+        Some(degrees) => time_factors_of(kind, &parameters, &overrides::numbers("--degree", degrees)?)?,
+        None => overrides::numbers("--time-factor", &arguments.time_factor)?,
+    };
+    let reference = Reference::new(kind, &parameters, &time_factors)?;
+    let mut rows = Vec::new();
+    let mut accuracy = Vec::new();
+    for time_factor in time_factors {
+        let settlement = reference.settlement(time_factor)?;
+        let degree = reference.degree_of_consolidation(time_factor)?;
+        for zeta in &depths {
+            rows.push(Row {
+                time_factor,
+                zeta: *zeta,
+                pressure_ratio: reference.fields(time_factor, *zeta)?.pressure / parameters.load,
+                settlement_ratio: settlement / parameters.height,
+                degree_of_consolidation: degree,
+            });
+        }
+        let truncation = reference.accuracy(time_factor)?;
+        accuracy.push(Truncation { time_factor, terms: truncation.terms, tail_bound: truncation.tail_bound });
+    }
+    let mut out = std::io::stdout().lock();
+    match arguments.format {
+        Format::Csv => {
+            out.write_all(csv_of(&rows)?.as_bytes())?;
+            for one in &accuracy {
+                eprintln!("T_v = {}: {} terms, tail below {:.1e}", one.time_factor, one.terms, one.tail_bound);
+            }
+        }
+        Format::Json => {
+            let json = ExactJson { reference: reference.name(), rows: &rows, accuracy: &accuracy };
+            writeln!(out, "{}", serde_json::to_string_pretty(&json)?)?;
+        }
+    }
+    Ok(Exit::Pass)
+}
+
+/// The column of the seed with the assignments, judged as a study's.
+fn parameters_of(assignments: &[String]) -> anyhow::Result<ColumnParameters> {
+    let mut lines = vec!["title = \"exact\"".to_owned(), "scene = \"terzaghi\"".to_owned()];
+    for typed in assignments {
+        lines.push(overrides::assignment(typed)?);
+    }
+    lines.extend(["[[sweep]]", "method = [\"MPM\"]", "cells = [1]"].map(str::to_owned));
+    let study = overrides::study_of(&lines)?;
+    let Some(planned) = study.planned.first() else {
+        return Err(Ended::usage("the assignments leave no column"));
+    };
+    Ok(column_parameters(&planned.case.column, &planned.case.material))
+}
+
+/// Time factors at which degrees of consolidation are reached.
+fn time_factors_of(kind: ReferenceKind, parameters: &ColumnParameters, degrees: &[f64]) -> anyhow::Result<Vec<f64>> {
+    let storage = match kind {
+        ReferenceKind::Terzaghi => parameters.storage_ratio(),
+        ReferenceKind::TerzaghiIncompressible => 1.0,
+        _ => return Err(Ended::usage(format!("`{kind}` has no time factor for a degree in closed form"))),
+    };
+    // By settlement: degree = 1 − B + B U(B T_v); the first 1 − B is there at once.
+    let one = |degree: &f64| {
+        let drained = (degree - (1.0 - storage)) / storage;
+        Ok(consolidation::time_factor_for_degree(drained)? / storage)
+    };
+    degrees.iter().map(one).collect()
+}
+
+fn csv_of(rows: &[Row]) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(["time_factor", "zeta", "pressure_ratio", "settlement_ratio", "degree_of_consolidation"])?;
+    for row in rows {
+        let numbers = [row.pressure_ratio, row.settlement_ratio, row.degree_of_consolidation];
+        let mut fields = vec![row.time_factor.to_string(), row.zeta.to_string()];
+        fields.extend(numbers.map(|number| format!("{number:.16e}")));
+        writer.write_record(fields)?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}

@@ -1,0 +1,90 @@
+//! Exit codes, decided in one place.
+
+use crate::exact::ExactError;
+use crate::study::StudyError;
+use std::process::ExitCode;
+
+/// The exit codes, as `--help` tells them.
+pub const HELP: &str = "Exit codes: 0 pass, 1 a verdict failed, 2 usage or bad study file, 3 a case failed or timed \
+                        out, 4 nothing selected, 5 golden missing or stale, 6 incomplete merge";
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Exit {
+    /// All well.
+    Pass = 0,
+    /// A verdict failed.
+    VerdictFailed = 1,
+    /// Usage, or a bad study file.
+    Usage = 2,
+    /// A case failed or timed out.
+    CaseFailed = 3,
+    /// Nothing was selected.
+    NothingSelected = 4,
+    /// A golden value is missing or stale.
+    Golden = 5,
+    /// A merge has holes.
+    IncompleteMerge = 6,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}
+
+/// An error that says how the command ends.
+#[derive(Debug, thiserror::Error)]
+#[error("{message}")]
+pub struct Ended {
+    message: String,
+    exit: Exit,
+}
+
+impl Ended {
+    /// An error with a sentence and an exit code.
+    pub fn with(exit: Exit, message: impl Into<String>) -> anyhow::Error {
+        Self { message: message.into(), exit }.into()
+    }
+
+    /// A usage error.
+    pub fn usage(message: impl Into<String>) -> anyhow::Error {
+        Self::with(Exit::Usage, message)
+    }
+}
+
+/// What an error means for the exit.
+pub struct Failure {
+    /// Exit code.
+    pub exit: Exit,
+    /// Whether there is nobody left to read a message.
+    pub is_silent: bool,
+}
+
+impl Failure {
+    /// The exit of an error, by what caused it.
+    pub fn of(error: &anyhow::Error) -> Self {
+        let broken_pipe = error
+            .chain()
+            .filter_map(|cause| cause.downcast_ref::<std::io::Error>())
+            .any(|cause| cause.kind() == std::io::ErrorKind::BrokenPipe);
+        if broken_pipe {
+            return Self { exit: Exit::Pass, is_silent: true };
+        }
+        let exit = match error.downcast_ref::<Ended>() {
+            Some(ended) => ended.exit,
+            None if error.is::<StudyError>() || error.is::<ExactError>() => Exit::Usage,
+            None => Exit::CaseFailed,
+        };
+        Self { exit, is_silent: false }
+    }
+}
+
+/// An error as a person reads it.
+pub fn sentence(error: &anyhow::Error) -> String {
+    match error.downcast_ref::<StudyError>() {
+        Some(study) => study.to_string(),
+        None => format!("error: {error:#}"),
+    }
+}

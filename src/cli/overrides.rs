@@ -1,0 +1,111 @@
+//! Studies from the command line: `--set`, lists and step rules become the text of a study file,
+//! so that one checker judges both and its messages point at what was typed.
+
+use super::exit::Ended;
+use crate::study::{Study, StudySource};
+
+/// Turns `KEY=VALUE` into a line of TOML; a value that is no TOML is taken for a word.
+pub fn assignment(typed: &str) -> anyhow::Result<String> {
+    let Some((key, value)) = typed.split_once('=') else {
+        return Err(Ended::usage(format!("`--set {typed}` has no value: write KEY=VALUE, like material.porosity=0.45")));
+    };
+    let (key, value) = (key.trim(), value.trim());
+    let parts_fit = key.split('.').all(|part| {
+        !part.is_empty() && part.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-')
+    });
+    if !parts_fit {
+        return Err(Ended::usage(format!("`{key}` is no key: write the dotted key of a study file, like column.load")));
+    }
+    let line = format!("{key} = {value}");
+    if !value.is_empty() && toml::from_str::<toml::Table>(&line).is_ok() {
+        return Ok(line);
+    }
+    Ok(format!("{key} = {}", quoted(value)))
+}
+
+/// A word as a TOML string.
+pub fn quoted(word: &str) -> String {
+    toml::Value::String(word.to_owned()).to_string()
+}
+
+/// Turns `stable=0.5` into a step rule of a study file.
+pub fn step_rule(typed: &str) -> anyhow::Result<String> {
+    let rule = typed.split_once('=').map(|(rule, value)| (rule.trim(), value.trim()));
+    match rule {
+        Some((rule, value)) if value.parse::<f64>().is_ok() => Ok(format!("{{ {rule} = {} }}", float(value))),
+        _ => Err(Ended::usage(format!(
+            "`{typed}` is no step rule: write stable=0.5, courant=0.5 or seconds=1e-6"
+        ))),
+    }
+}
+
+/// Turns `0.05,0.1` into a list of a study file; each entry must be a number.
+pub fn list(name: &str, typed: &str) -> anyhow::Result<String> {
+    let entries = typed.split(',').map(str::trim);
+    let numbers: Vec<String> = entries
+        .map(|entry| match entry.parse::<f64>() {
+            Ok(_) => Ok(float(entry)),
+            Err(_) => Err(Ended::usage(format!("`{entry}` in `{name} {typed}` is no number"))),
+        })
+        .collect::<anyhow::Result<_>>()?;
+    Ok(format!("[{}]", numbers.join(", ")))
+}
+
+/// Numbers of a comma-separated list.
+pub fn numbers(name: &str, typed: &str) -> anyhow::Result<Vec<f64>> {
+    typed
+        .split(',')
+        .map(|entry| {
+            let number = entry.trim().parse::<f64>();
+            number.map_err(|_| Ended::usage(format!("`{entry}` in `{name} {typed}` is no number")))
+        })
+        .collect()
+}
+
+/// A number as TOML spells floats, digits untouched: `1` becomes `1.0`, `.5` becomes `0.5`.
+fn float(typed: &str) -> String {
+    let number: f64 = typed.parse().unwrap_or(f64::NAN);
+    if number.is_nan() {
+        return "nan".to_owned();
+    }
+    if number.is_infinite() {
+        return if number > 0.0 { "inf" } else { "-inf" }.to_owned();
+    }
+    // Rust's shortest form reads back to the same bits.
+    format!("{number:?}")
+}
+
+/// Checks a study made of lines.
+pub fn study_of(lines: &[String]) -> anyhow::Result<Study> {
+    let source = StudySource { name: "command line".to_owned(), text: lines.join("\n") + "\n" };
+    Ok(Study::check(&source)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn assignments_become_toml() {
+        let line = |typed: &str| assignment(typed).unwrap_or_default();
+        assert_eq!(line("material.porosity=0.45"), "material.porosity = 0.45");
+        assert_eq!(line("column.load=200e3"), "column.load = 200e3");
+        assert_eq!(line("material.law=log-linear"), "material.law = \"log-linear\"");
+        assert_eq!(line("integrator.mapping_back=false"), "integrator.mapping_back = false");
+        assert!(assignment("material.porosity").is_err());
+        assert!(assignment("a b=1").is_err());
+    }
+
+    #[test]
+    fn a_value_cannot_smuggle_lines_in() {
+        let line = assignment("title=x\nscene = 1").unwrap_or_default();
+        assert_eq!(line.lines().count(), 1, "{line}");
+    }
+
+    #[test]
+    fn numbers_keep_their_bits() {
+        assert_eq!(list("--time-factor", "0.05, .1,1").unwrap_or_default(), "[0.05, 0.1, 1.0]");
+        assert_eq!(step_rule("seconds=1e-6").unwrap_or_default(), "{ seconds = 1e-6 }");
+        assert!(step_rule("seconds").is_err() && list("--zeta", "0.1,x").is_err());
+    }
+}

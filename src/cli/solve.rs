@@ -1,0 +1,165 @@
+//! `oedometer solve`: one case from the command line, its errors on standard output.
+
+use super::exit::{Ended, Exit};
+use super::overrides;
+use crate::record::{ErrorRow, Record, Status};
+use crate::render::measures;
+use crate::solver::run::Kernel;
+use crate::study::{IntegratorKind, run_case};
+use clap::ValueEnum;
+use std::io::Write;
+
+/// Output format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    Table,
+    /// One row a measure.
+    Csv,
+    /// Everything.
+    Json,
+}
+
+/// Arguments of `solve`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Scene, like `terzaghi`
+    scene: String,
+    /// Method by its name
+    #[arg(long, default_value = "GC-SRI-patch")]
+    method: String,
+    /// Time integrator
+    #[arg(long, default_value = IntegratorKind::Explicit.name())]
+    integrator: String,
+    /// Cells over the height
+    #[arg(long, default_value_t = 10, allow_negative_numbers = true)]
+    cells: i64,
+    /// Points a cell and direction
+    #[arg(long, default_value_t = 2, allow_negative_numbers = true)]
+    points_per_cell: i64,
+    /// Step rule: stable=0.8, courant=0.5 or seconds=1e-6
+    #[arg(long, default_value = "stable=0.8", value_name = "RULE")]
+    time_step: String,
+    /// Time factors of the outputs, comma-separated
+    #[arg(long, default_value = "0.05,0.1,0.2,0.5,1.0", value_name = "LIST", allow_hyphen_values = true)]
+    time_factor: String,
+    /// Hold the result against this reference only
+    #[arg(long, value_name = "NAME")]
+    reference: Option<String>,
+    /// Set a dotted key of a study file, like material.porosity=0.45
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    assignments: Vec<String>,
+    /// Visit every point in every step, even where one banded map does the same
+    #[arg(long)]
+    point_wise: bool,
+    /// Output format
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+}
+
+/// Solves and prints.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    let mut lines = vec![
+        "title = \"solve\"".to_owned(),
+        format!("scene = {}", overrides::quoted(&arguments.scene)),
+        format!("output.time_factors = {}", overrides::list("--time-factor", &arguments.time_factor)?),
+    ];
+    if let Some(reference) = &arguments.reference {
+        lines.push(format!("output.references = [{}]", overrides::quoted(reference)));
+    }
+    for typed in &arguments.assignments {
+        lines.push(overrides::assignment(typed)?);
+    }
+    lines.push("[[sweep]]".to_owned());
+    lines.push(format!("method = [{}]", overrides::quoted(&arguments.method)));
+    lines.push(format!("integrator = [{}]", overrides::quoted(&arguments.integrator)));
+    lines.push(format!("cells = [{}]", arguments.cells));
+    lines.push(format!("points_per_cell = [{}]", arguments.points_per_cell));
+    lines.push(format!("time_step = [{}]", overrides::step_rule(&arguments.time_step)?));
+    let study = overrides::study_of(&lines)?;
+    let [planned] = study.planned.as_slice() else {
+        return Err(Ended::with(Exit::NothingSelected, "the command line describes no single case"));
+    };
+    let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
+    let record = run_case(&planned.case, &study.references, kernel, true, &|_, _| true)?;
+    let mut out = std::io::stdout().lock();
+    match arguments.format {
+        Format::Csv => out.write_all(csv_of(&record)?.as_bytes())?,
+        Format::Json => writeln!(out, "{}", serde_json::to_string_pretty(&SolveJson::of(&record))?)?,
+        Format::Table => write!(out, "{}", measures::table_of(&record)?)?,
+    }
+    if let Status::Failed(failure) = &record.status {
+        return Err(Ended::with(
+            Exit::CaseFailed,
+            format!(
+                "the case failed ({}) at step {}, t = {:.6e} s, T_v = {:.4e}: {}",
+                failure.kind.name(),
+                failure.step,
+                failure.time,
+                failure.time / record.case.seconds_per_time_factor(),
+                failure.reason
+            ),
+        ));
+    }
+    Ok(Exit::Pass)
+}
+
+fn csv_of(record: &Record) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(["time_factor", "quantity", "sample", "norm", "reference", "value"])?;
+    for row in &record.errors {
+        writer.write_record([
+            row.time_factor.to_string(),
+            row.quantity.name().to_owned(),
+            row.sample.name().to_owned(),
+            row.norm.name().to_owned(),
+            row.reference.clone(),
+            format!("{:.16e}", row.value),
+        ])?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}
+
+/// The JSON of `solve`: the record without its snapshots, the essentials on top.
+#[derive(serde::Serialize)]
+struct SolveJson<'a> {
+    status: String,
+    steps: u64,
+    point_updates: u64,
+    wall_seconds: Option<f64>,
+    measures: &'a [ErrorRow],
+    groups: crate::record::Groups,
+    start: Option<crate::record::StartChecks>,
+    balance: &'a [crate::record::Balance],
+    references: &'a [crate::record::ReferenceUse],
+    step_sizes: crate::solver::outcome::StepSizes,
+    failure: Option<&'a crate::solver::outcome::Failure>,
+    case: &'a crate::study::Case,
+    hash: &'a str,
+    provenance: &'a crate::record::Provenance,
+}
+
+impl<'a> SolveJson<'a> {
+    fn of(record: &'a Record) -> Self {
+        let failure = match &record.status {
+            Status::Ok => None,
+            Status::Failed(failure) => Some(failure),
+        };
+        Self {
+            status: record.status.name(),
+            steps: record.counters.steps,
+            point_updates: record.counters.point_updates,
+            wall_seconds: record.wall.first().map(|sample| sample.seconds),
+            measures: &record.errors,
+            groups: record.groups,
+            start: record.start,
+            balance: &record.balance,
+            references: &record.references,
+            step_sizes: record.step_sizes,
+            failure,
+            case: &record.case,
+            hash: &record.hash,
+            provenance: &record.provenance,
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! Records on disk: one folder a case, named after its hash, written whole or not at all.
+
+use super::{Provenance, Record, SCHEMA};
+use crate::study::Case;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// File of a record within its folder.
+const RECORD: &str = "record.json";
+/// File of its wall times, beside it.
+const WALL: &str = "wall.json";
+
+/// Why a record could not be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// The file system said no.
+    #[error("cannot {action} {path}: {source}")]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// On what.
+        path: PathBuf,
+        /// Its answer.
+        source: std::io::Error,
+    },
+    /// A record cannot be put into JSON.
+    #[error("cannot write {path} as JSON: {source}")]
+    Json {
+        /// Which file.
+        path: PathBuf,
+        /// Why.
+        source: serde_json::Error,
+    },
+}
+
+/// The records of one study.
+#[derive(Clone, Debug)]
+pub struct RecordStore {
+    folder: PathBuf,
+}
+
+impl RecordStore {
+    /// The store of a study below a folder of results.
+    pub fn new(results: &Path, study: &str) -> Self {
+        Self { folder: results.join(study) }
+    }
+
+    /// Folder of the study's results.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    fn path(&self, hash: &str, file: &str) -> PathBuf {
+        self.folder.join("cases").join(hash).join(file)
+    }
+
+    /// The finished record of a case, if there is one that this very program made.
+    ///
+    /// A record that cannot be read, is of another layout, of another case or of other sources is
+    /// as good as none: the case is run again.
+    pub fn finished(&self, case: &Case) -> Option<Record> {
+        let text = fs::read_to_string(self.path(&case.hash(), RECORD)).ok()?;
+        let mut record: Record = serde_json::from_str(&text).ok()?;
+        // Without readable wall times the case is done all the same, only not timed.
+        let wall = fs::read_to_string(self.path(&record.hash, WALL)).ok();
+        record.wall = wall.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
+        let own = Provenance::of_this_program();
+        let fits = record.schema == SCHEMA
+            && record.case == *case
+            && record.provenance.sources == own.sources
+            && record.provenance.profile == own.profile;
+        fits.then_some(record)
+    }
+
+    /// Whether a record of this hash is on disk.
+    pub fn has(&self, hash: &str) -> bool {
+        self.path(hash, RECORD).is_file()
+    }
+
+    /// Writes a record: first under another name, then renamed, so that a reader sees the whole
+    /// of it or nothing.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn write(&self, record: &Record) -> Result<(), StoreError> {
+        self.write_wall(record)?;
+        write_json(&self.path(&record.hash, RECORD), record)
+    }
+
+    /// Writes the wall times of a record alone.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn write_wall(&self, record: &Record) -> Result<(), StoreError> {
+        write_json(&self.path(&record.hash, WALL), &record.wall)
+    }
+}
+
+fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), StoreError> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|source| StoreError::Json { path: path.to_owned(), source })?;
+    write_whole(path, text.as_bytes())
+}
+
+/// Writes a file under a temporary name and renames it, making its folders.
+///
+/// # Errors
+/// When the file system refuses; nothing is left under the name then.
+pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), StoreError> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(|source| StoreError::Io {
+        action: "make the folder",
+        path: folder.to_owned(),
+        source,
+    })?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let temporary = folder.join(format!(".{name}.{}.part", std::process::id()));
+    let written = fs::File::create(&temporary).and_then(|mut file| {
+        file.write_all(content)?;
+        file.sync_all()
+    });
+    written.and_then(|()| fs::rename(&temporary, path)).map_err(|source| {
+        // What is half written is of no use to anyone.
+        let _ = fs::remove_file(&temporary);
+        StoreError::Io { action: "write", path: path.to_owned(), source }
+    })
+}

@@ -1,0 +1,164 @@
+//! A case: everything that decides a run, as plain data with an identity.
+
+use crate::scene::{Column, SceneKind};
+use crate::solver::explicit::{Drag, ExplicitSettings};
+use crate::solver::material::Material;
+use crate::solver::method::Method;
+use crate::solver::run::TimeStepRule;
+use serde::{Deserialize, Serialize};
+
+/// Hexadecimal digits of a case's hash: enough that a million cases do not meet.
+const HASH_DIGITS: usize = 16;
+
+/// Time integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum IntegratorKind {
+    /// The eight steps of Zheng et al. (2021).
+    Explicit,
+}
+
+impl IntegratorKind {
+    /// Every integrator.
+    pub const ALL: [Self; 1] = [Self::Explicit];
+
+    /// Name in study files and at the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Explicit => "explicit",
+        }
+    }
+}
+
+/// All inputs of one run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// Physical problem.
+    pub scene: SceneKind,
+    /// Geometry and load.
+    pub column: Column,
+    /// Soil.
+    pub material: Material,
+    /// Operators.
+    pub method: Method,
+    /// Integrator.
+    pub integrator: IntegratorKind,
+    /// Choices of the explicit integrator.
+    pub settings: ExplicitSettings,
+    /// Cells over the height.
+    pub cells: usize,
+    /// Points a cell and direction.
+    pub points_per_cell: usize,
+    /// Step size.
+    pub time_step: TimeStepRule,
+    /// Time factors of the outputs, ascending.
+    pub time_factors: Vec<f64>,
+}
+
+impl Case {
+    /// Identity over the meaning: equal for equal inputs, whatever file or path they came from.
+    pub fn hash(&self) -> String {
+        // Serialising plain numbers and words cannot fail; were it to, an empty text still hashes.
+        let canonical = serde_json::to_string(self).unwrap_or_default();
+        blake3::hash(canonical.as_bytes()).to_hex()[..HASH_DIGITS].to_owned()
+    }
+
+    /// Cell size, m.
+    pub fn cell_size(&self) -> f64 {
+        self.column.height / self.cells as f64
+    }
+
+    /// Time, s, at which `T_v = 1`.
+    pub fn seconds_per_time_factor(&self) -> f64 {
+        self.column.height * self.column.height / self.material.coefficient_of_consolidation()
+    }
+
+    /// What is special about the integration: empty for the paper's own choices.
+    pub fn variant(&self) -> String {
+        let defaults = ExplicitSettings::default();
+        let mut parts = Vec::new();
+        if self.settings.drag != defaults.drag {
+            parts.push(match self.settings.drag {
+                Drag::Explicit => "explicit drag".to_owned(),
+                Drag::Implicit => "implicit drag".to_owned(),
+            });
+        }
+        if self.settings.flip != defaults.flip {
+            parts.push(format!("FLIP {}", self.settings.flip));
+        }
+        if self.settings.mapping_back != defaults.mapping_back {
+            parts.push("no mapping back".to_owned());
+        }
+        parts.join(", ")
+    }
+
+    /// Words by which a person knows the case within its study.
+    pub fn label(&self) -> String {
+        let mut label = format!(
+            "{} {} cells={} points={} {}",
+            self.method,
+            self.integrator.name(),
+            self.cells,
+            self.points_per_cell,
+            step_label(&self.time_step)
+        );
+        let variant = self.variant();
+        if !variant.is_empty() {
+            label = format!("{label} ({variant})");
+        }
+        label
+    }
+}
+
+/// A step rule as the command line takes it.
+pub fn step_label(rule: &TimeStepRule) -> String {
+    match rule {
+        TimeStepRule::Stable(share) => format!("stable={share}"),
+        TimeStepRule::Courant(share) => format!("courant={share}"),
+        TimeStepRule::Seconds(seconds) => format!("seconds={seconds:e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seed() -> Case {
+        Case {
+            scene: SceneKind::Terzaghi,
+            column: Column::default(),
+            material: Material::default(),
+            method: Method::named("GC-SRI-patch").expect("the paper's method"),
+            integrator: IntegratorKind::Explicit,
+            settings: ExplicitSettings::default(),
+            cells: 10,
+            points_per_cell: 2,
+            time_step: TimeStepRule::Stable(0.5),
+            time_factors: vec![0.1],
+        }
+    }
+
+    #[test]
+    fn the_hash_follows_the_meaning() {
+        let case = seed();
+        assert_eq!(case.hash(), seed().hash());
+        assert_eq!(case.hash().len(), HASH_DIGITS);
+        for change in [
+            |case: &mut Case| case.cells = 11,
+            |case: &mut Case| case.material.porosity = 0.300_000_000_000_000_04,
+            |case: &mut Case| case.settings.mapping_back = false,
+            |case: &mut Case| case.time_factors.push(0.2),
+        ] {
+            let mut other = seed();
+            change(&mut other);
+            assert_ne!(other.hash(), case.hash());
+        }
+    }
+
+    #[test]
+    fn the_label_tells_what_is_special() {
+        let mut case = seed();
+        case.settings.drag = Drag::Implicit;
+        assert_eq!(case.label(), "GC-SRI-patch explicit cells=10 points=2 stable=0.5 (implicit drag)");
+    }
+}

@@ -1,0 +1,632 @@
+//! From what was typed to what will run: every value judged, every complaint at its place.
+
+use super::case::{Case, IntegratorKind};
+use super::diagnostic::{Diagnostic, StudyError, one_of};
+use super::expectation::{Axis, Band, Expectation, LevelBound, StrictFailure};
+use super::file::{
+    ColumnTable, ExpectTable, IntegratorTable, LevelTable, MaterialTable, MethodEntry, MethodTable, OutputTable,
+    StudyFile, StudySource, SweepTable, TimeStepTable,
+};
+use super::sweep::{AXES, Sweep};
+use crate::assess::norms::Norm;
+use crate::exact::ReferenceKind;
+use crate::record::{Quantity, Sample};
+use crate::scene::{Column, SceneKind};
+use crate::solver::explicit::{Drag, ExplicitSettings};
+use crate::solver::material::{Continuity, Law, Material};
+use crate::solver::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
+use crate::solver::run::TimeStepRule;
+use std::ops::{Range, RangeInclusive};
+use toml::Spanned;
+
+/// Time factors where a study names none.
+const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
+/// Share of the critical step where a sweep names no rule.
+const DEFAULT_SHARE: f64 = 0.8;
+/// More cells than a column is ever given on purpose.
+const MOST_CELLS: i64 = 100_000;
+/// More points a cell and direction than any scheme uses.
+const MOST_POINTS: i64 = 16;
+
+/// How much of a study is run: a tier includes those before it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Tier {
+    /// Seconds.
+    Smoke,
+    /// What a CI runs.
+    #[default]
+    Ci,
+    /// Everything.
+    Full,
+}
+
+impl Tier {
+    /// Every tier, the smallest first.
+    pub const ALL: [Self; 3] = [Self::Smoke, Self::Ci, Self::Full];
+
+    /// Name in study files and at the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Smoke => "smoke",
+            Self::Ci => "ci",
+            Self::Full => "full",
+        }
+    }
+}
+
+/// A case with the tier from which on it runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedCase {
+    /// What to run.
+    pub case: Case,
+    /// Smallest tier that includes it.
+    pub tier: Tier,
+}
+
+/// A study that can run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    /// File stem, the name of its results.
+    pub name: String,
+    /// Title.
+    pub title: String,
+    /// What question it answers.
+    pub summary: String,
+    /// Scene.
+    pub scene: SceneKind,
+    /// References its results are held against.
+    pub references: Vec<ReferenceKind>,
+    /// Cases in the order of the sweeps, each once.
+    pub planned: Vec<PlannedCase>,
+    /// What it expects of its results.
+    pub expectations: Vec<Expectation>,
+    /// Times each case is run alone for its wall time; 0 where it is not timed.
+    pub timing_repeats: usize,
+}
+
+impl Study {
+    /// Checks a study.
+    ///
+    /// # Errors
+    /// Every complaint with its place.
+    pub fn check(source: &StudySource) -> Result<Self, StudyError> {
+        let file = source.parse()?;
+        let mut checker = Checker { source, diagnostics: Vec::new() };
+        let study = checker.study(&file);
+        match study {
+            Some(study) if checker.diagnostics.is_empty() => Ok(study),
+            _ => Err(source.error(checker.diagnostics)),
+        }
+    }
+
+    /// The cases of a tier.
+    pub fn cases(&self, tier: Tier) -> Vec<&Case> {
+        self.planned.iter().filter(|planned| planned.tier <= tier).map(|planned| &planned.case).collect()
+    }
+}
+
+/// Complaints as they come up; every method gives a usable value or none.
+struct Checker<'a> {
+    source: &'a StudySource,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Checker<'_> {
+    fn complain(&mut self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
+        self.diagnostics.push(Diagnostic::at(span, message, help));
+    }
+
+    fn study(&mut self, file: &StudyFile) -> Option<Study> {
+        let scene = self.scene(&file.scene)?;
+        let column = self.column(&file.column);
+        let material = self.material(&file.material);
+        let settings = self.settings(&file.integrator);
+        let time_factors = match &file.output.time_factors {
+            Some(list) => self.time_factors(list),
+            None => DEFAULT_TIME_FACTORS.to_vec(),
+        };
+        let references = self.references(&file.output, scene);
+        if file.sweep.is_empty() {
+            let end = self.source.text.len();
+            self.complain(end..end, "the study has no [[sweep]] block", "add one with at least `method` and `cells`");
+        }
+        let mut planned: Vec<PlannedCase> = Vec::new();
+        for block in &file.sweep {
+            let table = block.get_ref();
+            let Some(sweep) = self.sweep(table, block.span(), &settings) else { continue };
+            let time_factors = match &table.time_factors {
+                Some(list) => self.time_factors(list),
+                None => time_factors.clone(),
+            };
+            let tier = self.tier(table);
+            for one in sweep.combinations() {
+                let case = Case {
+                    scene,
+                    column,
+                    material,
+                    method: one.method,
+                    integrator: one.integrator,
+                    settings: ExplicitSettings {
+                        drag: one.drag,
+                        flip: one.flip,
+                        mapping_back: one.mapping_back,
+                    },
+                    cells: one.cells,
+                    points_per_cell: one.points_per_cell,
+                    time_step: one.time_step,
+                    time_factors: time_factors.clone(),
+                };
+                match planned.iter_mut().find(|other| other.case == case) {
+                    Some(other) => other.tier = other.tier.min(tier),
+                    None => planned.push(PlannedCase { case, tier }),
+                }
+            }
+        }
+        let expectations =
+            file.expect.iter().filter_map(|entry| self.expectation(entry, scene, &references)).collect();
+        let timing_repeats = self.count(file.timing.repeats.as_ref(), "timing.repeats", 0..=1000).unwrap_or(0);
+        Some(Study {
+            name: self.stem(),
+            title: file.title.get_ref().clone(),
+            summary: file.summary.clone().unwrap_or_default(),
+            scene,
+            references,
+            planned,
+            expectations,
+            timing_repeats,
+        })
+    }
+
+    /// File name without folders and extension.
+    fn stem(&self) -> String {
+        let file = self.source.name.rsplit(['/', '\\']).next().unwrap_or_default();
+        file.strip_suffix(".toml").unwrap_or(file).to_owned()
+    }
+
+    fn scene(&mut self, typed: &Spanned<String>) -> Option<SceneKind> {
+        let names = SceneKind::ALL.map(SceneKind::name);
+        let index = self.word(typed, "scene", &names)?;
+        Some(SceneKind::ALL[index])
+    }
+
+    fn column(&mut self, table: &ColumnTable) -> Column {
+        let seed = Column::default();
+        Column {
+            height: self.positive(table.height.as_ref(), "column.height", "m", seed.height),
+            width: self.positive(table.width.as_ref(), "column.width", "m", seed.width),
+            load: self.positive(table.load.as_ref(), "column.load", "Pa", seed.load),
+        }
+    }
+
+    fn material(&mut self, table: &MaterialTable) -> Material {
+        let seed = Material::default();
+        let law = table.law.as_ref().and_then(|word| self.word(word, "law", &["linear", "log-linear"]));
+        let continuity = table
+            .continuity
+            .as_ref()
+            .and_then(|word| self.word(word, "continuity", &["conservative", "constant-porosity-gradient"]));
+        let soil = Material {
+            law: if law == Some(1) { Law::LogLinear } else { Law::Linear },
+            youngs_modulus: self.positive(
+                table.youngs_modulus.as_ref(),
+                "material.youngs_modulus",
+                "Pa",
+                seed.youngs_modulus,
+            ),
+            poissons_ratio: self.between(
+                table.poissons_ratio.as_ref(),
+                "material.poissons_ratio",
+                -1.0,
+                0.5,
+                seed.poissons_ratio,
+            ),
+            porosity: self.between(table.porosity.as_ref(), "material.porosity", 0.0, 1.0, seed.porosity),
+            grain_density: self.positive(
+                table.grain_density.as_ref(),
+                "material.grain_density",
+                "kg/m³",
+                seed.grain_density,
+            ),
+            water_density: self.positive(
+                table.water_density.as_ref(),
+                "material.water_density",
+                "kg/m³",
+                seed.water_density,
+            ),
+            water_bulk_modulus: self.positive(
+                table.water_bulk_modulus.as_ref(),
+                "material.water_bulk_modulus",
+                "Pa",
+                seed.water_bulk_modulus,
+            ),
+            hydraulic_conductivity: self.positive(
+                table.hydraulic_conductivity.as_ref(),
+                "material.hydraulic_conductivity",
+                "m/s",
+                seed.hydraulic_conductivity,
+            ),
+            gravity: self.positive(table.gravity.as_ref(), "material.gravity", "m/s²", seed.gravity),
+            continuity: if continuity == Some(1) {
+                Continuity::ConstantPorosityGradient
+            } else {
+                Continuity::Conservative
+            },
+        };
+        self.permeability_unit(table, &soil);
+        soil
+    }
+
+    /// A conductivity like 1e-11 m/s is legal; one above 10 m/s, or an "intrinsic" one, is a unit
+    /// of thought.
+    fn permeability_unit(&mut self, table: &MaterialTable, soil: &Material) {
+        if let Some(typed) = &table.hydraulic_conductivity {
+            if soil.hydraulic_conductivity > 10.0 {
+                self.complain(
+                    typed.span(),
+                    format!("a hydraulic conductivity of {} m/s is no soil's", soil.hydraulic_conductivity),
+                    "give metres a second: gravel has 1e-2, clay 1e-10",
+                );
+            }
+        }
+        if let Some(typed) = &table.youngs_modulus {
+            if soil.youngs_modulus < 1e2 {
+                self.complain(
+                    typed.span(),
+                    format!("a Young's modulus of {} Pa is no soil's", soil.youngs_modulus),
+                    "give pascals, not kPa or MPa: 1000 kPa is 1.0e6",
+                );
+            }
+        }
+        if let Some(typed) = &table.water_bulk_modulus {
+            if soil.water_bulk_modulus < 1e3 {
+                self.complain(
+                    typed.span(),
+                    format!("a bulk modulus of {} Pa is no liquid's", soil.water_bulk_modulus),
+                    "give pascals: water has 2.2e9",
+                );
+            }
+        }
+    }
+
+    fn settings(&mut self, table: &IntegratorTable) -> ExplicitSettings {
+        let default = ExplicitSettings::default();
+        ExplicitSettings {
+            drag: table.drag.as_ref().and_then(|word| self.drag(word)).unwrap_or(default.drag),
+            flip: table.flip.as_ref().map_or(default.flip, |flip| self.flip(flip)),
+            mapping_back: table.mapping_back.as_ref().map_or(default.mapping_back, |typed| *typed.get_ref()),
+        }
+    }
+
+    fn drag(&mut self, word: &Spanned<String>) -> Option<Drag> {
+        let index = self.word(word, "drag", &["explicit", "implicit"])?;
+        Some([Drag::Explicit, Drag::Implicit][index])
+    }
+
+    fn flip(&mut self, typed: &Spanned<f64>) -> f64 {
+        let flip = *typed.get_ref();
+        if !(0.0..=1.0).contains(&flip) {
+            self.complain(typed.span(), format!("a FLIP share of {flip}"), "it lies between 0 (PIC) and 1 (FLIP)");
+        }
+        flip
+    }
+
+    fn time_factors(&mut self, list: &Spanned<Vec<Spanned<f64>>>) -> Vec<f64> {
+        if list.get_ref().is_empty() {
+            self.complain(list.span(), "no time factor", "name at least one, like [0.05, 0.1, 0.2]");
+        }
+        let mut factors = Vec::new();
+        for typed in list.get_ref() {
+            let factor = *typed.get_ref();
+            if factor.is_finite() && (0.0..=100.0).contains(&factor) {
+                factors.push(factor);
+            } else {
+                self.complain(
+                    typed.span(),
+                    format!("a time factor of {factor}"),
+                    "T_v = c_v t/H² lies between 0 and 100; the column is consolidated at 2",
+                );
+            }
+        }
+        factors.sort_by(f64::total_cmp);
+        factors.dedup();
+        factors
+    }
+
+    fn references(&mut self, table: &OutputTable, scene: SceneKind) -> Vec<ReferenceKind> {
+        let own = scene.references();
+        let Some(list) = &table.references else { return own.to_vec() };
+        let names: Vec<&str> = own.iter().map(|kind| kind.name()).collect();
+        list.get_ref().iter().filter_map(|typed| self.word(typed, "reference", &names)).map(|i| own[i]).collect()
+    }
+
+    fn tier(&mut self, table: &SweepTable) -> Tier {
+        let names = Tier::ALL.map(Tier::name);
+        let index = table.tier.as_ref().and_then(|word| self.word(word, "tier", &names));
+        index.map_or(Tier::default(), |index| Tier::ALL[index])
+    }
+
+    fn sweep(&mut self, table: &SweepTable, span: Range<usize>, settings: &ExplicitSettings) -> Option<Sweep> {
+        let before = self.diagnostics.len();
+        if table.method.is_none() {
+            self.complain(span.start..span.start + 1, "the sweep names no method", "add `method = [\"GC-SRI-patch\"]`");
+        }
+        if table.cells.is_none() {
+            self.complain(span.start..span.start + 1, "the sweep names no cells", "add `cells = [5, 10, 20]`");
+        }
+        let sweep = Sweep {
+            method: self.list(table.method.as_ref(), "method", &[], Self::method),
+            integrator: self.list(table.integrator.as_ref(), "integrator", &[IntegratorKind::Explicit], |c, word| {
+                let names = IntegratorKind::ALL.map(IntegratorKind::name);
+                c.word(word, "integrator", &names).map(|index| IntegratorKind::ALL[index])
+            }),
+            cells: self.list(table.cells.as_ref(), "cells", &[], |c, typed| {
+                c.count(Some(typed), "cells", 1..=MOST_CELLS)
+            }),
+            points_per_cell: self.list(table.points_per_cell.as_ref(), "points_per_cell", &[2], |c, typed| {
+                c.count(Some(typed), "points_per_cell", 1..=MOST_POINTS)
+            }),
+            time_step: self.list(
+                table.time_step.as_ref(),
+                "time_step",
+                &[TimeStepRule::Stable(DEFAULT_SHARE)],
+                Self::time_step,
+            ),
+            drag: self.list(table.drag.as_ref(), "drag", &[settings.drag], Self::drag),
+            flip: self.list(table.flip.as_ref(), "flip", &[settings.flip], |c, typed| Some(c.flip(typed))),
+            mapping_back: self.list(
+                table.mapping_back.as_ref(),
+                "mapping_back",
+                &[settings.mapping_back],
+                |_, typed| Some(*typed.get_ref()),
+            ),
+            path: self.list(table.path.as_ref(), "path", &[], |c, word| {
+                c.word(word, "axis", &AXES).map(|index| AXES[index].to_owned())
+            }),
+        };
+        if let (Some((key, own, first)), Some(path)) = (sweep.uneven_path(), &table.path) {
+            self.complain(
+                path.span(),
+                format!("the path ties `{key}` with {own} values to an axis with {first}"),
+                "give the axes of a path lists of one length",
+            );
+        }
+        (self.diagnostics.len() == before).then_some(sweep)
+    }
+
+    /// A list of choices, or the default where it is not given; empty lists are refused.
+    fn list<T, C: Clone>(
+        &mut self,
+        typed: Option<&Spanned<Vec<Spanned<T>>>>,
+        name: &str,
+        default: &[C],
+        check: impl Fn(&mut Self, &Spanned<T>) -> Option<C>,
+    ) -> Vec<C> {
+        let Some(list) = typed else { return default.to_vec() };
+        if list.get_ref().is_empty() {
+            self.complain(list.span(), format!("`{name}` is empty"), "give at least one value, or leave the key out");
+        }
+        list.get_ref().iter().filter_map(|one| check(self, one)).collect()
+    }
+
+    fn method(&mut self, typed: &Spanned<MethodEntry>) -> Option<Method> {
+        match typed.get_ref() {
+            MethodEntry::Name(name) => {
+                let method = Method::named(name);
+                if method.is_none() {
+                    let names = Method::names();
+                    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                    self.complain(typed.span(), format!("no method is called `{name}`"), one_of(name, &names));
+                }
+                method
+            }
+            MethodEntry::Choices(table) => self.method_of_choices(table, typed.span()),
+        }
+    }
+
+    fn method_of_choices(&mut self, table: &MethodTable, span: Range<usize>) -> Option<Method> {
+        let mut pick = |word: &Option<Spanned<String>>, name: &str, choices: &[&str]| match word {
+            Some(word) => self.word(word, name, choices),
+            None => {
+                self.complain(
+                    span.clone(),
+                    format!("the method names no `{name}`"),
+                    format!("it can be {}", choices.join(", ")),
+                );
+                None
+            }
+        };
+        let basis = pick(&table.basis, "basis", &["hat", "ugimp", "cpgimp"]);
+        let strain = pick(&table.strain, "strain", &["standard", "cmpm"]);
+        let pressure = pick(&table.pressure, "pressure", &["points", "sri"]);
+        let recovery = match (&table.recovery, pressure) {
+            (None, Some(0)) => Some(0),
+            (word, _) => pick(word, "recovery", &["constant", "patch"]),
+        };
+        let configuration = match &table.configuration {
+            Some(word) => Some(self.word(word, "configuration", &["updated", "frozen"])?),
+            None => None,
+        };
+        Some(Method {
+            basis: [Basis::Hat, Basis::Ugimp, Basis::Cpgimp][basis?],
+            strain: [StrainGradient::Standard, StrainGradient::Cmpm][strain?],
+            pressure: [PressureIntegration::Points, PressureIntegration::Sri][pressure?],
+            recovery: [Recovery::Constant, Recovery::Patch][recovery?],
+            configuration: configuration.map(|index| [Configuration::Updated, Configuration::Frozen][index]),
+        })
+    }
+
+    fn time_step(&mut self, typed: &Spanned<TimeStepTable>) -> Option<TimeStepRule> {
+        let table = typed.get_ref();
+        let given = [
+            table.stable.as_ref().map(|value| (TimeStepRule::Stable(*value.get_ref()), value)),
+            table.courant.as_ref().map(|value| (TimeStepRule::Courant(*value.get_ref()), value)),
+            table.seconds.as_ref().map(|value| (TimeStepRule::Seconds(*value.get_ref()), value)),
+        ];
+        let given: Vec<_> = given.into_iter().flatten().collect();
+        let [(rule, value)] = given.as_slice() else {
+            self.complain(
+                typed.span(),
+                format!("a time step by {} rules", given.len()),
+                "give exactly one: { stable = 0.5 }, { courant = 0.5 } or { seconds = 1e-6 }",
+            );
+            return None;
+        };
+        if value.get_ref().is_finite() && *value.get_ref() > 0.0 {
+            return Some(*rule);
+        }
+        self.complain(value.span(), format!("a time step of {}", value.get_ref()), "it must be positive and finite");
+        None
+    }
+
+    fn expectation(
+        &mut self,
+        entry: &Spanned<ExpectTable>,
+        scene: SceneKind,
+        references: &[ReferenceKind],
+    ) -> Option<Expectation> {
+        let table = entry.get_ref();
+        let before = self.diagnostics.len();
+        let quantity = self.choice(table.quantity.as_ref(), "quantity", &Quantity::ALL.map(Quantity::name), 0)?;
+        let quantity = Quantity::ALL[quantity];
+        let default_sample = if quantity == Quantity::Settlement { Sample::Surface } else { Sample::Points };
+        let samples = Sample::ALL.map(Sample::name);
+        let sample = table.sample.as_ref().map(|word| self.word(word, "sample", &samples));
+        let sample = sample.map_or(Some(default_sample), |index| index.map(|index| Sample::ALL[index]))?;
+        let default_norm = if quantity == Quantity::Settlement { Norm::Relative } else { Norm::L2 };
+        let norms = Norm::ALL.map(Norm::name);
+        let norm = table.norm.as_ref().map(|word| self.word(word, "norm", &norms));
+        let norm = norm.map_or(Some(default_norm), |index| index.map(|index| Norm::ALL[index]))?;
+        let Some(time_factor) = table.time_factor.as_ref().map(|typed| *typed.get_ref()) else {
+            self.complain(entry.span(), "the expectation names no time factor", "add `time_factor = 0.1`");
+            return None;
+        };
+        let names: Vec<&str> = references.iter().map(|kind| kind.name()).collect();
+        let reference = match &table.reference {
+            Some(word) => references[self.word(word, "reference", &names)?],
+            None => scene.references()[0],
+        };
+        let axis = Axis::ALL[self.choice(table.axis.as_ref(), "axis", &Axis::ALL.map(Axis::name), 0)?];
+        let method = match &table.method {
+            Some(typed) => Some(self.method(typed)?),
+            None => None,
+        };
+        let expectation = Expectation {
+            method,
+            cells: self.count(table.cells.as_ref(), "cells", 1..=MOST_CELLS),
+            points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
+            drag: table.drag.as_ref().and_then(|word| self.drag(word)),
+            mapping_back: table.mapping_back.as_ref().map(|typed| *typed.get_ref()),
+            quantity,
+            norm,
+            sample,
+            time_factor,
+            reference,
+            axis,
+            order: table.order.as_ref().map(|order| Band {
+                value: *order.get_ref().value.get_ref(),
+                minus: order.get_ref().minus.as_ref().map_or(0.1, |typed| *typed.get_ref()),
+                plus: order.get_ref().plus.as_ref().map_or(0.1, |typed| *typed.get_ref()),
+            }),
+            at: table.at.as_ref().and_then(|level| self.level_bound(level)),
+            class: table.class.as_ref().map(|typed| typed.get_ref().clone()),
+            floor: table.floor.as_ref().map(|floor| {
+                let floor = floor.get_ref();
+                (
+                    floor.above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
+                    floor.below.as_ref().map_or(f64::INFINITY, |typed| *typed.get_ref()),
+                )
+            }),
+            xfail: table.xfail.as_ref().map(|known| StrictFailure {
+                reason: known.get_ref().reason.get_ref().clone(),
+            }),
+            line: self.source.text[..entry.span().start.min(self.source.text.len())].lines().count().max(1),
+        };
+        let asks = expectation.order.is_some()
+            || expectation.at.is_some()
+            || expectation.class.is_some()
+            || expectation.floor.is_some();
+        if !asks {
+            self.complain(entry.span(), "the expectation asks for nothing", "add `order`, `at`, `class` or `floor`");
+        }
+        (self.diagnostics.len() == before).then_some(expectation)
+    }
+
+    fn level_bound(&mut self, level: &Spanned<LevelTable>) -> Option<LevelBound> {
+        let table = level.get_ref();
+        let Some(cells) = self.count(table.cells.as_ref(), "at.cells", 1..=MOST_CELLS) else {
+            self.complain(level.span(), "the bound names no level", "add `cells = 10`");
+            return None;
+        };
+        let bound = LevelBound {
+            cells,
+            below: table.below.as_ref().map(|typed| *typed.get_ref()),
+            above: table.above.as_ref().map(|typed| *typed.get_ref()),
+        };
+        if bound.below.is_none() && bound.above.is_none() {
+            self.complain(level.span(), "the bound has no bound", "add `below = 5.0e-3`");
+        }
+        Some(bound)
+    }
+
+    /// Index of an optional word, or that of the default.
+    fn choice(
+        &mut self,
+        typed: Option<&Spanned<String>>,
+        name: &str,
+        choices: &[&str],
+        default: usize,
+    ) -> Option<usize> {
+        typed.map_or(Some(default), |word| self.word(word, name, choices))
+    }
+
+    /// Index of a word among its choices.
+    fn word(&mut self, typed: &Spanned<String>, name: &str, choices: &[&str]) -> Option<usize> {
+        let word = typed.get_ref();
+        let index = choices.iter().position(|choice| choice == word);
+        if index.is_none() {
+            self.complain(typed.span(), format!("no {name} is called `{word}`"), one_of(word, choices));
+        }
+        index
+    }
+
+    fn count(&mut self, typed: Option<&Spanned<i64>>, name: &str, range: RangeInclusive<i64>) -> Option<usize> {
+        let typed = typed?;
+        let count = *typed.get_ref();
+        if !range.contains(&count) {
+            let (least, most) = (range.start(), range.end());
+            self.complain(
+                typed.span(),
+                format!("`{name}` is {count}"),
+                format!("it must lie between {least} and {most}"),
+            );
+            return None;
+        }
+        usize::try_from(count).ok()
+    }
+
+    fn positive(&mut self, typed: Option<&Spanned<f64>>, name: &str, unit: &str, default: f64) -> f64 {
+        let Some(typed) = typed else { return default };
+        let value = *typed.get_ref();
+        if !(value.is_finite() && value > 0.0) {
+            self.complain(
+                typed.span(),
+                format!("`{name}` is {value} {unit}"),
+                format!("it must be positive and finite; the seed column has {default} {unit}"),
+            );
+        }
+        value
+    }
+
+    fn between(&mut self, typed: Option<&Spanned<f64>>, name: &str, least: f64, most: f64, default: f64) -> f64 {
+        let Some(typed) = typed else { return default };
+        let value = *typed.get_ref();
+        if !(value > least && value < most) {
+            self.complain(
+                typed.span(),
+                format!("`{name}` is {value}"),
+                format!("it must lie between {least} and {most}, both excluded; the seed column has {default}"),
+            );
+        }
+        value
+    }
+}

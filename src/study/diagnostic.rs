@@ -1,0 +1,141 @@
+//! What is wrong with a study file, where, and what would be right.
+
+use annotate_snippets::renderer::DecorStyle;
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use std::fmt;
+use std::ops::Range;
+
+/// Width of a rendered diagnostic: fixed, so that output does not depend on the terminal.
+const RENDER_WIDTH: usize = 110;
+/// Edit distance up to which a name is taken for a misspelt one.
+const CLOSE: f64 = 0.6;
+
+/// One thing that is wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// What is wrong, a sentence without its full stop.
+    pub message: String,
+    /// Bytes of the source it is about.
+    pub span: Option<Range<usize>>,
+    /// What would be right.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// A diagnostic at a place.
+    pub fn at(span: Range<usize>, message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self { message: message.into(), span: Some(span), help: Some(help.into()) }
+    }
+}
+
+/// A study that cannot run: every diagnostic, with the source they point into.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StudyError {
+    /// File name, or what stands for it.
+    pub name: String,
+    /// Text of the study.
+    pub source: String,
+    /// What is wrong.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl std::error::Error for StudyError {}
+
+impl fmt::Display for StudyError {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let renderer = Renderer::plain().term_width(RENDER_WIDTH).decor_style(DecorStyle::Ascii);
+        for (index, diagnostic) in self.diagnostics.iter().enumerate() {
+            let title = Level::ERROR.primary_title(diagnostic.message.as_str());
+            let mut group = match &diagnostic.span {
+                Some(span) => title.element(
+                    Snippet::source(self.source.as_str())
+                        .path(self.name.as_str())
+                        .annotation(AnnotationKind::Primary.span(self.inside(span))),
+                ),
+                None => title.element(annotate_snippets::Origin::path(self.name.as_str())),
+            };
+            if let Some(help) = &diagnostic.help {
+                group = group.element(Level::HELP.message(help.as_str()));
+            }
+            if index > 0 {
+                writeln!(out)?;
+            }
+            write!(out, "{}", renderer.render(&[group]))?;
+        }
+        Ok(())
+    }
+}
+
+impl StudyError {
+    /// A span held inside the source and on character boundaries.
+    fn inside(&self, span: &Range<usize>) -> Range<usize> {
+        let floor = |mut index: usize| {
+            index = index.min(self.source.len());
+            while !self.source.is_char_boundary(index) {
+                index -= 1;
+            }
+            index
+        };
+        let start = floor(span.start);
+        start..floor(span.end).max(start)
+    }
+}
+
+/// The candidate nearest to a misspelt word, if one is near at all.
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    candidates
+        .into_iter()
+        .map(|candidate| {
+            let alike = strsim::normalized_damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase());
+            (alike, candidate)
+        })
+        .filter(|(alike, _)| *alike >= CLOSE)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}
+
+/// Help for a word that is none of the candidates.
+pub fn one_of<'a>(word: &str, candidates: &[&'a str]) -> String {
+    match nearest(word, candidates.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`? It can be {}", listed(candidates)),
+        None => format!("it can be {}", listed(candidates)),
+    }
+}
+
+/// Words in a row, quoted.
+fn listed(words: &[&str]) -> String {
+    words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_diagnostic_shows_file_line_and_caret() {
+        let source = "title = \"x\"\nporosty = 0.3\n".to_owned();
+        let diagnostics = vec![Diagnostic::at(12..19, "unknown key `porosty`", "did you mean `porosity`?")];
+        let error = StudyError { name: "a.toml".to_owned(), source, diagnostics };
+        let text = error.to_string();
+        assert!(text.contains("a.toml:2:1"), "{text}");
+        assert!(text.contains("^^^^^^^"), "{text}");
+        assert!(text.contains("did you mean `porosity`?"), "{text}");
+    }
+
+    #[test]
+    fn a_span_beyond_the_text_or_inside_a_letter_does_no_harm() {
+        let error = StudyError {
+            name: "a.toml".to_owned(),
+            source: "ζ = 1".to_owned(),
+            diagnostics: vec![Diagnostic::at(1..99, "odd", "none")],
+        };
+        assert!(error.to_string().contains("odd"));
+    }
+
+    #[test]
+    fn the_nearest_name_is_near_or_none() {
+        assert_eq!(nearest("porosty", ["porosity", "height"]), Some("porosity"));
+        assert_eq!(nearest("gc-sri-patch", ["GIMP", "GC-SRI-patch"]), Some("GC-SRI-patch"));
+        assert_eq!(nearest("zzz", ["porosity", "height"]), None);
+    }
+}

@@ -1,0 +1,303 @@
+//! Runs the cases of a study: in parallel, resumable, every finished case on disk at once.
+
+use super::case::Case;
+use super::check::{Study, Tier};
+use crate::assess::measure::record_of;
+use crate::exact::{ExactError, ReferenceKind};
+use crate::record::{Record, RecordStore, Status, StoreError, WallSample};
+use crate::scene::{column_parameters, column_problem};
+use crate::solver::limits;
+use crate::solver::run::{Kernel, Schedule, TimeStepRule, run};
+use std::cell::Cell;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// Points of the settlement curve of a run.
+const HISTORY_POINTS: usize = 48;
+/// First time factor of the settlement curve.
+const HISTORY_START: f64 = 1e-3;
+
+/// A share `index/count` of the cases, by their hashes: the same whatever machine asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// From 1 to `count`.
+    pub index: u64,
+    /// How many shards there are.
+    pub count: u64,
+}
+
+impl Shard {
+    /// Whether a case belongs to this shard.
+    pub fn holds(&self, case: &Case) -> bool {
+        u64::from_str_radix(&case.hash(), 16).unwrap_or(0) % self.count == self.index - 1
+    }
+}
+
+/// How to run a study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RunOptions {
+    /// Cases at the same time.
+    pub jobs: usize,
+    /// How much of the study.
+    pub tier: Tier,
+    /// Which share of it.
+    pub shard: Option<Shard>,
+    /// Whether finished records are taken up.
+    pub resume: bool,
+}
+
+/// What the runner tells while it works.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Progress {
+    /// Work ahead, in point updates as estimated before the runs.
+    Planned {
+        /// Cases to be run.
+        cases: usize,
+        /// Cases taken up from disk.
+        resumed: usize,
+        /// Estimated point updates.
+        work: u64,
+    },
+    /// Work done since the last word.
+    Advanced(u64),
+    /// A case is done.
+    Finished {
+        /// Label of the case.
+        label: String,
+        /// Failure sentence, where it failed.
+        failure: Option<String>,
+    },
+}
+
+/// Why a study could not be run to its end.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// A result could not be kept.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// A case could not be set up.
+    #[error("{label}: {source}")]
+    Case {
+        /// Label of the case.
+        label: String,
+        /// Why.
+        source: ExactError,
+    },
+    /// A case crashed: a fault of this program.
+    #[error("{label}: crashed; please report it with the study file")]
+    Crashed {
+        /// Label of the case.
+        label: String,
+    },
+}
+
+/// What a run of a study gave.
+#[derive(Debug, Default)]
+pub struct RunReport {
+    /// Records in the order of the study.
+    pub records: Vec<Record>,
+    /// How many of them came from disk.
+    pub resumed: usize,
+    /// What went wrong beside failed cases; finished records are kept all the same.
+    pub errors: Vec<RunError>,
+}
+
+impl RunReport {
+    /// Records of cases that failed.
+    pub fn failed(&self) -> impl Iterator<Item = &Record> {
+        self.records.iter().filter(|record| record.status != Status::Ok)
+    }
+}
+
+/// Runs the cases of a study and keeps each record as soon as it is there.
+pub fn run_study(
+    study: &Study,
+    options: &RunOptions,
+    store: Option<&RecordStore>,
+    tell: &(dyn Fn(Progress) + Sync),
+) -> RunReport {
+    let cases: Vec<&Case> = study
+        .cases(options.tier)
+        .into_iter()
+        .filter(|case| options.shard.is_none_or(|shard| shard.holds(case)))
+        .collect();
+    let stored = |case: &Case| store.filter(|_| options.resume).and_then(|store| store.finished(case));
+    let found: Vec<Option<Record>> = cases.iter().map(|case| stored(case)).collect();
+    let mut missing: Vec<usize> = (0..cases.len()).filter(|index| found[*index].is_none()).collect();
+    // The longest first: the last ones to finish are then short.
+    missing.sort_by_key(|index| std::cmp::Reverse(estimated_updates(cases[*index])));
+    tell(Progress::Planned {
+        cases: missing.len(),
+        resumed: cases.len() - missing.len(),
+        work: missing.iter().map(|index| estimated_updates(cases[*index])).sum(),
+    });
+    let results: Vec<Mutex<Option<Result<Record, RunError>>>> = cases.iter().map(|_| Mutex::new(None)).collect();
+    let next = AtomicUsize::new(0);
+    let jobs = options.jobs.clamp(1, missing.len().max(1));
+    std::thread::scope(|scope| {
+        for _ in 0..jobs {
+            scope.spawn(|| {
+                while let Some(index) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let result = run_and_keep(cases[*index], study, store, jobs == 1, tell);
+                    if let Ok(mut slot) = results[*index].lock() {
+                        *slot = Some(result);
+                    }
+                }
+            });
+        }
+    });
+    let mut report = RunReport { resumed: cases.len() - missing.len(), ..RunReport::default() };
+    for (found, slot) in found.into_iter().zip(results) {
+        match (found, slot.into_inner().ok().flatten()) {
+            (Some(record), _) | (None, Some(Ok(record))) => report.records.push(record),
+            (None, Some(Err(error))) => report.errors.push(error),
+            (None, None) => {}
+        }
+    }
+    report.errors.extend(report.records.iter().filter_map(|record| {
+        // Written already; written once more only where that failed.
+        store.filter(|store| !store.has(&record.hash)).and_then(|store| store.write(record).err()).map(RunError::Store)
+    }));
+    report
+}
+
+fn run_and_keep(
+    case: &Case,
+    study: &Study,
+    store: Option<&RecordStore>,
+    alone: bool,
+    tell: &(dyn Fn(Progress) + Sync),
+) -> Result<Record, RunError> {
+    let estimate = estimated_updates(case);
+    let told = Cell::new(0);
+    let observe = |done: u64, expected: u64| {
+        let now = u64::try_from(u128::from(estimate) * u128::from(done) / u128::from(expected.max(1)))
+            .unwrap_or(estimate)
+            .min(estimate);
+        if now > told.get() + estimate / 200 {
+            tell(Progress::Advanced(now - told.get()));
+            told.set(now);
+        }
+        true
+    };
+    let solved = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        run_case(case, &study.references, Kernel::Fastest, alone, &observe)
+    }));
+    tell(Progress::Advanced(estimate - told.get()));
+    let record = match solved {
+        Ok(Ok(record)) => record,
+        Ok(Err(source)) => return Err(RunError::Case { label: case.label(), source }),
+        Err(_) => return Err(RunError::Crashed { label: case.label() }),
+    };
+    if let Some(store) = store {
+        // A failure to write is told at the end, when the record is tried once more.
+        let _ = store.write(&record);
+    }
+    tell(Progress::Finished {
+        label: case.label(),
+        failure: match &record.status {
+            Status::Ok => None,
+            Status::Failed(failure) => {
+                Some(format!("{} at step {}, t = {:.4e} s: {}", failure.kind.name(), failure.step, failure.time, failure.reason))
+            }
+        },
+    });
+    Ok(record)
+}
+
+/// Runs one case; `alone` says whether nothing else competes for the cores meanwhile.
+///
+/// # Errors
+/// When the exact solutions refuse the case's parameters.
+pub fn run_case(
+    case: &Case,
+    references: &[ReferenceKind],
+    kernel: Kernel,
+    alone: bool,
+    observe: &dyn Fn(u64, u64) -> bool,
+) -> Result<Record, ExactError> {
+    let problem =
+        column_problem(case.scene, &case.column, &case.material, case.method, case.cells, case.points_per_cell)?;
+    let schedule = schedule_of(case, kernel);
+    let start = Instant::now();
+    let outcome = run(problem, &schedule, observe);
+    let seconds = start.elapsed().as_secs_f64();
+    let mut record = record_of(case, references, outcome)?;
+    record.wall.push(WallSample { seconds, alone });
+    Ok(record)
+}
+
+fn schedule_of(case: &Case, kernel: Kernel) -> Schedule {
+    let parameters = column_parameters(&case.column, &case.material);
+    let end = case.time_factors.last().copied().unwrap_or(0.0);
+    let history = if end > HISTORY_START {
+        let growth = (end / HISTORY_START).ln() / (HISTORY_POINTS - 1) as f64;
+        (0..HISTORY_POINTS).map(|i| parameters.time(HISTORY_START * (growth * i as f64).exp())).collect()
+    } else {
+        Vec::new()
+    };
+    Schedule {
+        outputs: case.time_factors.iter().map(|factor| parameters.time(*factor)).collect(),
+        history,
+        rule: case.time_step,
+        settings: case.settings,
+        kernel,
+    }
+}
+
+/// Point updates that a case will take, by formula and before any operator is built.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, it is an estimate")]
+pub fn estimated_updates(case: &Case) -> u64 {
+    let parameters = column_parameters(&case.column, &case.material);
+    let end = parameters.time(case.time_factors.last().copied().unwrap_or(0.0));
+    let limit = limits::combined_limit(&case.material, case.cell_size(), case.settings.drag);
+    let step = match case.time_step {
+        TimeStepRule::Stable(share) => 1.5 * share * limit,
+        TimeStepRule::Courant(share) => {
+            share * case.cell_size() / limits::fastest_wave_speed(&case.material, case.material.porosity)
+        }
+        TimeStepRule::Seconds(seconds) => seconds,
+    };
+    let points = (case.cells * case.points_per_cell) as f64;
+    (end / step * points).max(1.0) as u64
+}
+
+/// What timing a study took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TimingReport {
+    /// Runs made for their wall time.
+    pub runs: usize,
+}
+
+/// Times the cases of records alone, in rounds over all of them, until each has the study's number
+/// of samples: what drifts on the machine meets every case alike.
+///
+/// # Errors
+/// When a case cannot be run or its times not be kept.
+pub fn time_study(
+    study: &Study,
+    records: &mut [Record],
+    store: Option<&RecordStore>,
+    tell: &(dyn Fn(Progress) + Sync),
+) -> Result<TimingReport, RunError> {
+    let mut report = TimingReport::default();
+    for _ in 0..study.timing_repeats {
+        for record in &mut *records {
+            if record.status != Status::Ok || record.wall_alone().len() >= study.timing_repeats {
+                continue;
+            }
+            let timed = run_case(&record.case, &study.references, Kernel::Fastest, true, &|_, _| true)
+                .map_err(|source| RunError::Case { label: record.case.label(), source })?;
+            record.wall.extend(timed.wall);
+            report.runs += 1;
+            tell(Progress::Advanced(estimated_updates(&record.case)));
+        }
+    }
+    if let Some(store) = store.filter(|_| report.runs > 0) {
+        for record in &*records {
+            store.write_wall(record)?;
+        }
+    }
+    Ok(report)
+}

@@ -1,0 +1,19 @@
+//! The studies that ship, inside the program: it makes its report wherever it is run.
+
+use super::file::StudySource;
+
+/// Every shipped study, in the order of the report.
+pub fn shipped_studies() -> Vec<StudySource> {
+    const SHIPPED: &[(&str, &str)] = &[
+        ("studies/terzaghi-mesh.toml", include_str!("../../studies/terzaghi-mesh.toml")),
+        ("studies/terzaghi-floor.toml", include_str!("../../studies/terzaghi-floor.toml")),
+        ("studies/terzaghi-points.toml", include_str!("../../studies/terzaghi-points.toml")),
+        ("studies/terzaghi-time-step.toml", include_str!("../../studies/terzaghi-time-step.toml")),
+        ("studies/terzaghi-methods.toml", include_str!("../../studies/terzaghi-methods.toml")),
+        ("studies/single-mode.toml", include_str!("../../studies/single-mode.toml")),
+    ];
+    SHIPPED
+        .iter()
+        .map(|(name, text)| StudySource { name: (*name).to_owned(), text: (*text).to_owned() })
+        .collect()
+}

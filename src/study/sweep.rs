@@ -1,0 +1,148 @@
+//! Sweeps: lists of choices, multiplied out or tied to a path.
+
+use super::case::IntegratorKind;
+use crate::solver::explicit::Drag;
+use crate::solver::method::Method;
+use crate::solver::run::TimeStepRule;
+
+/// One block of a study, checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    pub method: Vec<Method>,
+    pub integrator: Vec<IntegratorKind>,
+    pub cells: Vec<usize>,
+    pub points_per_cell: Vec<usize>,
+    pub time_step: Vec<TimeStepRule>,
+    pub drag: Vec<Drag>,
+    pub flip: Vec<f64>,
+    pub mapping_back: Vec<bool>,
+    /// Axes that step together, by key.
+    pub path: Vec<String>,
+}
+
+/// Keys that a path can tie.
+pub const AXES: [&str; 8] =
+    ["method", "integrator", "cells", "points_per_cell", "time_step", "drag", "flip", "mapping_back"];
+
+/// One combination of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Combination {
+    pub method: Method,
+    pub integrator: IntegratorKind,
+    pub cells: usize,
+    pub points_per_cell: usize,
+    pub time_step: TimeStepRule,
+    pub drag: Drag,
+    pub flip: f64,
+    pub mapping_back: bool,
+}
+
+impl Sweep {
+    fn lengths(&self) -> [usize; AXES.len()] {
+        [
+            self.method.len(),
+            self.integrator.len(),
+            self.cells.len(),
+            self.points_per_cell.len(),
+            self.time_step.len(),
+            self.drag.len(),
+            self.flip.len(),
+            self.mapping_back.len(),
+        ]
+    }
+
+    /// Axes of a path that are not as long as its first: a path has one length.
+    pub fn uneven_path(&self) -> Option<(String, usize, usize)> {
+        let length = |key: &String| AXES.iter().position(|axis| axis == key).map(|axis| self.lengths()[axis]);
+        let first = self.path.first().and_then(length)?;
+        self.path.iter().find_map(|key| {
+            let own = length(key)?;
+            (own != first).then(|| (key.clone(), own, first))
+        })
+    }
+
+    /// Every combination, the first axis slowest. The axes of a path step together.
+    pub fn combinations(&self) -> Vec<Combination> {
+        let lengths = self.lengths();
+        let tied = |axis: usize| self.path.iter().any(|key| key == AXES[axis]);
+        // The path counts as one axis, at the place of its first member.
+        let leader = (0..AXES.len()).find(|axis| tied(*axis));
+        let turning: Vec<usize> =
+            (0..AXES.len()).filter(|axis| !tied(*axis) || Some(*axis) == leader).collect();
+        let total: usize = turning.iter().map(|axis| lengths[*axis]).product();
+        (0..total)
+            .map(|number| {
+                let mut at = [0; AXES.len()];
+                let mut rest = number;
+                for axis in turning.iter().rev() {
+                    at[*axis] = rest % lengths[*axis];
+                    rest /= lengths[*axis];
+                }
+                if let Some(leader) = leader {
+                    for axis in (0..AXES.len()).filter(|axis| tied(*axis)) {
+                        at[axis] = at[leader];
+                    }
+                }
+                Combination {
+                    method: self.method[at[0]],
+                    integrator: self.integrator[at[1]],
+                    cells: self.cells[at[2]],
+                    points_per_cell: self.points_per_cell[at[3]],
+                    time_step: self.time_step[at[4]],
+                    drag: self.drag[at[5]],
+                    flip: self.flip[at[6]],
+                    mapping_back: self.mapping_back[at[7]],
+                }
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sweep(path: &[&str]) -> Sweep {
+        Sweep {
+            method: ["GIMP", "GC-SRI-patch"].iter().filter_map(|name| Method::named(name)).collect(),
+            integrator: vec![IntegratorKind::Explicit],
+            cells: vec![5, 10, 20],
+            points_per_cell: vec![2],
+            time_step: vec![
+                TimeStepRule::Seconds(4e-6),
+                TimeStepRule::Seconds(2e-6),
+                TimeStepRule::Seconds(1e-6),
+            ],
+            drag: vec![Drag::Explicit],
+            flip: vec![1.0],
+            mapping_back: vec![true],
+            path: path.iter().map(|key| (*key).to_owned()).collect(),
+        }
+    }
+
+    #[test]
+    fn a_product_has_every_combination_once() {
+        let all = sweep(&[]).combinations();
+        assert_eq!(all.len(), 2 * 3 * 3);
+        for (index, one) in all.iter().enumerate() {
+            assert!(!all[..index].contains(one));
+        }
+    }
+
+    #[test]
+    fn a_path_steps_its_axes_together() {
+        let all = sweep(&["cells", "time_step"]).combinations();
+        assert_eq!(all.len(), 2 * 3);
+        for one in all {
+            assert_eq!(one.time_step, TimeStepRule::Seconds(2e-5 / one.cells as f64));
+        }
+    }
+
+    #[test]
+    fn an_uneven_path_is_named() {
+        let mut uneven = sweep(&["cells", "time_step"]);
+        uneven.time_step.pop();
+        assert_eq!(uneven.uneven_path(), Some(("time_step".to_owned(), 2, 3)));
+        assert_eq!(sweep(&["cells", "time_step"]).uneven_path(), None);
+    }
+}
