@@ -1,0 +1,198 @@
+//! Puts a figure together, from the back to the front.
+use super::axes::{draw_axes, draw_bar, draw_grid};
+use super::canvas::{Canvas, Hold, Ink, Px, Type};
+use super::clip::{Frame, pieces};
+use super::describe::{Chart, Series, Style};
+use super::layout::{Layout, Side, lay_out};
+use super::legend::{Legend, Look, looks, stroke};
+use super::missing::place;
+use super::palette::{DARK, QUIET, WHITE, colour, marker};
+use super::space::Space;
+use super::words::{draw_annotations, draw_rules, draw_tag, draw_triangles};
+use crate::render::RenderError;
+
+const MARKER: f64 = 4.0;
+
+impl Chart {
+    /// The figure as a self-contained SVG document.
+    ///
+    /// # Errors
+    /// If the drawing library refuses; it has no reason to.
+    pub fn svg(&self) -> Result<String, RenderError> {
+        let looks = looks(self);
+        // A first layout tells what is missing, which the second has to find room for.
+        let drawn_of = |places: &[Vec<Option<Px>>]| -> Vec<usize> {
+            places.iter().map(|p| p.iter().flatten().count()).collect()
+        };
+        let draft = lay_out(self, &Legend::of(self, &looks, &vec![1; looks.len()]), &[]);
+        let first = place(self, &draft.x.ruler, &draft.y.ruler, &draft.plot);
+        let legend = Legend::of(self, &looks, &drawn_of(&first.points));
+        let notes: Vec<String> = self.notes.iter().cloned().chain(first.notes).collect();
+        let layout = lay_out(self, &legend, &notes);
+        let places = place(self, &layout.x.ruler, &layout.y.ruler, &layout.plot).points;
+
+        let mut canvas = Canvas::new(layout.width, layout.height);
+        canvas.group(&[], |b| b.rect((0.0, 0.0), (layout.width, layout.height), WHITE));
+        self.draw_data(&mut canvas, &layout, &looks, &places);
+        draw_axes(&mut canvas, &layout);
+        self.draw_front(&mut canvas, &layout, &looks, &places);
+        match layout.side {
+            Side::None => {}
+            Side::Right => legend.draw_column(&mut canvas, layout.legend),
+            Side::Below => legend.draw_rows(&mut canvas, layout.legend, layout.width - layout.plot.left - layout.left),
+        }
+        canvas.finish(&self.title, &self.description())
+    }
+
+    /// Field, grid, bands and lines.
+    fn draw_data(&self, canvas: &mut Canvas, layout: &Layout, looks: &[Look], places: &[Vec<Option<Px>>]) {
+        if let Some(field) = self.field.as_ref().filter(|f| f.shape().is_some()) {
+            let span = field.span();
+            self.draw_cells(canvas, layout);
+            draw_bar(canvas, layout, |share| {
+                let value = match span.kind {
+                    super::Scale::Linear => span.low + share * (span.high - span.low),
+                    super::Scale::Log10 => span.low * (span.high / span.low).powf(share),
+                };
+                field.colour(&span, value)
+            });
+        } else {
+            draw_grid(canvas, layout);
+        }
+        self.draw_bands(canvas, layout);
+        for theory in [false, true] {
+            for ((series, look), places) in self.series.iter().zip(looks).zip(places) {
+                if look.line && (series.style == Style::Theory) == theory {
+                    stroke(canvas, &lines(series, places, &layout.plot), *look);
+                }
+            }
+        }
+    }
+
+    /// Everything above the frame: bars, markers, rings, words.
+    fn draw_front(&self, canvas: &mut Canvas, layout: &Layout, looks: &[Look], places: &[Vec<Option<Px>>]) {
+        let inside = layout.plot.grown(0.5);
+        let mut space = Space::within(layout.plot.grown(-2.0));
+        for (i, ((series, look), places)) in self.series.iter().zip(looks).zip(places).enumerate() {
+            if look.line {
+                lines(series, places, &layout.plot).iter().for_each(|piece| space.add_line(piece, i));
+            }
+            let shown = || places.iter().flatten().copied().filter(|&p| inside.holds(p));
+            draw_bars(canvas, series, *look, layout);
+            if let Some(slot) = look.marker {
+                canvas.group(&[], |b| shown().try_for_each(|p| marker(b, p, slot, MARKER, look.colour)));
+                shown().for_each(|p| space.add_marker(p, i));
+            }
+        }
+        for (series, places) in self.series.iter().zip(places) {
+            let ringed = series.ringed.iter().filter_map(|&i| *places.get(i)?).filter(|&p| inside.holds(p));
+            let ringed: Vec<Px> = ringed.collect();
+            canvas.group(&[], |b| ringed.iter().try_for_each(|&p| b.ring(p, MARKER + 3.4, DARK, 1.3)));
+        }
+        if places.iter().flatten().flatten().next().is_none()
+            && self.field.as_ref().is_none_or(|f| f.shape().is_none())
+            && self.bands.iter().all(|b| b.points.is_empty())
+        {
+            let look = Type { size: 22.0, ink: QUIET, bold: false, hold: Hold::Middle, upright: false };
+            let f = layout.plot;
+            let centre = (f64::midpoint(f.left, f.right), f64::midpoint(f.top, f.bottom) + 7.0);
+            canvas.group(&[], |b| b.text("no data", centre, look));
+        }
+        draw_triangles(canvas, &mut space, self, layout, places);
+        draw_rules(canvas, &mut space, self, layout);
+        for (i, ((series, look), places)) in self.series.iter().zip(looks).zip(places).enumerate() {
+            if let Some(tag) = &series.tag {
+                draw_tag(canvas, &mut space, tag, &lines(series, places, &layout.plot), *look, i);
+            }
+        }
+        draw_annotations(canvas, &mut space, self, layout);
+    }
+
+    fn draw_bands(&self, canvas: &mut Canvas, layout: &Layout) {
+        for band in &self.bands {
+            let ends: Vec<(Px, Px)> = band
+                .points
+                .iter()
+                .filter_map(|&(at, low, high)| {
+                    let x = layout.x.ruler.px(at).ok()?;
+                    let (low, high) = (layout.y.ruler.px(low).ok()?, layout.y.ruler.px(high).ok()?);
+                    Some((layout.plot.nearest((x, low)), layout.plot.nearest((x, high))))
+                })
+                .collect();
+            let outline: Vec<Px> = ends.iter().map(|e| e.0).chain(ends.iter().rev().map(|e| e.1)).collect();
+            if outline.len() > 2 {
+                canvas.group(&[], |b| b.polygon(&outline, Ink(colour(band.colour), 0.22)));
+            }
+        }
+    }
+
+    fn draw_cells(&self, canvas: &mut Canvas, layout: &Layout) {
+        let Some(field) = &self.field else { return };
+        let Some((columns, rows)) = field.shape() else { return };
+        let span = field.span();
+        let px = |ruler: &super::scale::Ruler, edges: &[f64]| -> Vec<Option<f64>> {
+            let (low, high) = (ruler.from.min(ruler.to), ruler.from.max(ruler.to));
+            edges.iter().map(|&e| ruler.px(e).ok().map(|p| p.clamp(low, high))).collect()
+        };
+        let (xs, ys) = (px(&layout.x.ruler, &field.x_edges), px(&layout.y.ruler, &field.y_edges));
+        canvas.group(&[("shape-rendering", "crispEdges")], |b| {
+            for row in 0..rows {
+                let mut column = 0;
+                while column < columns {
+                    let ink = field.colour(&span, field.values[row * columns + column]);
+                    let start = column;
+                    while column < columns && field.colour(&span, field.values[row * columns + column]) == ink {
+                        column += 1;
+                    }
+                    if let (Some(x0), Some(x1), Some(y0), Some(y1)) = (xs[start], xs[column], ys[row], ys[row + 1]) {
+                        b.rect((x0.min(x1), y0.min(y1)), (x0.max(x1), y0.max(y1)), ink)?;
+                    }
+                }
+            }
+            Ok(())
+        });
+    }
+
+    /// What the figure shows, for those who cannot see it.
+    fn description(&self) -> String {
+        let mut names: Vec<&str> = self.series.iter().map(|s| s.name.as_str()).filter(|n| !n.is_empty()).collect();
+        names.dedup();
+        let field = self.field.as_ref().map(|f| format!("{} in colour. ", f.label)).unwrap_or_default();
+        let what = if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) };
+        format!("{field}{} against {}{what}.", self.y.label, self.x.label)
+    }
+}
+
+/// The visible pieces of the line of a series.
+fn lines(series: &Series, places: &[Option<Px>], plot: &Frame) -> Vec<Vec<Px>> {
+    if series.style != Style::Stairs {
+        return pieces(places, plot);
+    }
+    let mut steps = Vec::new();
+    for pair in places.windows(2) {
+        steps.push(pair[0]);
+        if let (Some(a), Some(b)) = (pair[0], pair[1]) {
+            steps.push(Some((b.0, a.1)));
+        }
+    }
+    steps.extend(places.last().copied());
+    pieces(&steps, plot)
+}
+
+fn draw_bars(canvas: &mut Canvas, series: &Series, look: Look, layout: &Layout) {
+    canvas.group(&[], |b| {
+        for (&(at, _), &(low, high)) in series.points.iter().zip(&series.bars) {
+            let (Ok(x), Ok(low), Ok(high)) = (layout.x.ruler.px(at), layout.y.ruler.px(low), layout.y.ruler.px(high))
+            else {
+                continue;
+            };
+            for piece in pieces(&[Some((x, low)), Some((x, high))], &layout.plot) {
+                b.line(&piece, look.colour, 1.2)?;
+                for end in piece {
+                    b.line(&[(end.0 - 3.5, end.1), (end.0 + 3.5, end.1)], look.colour, 1.2)?;
+                }
+            }
+        }
+        Ok(())
+    });
+}

@@ -1,0 +1,26 @@
+//! Figures: a plain description ([`Chart`]) and its SVG ([`Chart::svg`]).
+//!
+//! One type serves every picture of a report: convergence, isochrones, work and precision, maps.
+//! Nothing is hidden silently: what cannot be drawn is counted below the figure.
+mod axes;
+mod canvas;
+mod clip;
+mod describe;
+mod draw;
+mod field;
+mod layout;
+mod legend;
+mod missing;
+mod palette;
+mod scale;
+mod space;
+mod ticks;
+mod words;
+
+#[cfg(test)]
+mod gallery;
+
+pub use describe::{
+    Annotation, Axis, Band, Chart, Direction, Place, Range, Rule, Scale, Series, Size, SlopeTriangle, Style,
+};
+pub use field::{Colours, Field};
