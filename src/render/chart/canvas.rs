@@ -206,16 +206,19 @@ fn spots(points: &[Px]) -> Vec<(i32, i32)> {
 fn marked(text: &str) -> String {
     let mut out = String::new();
     let mut back: Option<char> = None;
-    for run in runs(text) {
+    let all = runs(text);
+    for run in &all {
+        // White space at the edge of a span would be lost.
+        let text = if all.len() > 1 { run.text.replace(' ', "\u{a0}") } else { run.text.clone() };
         match run.level {
             Level::Base => {
                 // The next base run must climb back from where the script left the pen.
                 if let Some(mark) = back.take() {
                     out.push(mark);
-                    out.push_str(&run.text);
+                    out.push_str(&text);
                     out.push(MARKS[4].0);
                 } else {
-                    out.push_str(&run.text);
+                    out.push_str(&text);
                 }
             }
             level => {
@@ -227,7 +230,7 @@ fn marked(text: &str) -> String {
                 }
                 let sub = level == Level::Sub;
                 out.push(MARKS[usize::from(!sub)].0);
-                out.push_str(&run.text);
+                out.push_str(&text);
                 out.push(MARKS[4].0);
                 back = Some(MARKS[if sub { 2 } else { 3 }].0);
             }
@@ -303,8 +306,8 @@ mod tests {
     #[test]
     fn text_is_escaped_and_scripts_become_spans() {
         let svg = text("<b> T_v & 10⁻³ s");
-        assert!(svg.contains("&lt;b&gt; T<tspan dy=\"0.28em\" font-size=\"0.72em\">v</tspan>"), "{svg}");
-        assert!(svg.contains("<tspan dy=\"-0.202em\"> &amp; 10</tspan>"), "{svg}");
+        assert!(svg.contains("&lt;b&gt;\u{a0}T<tspan dy=\"0.28em\" font-size=\"0.72em\">v</tspan>"), "{svg}");
+        assert!(svg.contains("<tspan dy=\"-0.202em\">\u{a0}&amp;\u{a0}10</tspan>"), "{svg}");
         assert!(svg.contains(r#"font-size="120""#), "{svg}");
         assert!(svg.contains("<title>a &lt;title&gt;</title>"), "{svg}");
     }

@@ -11,7 +11,10 @@ use super::space::Space;
 use super::words::{draw_annotations, draw_rules, draw_tag, draw_triangles};
 use crate::render::RenderError;
 
-const MARKER: f64 = 4.0;
+/// Radius of markers. Later ones are smaller, so that points that coincide are seen to be several.
+fn radius(place: usize) -> f64 {
+    4.9 - 0.55 * place.min(4) as f64
+}
 
 impl Chart {
     /// The figure as a self-contained SVG document.
@@ -73,6 +76,7 @@ impl Chart {
     fn draw_front(&self, canvas: &mut Canvas, layout: &Layout, looks: &[Look], places: &[Vec<Option<Px>>]) {
         let inside = layout.plot.grown(0.5);
         let mut space = Space::within(layout.plot.grown(-2.0));
+        let mut kinds: Vec<Look> = Vec::new();
         for (i, ((series, look), places)) in self.series.iter().zip(looks).zip(places).enumerate() {
             if look.line {
                 lines(series, places, &layout.plot).iter().for_each(|piece| space.add_line(piece, i));
@@ -80,14 +84,18 @@ impl Chart {
             let shown = || places.iter().flatten().copied().filter(|&p| inside.holds(p));
             draw_bars(canvas, series, *look, layout);
             if let Some(slot) = look.marker {
-                canvas.group(&[], |b| shown().try_for_each(|p| marker(b, p, slot, MARKER, look.colour)));
+                let size = radius(kinds.iter().position(|k| k == look).unwrap_or_else(|| {
+                    kinds.push(*look);
+                    kinds.len() - 1
+                }));
+                canvas.group(&[], |b| shown().try_for_each(|p| marker(b, p, slot, size, look.colour)));
                 shown().for_each(|p| space.add_marker(p, i));
             }
         }
         for (series, places) in self.series.iter().zip(places) {
             let ringed = series.ringed.iter().filter_map(|&i| *places.get(i)?).filter(|&p| inside.holds(p));
             let ringed: Vec<Px> = ringed.collect();
-            canvas.group(&[], |b| ringed.iter().try_for_each(|&p| b.ring(p, MARKER + 3.4, DARK, 1.3)));
+            canvas.group(&[], |b| ringed.iter().try_for_each(|&p| b.ring(p, 7.6, DARK, 1.3)));
         }
         if places.iter().flatten().flatten().next().is_none()
             && self.field.as_ref().is_none_or(|f| f.shape().is_none())

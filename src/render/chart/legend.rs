@@ -177,6 +177,49 @@ pub(super) fn stroke(canvas: &mut Canvas, pieces: &[Vec<Px>], look: Look) {
     let mut attributes = vec![("stroke-linejoin", "round")];
     attributes.extend(look.dash.map(|d| ("stroke-dasharray", d)));
     canvas.group(&attributes, |b| {
-        pieces.iter().try_for_each(|piece| b.line(piece, look.colour, f64::from(look.width) / 10.0))
+        pieces.iter().try_for_each(|piece| b.line(&thinned(piece), look.colour, f64::from(look.width) / 10.0))
     });
+}
+
+/// The piece without points that nobody can tell from the one before.
+fn thinned(piece: &[Px]) -> Vec<Px> {
+    let mut out: Vec<Px> = Vec::new();
+    for (i, &p) in piece.iter().enumerate() {
+        let near = out.last().is_some_and(|q| (p.0 - q.0).hypot(p.1 - q.1) < 0.4);
+        if !near || i + 1 == piece.len() {
+            out.push(p);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::chart::{Axis, Series};
+
+    #[test]
+    fn a_name_has_one_look_and_one_entry() {
+        let chart = Chart::new("", Axis::linear("x"), Axis::linear("y"))
+            .with(Series::theory("exact", vec![]))
+            .with(Series::new("a", vec![]))
+            .with(Series::new("b", vec![]))
+            .with(Series::theory("exact", vec![]))
+            .with(Series::new("a", vec![]))
+            .with(Series::theory("other", vec![]));
+        let looks = looks(&chart);
+        assert_eq!(looks[1], looks[4]);
+        assert_eq!(looks[0], looks[3]);
+        assert_ne!(looks[1], looks[2]);
+        assert!(looks[0].colour == DARK && looks[5].colour == DARK && looks[0].dash != looks[5].dash);
+        assert_eq!(Legend::of(&chart, &looks, &[1; 6]).entries.len(), 4);
+    }
+
+    #[test]
+    fn thinning_keeps_both_ends() {
+        let dense: Vec<Px> = (0..=1000).map(|i| (f64::from(i) / 100.0, 0.0)).collect();
+        let thin = thinned(&dense);
+        assert!(thin.len() < 30);
+        assert_eq!((thin.first(), thin.last()), (dense.first(), dense.last()));
+    }
 }

@@ -27,7 +27,7 @@ const DASHES: [Option<&str>; 7] = [
     Some("75 35"),
     Some("22 28"),
     Some("95 30 22 30"),
-    Some("140 40"),
+    Some("105 25"),
     Some("60 25 20 25 20 25"),
     Some("40 30"),
 ];

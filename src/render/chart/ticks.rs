@@ -39,7 +39,7 @@ fn given(span: &Span, values: &[f64]) -> Vec<Tick> {
 
 fn automatic(ruler: &Ruler, room: Room) -> Vec<Tick> {
     let span = ruler.span;
-    let apart = if room.beside { 6.5 * room.font } else { 3.4 * room.font };
+    let apart = if room.beside { 4.8 * room.font } else { 3.4 * room.font };
     let most = (ruler.length() / apart).clamp(2.0, 12.0);
     match span.kind {
         Kind::Linear => even(&span, most),
@@ -196,7 +196,7 @@ mod tests {
     fn linear_ticks_are_round_numbers() {
         assert_eq!(labels(Kind::Linear, 0.0, 1.0, 500.0, true), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(labels(Kind::Linear, -0.3, 0.2, 250.0, true), ["−0.2", "0.0", "0.2"]);
-        assert_eq!(labels(Kind::Linear, 0.0, 2e6, 300.0, true), ["0", "10⁶", "2·10⁶"]);
+        assert_eq!(labels(Kind::Linear, 0.0, 2e6, 300.0, true), ["0", "5·10⁵", "1.0·10⁶", "1.5·10⁶", "2.0·10⁶"]);
     }
 
     #[test]

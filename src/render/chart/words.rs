@@ -18,6 +18,12 @@ fn write(canvas: &mut Canvas, text: &str, centre: Px, ink: Rgb) {
     canvas.group(&HALO, |b| b.text(text, (centre.0, centre.1 + 0.36 * FONT), look));
 }
 
+/// Blanks what is beneath, but for a trace.
+fn blank(canvas: &mut Canvas, room: Frame) {
+    let (corner, opposite) = ((room.left, room.top), (room.right, room.bottom));
+    canvas.group(&[], |b| b.rect(corner, opposite, super::canvas::Ink(super::palette::WHITE, 0.9)));
+}
+
 fn half(text: &str) -> (f64, f64) {
     (0.5 * FONT * width(text) + 2.0, 0.62 * FONT)
 }
@@ -28,6 +34,9 @@ fn write_best(canvas: &mut Canvas, space: &mut Space, offers: &[(Px, f64)], text
     let rooms: Vec<Offer> = offers.iter().map(|&(at, penalty)| Offer { room: around(at, w, h), penalty }).collect();
     if let Some(i) = space.best(&rooms, owner) {
         space.take(rooms[i].room);
+        if owner.is_some() {
+            blank(canvas, rooms[i].room);
+        }
         write(canvas, text, offers[i].0, ink);
     }
 }
