@@ -2,6 +2,9 @@
 //! knows a solver: the same description always gives the same bytes.
 pub mod chart;
 mod error;
+mod escape;
+pub mod number;
 mod script;
+pub mod table;
 
 pub use error::RenderError;

@@ -208,8 +208,7 @@ fn marked(text: &str) -> String {
     let mut back: Option<char> = None;
     let all = runs(text);
     for run in &all {
-        // White space at the edge of a span would be lost.
-        let text = if all.len() > 1 { run.text.replace(' ', "\u{a0}") } else { run.text.clone() };
+        let text = edges_kept(&run.text);
         match run.level {
             Level::Base => {
                 // The next base run must climb back from where the script left the pen.
@@ -237,6 +236,17 @@ fn marked(text: &str) -> String {
         }
     }
     out
+}
+
+/// White space at the edge of a span would be lost.
+fn edges_kept(text: &str) -> String {
+    let inner = text.trim_matches(' ');
+    let start = text.len() - text.trim_start_matches(' ').len();
+    let end = text.len() - text.trim_end_matches(' ').len();
+    if inner.is_empty() {
+        return "\u{a0}".repeat(start);
+    }
+    format!("{}{inner}{}", "\u{a0}".repeat(start), "\u{a0}".repeat(end))
 }
 
 /// Removes what says nothing, puts the scripts in, and leaves font and base line to us.
@@ -306,8 +316,8 @@ mod tests {
     #[test]
     fn text_is_escaped_and_scripts_become_spans() {
         let svg = text("<b> T_v & 10⁻³ s");
-        assert!(svg.contains("&lt;b&gt;\u{a0}T<tspan dy=\"0.28em\" font-size=\"0.72em\">v</tspan>"), "{svg}");
-        assert!(svg.contains("<tspan dy=\"-0.202em\">\u{a0}&amp;\u{a0}10</tspan>"), "{svg}");
+        assert!(svg.contains("&lt;b&gt; T<tspan dy=\"0.28em\" font-size=\"0.72em\">v</tspan>"), "{svg}");
+        assert!(svg.contains("<tspan dy=\"-0.202em\">\u{a0}&amp; 10</tspan>"), "{svg}");
         assert!(svg.contains(r#"font-size="120""#), "{svg}");
         assert!(svg.contains("<title>a &lt;title&gt;</title>"), "{svg}");
     }

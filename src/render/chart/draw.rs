@@ -13,7 +13,7 @@ use crate::render::RenderError;
 
 /// Radius of markers. Later ones are smaller, so that points that coincide are seen to be several.
 fn radius(place: usize) -> f64 {
-    4.9 - 0.55 * place.min(4) as f64
+    5.4 - 0.85 * place.min(3) as f64
 }
 
 impl Chart {

@@ -86,7 +86,7 @@ pub(super) fn marker(brush: &Brush<'_, '_>, at: Px, slot: usize, radius: f64, in
     let scaled = |r: f64| -> Vec<Px> { shape.iter().map(|(x, y)| (at.0 + r * x, at.1 + r * y)).collect() };
     // A thin white edge keeps neighbours apart.
     let layers: [(f64, Ink); 3] = [
-        (radius + 0.9, Ink(WHITE, 0.9)),
+        (radius + 0.7, Ink(WHITE, 0.9)),
         (radius, ink.into()),
         (radius * 0.55, WHITE.into()),
     ];
