@@ -4,6 +4,7 @@ pub mod chart;
 mod error;
 mod escape;
 pub mod number;
+pub mod page;
 mod script;
 pub mod table;
 
