@@ -6,6 +6,8 @@ mod escape;
 pub mod number;
 pub mod page;
 mod script;
+#[cfg(test)]
+mod showcase;
 pub mod table;
 
 pub use error::RenderError;

@@ -46,13 +46,18 @@ pub(crate) fn runs(text: &str) -> Vec<Run> {
 
 /// Neither control characters nor those of the private use area, which the canvas needs.
 fn is_allowed(c: char) -> bool {
-    !(c.is_control() || ('\u{e000}'..='\u{f8ff}').contains(&c) || matches!(c, '\u{fffe}' | '\u{ffff}'))
+    !(c.is_control()
+        || ('\u{e000}'..='\u{f8ff}').contains(&c)
+        || matches!(c, '\u{fffe}' | '\u{ffff}'))
 }
 
 fn push(out: &mut Vec<Run>, level: Level, c: char) {
     match out.last_mut() {
         Some(run) if run.level == level => run.text.push(c),
-        _ => out.push(Run { level, text: c.to_string() }),
+        _ => out.push(Run {
+            level,
+            text: c.to_string(),
+        }),
     }
 }
 
@@ -62,9 +67,13 @@ fn subscript_end(chars: &[char], i: usize) -> Option<usize> {
     if !alone || !chars[i].is_alphabetic() || chars.get(i + 1) != Some(&'_') {
         return None;
     }
-    let tail = chars[i + 2..].iter().take_while(|c| c.is_alphanumeric() || **c == '∞').count();
+    let tail = chars[i + 2..].iter().take_while(|&&c| belongs(c)).count();
     let end = i + 2 + tail;
     (tail > 0 && chars.get(end) != Some(&'_')).then_some(end)
+}
+
+fn belongs(c: char) -> bool {
+    (c.is_alphanumeric() && superscript(c).is_none()) || c == '∞'
 }
 
 fn superscript(c: char) -> Option<char> {
@@ -131,7 +140,9 @@ fn advance(c: char) -> f64 {
         'f' | 'r' | 't' | '-' | '(' | ')' | '[' | ']' => 0.41,
         'c' | 's' | 'z' | '_' | '*' => 0.55,
         'm' | 'M' | 'w' | 'W' | '%' | '@' | '—' => 0.98,
-        '=' | '+' | '<' | '>' | '−' | '×' | '≤' | '≥' | '≈' | '∞' | '#' | '~' | '–' => 0.838,
+        '=' | '+' | '<' | '>' | '−' | '×' | '≤' | '≥' | '≈' | '∞' | '#' | '~' | '–' => {
+            0.838
+        }
         'O' | 'Q' | 'G' | 'D' | 'N' | 'H' | 'U' | '&' => 0.787,
         'a'..='z' | '0'..='9' => 0.636,
         'A'..='Z' => 0.7,
@@ -179,6 +190,7 @@ mod tests {
         assert_eq!(spelled("a_b_c"), "a_b_c");
         assert_eq!(spelled("L_∞"), "L<∞>");
         assert_eq!(spelled("x_"), "x_");
+        assert_eq!(spelled("p_exact²"), "p<exact>^2^");
     }
 
     #[test]

@@ -3,12 +3,13 @@
 //! The library's coordinates are whole numbers, so everything is drawn ten times larger and shown
 //! through the view box. Each group is drawn on a sheet of its own, which lets it carry what the
 //! library cannot say: dashes, halos, crisp edges.
+use super::polish::{marked, polish};
 use crate::render::RenderError;
-use crate::render::script::{Level, runs};
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
 use plotters::prelude::{
-    Circle, DrawingArea, IntoDrawingArea, IntoFont, PathElement, Polygon, RGBAColor, Rectangle, Text,
+    Circle, DrawingArea, IntoDrawingArea, IntoFont, PathElement, Polygon, RGBAColor, Rectangle,
+    Text,
 };
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, FontTransform, ShapeStyle, TextStyle};
@@ -16,16 +17,8 @@ use std::fmt::Write as _;
 
 /// Drawing units a pixel.
 const UNIT: f64 = 10.0;
-const FONTS: &str = "'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
-
-/// Stand-ins for the mark-up of scripts while text passes through the library.
-const MARKS: [(char, &str); 5] = [
-    ('\u{e000}', r#"<tspan dy="0.28em" font-size="0.72em">"#),
-    ('\u{e001}', r#"<tspan dy="-0.5em" font-size="0.72em">"#),
-    ('\u{e002}', r#"<tspan dy="-0.202em">"#),
-    ('\u{e003}', r#"<tspan dy="0.36em">"#),
-    ('\u{e004}', "</tspan>"),
-];
+const FONTS: &str =
+    "'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 
 /// A colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,7 +37,11 @@ impl From<Rgb> for Ink {
 impl Ink {
     fn style(self, width: f64, filled: bool) -> ShapeStyle {
         let Self(Rgb(r, g, b), opacity) = self;
-        ShapeStyle { color: RGBAColor(r, g, b, opacity), filled, stroke_width: units(width).unsigned_abs() }
+        ShapeStyle {
+            color: RGBAColor(r, g, b, opacity),
+            filled,
+            stroke_width: units(width).unsigned_abs(),
+        }
     }
 }
 
@@ -86,11 +83,19 @@ pub(super) struct Canvas {
 impl Canvas {
     pub fn new(width: f64, height: f64) -> Self {
         let size = (units(width).unsigned_abs(), units(height).unsigned_abs());
-        Self { size, body: String::new(), failure: None }
+        Self {
+            size,
+            body: String::new(),
+            failure: None,
+        }
     }
 
     /// Draws a group with attributes of its own. The first failure is kept for [`Canvas::finish`].
-    pub fn group(&mut self, attributes: &[(&str, &str)], draw: impl FnOnce(&Brush<'_, '_>) -> Drawn) {
+    pub fn group(
+        &mut self,
+        attributes: &[(&str, &str)],
+        draw: impl FnOnce(&Brush<'_, '_>) -> Drawn,
+    ) {
         let mut text = String::new();
         let drawn = {
             let sheet = SVGBackend::with_string(&mut text, self.size).into_drawing_area();
@@ -120,7 +125,10 @@ impl Canvas {
     /// The finished SVG, named for those who cannot see it.
     pub fn finish(self, title: &str, description: &str) -> Result<String, RenderError> {
         if let Some(reason) = self.failure {
-            return Err(RenderError::Draw { title: title.to_owned(), reason });
+            return Err(RenderError::Draw {
+                title: title.to_owned(),
+                reason,
+            });
         }
         let (w, h) = self.size;
         let (title, description) = (escape(&clean(title)), escape(&clean(description)));
@@ -138,7 +146,10 @@ impl Canvas {
 impl Brush<'_, '_> {
     pub fn line(&self, points: &[Px], ink: impl Into<Ink>, width: f64) -> Drawn {
         self.0
-            .draw(&PathElement::new(spots(points), ink.into().style(width, false)))
+            .draw(&PathElement::new(
+                spots(points),
+                ink.into().style(width, false),
+            ))
             .map_err(|e| e.to_string())
     }
 
@@ -150,7 +161,9 @@ impl Brush<'_, '_> {
 
     pub fn rect(&self, corner: Px, opposite: Px, ink: impl Into<Ink>) -> Drawn {
         let corners = [spot(corner), spot(opposite)];
-        self.0.draw(&Rectangle::new(corners, ink.into().style(0.0, true))).map_err(|e| e.to_string())
+        self.0
+            .draw(&Rectangle::new(corners, ink.into().style(0.0, true)))
+            .map_err(|e| e.to_string())
     }
 
     pub fn disc(&self, centre: Px, radius: f64, ink: impl Into<Ink>) -> Drawn {
@@ -162,31 +175,49 @@ impl Brush<'_, '_> {
     }
 
     fn circle(&self, centre: Px, radius: f64, style: ShapeStyle) -> Drawn {
-        self.0.draw(&Circle::new(spot(centre), units(radius), style)).map_err(|e| e.to_string())
+        self.0
+            .draw(&Circle::new(spot(centre), units(radius), style))
+            .map_err(|e| e.to_string())
     }
 
     /// Text whose base line runs through `at`.
     pub fn text(&self, text: &str, at: Px, look: Type) -> Drawn {
         let Rgb(r, g, b) = look.ink;
-        let weight = if look.bold { FontStyle::Bold } else { FontStyle::Normal };
-        let turn = if look.upright { FontTransform::Rotate270 } else { FontTransform::None };
+        let weight = if look.bold {
+            FontStyle::Bold
+        } else {
+            FontStyle::Normal
+        };
+        let turn = if look.upright {
+            FontTransform::Rotate270
+        } else {
+            FontTransform::None
+        };
         let hold = match look.hold {
             Hold::Start => HPos::Left,
             Hold::Middle => HPos::Center,
             Hold::End => HPos::Right,
         };
         // The library divides by 1.24 what it is given.
-        let font = ("sans-serif", look.size * UNIT * 1.24).into_font().style(weight).transform(turn);
+        let font = ("sans-serif", look.size * UNIT * 1.24)
+            .into_font()
+            .style(weight)
+            .transform(turn);
         let ink = RGBAColor(r, g, b, 1.0);
         let style = TextStyle::from(font)
             .color(&ink)
             .pos(Pos::new(hold, VPos::Bottom));
-        self.0.draw(&Text::new(marked(text), spot(at), style)).map_err(|e| e.to_string())
+        self.0
+            .draw(&Text::new(marked(text), spot(at), style))
+            .map_err(|e| e.to_string())
     }
 }
 
 /// Pixels in drawing units. Whatever is drawn has been clipped to the canvas before.
-#[expect(clippy::cast_possible_truncation, reason = "the cast saturates, and pixels are small")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the cast saturates, and pixels are small"
+)]
 fn units(pixels: f64) -> i32 {
     (pixels * UNIT).round() as i32
 }
@@ -202,110 +233,31 @@ fn spots(points: &[Px]) -> Vec<(i32, i32)> {
     out
 }
 
-/// The text with stand-ins for its scripts.
-fn marked(text: &str) -> String {
-    let mut out = String::new();
-    let mut back: Option<char> = None;
-    let all = runs(text);
-    for run in &all {
-        let text = edges_kept(&run.text);
-        match run.level {
-            Level::Base => {
-                // The next base run must climb back from where the script left the pen.
-                if let Some(mark) = back.take() {
-                    out.push(mark);
-                    out.push_str(&text);
-                    out.push(MARKS[4].0);
-                } else {
-                    out.push_str(&text);
-                }
-            }
-            level => {
-                if let Some(mark) = back.take() {
-                    // A script right after another: climb back with a space of no width.
-                    out.push(mark);
-                    out.push('\u{200b}');
-                    out.push(MARKS[4].0);
-                }
-                let sub = level == Level::Sub;
-                out.push(MARKS[usize::from(!sub)].0);
-                out.push_str(&text);
-                out.push(MARKS[4].0);
-                back = Some(MARKS[if sub { 2 } else { 3 }].0);
-            }
-        }
-    }
-    out
-}
-
-/// White space at the edge of a span would be lost.
-fn edges_kept(text: &str) -> String {
-    let inner = text.trim_matches(' ');
-    let start = text.len() - text.trim_start_matches(' ').len();
-    let end = text.len() - text.trim_end_matches(' ').len();
-    if inner.is_empty() {
-        return "\u{a0}".repeat(start);
-    }
-    format!("{}{inner}{}", "\u{a0}".repeat(start), "\u{a0}".repeat(end))
-}
-
-/// Removes what says nothing, puts the scripts in, and leaves font and base line to us.
-fn polish(svg: &str) -> String {
-    let mut out = svg
-        .replace(r#" opacity="1""#, "")
-        .replace(r#" stroke="none""#, "")
-        .replace(r#" dy="-0.5ex""#, "")
-        .replace(r#" text-anchor="start""#, "")
-        .replace(r#" font-family="sans-serif""#, "")
-        .replace(r#" stroke-width="0""#, "")
-        .replace(" \"/>", "\"/>")
-        .replace(">\n<", ">\u{e005}<")
-        .replace("\n</text>", "</text>");
-    out = out.replace(">\n", ">").replace('\u{e005}', "\n");
-    out.push('\n');
-    for (mark, tag) in MARKS {
-        out = out.replace(mark, tag);
-    }
-    whole_font_sizes(&out)
-}
-
-/// The library's division leaves sizes like 120.00000000000001.
-fn whole_font_sizes(svg: &str) -> String {
-    const KEY: &str = " font-size=\"";
-    let mut out = String::with_capacity(svg.len());
-    let mut rest = svg;
-    while let Some((before, after)) = rest.split_once(KEY) {
-        let (value, tail) = after.split_once('"').unwrap_or((after, ""));
-        out.push_str(before);
-        out.push_str(KEY);
-        match value.parse::<f64>() {
-            Ok(size) => {
-                let _ = write!(out, "{}", size.round());
-            }
-            Err(_) => out.push_str(value),
-        }
-        out.push('"');
-        rest = tail;
-    }
-    out.push_str(rest);
-    out
-}
-
 /// The text as spelled, without what no document may hold.
 fn clean(text: &str) -> String {
-    text.chars().filter(|c| !c.is_control() && !('\u{e000}'..='\u{f8ff}').contains(c)).collect()
+    text.chars()
+        .filter(|c| !c.is_control() && !('\u{e000}'..='\u{f8ff}').contains(c))
+        .collect()
 }
 
 fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const PLAIN: Type =
-        Type { size: 12.0, ink: Rgb(0, 0, 0), bold: false, hold: Hold::Start, upright: false };
+    const PLAIN: Type = Type {
+        size: 12.0,
+        ink: Rgb(0, 0, 0),
+        bold: false,
+        hold: Hold::Start,
+        upright: false,
+    };
 
     fn text(words: &str) -> String {
         let mut canvas = Canvas::new(100.0, 50.0);
@@ -316,8 +268,14 @@ mod tests {
     #[test]
     fn text_is_escaped_and_scripts_become_spans() {
         let svg = text("<b> T_v & 10⁻³ s");
-        assert!(svg.contains("&lt;b&gt; T<tspan dy=\"0.28em\" font-size=\"0.72em\">v</tspan>"), "{svg}");
-        assert!(svg.contains("<tspan dy=\"-0.202em\">\u{a0}&amp; 10</tspan>"), "{svg}");
+        assert!(
+            svg.contains("&lt;b&gt; T<tspan dy=\"0.28em\" font-size=\"0.72em\">v</tspan>"),
+            "{svg}"
+        );
+        assert!(
+            svg.contains("<tspan dy=\"-0.202em\">\u{a0}&amp; 10</tspan>"),
+            "{svg}"
+        );
         assert!(svg.contains(r#"font-size="120""#), "{svg}");
         assert!(svg.contains("<title>a &lt;title&gt;</title>"), "{svg}");
     }

@@ -24,17 +24,28 @@ impl Frame {
     }
 
     pub fn meets(&self, other: &Self) -> bool {
-        self.left < other.right && other.left < self.right && self.top < other.bottom && other.top < self.bottom
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
     }
 
     /// The same frame, `by` wider on every side.
     pub fn grown(&self, by: f64) -> Self {
-        Self { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
+        Self {
+            left: self.left - by,
+            top: self.top - by,
+            right: self.right + by,
+            bottom: self.bottom + by,
+        }
     }
 
     /// The nearest place inside.
     pub fn nearest(&self, (x, y): Px) -> Px {
-        (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
+        (
+            x.clamp(self.left, self.right),
+            y.clamp(self.top, self.bottom),
+        )
     }
 }
 
@@ -93,20 +104,40 @@ fn segment(a: Px, b: Px, frame: &Frame) -> Option<(Px, Px, bool)> {
 mod tests {
     use super::*;
 
-    const FRAME: Frame = Frame { left: 0.0, top: 0.0, right: 10.0, bottom: 10.0 };
+    const FRAME: Frame = Frame {
+        left: 0.0,
+        top: 0.0,
+        right: 10.0,
+        bottom: 10.0,
+    };
 
     #[test]
     fn a_curve_that_leaves_and_returns_is_in_two_pieces() {
-        let curve = [Some((5.0, 5.0)), Some((5.0, 15.0)), Some((8.0, 15.0)), Some((8.0, 5.0)), Some((9.0, 5.0))];
+        let curve = [
+            Some((5.0, 5.0)),
+            Some((5.0, 15.0)),
+            Some((8.0, 15.0)),
+            Some((8.0, 5.0)),
+            Some((9.0, 5.0)),
+        ];
         assert_eq!(
             pieces(&curve, &FRAME),
-            vec![vec![(5.0, 5.0), (5.0, 10.0)], vec![(8.0, 10.0), (8.0, 5.0), (9.0, 5.0)]]
+            vec![
+                vec![(5.0, 5.0), (5.0, 10.0)],
+                vec![(8.0, 10.0), (8.0, 5.0), (9.0, 5.0)]
+            ]
         );
     }
 
     #[test]
     fn a_missing_point_breaks_the_curve() {
-        let curve = [Some((1.0, 1.0)), Some((2.0, 2.0)), None, Some((3.0, 3.0)), Some((4.0, 4.0))];
+        let curve = [
+            Some((1.0, 1.0)),
+            Some((2.0, 2.0)),
+            None,
+            Some((3.0, 3.0)),
+            Some((4.0, 4.0)),
+        ];
         assert_eq!(pieces(&curve, &FRAME).len(), 2);
         assert!(pieces(&[Some((1.0, 1.0)), None], &FRAME).is_empty());
     }
@@ -116,7 +147,10 @@ mod tests {
         for far in [16.0, 1e9, 1e150] {
             let curve = [Some((-far, 5.0)), Some((far, 5.0))];
             let pieces = pieces(&curve, &FRAME);
-            assert!(pieces.iter().flatten().all(|&p| FRAME.holds(p)), "{pieces:?}");
+            assert!(
+                pieces.iter().flatten().all(|&p| FRAME.holds(p)),
+                "{pieces:?}"
+            );
         }
         let curve = [Some((-16.0, 5.0)), Some((16.0, 5.0))];
         assert_eq!(pieces(&curve, &FRAME), vec![vec![(0.0, 5.0), (10.0, 5.0)]]);

@@ -73,7 +73,11 @@ pub struct Size {
 
 impl Default for Size {
     fn default() -> Self {
-        Self { width: 760.0, plot_height: 360.0, equal_units: false }
+        Self {
+            width: 760.0,
+            plot_height: 360.0,
+            equal_units: false,
+        }
     }
 }
 
@@ -106,7 +110,10 @@ impl Axis {
 
     /// A logarithmic axis that shows all of the positive data.
     pub fn log10(label: impl Into<String>) -> Self {
-        Self { scale: Scale::Log10, ..Self::linear(label) }
+        Self {
+            scale: Scale::Log10,
+            ..Self::linear(label)
+        }
     }
 
     /// The same axis, the other way round.
@@ -191,7 +198,10 @@ impl Series {
 
     /// The curve that the others are held against.
     pub fn theory(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self { style: Style::Theory, ..Self::new(name, points) }
+        Self {
+            style: Style::Theory,
+            ..Self::new(name, points)
+        }
     }
 
     /// The same series in another style.

@@ -8,19 +8,26 @@ mod clip;
 mod describe;
 mod draw;
 mod field;
+mod fill;
+mod label;
 mod layout;
 mod legend;
 mod missing;
 mod palette;
+mod polish;
 mod scale;
 mod space;
 mod ticks;
+mod triangle;
 mod words;
 
 #[cfg(test)]
-mod gallery;
+pub(in crate::render) mod gallery;
+#[cfg(test)]
+mod tests;
 
 pub use describe::{
-    Annotation, Axis, Band, Chart, Direction, Place, Range, Rule, Scale, Series, Size, SlopeTriangle, Style,
+    Annotation, Axis, Band, Chart, Direction, Place, Range, Rule, Scale, Series, Size,
+    SlopeTriangle, Style,
 };
 pub use field::{Colours, Field};

@@ -80,10 +80,21 @@ fn outline(shape: usize) -> &'static [Px] {
 }
 
 /// Draws a marker. Beyond the seven full ones come the same shapes, hollow.
-pub(super) fn marker(brush: &Brush<'_, '_>, at: Px, slot: usize, radius: f64, ink: Rgb) -> Result<(), String> {
+pub(super) fn marker(
+    brush: &Brush<'_, '_>,
+    at: Px,
+    slot: usize,
+    radius: f64,
+    ink: Rgb,
+) -> Result<(), String> {
     let shape = outline(slot % 7);
     let hollow = (slot / 7) % 2 == 1;
-    let scaled = |r: f64| -> Vec<Px> { shape.iter().map(|(x, y)| (at.0 + r * x, at.1 + r * y)).collect() };
+    let scaled = |r: f64| -> Vec<Px> {
+        shape
+            .iter()
+            .map(|(x, y)| (at.0 + r * x, at.1 + r * y))
+            .collect()
+    };
     // A thin white edge keeps neighbours apart.
     let layers: [(f64, Ink); 3] = [
         (radius + 0.7, Ink(WHITE, 0.9)),

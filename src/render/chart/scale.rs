@@ -1,5 +1,5 @@
 //! From values to pixels.
-use super::describe::{Axis, Range, Scale as Kind};
+use super::describe::{Range, Scale as Kind};
 
 /// Beyond these, no picture of the rest would be left.
 const HUGE: f64 = 1e150;
@@ -44,12 +44,7 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// The span of an axis that has to show `values`.
-    pub fn of(axis: &Axis, values: impl Iterator<Item = f64>) -> Self {
-        Self::over(axis.scale, axis.range, values, 0.04)
-    }
-
-    /// The same with a margin of one's own choice.
+    /// The span of an axis that has to show `values`, with a margin as a share of it.
     pub fn over(kind: Kind, range: Range, values: impl Iterator<Item = f64>, margin: f64) -> Self {
         if let Range::Fixed(low, high) = range
             && low < high
@@ -58,18 +53,23 @@ impl Span {
         {
             return Self { kind, low, high };
         }
-        let ends = values
-            .filter_map(|v| drawable(v, kind).ok())
-            .fold(None, |ends: Option<(f64, f64)>, v| {
+        let ends = values.filter_map(|v| drawable(v, kind).ok()).fold(
+            None,
+            |ends: Option<(f64, f64)>, v| {
                 Some(ends.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
-            });
+            },
+        );
         let (low, high) = match (ends, kind) {
             (None, Kind::Linear) => (0.0, 1.0),
             (None, Kind::Log10) => (0.1, 10.0),
             (Some((low, high)), Kind::Linear) => widen(low, high, margin),
             (Some((low, high)), Kind::Log10) => {
                 let (a, b) = (low.log10(), high.log10());
-                let room = (margin * (b - a)).max(if b - a < 0.3 && margin > 0.0 { 0.15 } else { 0.0 });
+                let room = (margin * (b - a)).max(if b - a < 0.3 && margin > 0.0 {
+                    0.15
+                } else {
+                    0.0
+                });
                 let room = if a == b { room.max(0.15) } else { room };
                 (10f64.powf(a - room), 10f64.powf(b + room))
             }
@@ -99,7 +99,11 @@ fn widen(low: f64, high: f64, margin: f64) -> (f64, f64) {
     };
     (
         if round(low) { low } else { low - margin * span },
-        if round(high) { high } else { high + margin * span },
+        if round(high) {
+            high
+        } else {
+            high + margin * span
+        },
     )
 }
 
@@ -132,6 +136,11 @@ impl Ruler {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::chart::Axis;
+
+    fn of(axis: &Axis, values: impl Iterator<Item = f64>) -> Span {
+        Span::over(axis.scale, axis.range, values, 0.04)
+    }
 
     #[test]
     fn what_cannot_be_drawn_has_a_reason() {
@@ -145,9 +154,9 @@ mod tests {
 
     #[test]
     fn round_ends_stay_and_others_get_room() {
-        let span = Span::of(&Axis::linear(""), [0.0, 1.0].into_iter());
+        let span = of(&Axis::linear(""), [0.0, 1.0].into_iter());
         assert_eq!((span.low, span.high), (0.0, 1.0));
-        let span = Span::of(&Axis::linear(""), [0.013, 0.97].into_iter());
+        let span = of(&Axis::linear(""), [0.013, 0.97].into_iter());
         assert!(span.low < 0.013 && span.high > 0.97, "{span:?}");
     }
 
@@ -155,10 +164,10 @@ mod tests {
     fn a_single_value_still_has_an_axis() {
         for axis in [Axis::linear(""), Axis::log10("")] {
             for v in [1.0, 7e-9, 3e120] {
-                let span = Span::of(&axis, std::iter::once(v));
+                let span = of(&axis, std::iter::once(v));
                 assert!(span.low < v && v < span.high, "{span:?}");
             }
-            let span = Span::of(&axis, std::iter::empty());
+            let span = of(&axis, std::iter::empty());
             assert!(span.low < span.high);
         }
     }
@@ -166,16 +175,24 @@ mod tests {
     #[test]
     fn an_unusable_fixed_range_gives_way_to_the_data() {
         let axis = Axis::log10("").between(-1.0, 10.0);
-        let span = Span::of(&axis, [1.0, 100.0].into_iter());
+        let span = of(&axis, [1.0, 100.0].into_iter());
         assert!(span.low > 0.0 && span.high > 100.0, "{span:?}");
         let nan = Axis::linear("").between(f64::NAN, 1.0);
-        assert!(Span::of(&nan, std::iter::once(2.0)).high > 2.0);
+        assert!(of(&nan, std::iter::once(2.0)).high > 2.0);
     }
 
     #[test]
     fn values_map_linearly_or_by_their_logarithm() {
-        let span = Span { kind: Kind::Log10, low: 1e-3, high: 1e1 };
-        let ruler = Ruler { span, from: 400.0, to: 0.0 };
+        let span = Span {
+            kind: Kind::Log10,
+            low: 1e-3,
+            high: 1e1,
+        };
+        let ruler = Ruler {
+            span,
+            from: 400.0,
+            to: 0.0,
+        };
         assert!((ruler.px(1e-1).unwrap_or(0.0) - 200.0).abs() < 1e-9);
         assert_eq!(ruler.px(-1.0), Err(Reason::NotPositive));
         assert!(!ruler.holds(ruler.px(1e2).unwrap_or(0.0)));

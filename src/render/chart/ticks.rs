@@ -1,5 +1,6 @@
 //! Where an axis has ticks and what they say.
 use super::describe::Scale as Kind;
+use super::label::{decimals, minus, power, whole};
 use super::scale::{Ruler, Span, drawable};
 use crate::render::script::{exponent, width};
 
@@ -29,17 +30,34 @@ pub(super) fn ticks(ruler: &Ruler, wanted: Option<&[f64]>, room: Room) -> Vec<Ti
 }
 
 fn given(span: &Span, values: &[f64]) -> Vec<Tick> {
-    let usable: Vec<f64> = values.iter().copied().filter(|&v| drawable(v, span.kind).is_ok()).collect();
-    let plain = usable.iter().all(|v| *v == 0.0 || (1e-4..1e5).contains(&v.abs()));
+    let usable: Vec<f64> = values
+        .iter()
+        .copied()
+        .filter(|&v| drawable(v, span.kind).is_ok())
+        .collect();
+    let plain = usable
+        .iter()
+        .all(|v| *v == 0.0 || (1e-4..1e5).contains(&v.abs()));
     usable
         .iter()
-        .map(|&value| Tick { value, label: Some(if plain { minus(format!("{value}")) } else { power(value, None) }) })
+        .map(|&value| Tick {
+            value,
+            label: Some(if plain {
+                minus(format!("{value}"))
+            } else {
+                power(value, None)
+            }),
+        })
         .collect()
 }
 
 fn automatic(ruler: &Ruler, room: Room) -> Vec<Tick> {
     let span = ruler.span;
-    let apart = if room.beside { 4.8 * room.font } else { 3.4 * room.font };
+    let apart = if room.beside {
+        4.8 * room.font
+    } else {
+        3.4 * room.font
+    };
     let most = (ruler.length() / apart).clamp(2.0, 12.0);
     match span.kind {
         Kind::Linear => even(&span, most),
@@ -66,14 +84,21 @@ fn even(span: &Span, most: f64) -> Vec<Tick> {
     while i <= count {
         let whole = (first + i) * mantissa;
         // Dividing by a whole power of ten keeps 0.3 from being 0.30000000000000004.
-        let value = if base < 0.0 { whole / 10f64.powf(-base) } else { whole * 10f64.powf(base) };
+        let value = if base < 0.0 {
+            whole / 10f64.powf(-base)
+        } else {
+            whole * 10f64.powf(base)
+        };
         let label = if largest >= 1e5 || step < 0.999e-4 {
             power(value, Some(digits))
         } else {
             let decimals = decimals(digits);
             minus(format!("{value:.decimals$}"))
         };
-        out.push(Tick { value, label: Some(label) });
+        out.push(Tick {
+            value,
+            label: Some(label),
+        });
         i += 1.0;
     }
     out
@@ -105,28 +130,46 @@ fn decades(span: &Span, most: f64) -> Vec<Tick> {
             }
             let value = value_of(m, n);
             let named = (m == 1 && n.rem_euclid(stride) == 0) || between.contains(&m);
-            out.push(Tick { value, label: named.then(|| label(m, n)) });
+            out.push(Tick {
+                value,
+                label: named.then(|| label(m, n)),
+            });
         }
     }
     out
 }
 
 fn value_of(m: i32, n: i32) -> f64 {
-    if n < 0 { f64::from(m) / 10f64.powi(-n) } else { f64::from(m) * 10f64.powi(n) }
+    if n < 0 {
+        f64::from(m) / 10f64.powi(-n)
+    } else {
+        f64::from(m) * 10f64.powi(n)
+    }
 }
 
 /// Drops the labels that would touch a neighbour; powers of ten hold their place first.
 fn thin(ticks: &mut [Tick], ruler: &Ruler, room: Room) {
-    let mut order: Vec<usize> = (0..ticks.len()).filter(|&i| ticks[i].label.is_some()).collect();
+    let mut order: Vec<usize> = (0..ticks.len())
+        .filter(|&i| ticks[i].label.is_some())
+        .collect();
     if ruler.span.kind == Kind::Log10 {
         order.sort_by_key(|&i| !is_power(ticks[i].value));
     }
     let mut taken: Vec<(f64, f64)> = Vec::new();
     for i in order {
-        let Ok(px) = ruler.px(ticks[i].value) else { continue };
+        let Ok(px) = ruler.px(ticks[i].value) else {
+            continue;
+        };
         let text = ticks[i].label.as_deref().unwrap_or_default();
-        let half = if room.beside { 0.5 * room.font * width(text) + 4.0 } else { 0.62 * room.font };
-        if taken.iter().any(|(from, to)| px - half < *to && px + half > *from) {
+        let half = if room.beside {
+            0.5 * room.font * width(text) + 4.0
+        } else {
+            0.62 * room.font
+        };
+        if taken
+            .iter()
+            .any(|(from, to)| px - half < *to && px + half > *from)
+        {
             ticks[i].label = None;
         } else {
             taken.push((px - half, px + half));
@@ -139,70 +182,50 @@ fn is_power(value: f64) -> bool {
     (n - n.round()).abs() < 1e-9
 }
 
-/// A number as `1.5·10⁻³`, down to the decimal place `digits` if that is given.
-pub(super) fn power(value: f64, digits: Option<f64>) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let mut n = value.abs().log10().floor();
-    if (value.abs() / 10f64.powf(n)) >= 9.999_999_99 {
-        n += 1.0;
-    }
-    let mantissa = value / 10f64.powf(n);
-    let text = match digits {
-        Some(d) => {
-            let decimals = decimals(d - n);
-            format!("{mantissa:.decimals$}")
-        }
-        None => format!("{}", (mantissa * 1e3).round() / 1e3),
-    };
-    let ten = format!("10{}", exponent(whole(n)));
-    match text.as_str() {
-        "1" => ten,
-        "-1" => minus(format!("-{ten}")),
-        _ => minus(format!("{text}·{ten}")),
-    }
-}
-
-/// Decimals that the place of the last digit asks for.
-fn decimals(digit: f64) -> usize {
-    usize::try_from(whole(-digit)).unwrap_or(0).min(15)
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "the cast saturates, and exponents are small")]
-fn whole(x: f64) -> i32 {
-    x.round() as i32
-}
-
-/// The typographic minus, and no minus before a zero.
-fn minus(text: String) -> String {
-    match text.strip_prefix('-') {
-        Some(rest) if rest.chars().all(|c| matches!(c, '0' | '.')) => rest.to_owned(),
-        Some(rest) => format!("−{rest}"),
-        None => text,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn labels(kind: Kind, low: f64, high: f64, length: f64, beside: bool) -> Vec<String> {
-        let ruler = Ruler { span: Span { kind, low, high }, from: 0.0, to: length };
-        ticks(&ruler, None, Room { font: 12.0, beside }).into_iter().filter_map(|t| t.label).collect()
+        let ruler = Ruler {
+            span: Span { kind, low, high },
+            from: 0.0,
+            to: length,
+        };
+        ticks(&ruler, None, Room { font: 12.0, beside })
+            .into_iter()
+            .filter_map(|t| t.label)
+            .collect()
     }
 
     #[test]
     fn linear_ticks_are_round_numbers() {
-        assert_eq!(labels(Kind::Linear, 0.0, 1.0, 500.0, true), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
-        assert_eq!(labels(Kind::Linear, -0.3, 0.2, 250.0, true), ["−0.2", "0.0", "0.2"]);
-        assert_eq!(labels(Kind::Linear, 0.0, 2e6, 300.0, true), ["0", "5·10⁵", "1.0·10⁶", "1.5·10⁶", "2.0·10⁶"]);
+        assert_eq!(
+            labels(Kind::Linear, 0.0, 1.0, 500.0, true),
+            ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
+        );
+        assert_eq!(
+            labels(Kind::Linear, -0.3, 0.2, 250.0, true),
+            ["−0.2", "0.0", "0.2"]
+        );
+        assert_eq!(
+            labels(Kind::Linear, 0.0, 2e6, 300.0, true),
+            ["0", "5·10⁵", "1.0·10⁶", "1.5·10⁶", "2.0·10⁶"]
+        );
     }
 
     #[test]
     fn log_ticks_are_powers_or_plain_numbers() {
-        assert_eq!(labels(Kind::Log10, 1e-6, 1e-1, 300.0, false).first().map(String::as_str), Some("10⁻⁶"));
-        assert_eq!(labels(Kind::Log10, 0.02, 0.25, 400.0, true), ["0.02", "0.05", "0.1", "0.2"]);
+        assert_eq!(
+            labels(Kind::Log10, 1e-6, 1e-1, 300.0, false)
+                .first()
+                .map(String::as_str),
+            Some("10⁻⁶")
+        );
+        assert_eq!(
+            labels(Kind::Log10, 0.02, 0.25, 400.0, true),
+            ["0.02", "0.05", "0.1", "0.2"]
+        );
         let wide = labels(Kind::Log10, 1e-30, 1e30, 300.0, false);
         assert!(wide.len() >= 4 && wide.len() <= 13, "{wide:?}");
         let narrow = labels(Kind::Log10, 0.11, 0.13, 400.0, true);
@@ -212,15 +235,37 @@ mod tests {
     #[test]
     fn labels_never_overlap() {
         for kind in [Kind::Linear, Kind::Log10] {
-            for (low, high) in [(1e-9, 1.0), (0.1, 0.2), (1.0, 1e12), (1e7, 1.000_01e7), (3e-5, 4e-5)] {
+            for (low, high) in [
+                (1e-9, 1.0),
+                (0.1, 0.2),
+                (1.0, 1e12),
+                (1e7, 1.000_01e7),
+                (3e-5, 4e-5),
+            ] {
                 for length in [60.0, 200.0, 700.0] {
-                    let ruler = Ruler { span: Span { kind, low, high }, from: 0.0, to: length };
-                    let shown: Vec<(f64, f64)> = ticks(&ruler, None, Room { font: 12.0, beside: true })
-                        .iter()
-                        .filter_map(|t| Some((ruler.px(t.value).ok()?, 6.0 * width(t.label.as_deref()?))))
-                        .collect();
+                    let ruler = Ruler {
+                        span: Span { kind, low, high },
+                        from: 0.0,
+                        to: length,
+                    };
+                    let shown: Vec<(f64, f64)> = ticks(
+                        &ruler,
+                        None,
+                        Room {
+                            font: 12.0,
+                            beside: true,
+                        },
+                    )
+                    .iter()
+                    .filter_map(|t| {
+                        Some((ruler.px(t.value).ok()?, 6.0 * width(t.label.as_deref()?)))
+                    })
+                    .collect();
                     for pair in shown.windows(2) {
-                        assert!(pair[0].0 + pair[0].1 < pair[1].0 - pair[1].1, "{kind:?} {low} {high} {length}");
+                        assert!(
+                            pair[0].0 + pair[0].1 < pair[1].0 - pair[1].1,
+                            "{kind:?} {low} {high} {length}"
+                        );
                     }
                 }
             }
@@ -229,21 +274,27 @@ mod tests {
 
     #[test]
     fn given_ticks_are_taken_as_they_are() {
-        let ruler = Ruler { span: Span { kind: Kind::Log10, low: 0.02, high: 0.3 }, from: 0.0, to: 500.0 };
-        let room = Room { font: 12.0, beside: true };
-        let labels: Vec<_> = ticks(&ruler, Some(&[0.2, 0.1, 0.05, 0.025, 5.0, f64::NAN, -1.0]), room)
-            .into_iter()
-            .filter_map(|t| t.label)
-            .collect();
+        let ruler = Ruler {
+            span: Span {
+                kind: Kind::Log10,
+                low: 0.02,
+                high: 0.3,
+            },
+            from: 0.0,
+            to: 500.0,
+        };
+        let room = Room {
+            font: 12.0,
+            beside: true,
+        };
+        let labels: Vec<_> = ticks(
+            &ruler,
+            Some(&[0.2, 0.1, 0.05, 0.025, 5.0, f64::NAN, -1.0]),
+            room,
+        )
+        .into_iter()
+        .filter_map(|t| t.label)
+        .collect();
         assert_eq!(labels, ["0.2", "0.1", "0.05", "0.025"]);
-    }
-
-    #[test]
-    fn numbers_as_powers() {
-        assert_eq!(power(1.5e-3, None), "1.5·10⁻³");
-        assert_eq!(power(1e-3, None), "10⁻³");
-        assert_eq!(power(-1e5, None), "−10⁵");
-        assert_eq!(power(0.0, None), "0");
-        assert_eq!(power(2e6, Some(5.0)), "2.0·10⁶");
     }
 }

@@ -1,6 +1,6 @@
 //! Pages as one HTML file. What stands around the sections is in `page.html` and `page.css`.
 use super::inline::{paragraphs, to_html};
-use super::{Block, Figure, Page};
+use super::{Block, Figure, Mood, Page};
 use crate::render::{RenderError, escape};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::{Environment, Value, context};
@@ -10,7 +10,10 @@ const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 
 pub(super) fn write(page: &Page) -> Result<String, RenderError> {
-    let fail = |e: minijinja::Error| RenderError::Template { title: page.title.clone(), reason: e.to_string() };
+    let fail = |e: minijinja::Error| RenderError::Template {
+        title: page.title.clone(),
+        reason: e.to_string(),
+    };
     let mut sections = Vec::new();
     let mut number = 0;
     for section in &page.sections {
@@ -21,16 +24,21 @@ pub(super) fn write(page: &Page) -> Result<String, RenderError> {
         sections.push(context! {
             id => section.id.as_str(),
             heading => safe(escape::html(&section.heading)),
-            class => section.mood.map(|m| m.class()),
-            mark => section.mood.map(|m| m.mark()),
+            class => section.mood.map(Mood::class),
+            mark => section.mood.map(Mood::mark),
             body => safe(body),
         });
     }
     let mut environment = Environment::new();
     let mut syntax = SyntaxConfig::builder();
-    syntax.trim_blocks(true).lstrip_blocks(true).keep_trailing_newline(true);
+    syntax
+        .trim_blocks(true)
+        .lstrip_blocks(true)
+        .keep_trailing_newline(true);
     environment.set_syntax(syntax.build().map_err(fail)?);
-    environment.add_template("page.html", TEMPLATE).map_err(fail)?;
+    environment
+        .add_template("page.html", TEMPLATE)
+        .map_err(fail)?;
     let template = environment.get_template("page.html").map_err(fail)?;
     template
         .render(context! {
@@ -50,7 +58,10 @@ fn safe(text: String) -> Value {
 }
 
 fn running(text: &str) -> String {
-    paragraphs(text).iter().map(|p| format!("<p>{}</p>\n", to_html(p))).collect()
+    paragraphs(text).iter().fold(String::new(), |mut out, p| {
+        let _ = writeln!(out, "<p>{}</p>", to_html(p));
+        out
+    })
 }
 
 fn write_block(block: &Block, out: &mut String, number: &mut usize) -> Result<(), RenderError> {
@@ -76,23 +87,31 @@ fn write_block(block: &Block, out: &mut String, number: &mut usize) -> Result<()
             out.push_str("</div>\n");
         }
         Block::Callout(mood, text) => {
-            let _ = write!(
+            let _ = writeln!(
                 out,
-                "<aside class=\"callout {}\"><span class=\"mark\" aria-hidden=\"true\">{}</span><div>{}</div></aside>\n",
+                "<aside class=\"callout {}\"><span class=\"mark\" aria-hidden=\"true\">{}</span><div>{}</div></aside>",
                 mood.class(),
                 mood.mark(),
                 running(text).trim_end()
             );
         }
         Block::Details { summary, blocks } => {
-            let _ = writeln!(out, "<details>\n<summary>{}</summary>", escape::html(summary));
+            let _ = writeln!(
+                out,
+                "<details>\n<summary>{}</summary>",
+                escape::html(summary)
+            );
             for block in blocks {
                 write_block(block, out, number)?;
             }
             out.push_str("</details>\n");
         }
         Block::Code(text) => {
-            let _ = writeln!(out, "<pre><code>{}</code></pre>", escape::plain_html(text.trim_end()));
+            let _ = writeln!(
+                out,
+                "<pre><code>{}</code></pre>",
+                escape::plain_html(text.trim_end())
+            );
         }
     }
     Ok(())
@@ -100,8 +119,20 @@ fn write_block(block: &Block, out: &mut String, number: &mut usize) -> Result<()
 
 fn write_figure(figure: &Figure, out: &mut String, number: &mut usize) -> Result<(), RenderError> {
     *number += 1;
-    let _ = write!(out, "<figure id=\"figure-{}\">\n<div class=\"card\">{}</div>\n", figure.name, figure.svg()?);
-    let caption = paragraphs(&figure.caption).iter().map(|p| to_html(p)).collect::<Vec<_>>().join("<br>");
-    let _ = writeln!(out, "<figcaption><b>Figure {number}.</b> {caption}</figcaption>\n</figure>");
+    let _ = write!(
+        out,
+        "<figure id=\"figure-{}\">\n<div class=\"card\">{}</div>\n",
+        figure.name,
+        figure.svg()?
+    );
+    let caption = paragraphs(&figure.caption)
+        .iter()
+        .map(|p| to_html(p))
+        .collect::<Vec<_>>()
+        .join("<br>");
+    let _ = writeln!(
+        out,
+        "<figcaption><b>Figure {number}.</b> {caption}</figcaption>\n</figure>"
+    );
     Ok(())
 }

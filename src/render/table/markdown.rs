@@ -1,14 +1,19 @@
 //! Tables in GitHub's Markdown.
 use super::{Align, Cell, Table, mark, marked};
 use crate::render::escape;
+use std::fmt::Write as _;
 
 pub(super) fn write(table: &Table) -> String {
     let footnotes = table.footnotes();
     let mut out = String::new();
     if !table.title.is_empty() {
-        out.push_str(&format!("**{}**\n\n", escape::markdown(&table.title)));
+        let _ = write!(out, "**{}**\n\n", escape::markdown(&table.title));
     }
-    let heads: Vec<String> = table.columns.iter().map(|c| escape::markdown(&c.heading())).collect();
+    let heads: Vec<String> = table
+        .columns
+        .iter()
+        .map(|c| escape::markdown(&c.heading()))
+        .collect();
     let rules: Vec<&str> = table
         .columns
         .iter()
@@ -20,15 +25,21 @@ pub(super) fn write(table: &Table) -> String {
         .collect();
     let row = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     out.push_str(&row(&heads));
-    out.push_str(&row(&rules.iter().map(|&r| r.to_owned()).collect::<Vec<_>>()));
+    out.push_str(&row(&rules
+        .iter()
+        .map(|&r| r.to_owned())
+        .collect::<Vec<_>>()));
     for cells in &table.rows {
         let cells: Vec<String> = cells.iter().map(|cell| show(cell, &footnotes)).collect();
         out.push_str(&row(&cells));
     }
-    let marks = footnotes.iter().enumerate().map(|(i, f)| (Some(mark(i)), *f));
+    let marks = footnotes
+        .iter()
+        .enumerate()
+        .map(|(i, f)| (Some(mark(i)), *f));
     for (mark, note) in marks.chain(table.notes.iter().map(|n| (None, n.as_str()))) {
         let mark = mark.map(|m| format!("<sup>{m}</sup> ")).unwrap_or_default();
-        out.push_str(&format!("\n{mark}{}\n", escape::markdown(note)));
+        let _ = writeln!(out, "\n{mark}{}", escape::markdown(note));
     }
     out
 }
@@ -46,7 +57,14 @@ fn show(cell: &Cell, footnotes: &[&str]) -> String {
 
 /// A name in back quotes, as many as it takes; a table's bars are escaped even there.
 fn code(name: &str) -> String {
-    let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let name: String = name
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
     let name = name.replace('|', "\\|");
-    if name.contains('`') { format!("`` {name} ``") } else { format!("`{name}`") }
+    if name.contains('`') {
+        format!("`` {name} ``")
+    } else {
+        format!("`{name}`")
+    }
 }

@@ -47,12 +47,19 @@ pub enum Align {
 impl Column {
     /// A column of words.
     pub fn text(header: impl Into<String>) -> Self {
-        Self { header: header.into(), unit: None, align: Align::Left }
+        Self {
+            header: header.into(),
+            unit: None,
+            align: Align::Left,
+        }
     }
 
     /// A column of numbers without a unit.
     pub fn number(header: impl Into<String>) -> Self {
-        Self { align: Align::Right, ..Self::text(header) }
+        Self {
+            align: Align::Right,
+            ..Self::text(header)
+        }
     }
 
     /// The same column with a unit.
@@ -141,7 +148,9 @@ impl Cell {
             Self::Text(text) | Self::Code(text) => text.clone(),
             Self::Error(v) => number::error(*v),
             Self::Order(v) => number::order(*v),
-            Self::OrderWithin(v, half) => format!("{} ± {}", number::order(*v), number::order(*half)),
+            Self::OrderWithin(v, half) => {
+                format!("{} ± {}", number::order(*v), number::order(*half))
+            }
             Self::Count(n) => number::count(*n),
             Self::Percent(v) => number::percent(*v),
             Self::Seconds(v) => number::seconds(*v),
@@ -155,7 +164,11 @@ impl Cell {
 impl Table {
     /// A table without rows.
     pub fn new(title: impl Into<String>, columns: Vec<Column>) -> Self {
-        Self { title: title.into(), columns, ..Self::default() }
+        Self {
+            title: title.into(),
+            columns,
+            ..Self::default()
+        }
     }
 
     /// For a terminal.
