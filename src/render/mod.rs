@@ -1,1 +1,13 @@
-//! Placeholder of the first commit.
+//! Tables, charts and pages out of plain data. Nothing here computes science, and nothing here
+//! knows a solver: the same description always gives the same bytes.
+pub mod chart;
+mod error;
+mod escape;
+pub mod number;
+pub mod page;
+mod script;
+#[cfg(test)]
+mod showcase;
+pub mod table;
+
+pub use error::RenderError;

@@ -1,0 +1,129 @@
+//! Colours, markers and dashes by number: any two of the first six series differ in all three, so
+//! that they are told apart by the colour-blind and on grey paper.
+use super::canvas::{Brush, Ink, Px, Rgb};
+
+/// Okabe and Ito (2008), without the yellow that vanishes on white; black belongs to the theory.
+const COLOURS: [Rgb; 7] = [
+    Rgb(0x00, 0x72, 0xB2),
+    Rgb(0xD5, 0x5E, 0x00),
+    Rgb(0x00, 0x9E, 0x73),
+    Rgb(0xCC, 0x79, 0xA7),
+    Rgb(0xE6, 0x9F, 0x00),
+    Rgb(0x56, 0xB4, 0xE9),
+    Rgb(0x7A, 0x7A, 0x7A),
+];
+
+pub(super) const DARK: Rgb = Rgb(0x1A, 0x1A, 0x1A);
+pub(super) const TEXT: Rgb = Rgb(0x26, 0x26, 0x26);
+pub(super) const QUIET: Rgb = Rgb(0x5F, 0x5F, 0x5F);
+pub(super) const FRAME: Rgb = Rgb(0x8A, 0x8A, 0x8A);
+pub(super) const MAJOR: Rgb = Rgb(0xDC, 0xDC, 0xDC);
+pub(super) const MINOR: Rgb = Rgb(0xF0, 0xF0, 0xF0);
+pub(super) const WHITE: Rgb = Rgb(0xFF, 0xFF, 0xFF);
+
+/// Lengths of dashes and gaps in drawing units.
+const DASHES: [Option<&str>; 7] = [
+    None,
+    Some("75 35"),
+    Some("22 28"),
+    Some("95 30 22 30"),
+    Some("105 25"),
+    Some("60 25 20 25 20 25"),
+    Some("40 30"),
+];
+
+pub(super) fn colour(slot: usize) -> Rgb {
+    COLOURS[slot % COLOURS.len()]
+}
+
+pub(super) fn dash(slot: usize) -> Option<&'static str> {
+    DASHES[slot % DASHES.len()]
+}
+
+/// Outline of a marker of unit size; the disc is none.
+fn outline(shape: usize) -> &'static [Px] {
+    match shape {
+        1 => &[(-0.88, -0.88), (0.88, -0.88), (0.88, 0.88), (-0.88, 0.88)],
+        2 => &[(0.0, -1.2), (1.1, 0.8), (-1.1, 0.8)],
+        3 => &[(0.0, -1.3), (1.05, 0.0), (0.0, 1.3), (-1.05, 0.0)],
+        4 => &[(0.0, 1.2), (1.1, -0.8), (-1.1, -0.8)],
+        5 => &[
+            (-0.36, -1.2),
+            (0.36, -1.2),
+            (0.36, -0.36),
+            (1.2, -0.36),
+            (1.2, 0.36),
+            (0.36, 0.36),
+            (0.36, 1.2),
+            (-0.36, 1.2),
+            (-0.36, 0.36),
+            (-1.2, 0.36),
+            (-1.2, -0.36),
+            (-0.36, -0.36),
+        ],
+        6 => &[
+            (-1.1, -0.6),
+            (-0.6, -1.1),
+            (0.0, -0.5),
+            (0.6, -1.1),
+            (1.1, -0.6),
+            (0.5, 0.0),
+            (1.1, 0.6),
+            (0.6, 1.1),
+            (0.0, 0.5),
+            (-0.6, 1.1),
+            (-1.1, 0.6),
+            (-0.5, 0.0),
+        ],
+        _ => &[],
+    }
+}
+
+/// Draws a marker. Beyond the seven full ones come the same shapes, hollow.
+pub(super) fn marker(
+    brush: &Brush<'_, '_>,
+    at: Px,
+    slot: usize,
+    radius: f64,
+    ink: Rgb,
+) -> Result<(), String> {
+    let shape = outline(slot % 7);
+    let hollow = (slot / 7) % 2 == 1;
+    let scaled = |r: f64| -> Vec<Px> {
+        shape
+            .iter()
+            .map(|(x, y)| (at.0 + r * x, at.1 + r * y))
+            .collect()
+    };
+    // A thin white edge keeps neighbours apart.
+    let layers: [(f64, Ink); 3] = [
+        (radius + 0.7, Ink(WHITE, 0.9)),
+        (radius, ink.into()),
+        (radius * 0.55, WHITE.into()),
+    ];
+    for (r, ink) in layers.into_iter().take(if hollow { 3 } else { 2 }) {
+        if shape.is_empty() {
+            brush.disc(at, r, ink)?;
+        } else {
+            brush.polygon(&scaled(r), ink)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_slots_differ_in_colour_dash_and_shape() {
+        for a in 0..7 {
+            for b in 0..a {
+                assert_ne!(colour(a), colour(b));
+                assert_ne!(dash(a), dash(b));
+                assert_ne!(outline(a), outline(b));
+            }
+        }
+        assert_eq!(colour(0), colour(COLOURS.len()));
+    }
+}

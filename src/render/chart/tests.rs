@@ -1,0 +1,132 @@
+//! What every figure owes its reader. The gallery is written to the temporary folder to be looked
+//! at.
+use super::gallery::{convergence, gallery, nothing, pressure_field};
+use super::*;
+
+fn svg(chart: &Chart) -> String {
+    chart.svg().unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn every_kind_of_figure_is_drawn_and_always_the_same() {
+    let folder = std::env::temp_dir().join("oedometer-gallery");
+    std::fs::create_dir_all(&folder).unwrap_or_else(|e| panic!("{e}"));
+    for (name, chart) in gallery() {
+        let text = svg(&chart);
+        assert_eq!(text, svg(&chart), "{name}");
+        std::fs::write(folder.join(format!("{name}.svg")), text).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+#[test]
+fn figures_are_named_scalable_and_self_contained() {
+    for (name, chart) in gallery() {
+        let text = svg(&chart);
+        assert!(text.starts_with("<svg xmlns="), "{name}");
+        for wanted in [
+            "viewBox=\"0 0 ",
+            "role=\"img\"",
+            "aria-label=\"",
+            "<title>",
+            "<desc>",
+        ] {
+            assert!(text.contains(wanted), "{name}: {wanted}");
+        }
+        for unwanted in ["href", "url(", "<script", "NaN", "inf", " id=\""] {
+            assert!(!text.contains(unwanted), "{name}: {unwanted}");
+        }
+        assert_eq!(
+            text.matches("<g").count(),
+            text.matches("</g>").count(),
+            "{name}"
+        );
+        assert_eq!(
+            text.matches("<text").count(),
+            text.matches("</text>").count(),
+            "{name}"
+        );
+        assert_eq!(
+            text.matches("<tspan").count(),
+            text.matches("</tspan>").count(),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn what_is_not_drawn_is_counted() {
+    let text = svg(&convergence());
+    assert!(
+        text.contains(
+            "2 values not drawn: 1 not finite (MPM); 1 not positive on a logarithmic axis (MPM)."
+        ),
+        "{text}"
+    );
+    let text = svg(&nothing());
+    assert!(text.contains(">no data</text>"), "{text}");
+    assert!(text.contains("GIMP (no data)"), "{text}");
+    assert!(svg(&pressure_field()).contains("1 cell without a value is grey."));
+}
+
+#[test]
+fn points_outside_fixed_axes_are_counted_and_lines_cut() {
+    let series = Series::new("a", vec![(0.0, 0.0), (1.0, 1e300), (0.5, 1e9)]);
+    let chart =
+        Chart::new("t", Axis::linear("x"), Axis::linear("y").between(0.0, 1.0)).with(series);
+    let text = svg(&chart);
+    assert!(
+        text.contains("1 beyond 10^±150 (a); 1 outside the axes (a)"),
+        "{text}"
+    );
+}
+
+#[test]
+fn hostile_descriptions_still_make_a_figure() {
+    let mut chart = convergence();
+    chart.title = "a < b & \"c\" \u{0} \u{e000}".into();
+    chart.size = Size {
+        width: f64::NAN,
+        plot_height: -5.0,
+        equal_units: true,
+    };
+    chart.x.ticks = Some(vec![f64::NAN, -1.0, 0.05]);
+    chart.triangles.push(SlopeTriangle {
+        slope: f64::NAN,
+        place: Place::At(0.1, 0.1),
+    });
+    chart.triangles.push(SlopeTriangle {
+        slope: 0.0,
+        place: Place::At(-0.1, f64::NAN),
+    });
+    chart.rules.push(Rule {
+        axis: Direction::X,
+        at: -1.0,
+        label: "x".into(),
+    });
+    chart.annotations.push(Annotation {
+        at: (f64::NAN, 1.0),
+        text: "?".into(),
+    });
+    chart.series[0].ringed = vec![999];
+    chart.series[0].bars = vec![(f64::NAN, 0.0); 9];
+    chart
+        .series
+        .push(Series::new("one", vec![(0.1, 0.1)]).tag("only"));
+    chart.series.push(Series::new("", Vec::new()).tag("none"));
+    chart.bands.push(Band {
+        name: String::new(),
+        points: vec![(f64::NAN, 0.0, -1.0)],
+        colour: 99,
+    });
+    let text = svg(&chart);
+    assert!(text.contains("a &lt; b &amp; &quot;c&quot;"), "{text}");
+    let mut field = pressure_field();
+    for values in [Vec::new(), vec![f64::NAN; 24 * 24], vec![1.0; 24 * 24]] {
+        field
+            .field
+            .as_mut()
+            .unwrap_or_else(|| panic!("no field"))
+            .values = values;
+        assert!(svg(&field).ends_with("</svg>\n"));
+    }
+}

@@ -1,0 +1,140 @@
+//! Triangles that show what an order looks like.
+use super::canvas::{Canvas, Ink, Px};
+use super::clip::Frame;
+use super::describe::{Chart, Place, Scale};
+use super::layout::Layout;
+use super::palette::{DARK, QUIET};
+use super::scale::Ruler;
+use super::space::{Offer, Space};
+use super::words::write;
+
+/// A triangle with its right angle at the second corner.
+#[derive(Debug, Clone, Copy)]
+struct Triangle {
+    corners: [Px; 3],
+    /// Where the slope and the 1 are written.
+    rise: Px,
+    run: Px,
+}
+
+/// Triangles with a given slope, where both axes are logarithmic.
+pub(super) fn draw_triangles(
+    canvas: &mut Canvas,
+    space: &mut Space,
+    chart: &Chart,
+    layout: &Layout,
+    places: &[Vec<Option<Px>>],
+) {
+    if chart.x.scale != Scale::Log10 || chart.y.scale != Scale::Log10 {
+        return;
+    }
+    for wanted in &chart.triangles {
+        if !wanted.slope.is_finite() {
+            continue;
+        }
+        let label = format!("{}", (wanted.slope.abs() * 100.0).round() / 100.0);
+        let offers = match &wanted.place {
+            Place::At(x, y) => match (layout.x.ruler.px(*x), layout.y.ruler.px(*y)) {
+                (Ok(px), Ok(py)) if layout.plot.holds((px, py)) => {
+                    beside((px, py), wanted.slope, layout, &[0.0])
+                }
+                _ => continue,
+            },
+            Place::Beside(name) => chart
+                .series
+                .iter()
+                .zip(places)
+                .filter(|(s, _)| s.name == *name)
+                .flat_map(|(_, p)| {
+                    p.windows(2)
+                        .filter_map(|w| Some((w[0]?, w[1]?)))
+                        .collect::<Vec<_>>()
+                })
+                .flat_map(|(a, b)| {
+                    [0.25, 0.5, 0.75].map(|t| (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1)))
+                })
+                .flat_map(|at| beside(at, wanted.slope, layout, &[16.0, 26.0, 40.0]))
+                .collect(),
+        };
+        let rooms: Vec<Offer> = offers
+            .iter()
+            .map(|(t, penalty)| Offer {
+                room: reach(t),
+                penalty: *penalty,
+            })
+            .collect();
+        if let Some(i) = space.best(&rooms, None) {
+            space.take(rooms[i].room);
+            draw_triangle(canvas, &offers[i].0, &label);
+        }
+    }
+}
+
+fn draw_triangle(canvas: &mut Canvas, t: &Triangle, label: &str) {
+    canvas.group(&[("stroke-linejoin", "round")], |b| {
+        b.polygon(&t.corners, Ink(QUIET, 0.10))?;
+        b.line(
+            &[t.corners[0], t.corners[1], t.corners[2], t.corners[0]],
+            QUIET,
+            1.1,
+        )
+    });
+    write(canvas, label, t.rise, DARK);
+    write(canvas, "1", t.run, DARK);
+}
+
+fn reach(t: &Triangle) -> Frame {
+    let points = t.corners.iter().chain([&t.rise, &t.run]);
+    let start = Frame {
+        left: f64::MAX,
+        top: f64::MAX,
+        right: f64::MIN,
+        bottom: f64::MIN,
+    };
+    points
+        .fold(start, |f, &(x, y)| Frame {
+            left: f.left.min(x),
+            top: f.top.min(y),
+            right: f.right.max(x),
+            bottom: f.bottom.max(y),
+        })
+        .grown(5.0)
+}
+
+/// Triangles below and above a place on a curve, at several distances.
+fn beside(at: Px, slope: f64, layout: &Layout, distances: &[f64]) -> Vec<(Triangle, f64)> {
+    let decade = |r: &Ruler| (r.to - r.from) / (r.span.high / r.span.low).log10();
+    let (dx, dy) = (decade(&layout.x.ruler), decade(&layout.y.ruler));
+    // Pixels down for one pixel to the right along the wanted slope.
+    let steep = slope * dy / dx;
+    let run = (layout.plot.width() * 0.11).min(layout.plot.height() * 0.26 / steep.abs().max(1e-6));
+    let rise = run * steep;
+    let mut out = Vec::new();
+    for &distance in distances {
+        for below in [true, false] {
+            // Away from the curve, at a right angle to the slope.
+            let norm = steep.hypot(1.0);
+            let side = if below { 1.0 } else { -1.0 };
+            let (ox, oy) = (-side * distance * steep / norm, side * distance / norm);
+            let middle = (at.0 + ox, at.1 + oy);
+            let a = (middle.0 - run / 2.0, middle.1 - rise / 2.0);
+            let c = (middle.0 + run / 2.0, middle.1 + rise / 2.0);
+            // The right angle lies on the far side of the slanted side.
+            let corner = if below == (a.1 > c.1) {
+                (c.0, a.1)
+            } else {
+                (a.0, c.1)
+            };
+            let horizontal_y = corner.1;
+            let out_y = if horizontal_y > middle.1 { 9.0 } else { -9.0 };
+            let out_x = if corner.0 > middle.0 { 9.0 } else { -9.0 };
+            let triangle = Triangle {
+                corners: [a, corner, c],
+                rise: (corner.0 + out_x, middle.1),
+                run: (middle.0, horizontal_y + out_y),
+            };
+            out.push((triangle, 0.02 * distance + if below { 0.0 } else { 0.3 }));
+        }
+    }
+    out
+}

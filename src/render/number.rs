@@ -1,0 +1,169 @@
+//! Numbers as every table shows them.
+
+/// An error: three digits and a power of ten, `5.62e-3`.
+pub fn error(value: f64) -> String {
+    if value == 0.0 {
+        "0".to_owned()
+    } else {
+        finite(value, |v| format!("{v:.2e}"))
+    }
+}
+
+/// An order: two decimals.
+pub fn order(value: f64) -> String {
+    finite(value, |v| unsigned_zero(format!("{v:.2}")))
+}
+
+/// A share as a percentage: `0.012` is `1.20 %`.
+pub fn percent(share: f64) -> String {
+    finite(share * 100.0, |v| {
+        let text = match v.abs() {
+            0.0 => "0".to_owned(),
+            a if a >= 99.95 => format!("{v:.0}"),
+            a if a >= 9.995 => format!("{v:.1}"),
+            a if a >= 0.0995 => format!("{v:.2}"),
+            a if a >= 0.000_995 => format!("{v:.4}"),
+            _ => format!("{v:.2e}"),
+        };
+        format!("{text} %")
+    })
+}
+
+/// A time in the unit that suits it, three digits.
+pub fn seconds(value: f64) -> String {
+    finite(value, |v| {
+        let (scale, unit) = match v.abs() {
+            0.0 => (1.0, "s"),
+            a if a < 0.9995e-6 => (1e9, "ns"),
+            a if a < 0.9995e-3 => (1e6, "µs"),
+            a if a < 0.9995 => (1e3, "ms"),
+            a if a < 600.0 => (1.0, "s"),
+            a if a < 36_000.0 => (1.0 / 60.0, "min"),
+            _ => (1.0 / 3600.0, "h"),
+        };
+        format!("{} {unit}", three_digits(v * scale))
+    })
+}
+
+/// A quantity that is neither: four digits, with a power of ten where that is shorter.
+pub fn number(value: f64) -> String {
+    finite(value, |v| match v.abs() {
+        0.0 => "0".to_owned(),
+        a if (1e-3..1e5).contains(&a) => {
+            let short = format!("{v:.3e}").parse::<f64>().unwrap_or(v);
+            format!("{short}")
+        }
+        _ => {
+            let text = format!("{v:.3e}");
+            let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+            format!(
+                "{}e{exponent}",
+                mantissa.trim_end_matches('0').trim_end_matches('.')
+            )
+        }
+    })
+}
+
+/// A count, in groups of three from five digits on.
+pub fn count(value: u64) -> String {
+    let digits = value.to_string();
+    if digits.len() < 5 {
+        return digits;
+    }
+    let mut out = String::new();
+    for (i, c) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(c);
+    }
+    out
+}
+
+/// A value for a machine: the shortest spelling that reads back as the same bits.
+pub fn exact(value: f64) -> String {
+    finite(value, |v| format!("{v:?}"))
+}
+
+fn finite(value: f64, show: impl Fn(f64) -> String) -> String {
+    match value {
+        v if v.is_nan() => "NaN".to_owned(),
+        f64::INFINITY => "inf".to_owned(),
+        f64::NEG_INFINITY => "-inf".to_owned(),
+        v => show(v),
+    }
+}
+
+fn three_digits(v: f64) -> String {
+    match v.abs() {
+        0.0 => "0".to_owned(),
+        a if a >= 99.95 => format!("{v:.0}"),
+        a if a >= 9.995 => format!("{v:.1}"),
+        _ => format!("{v:.2}"),
+    }
+}
+
+fn unsigned_zero(text: String) -> String {
+    if text == "-0.00" {
+        "0.00".to_owned()
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_have_three_digits() {
+        assert_eq!(
+            [5.62e-3, 1.0, 0.0, -2.5e-10].map(error),
+            ["5.62e-3", "1.00e0", "0", "-2.50e-10"]
+        );
+    }
+
+    #[test]
+    fn what_is_not_finite_is_said_in_every_format() {
+        for show in [error, order, percent, seconds, number, exact] {
+            assert_eq!(
+                [f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(show),
+                ["NaN", "inf", "-inf"]
+            );
+        }
+    }
+
+    #[test]
+    fn orders_percentages_times_and_counts() {
+        assert_eq!([1.998, 2.0, -0.001].map(order), ["2.00", "2.00", "0.00"]);
+        assert_eq!(
+            [-0.012, 0.5, 1.0, 1.4e-4, 1e-9].map(percent),
+            ["-1.20 %", "50.0 %", "100 %", "0.0140 %", "1.00e-7 %"]
+        );
+        assert_eq!(
+            [7.9e-9, 4.5e-6, 0.0123, 59.98, 1200.0, 86_400.0].map(seconds),
+            [
+                "7.90 ns", "4.50 µs", "12.3 ms", "60.0 s", "20.0 min", "24.0 h"
+            ]
+        );
+        assert_eq!(
+            [0.999_999, 0.000_999_99].map(seconds),
+            ["1.00 s", "1.00 ms"]
+        );
+        assert_eq!(
+            [0, 9999, 10_000, 82_000_000].map(count),
+            ["0", "9999", "10,000", "82,000,000"]
+        );
+        assert_eq!(
+            [0.25, 1e6, 2.2e9, 12_345.678, 1e-6].map(number),
+            ["0.25", "1e6", "2.2e9", "12350", "1e-6"]
+        );
+    }
+
+    #[test]
+    fn machine_numbers_read_back() {
+        for v in [0.1, 1.0 / 3.0, 5e-324, f64::MAX, -0.0] {
+            assert_eq!(exact(v).parse::<f64>().map(f64::to_bits), Ok(v.to_bits()));
+        }
+    }
+}

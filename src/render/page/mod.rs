@@ -1,0 +1,199 @@
+//! A page as plain data, and its two writers: one self-contained HTML file, or Markdown with its
+//! figures beside it. Both come from the very same description.
+//!
+//! Running text is lightly marked: `` `code` ``, `**strong**`, `*stressed*`, `[words](target)`; a
+//! blank line ends a paragraph. Symbols such as `T_v` get their subscripts by themselves.
+mod html;
+mod inline;
+mod markdown;
+
+#[cfg(test)]
+mod tests;
+
+use super::RenderError;
+use super::chart::Chart;
+use super::table::{Mood, Table};
+
+/// A page.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Page {
+    /// Heading of the whole.
+    pub title: String,
+    /// What the reader should know first.
+    pub lead: String,
+    /// The sections, in order.
+    pub sections: Vec<Section>,
+    /// Small print at the end: what made the page, out of what.
+    pub footer: String,
+}
+
+/// A section with a heading and an anchor.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Section {
+    /// The heading.
+    pub heading: String,
+    /// The anchor: lower-case letters, digits, `-`, `_` and `.`.
+    pub id: String,
+    /// A mark at the heading and in the table of contents: how the section ended.
+    pub mood: Option<Mood>,
+    /// What stands in it.
+    pub blocks: Vec<Block>,
+}
+
+/// A piece of a section.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block {
+    /// Running text, lightly marked.
+    Paragraph(String),
+    /// A smaller heading.
+    Heading(String),
+    /// Points, each lightly marked.
+    List(Vec<String>),
+    /// A table.
+    Table(Table),
+    /// A figure.
+    Figure(Figure),
+    /// Figures side by side, where there is room.
+    Figures(Vec<Figure>),
+    /// A sentence that must not be overlooked, lightly marked.
+    Callout(Mood, String),
+    /// What only some readers want to see.
+    Details {
+        /// The line that is always seen.
+        summary: String,
+        /// What it opens.
+        blocks: Vec<Block>,
+    },
+    /// Text as it is typed.
+    Code(String),
+}
+
+/// A figure on a page.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// Name of its file, without an ending: lower-case letters, digits, `-`, `_` and `.`.
+    pub name: String,
+    /// What it shows.
+    pub picture: Picture,
+    /// What is said below it, lightly marked.
+    pub caption: String,
+}
+
+/// What a figure shows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Picture {
+    /// A chart, drawn when the page is written.
+    Chart(Box<Chart>),
+    /// An SVG document, taken as it is: it must come from a trusted hand.
+    Svg(String),
+}
+
+impl Figure {
+    /// A figure of a chart.
+    pub fn new(name: impl Into<String>, chart: Chart, caption: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            picture: Picture::Chart(Box::new(chart)),
+            caption: caption.into(),
+        }
+    }
+
+    fn svg(&self) -> Result<String, RenderError> {
+        match &self.picture {
+            Picture::Chart(chart) => chart.svg(),
+            Picture::Svg(text) => Ok(text.clone()),
+        }
+    }
+
+    fn title(&self) -> &str {
+        match &self.picture {
+            Picture::Chart(chart) => &chart.title,
+            Picture::Svg(_) => &self.name,
+        }
+    }
+}
+
+/// The page as one HTML file that needs nothing else.
+///
+/// # Errors
+/// If a name is unusable or used twice, a table is ragged, or a figure cannot be drawn.
+pub fn render_html(page: &Page) -> Result<String, RenderError> {
+    check(page)?;
+    html::write(page)
+}
+
+/// The page as Markdown. Its figures are at `figures/NAME.svg`, as [`figures`] lists them.
+///
+/// # Errors
+/// If a name is unusable or used twice, or a table is ragged.
+pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
+    check(page)?;
+    markdown::write(page)
+}
+
+/// The figures of a page: file name (without a folder) and SVG.
+///
+/// # Errors
+/// If a name is unusable or used twice, or a figure cannot be drawn.
+pub fn figures(page: &Page) -> Result<Vec<(String, String)>, RenderError> {
+    check(page)?;
+    all_figures(page)
+        .into_iter()
+        .map(|figure| Ok((format!("{}.svg", figure.name), figure.svg()?)))
+        .collect()
+}
+
+fn all_figures(page: &Page) -> Vec<&Figure> {
+    fn collect<'a>(blocks: &'a [Block], out: &mut Vec<&'a Figure>) {
+        for block in blocks {
+            match block {
+                Block::Figure(figure) => out.push(figure),
+                Block::Figures(figures) => out.extend(figures),
+                Block::Details { blocks, .. } => collect(blocks, out),
+                _ => {}
+            }
+        }
+    }
+    let mut out = Vec::new();
+    page.sections
+        .iter()
+        .for_each(|s| collect(&s.blocks, &mut out));
+    out
+}
+
+/// Names become files and anchors: they must be safe, and each its own.
+fn check(page: &Page) -> Result<(), RenderError> {
+    let ids: Vec<&str> = page.sections.iter().map(|s| s.id.as_str()).collect();
+    let names: Vec<&str> = all_figures(page).iter().map(|f| f.name.as_str()).collect();
+    for list in [&ids, &names] {
+        for (i, &name) in list.iter().enumerate() {
+            let usable =
+                |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-_.".contains(c);
+            if name.is_empty() || name.starts_with('.') || !name.chars().all(usable) {
+                return Err(RenderError::Name {
+                    name: name.to_owned(),
+                });
+            }
+            if list[..i].contains(&name) {
+                return Err(RenderError::Duplicate {
+                    title: page.title.clone(),
+                    name: name.to_owned(),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A text as a usable name: `GC-SRI-patch, T_v = 0.1` becomes `gc-sri-patch-t_v-0.1`.
+pub fn slug(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars().flat_map(char::to_lowercase) {
+        if c.is_ascii_alphanumeric() || matches!(c, '_' | '.') {
+            out.push(c);
+        } else if !out.is_empty() && !out.ends_with('-') {
+            out.push('-');
+        }
+    }
+    out.trim_matches(['-', '.']).to_owned()
+}

@@ -1,0 +1,215 @@
+//! Text with subscripts and superscripts, so that `T_v`, `10⁻³` and `m²` read well in every font.
+//!
+//! A single letter, an underscore and letters or digits is a symbol with a subscript (`K_w`,
+//! `E_oed`, `L_∞`); `points_per_cell` is a name and stays as it is. Unicode superscripts and
+//! subscripts are taken apart, because few fonts hold all of them.
+
+/// Where a piece of text stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Level {
+    Base,
+    Sub,
+    Super,
+}
+
+/// A piece of text on one level.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Run {
+    pub level: Level,
+    pub text: String,
+}
+
+/// Takes `text` apart. Characters that no document may hold are dropped.
+pub(crate) fn runs(text: &str) -> Vec<Run> {
+    let chars: Vec<char> = text.chars().filter(|&c| is_allowed(c)).collect();
+    let mut out = Vec::new();
+    let mut i = 0;
+    while i < chars.len() {
+        let c = chars[i];
+        if let Some(end) = subscript_end(&chars, i) {
+            push(&mut out, Level::Base, c);
+            for &s in &chars[i + 2..end] {
+                push(&mut out, Level::Sub, s);
+            }
+            i = end;
+            continue;
+        }
+        match (superscript(c), subscript(c)) {
+            (Some(s), _) => push(&mut out, Level::Super, s),
+            (_, Some(s)) => push(&mut out, Level::Sub, s),
+            _ => push(&mut out, Level::Base, c),
+        }
+        i += 1;
+    }
+    out
+}
+
+/// Neither control characters nor those of the private use area, which the canvas needs.
+fn is_allowed(c: char) -> bool {
+    !(c.is_control()
+        || ('\u{e000}'..='\u{f8ff}').contains(&c)
+        || matches!(c, '\u{fffe}' | '\u{ffff}'))
+}
+
+fn push(out: &mut Vec<Run>, level: Level, c: char) {
+    match out.last_mut() {
+        Some(run) if run.level == level => run.text.push(c),
+        _ => out.push(Run {
+            level,
+            text: c.to_string(),
+        }),
+    }
+}
+
+/// The end of a subscript that starts with the symbol at `i`.
+fn subscript_end(chars: &[char], i: usize) -> Option<usize> {
+    let alone = i == 0 || !(chars[i - 1].is_alphanumeric() || chars[i - 1] == '_');
+    if !alone || !chars[i].is_alphabetic() || chars.get(i + 1) != Some(&'_') {
+        return None;
+    }
+    let tail = chars[i + 2..].iter().take_while(|&&c| belongs(c)).count();
+    let end = i + 2 + tail;
+    (tail > 0 && chars.get(end) != Some(&'_')).then_some(end)
+}
+
+fn belongs(c: char) -> bool {
+    (c.is_alphanumeric() && superscript(c).is_none()) || c == '∞'
+}
+
+fn superscript(c: char) -> Option<char> {
+    Some(match c {
+        '⁰' => '0',
+        '¹' => '1',
+        '²' => '2',
+        '³' => '3',
+        '⁴' => '4',
+        '⁵' => '5',
+        '⁶' => '6',
+        '⁷' => '7',
+        '⁸' => '8',
+        '⁹' => '9',
+        '⁻' => '−',
+        '⁺' => '+',
+        'ⁿ' => 'n',
+        _ => return None,
+    })
+}
+
+fn subscript(c: char) -> Option<char> {
+    let digit = u32::from(c).checked_sub(0x2080)?;
+    char::from_digit(digit, 10)
+}
+
+/// A whole number as a Unicode superscript.
+pub(crate) fn exponent(n: i32) -> String {
+    n.to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '0' => '⁰',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4' => '⁴',
+            '5' => '⁵',
+            '6' => '⁶',
+            '7' => '⁷',
+            '8' => '⁸',
+            _ => '⁹',
+        })
+        .collect()
+}
+
+/// An upper estimate of the width of `text`, in units of the font size.
+///
+/// The advances are those of `DejaVu Sans`, the widest of the fonts that a reader may have.
+pub(crate) fn width(text: &str) -> f64 {
+    runs(text)
+        .iter()
+        .map(|run| {
+            let scale = if run.level == Level::Base { 1.0 } else { 0.72 };
+            scale * run.text.chars().map(advance).sum::<f64>()
+        })
+        .sum()
+}
+
+fn advance(c: char) -> f64 {
+    match c {
+        'i' | 'j' | 'l' | 'I' | 'J' | '\'' => 0.295,
+        ' ' | '.' | ',' | ':' | ';' | '/' | '|' | '·' | '\u{2009}' => 0.337,
+        'f' | 'r' | 't' | '-' | '(' | ')' | '[' | ']' => 0.41,
+        'c' | 's' | 'z' | '_' | '*' => 0.55,
+        'm' | 'M' | 'w' | 'W' | '%' | '@' | '—' => 0.98,
+        '=' | '+' | '<' | '>' | '−' | '×' | '≤' | '≥' | '≈' | '∞' | '#' | '~' | '–' => {
+            0.838
+        }
+        'O' | 'Q' | 'G' | 'D' | 'N' | 'H' | 'U' | '&' => 0.787,
+        'a'..='z' | '0'..='9' => 0.636,
+        'A'..='Z' => 0.7,
+        c if c.is_ascii() => 0.6,
+        c if u32::from(c) >= 0x2e80 => 1.05,
+        _ => 0.75,
+    }
+}
+
+/// Breaks `text` at spaces into lines of at most `limit` font sizes; a longer word stays whole.
+pub(crate) fn wrap(text: &str, limit: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width(line) + width(" ") + width(word) <= limit => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spelled(text: &str) -> String {
+        runs(text)
+            .into_iter()
+            .map(|run| match run.level {
+                Level::Base => run.text,
+                Level::Sub => format!("<{}>", run.text),
+                Level::Super => format!("^{}^", run.text),
+            })
+            .collect()
+    }
+
+    #[test]
+    fn symbols_get_subscripts_and_names_do_not() {
+        assert_eq!(spelled("T_v = 0.1"), "T<v> = 0.1");
+        assert_eq!(spelled("K_w/E_oed"), "K<w>/E<oed>");
+        assert_eq!(spelled("points_per_cell"), "points_per_cell");
+        assert_eq!(spelled("a_b_c"), "a_b_c");
+        assert_eq!(spelled("L_∞"), "L<∞>");
+        assert_eq!(spelled("x_"), "x_");
+        assert_eq!(spelled("p_exact²"), "p<exact>^2^");
+    }
+
+    #[test]
+    fn unicode_scripts_are_taken_apart() {
+        assert_eq!(spelled("2·10⁻³ m²"), "2·10^−3^ m^2^");
+        assert_eq!(spelled("E₀"), "E<0>");
+        assert_eq!(exponent(-12), "⁻¹²");
+    }
+
+    #[test]
+    fn forbidden_characters_are_dropped() {
+        assert_eq!(spelled("a\u{0}b\u{e000}c\n"), "abc");
+    }
+
+    #[test]
+    fn wrapping_keeps_every_word() {
+        let lines = wrap("one two three four", 5.0);
+        assert!(lines.len() > 1);
+        assert_eq!(lines.join(" "), "one two three four");
+        assert_eq!(wrap("", 5.0), Vec::<String>::new());
+    }
+}

@@ -1,0 +1,83 @@
+//! Tables as fragments of HTML.
+use super::{Align, Cell, Table, mark, marked};
+use crate::render::escape::{html, plain_html};
+use std::fmt::Write as _;
+
+pub(super) fn write(table: &Table) -> String {
+    let footnotes = table.footnotes();
+    let mut out = String::from("<div class=\"table\">\n<table>\n");
+    if !table.title.is_empty() {
+        let _ = writeln!(out, "<caption>{}</caption>", html(&table.title));
+    }
+    out.push_str("<thead>\n<tr>");
+    for column in &table.columns {
+        let unit = column
+            .unit
+            .as_ref()
+            .map(|u| format!(" <small>{}</small>", html(u)))
+            .unwrap_or_default();
+        let _ = write!(
+            out,
+            "<th scope=\"col\" class=\"{}\">{}{unit}</th>",
+            class(column.align),
+            html(&column.header)
+        );
+    }
+    out.push_str("</tr>\n</thead>\n<tbody>\n");
+    for row in &table.rows {
+        out.push_str("<tr>");
+        for (cell, column) in row.iter().zip(&table.columns) {
+            let _ = write!(
+                out,
+                "<td class=\"{}\">{}</td>",
+                class(column.align),
+                show(cell, &footnotes)
+            );
+        }
+        out.push_str("</tr>\n");
+    }
+    out.push_str("</tbody>\n</table>\n</div>\n");
+    let marks = footnotes
+        .iter()
+        .enumerate()
+        .map(|(i, f)| format!("<sup>{}</sup> {}", mark(i), html(f)));
+    for note in marks.chain(table.notes.iter().map(|n| html(n))) {
+        let _ = writeln!(out, "<p class=\"small\">{note}</p>");
+    }
+    out
+}
+
+fn class(align: Align) -> &'static str {
+    match align {
+        Align::Left => "l",
+        Align::Centre => "c",
+        Align::Right => "r",
+    }
+}
+
+fn show(cell: &Cell, footnotes: &[&str]) -> String {
+    match (cell, marked(cell, footnotes)) {
+        (Cell::Code(name), _) => format!("<code>{}</code>", plain_html(name)),
+        (Cell::Text(text), _) => html(text),
+        (Cell::Verdict(mood, text), _) => {
+            format!(
+                "<span class=\"{}\">{} {}</span>",
+                mood.class(),
+                mood.mark(),
+                html(text)
+            )
+        }
+        (Cell::Missing(reason), (text, mark)) => {
+            let mark = mark.map(|m| format!("<sup>{m}</sup>")).unwrap_or_default();
+            format!(
+                "<span class=\"missing\" title=\"{}\">{text}{mark}</span>",
+                plain_html(reason)
+            )
+        }
+        // The hyphen of a negative number, not the one in its exponent.
+        (_, (text, _)) => match text.strip_prefix('-') {
+            Some(rest) => format!("−{}", plain_html(rest)),
+            None => plain_html(&text),
+        },
+    }
+}

@@ -1,0 +1,70 @@
+//! Tables in GitHub's Markdown.
+use super::{Align, Cell, Table, mark, marked};
+use crate::render::escape;
+use std::fmt::Write as _;
+
+pub(super) fn write(table: &Table) -> String {
+    let footnotes = table.footnotes();
+    let mut out = String::new();
+    if !table.title.is_empty() {
+        let _ = write!(out, "**{}**\n\n", escape::markdown(&table.title));
+    }
+    let heads: Vec<String> = table
+        .columns
+        .iter()
+        .map(|c| escape::markdown(&c.heading()))
+        .collect();
+    let rules: Vec<&str> = table
+        .columns
+        .iter()
+        .map(|c| match c.align {
+            Align::Left => ":---",
+            Align::Centre => ":---:",
+            Align::Right => "---:",
+        })
+        .collect();
+    let row = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    out.push_str(&row(&heads));
+    out.push_str(&row(&rules
+        .iter()
+        .map(|&r| r.to_owned())
+        .collect::<Vec<_>>()));
+    for cells in &table.rows {
+        let cells: Vec<String> = cells.iter().map(|cell| show(cell, &footnotes)).collect();
+        out.push_str(&row(&cells));
+    }
+    let marks = footnotes
+        .iter()
+        .enumerate()
+        .map(|(i, f)| (Some(mark(i)), *f));
+    for (mark, note) in marks.chain(table.notes.iter().map(|n| (None, n.as_str()))) {
+        let mark = mark.map(|m| format!("<sup>{m}</sup> ")).unwrap_or_default();
+        let _ = writeln!(out, "\n{mark}{}", escape::markdown(note));
+    }
+    out
+}
+
+fn show(cell: &Cell, footnotes: &[&str]) -> String {
+    match (cell, marked(cell, footnotes)) {
+        (Cell::Code(name), _) => code(name),
+        (Cell::Verdict(mood, text), _) => format!("{} {}", mood.mark(), escape::markdown(text)),
+        (_, (text, Some(mark))) => format!("{text} <sup>{mark}</sup>"),
+        // A number may well start with a minus.
+        (Cell::Text(_), (text, None)) => escape::markdown(&text),
+        (_, (text, None)) => text,
+    }
+}
+
+/// A name in back quotes, as many as it takes; a table's bars are escaped even there.
+fn code(name: &str) -> String {
+    let name: String = name
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    let name = name.replace('|', "\\|");
+    if name.contains('`') {
+        format!("`` {name} ``")
+    } else {
+        format!("`{name}`")
+    }
+}

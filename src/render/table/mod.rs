@@ -1,0 +1,254 @@
+//! A table as plain data, and its writers: text, Markdown, HTML and CSV.
+mod csv;
+mod html;
+mod markdown;
+mod text;
+
+#[cfg(test)]
+mod tests;
+
+use super::{RenderError, number};
+
+/// A table.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table {
+    /// One line above the table.
+    pub title: String,
+    /// The columns, from left to right.
+    pub columns: Vec<Column>,
+    /// The rows, each with a cell for every column.
+    pub rows: Vec<Vec<Cell>>,
+    /// Lines below the table.
+    pub notes: Vec<String>,
+}
+
+/// A column.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    /// What stands in the column.
+    pub header: String,
+    /// The unit, if the numbers have one.
+    pub unit: Option<String>,
+    /// How the cells are aligned.
+    pub align: Align,
+}
+
+/// Where a cell's text stands in its column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// At the left: words.
+    Left,
+    /// In the middle.
+    Centre,
+    /// At the right: numbers.
+    Right,
+}
+
+impl Column {
+    /// A column of words.
+    pub fn text(header: impl Into<String>) -> Self {
+        Self {
+            header: header.into(),
+            unit: None,
+            align: Align::Left,
+        }
+    }
+
+    /// A column of numbers without a unit.
+    pub fn number(header: impl Into<String>) -> Self {
+        Self {
+            align: Align::Right,
+            ..Self::text(header)
+        }
+    }
+
+    /// The same column with a unit.
+    #[must_use]
+    pub fn unit(mut self, unit: impl Into<String>) -> Self {
+        self.unit = Some(unit.into());
+        self
+    }
+
+    /// Header and unit on one line.
+    fn heading(&self) -> String {
+        match &self.unit {
+            Some(unit) => format!("{} ({unit})", self.header),
+            None => self.header.clone(),
+        }
+    }
+}
+
+/// A cell. Every kind of number is spelled in one way throughout all reports.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cell {
+    /// Words.
+    Text(String),
+    /// A name as it is typed: a method, a key, a command.
+    Code(String),
+    /// An error: `5.62e-3`.
+    Error(f64),
+    /// An order: `2.00`.
+    Order(f64),
+    /// An order and the half-width of its interval: `1.98 ± 0.03`.
+    OrderWithin(f64, f64),
+    /// A number of things.
+    Count(u64),
+    /// A share, shown as a percentage.
+    Percent(f64),
+    /// A time.
+    Seconds(f64),
+    /// Any other quantity.
+    Number(f64),
+    /// A judgement.
+    Verdict(Mood, String),
+    /// Nothing, and why.
+    Missing(String),
+}
+
+/// What a judgement means to the reader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mood {
+    /// As expected.
+    Pass,
+    /// Not as expected.
+    Fail,
+    /// Neither: to be known.
+    Note,
+}
+
+impl Mood {
+    /// A mark that reads without colours.
+    pub(crate) fn mark(self) -> &'static str {
+        match self {
+            Self::Pass => "✓",
+            Self::Fail => "✗",
+            Self::Note => "•",
+        }
+    }
+
+    pub(crate) fn class(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Fail => "fail",
+            Self::Note => "note",
+        }
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+impl Cell {
+    /// What the cell says; why something is missing is left to the footnotes.
+    fn show(&self) -> String {
+        match self {
+            Self::Text(text) | Self::Code(text) => text.clone(),
+            Self::Error(v) => number::error(*v),
+            Self::Order(v) => number::order(*v),
+            Self::OrderWithin(v, half) => {
+                format!("{} ± {}", number::order(*v), number::order(*half))
+            }
+            Self::Count(n) => number::count(*n),
+            Self::Percent(v) => number::percent(*v),
+            Self::Seconds(v) => number::seconds(*v),
+            Self::Number(v) => number::number(*v),
+            Self::Verdict(mood, text) => format!("{} {text}", mood.mark()),
+            Self::Missing(_) => "–".to_owned(),
+        }
+    }
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(title: impl Into<String>, columns: Vec<Column>) -> Self {
+        Self {
+            title: title.into(),
+            columns,
+            ..Self::default()
+        }
+    }
+
+    /// For a terminal.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_text(&self) -> Result<String, RenderError> {
+        self.check()?;
+        Ok(text::write(self))
+    }
+
+    /// For GitHub's Markdown.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_markdown(&self) -> Result<String, RenderError> {
+        self.check()?;
+        Ok(markdown::write(self))
+    }
+
+    /// A fragment of HTML.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_html(&self) -> Result<String, RenderError> {
+        self.check()?;
+        Ok(html::write(self))
+    }
+
+    /// For machines: numbers with all of their digits, shares as shares, times in seconds, an empty
+    /// field for what is missing; an order's interval has a column of its own.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_csv(&self) -> Result<String, RenderError> {
+        self.check()?;
+        csv::write(self)
+    }
+
+    fn check(&self) -> Result<(), RenderError> {
+        let expected = self.columns.len();
+        match self.rows.iter().position(|row| row.len() != expected) {
+            None => Ok(()),
+            Some(i) => Err(RenderError::Ragged {
+                title: self.title.clone(),
+                row: i + 1,
+                found: self.rows[i].len(),
+                expected,
+            }),
+        }
+    }
+
+    /// The reasons for what is missing, each once, in the order of their first appearance.
+    fn footnotes(&self) -> Vec<&str> {
+        let mut reasons: Vec<&str> = Vec::new();
+        for cell in self.rows.iter().flatten() {
+            if let Cell::Missing(reason) = cell
+                && !reason.is_empty()
+                && !reasons.contains(&reason.as_str())
+            {
+                reasons.push(reason);
+            }
+        }
+        reasons
+    }
+}
+
+/// The mark of a footnote: a, b, … z, then numbers.
+fn mark(i: usize) -> String {
+    match u8::try_from(i) {
+        Ok(n) if n < 26 => char::from(b'a' + n).to_string(),
+        _ => (i + 1).to_string(),
+    }
+}
+
+/// What a cell says with the mark of its footnote, if it has one.
+fn marked(cell: &Cell, footnotes: &[&str]) -> (String, Option<String>) {
+    let place = match cell {
+        Cell::Missing(reason) => footnotes.iter().position(|f| f == reason),
+        _ => None,
+    };
+    (cell.show(), place.map(mark))
+}

@@ -1,0 +1,114 @@
+use super::*;
+
+fn sample() -> Table {
+    let mut table = Table::new(
+        "Pore pressure, T_v = 0.1",
+        vec![
+            Column::text("method"),
+            Column::number("error").unit("–"),
+            Column::number("order"),
+            Column::number("fit"),
+            Column::number("steps"),
+            Column::number("settlement"),
+            Column::number("time"),
+            Column::text("verdict"),
+        ],
+    );
+    table.rows = vec![
+        vec![
+            Cell::Code("GC-SRI-patch".into()),
+            Cell::Error(5.623e-3),
+            Cell::Order(1.998),
+            Cell::OrderWithin(1.98, 0.031),
+            Cell::Count(81_750),
+            Cell::Percent(-0.012),
+            Cell::Seconds(0.0123),
+            Cell::Verdict(Mood::Pass, "asymptotic".into()),
+        ],
+        vec![
+            Cell::Code("a|b".into()),
+            Cell::Error(f64::NAN),
+            Cell::Missing("unstable at step 12".into()),
+            Cell::Missing("fewer than three levels".into()),
+            Cell::Count(12),
+            Cell::Percent(f64::INFINITY),
+            Cell::Missing("unstable at step 12".into()),
+            Cell::Verdict(Mood::Fail, "divergent".into()),
+        ],
+        vec![
+            "<b> & *c*, \"d\"".into(),
+            Cell::Number(1e6),
+            Cell::Order(1.0),
+            Cell::Missing(String::new()),
+            Cell::Count(0),
+            Cell::Percent(0.0),
+            Cell::Seconds(3600.0),
+            Cell::Verdict(Mood::Note, "floor-limited".into()),
+        ],
+    ];
+    table.notes.push("L_2 norm over the points.".into());
+    table
+}
+
+fn written(result: Result<String, RenderError>) -> String {
+    result.unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn as_text() {
+    insta::assert_snapshot!(written(sample().to_text()));
+}
+
+#[test]
+fn as_markdown() {
+    insta::assert_snapshot!(written(sample().to_markdown()));
+}
+
+#[test]
+fn as_html() {
+    insta::assert_snapshot!(written(sample().to_html()));
+}
+
+#[test]
+fn as_csv() {
+    insta::assert_snapshot!(written(sample().to_csv()));
+}
+
+#[test]
+fn a_ragged_row_is_refused_by_every_writer() {
+    let mut table = sample();
+    table.rows[1].pop();
+    for write in [
+        Table::to_text,
+        Table::to_markdown,
+        Table::to_html,
+        Table::to_csv,
+    ] {
+        let told = write(&table)
+            .err()
+            .map(|e| e.to_string())
+            .unwrap_or_default();
+        assert_eq!(
+            told,
+            "table `Pore pressure, T_v = 0.1`: row 2 has 7 cells for 8 columns"
+        );
+    }
+}
+
+#[test]
+fn an_empty_table_is_a_header() {
+    let table = Table::new("", vec![Column::text("a")]);
+    assert_eq!(written(table.to_csv()), "a\n");
+    assert_eq!(written(table.to_markdown()), "| a |\n| :--- |\n");
+}
+
+#[test]
+fn a_terminal_is_never_steered() {
+    let mut table = Table::new("\u{1b}[31m", vec![Column::text("a\n")]);
+    table.rows.push(vec!["\u{1b}]0;x\u{7}\r\n".into()]);
+    let text = written(table.to_text());
+    assert!(
+        text.chars().all(|c| c == '\n' || !c.is_control()),
+        "{text:?}"
+    );
+}
