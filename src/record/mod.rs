@@ -5,9 +5,11 @@
 
 mod provenance;
 mod store;
+mod tidy;
 
 pub use provenance::Provenance;
 pub use store::{RecordStore, StoreError, write_whole};
+pub use tidy::tidy_csv;
 
 use crate::assess::norms::Norm;
 use crate::solver::outcome::{Counters, Failure, StepSizes};

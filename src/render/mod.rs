@@ -3,6 +3,7 @@
 pub mod chart;
 mod error;
 mod escape;
+pub mod measures;
 pub mod number;
 pub mod page;
 mod script;

@@ -102,6 +102,15 @@ impl Method {
         bare.chain(fixed).collect()
     }
 
+    /// The operators in the words of a study file: `basis+strain+pressure+recovery`.
+    pub fn choices(&self) -> String {
+        let choices = format!("{}+{}+{}", word(self.basis), word(self.strain), word(self.pressure));
+        match self.pressure {
+            PressureIntegration::Points => choices,
+            PressureIntegration::Sri => format!("{choices}+{}", word(self.recovery)),
+        }
+    }
+
     /// Whether the weights follow moving points, given the scene's own choice.
     pub fn configuration_or(&self, scene: Configuration) -> Configuration {
         self.configuration.unwrap_or(scene)
@@ -116,13 +125,8 @@ impl fmt::Display for Method {
         match (name, self.configuration) {
             (Some(name), None) => write!(out, "{name}"),
             (Some(name), Some(configuration)) => write!(out, "{name} ({})", word(configuration)),
-            (None, configuration) => {
-                write!(out, "{}+{}+{}", word(self.basis), word(self.strain), word(self.pressure))?;
-                if self.pressure == PressureIntegration::Sri {
-                    write!(out, "+{}", word(self.recovery))?;
-                }
-                configuration.map_or(Ok(()), |choice| write!(out, " ({})", word(choice)))
-            }
+            (None, None) => write!(out, "{}", self.choices()),
+            (None, Some(configuration)) => write!(out, "{} ({})", self.choices(), word(configuration)),
         }
     }
 }

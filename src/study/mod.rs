@@ -9,10 +9,12 @@ mod runner;
 mod shipped;
 mod sweep;
 
-pub use case::{Case, IntegratorKind};
+pub use case::{Case, IntegratorKind, step_label};
 pub use check::{Study, Tier};
 pub use diagnostic::{Diagnostic, StudyError};
 pub use expectation::{Axis, Band, Expectation, LevelBound, StrictFailure};
 pub use file::StudySource;
-pub use runner::{Progress, RunOptions, RunReport, Shard, TimingReport, run_case, run_study, time_study};
+pub use runner::{
+    Progress, RunError, RunOptions, RunReport, Shard, TimingReport, estimated_updates, run_case, run_study, time_study,
+};
 pub use shipped::shipped_studies;

@@ -1,0 +1,34 @@
+//! `oedometer plan`: which cases there are, with their hashes, before anything runs.
+
+use super::exit::Exit;
+use super::run::{TierArgument, load_or_shipped};
+use crate::study::estimated_updates;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Arguments of `plan`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Study files; every shipped one where none is named
+    #[arg(value_name = "STUDY.toml")]
+    studies: Vec<PathBuf>,
+    /// How much of each study
+    #[arg(long, value_enum, default_value_t = TierArgument::Full)]
+    tier: TierArgument,
+}
+
+/// Prints one line a case as CSV.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    let mut writer = csv::Writer::from_writer(std::io::stdout().lock());
+    writer.write_record(["study", "case", "estimated_point_updates", "label"])?;
+    let mut exit = Exit::NothingSelected;
+    for study in load_or_shipped(&arguments.studies)? {
+        for case in study.cases(arguments.tier.into()) {
+            exit = Exit::Pass;
+            let updates = estimated_updates(case).to_string();
+            writer.write_record([study.name.as_str(), &case.hash(), &updates, &case.label()])?;
+        }
+    }
+    writer.into_inner().map_err(|error| error.into_error())?.flush()?;
+    Ok(exit)
+}

@@ -1,0 +1,51 @@
+//! Progress of long work on standard error: a bar with an estimate on a terminal, nothing but
+//! failures elsewhere.
+
+use crate::study::Progress;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+
+/// Bar of one study.
+pub struct StudyBar {
+    bar: ProgressBar,
+    name: String,
+}
+
+impl StudyBar {
+    /// A bar for a study; hidden where standard error is no terminal.
+    pub fn new(name: &str) -> Self {
+        let bar = ProgressBar::new(0);
+        if !std::io::stderr().is_terminal() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        let style = ProgressStyle::with_template("{prefix:<24} [{bar:30}] {percent:>3} %, {eta} left, {msg}");
+        if let Ok(style) = style {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        bar.set_prefix(name.to_owned());
+        Self { bar, name: name.to_owned() }
+    }
+
+    /// Takes a word of the runner.
+    pub fn tell(&self, progress: Progress) {
+        match progress {
+            Progress::Planned { cases, resumed, work } => {
+                self.bar.set_length(work);
+                let taken_up = if resumed > 0 { format!(", {resumed} from disk") } else { String::new() };
+                self.bar.set_message(format!("{cases} cases{taken_up}"));
+            }
+            Progress::Advanced(work) => self.bar.inc(work),
+            Progress::Finished { label, failure } => {
+                if let Some(failure) = failure {
+                    let name = &self.name;
+                    self.bar.suspend(|| eprintln!("{name}: {label}: {failure}"));
+                }
+            }
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,143 @@
+//! `oedometer run`: the cases of study files, their records and one tidy CSV a study.
+
+use super::exit::{Ended, Exit};
+use super::progress::StudyBar;
+use crate::record::{RecordStore, tidy_csv, write_whole};
+use crate::study::{
+    RunOptions, RunReport, Shard, Study, StudySource, Tier, run_study, shipped_studies, time_study,
+};
+use clap::ValueEnum;
+use std::path::{Path, PathBuf};
+
+/// Folder of results where none is named.
+pub const DEFAULT_RESULTS: &str = "out";
+
+/// How much of a study, at the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TierArgument {
+    /// Seconds
+    Smoke,
+    /// What a CI runs
+    Ci,
+    /// Everything
+    Full,
+}
+
+impl From<TierArgument> for Tier {
+    fn from(argument: TierArgument) -> Self {
+        match argument {
+            TierArgument::Smoke => Self::Smoke,
+            TierArgument::Ci => Self::Ci,
+            TierArgument::Full => Self::Full,
+        }
+    }
+}
+
+/// Arguments of `run`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Study files
+    #[arg(required = true, value_name = "STUDY.toml")]
+    studies: Vec<PathBuf>,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
+    out: PathBuf,
+    /// Cases at the same time; all cores where not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
+    jobs: Option<u64>,
+    /// How much of each study
+    #[arg(long, value_enum, default_value_t = TierArgument::Full)]
+    tier: TierArgument,
+    /// Only this share of the cases, like 2/3
+    #[arg(long, value_name = "i/n")]
+    shard: Option<String>,
+    /// Take up finished records of this very program
+    #[arg(long)]
+    resume: bool,
+}
+
+/// Runs and keeps.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    // Every file is judged before any work begins.
+    let studies = load(&arguments.studies)?;
+    let options = RunOptions {
+        jobs: jobs_of(arguments.jobs),
+        tier: arguments.tier.into(),
+        shard: arguments.shard.as_deref().map(shard_of).transpose()?,
+        resume: arguments.resume,
+    };
+    let mut exit = Exit::NothingSelected;
+    for study in &studies {
+        let report = run_and_store(study, &options, &arguments.out)?;
+        if !report.records.is_empty() && exit == Exit::NothingSelected {
+            exit = Exit::Pass;
+        }
+        if report.failed().next().is_some() {
+            exit = Exit::CaseFailed;
+        }
+    }
+    if exit == Exit::NothingSelected {
+        return Err(Ended::with(exit, "no case belongs to this tier and shard"));
+    }
+    Ok(exit)
+}
+
+/// Runs a study, times it where it asks for it, and writes its CSV.
+pub fn run_and_store(study: &Study, options: &RunOptions, results: &Path) -> anyhow::Result<RunReport> {
+    let store = RecordStore::new(results, &study.name);
+    let bar = StudyBar::new(&study.name);
+    let tell = |progress| bar.tell(progress);
+    let mut report = run_study(study, options, Some(&store), &tell);
+    time_study(study, &mut report.records, Some(&store), &tell)?;
+    bar.finish();
+    if let Some(error) = report.errors.pop() {
+        return Err(error.into());
+    }
+    let table = store.folder().join(format!("{}.csv", study.name));
+    write_whole(&table, tidy_csv(&study.name, &report.records)?.as_bytes())?;
+    let failed = report.failed().count();
+    eprintln!(
+        "{}: {} cases ({} from disk, {failed} failed), {}",
+        study.name,
+        report.records.len(),
+        report.resumed,
+        table.display()
+    );
+    Ok(report)
+}
+
+/// Reads and checks study files.
+pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
+    paths
+        .iter()
+        .map(|path| {
+            let text = std::fs::read_to_string(path)
+                .map_err(|error| Ended::usage(format!("cannot read the study {}: {error}", path.display())))?;
+            Ok(Study::check(&StudySource { name: path.display().to_string(), text })?)
+        })
+        .collect()
+}
+
+/// The named studies, or every shipped one where none is named.
+pub fn load_or_shipped(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
+    if paths.is_empty() {
+        shipped_studies().iter().map(|source| Ok(Study::check(source)?)).collect()
+    } else {
+        load(paths)
+    }
+}
+
+/// Cases at the same time: what was asked for, or one a core.
+pub fn jobs_of(asked: Option<u64>) -> usize {
+    asked.and_then(|jobs| usize::try_from(jobs).ok()).unwrap_or_else(|| {
+        std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get)
+    })
+}
+
+fn shard_of(typed: &str) -> anyhow::Result<Shard> {
+    let parts = typed.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
+    match parts {
+        Some((index, count)) if (1..=count).contains(&index) => Ok(Shard { index, count }),
+        _ => Err(Ended::usage(format!("`--shard {typed}` is no share: write i/n with 1 ≤ i ≤ n, like 2/3"))),
+    }
+}

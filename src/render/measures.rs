@@ -1,0 +1,103 @@
+//! Tables of one record.
+
+use super::RenderError;
+use super::table::{Cell, Column, Table};
+use crate::assess::norms::Norm;
+use crate::record::{Quantity, Record, Sample, Status};
+use std::fmt::Write;
+
+/// Errors of a record, start checks and balances, as text.
+///
+/// # Errors
+/// If a table cannot be written.
+pub fn table_of(record: &Record) -> Result<String, RenderError> {
+    let mut text = errors_table(record).to_text()?;
+    let _ = write!(text, "\n{}", checks_table(record).to_text()?);
+    Ok(text)
+}
+
+/// One row a reference, quantity and sample; one column a time factor; L2 or relative error.
+pub fn errors_table(record: &Record) -> Table {
+    let case = &record.case;
+    let mut columns = vec![Column::text("reference"), Column::text("quantity"), Column::text("sample")];
+    columns.extend(case.time_factors.iter().map(|factor| Column::number(format!("T_v {factor}"))));
+    let mut rows = Vec::new();
+    for reference in &record.references {
+        for (quantity, sample, norm) in MEASURES {
+            let errors = case.time_factors.iter().map(|factor| {
+                match record.error(quantity, sample, norm, &reference.name, *factor) {
+                    Some(row) if norm == Norm::Relative => Cell::Percent(row.value),
+                    Some(row) => Cell::Error(row.value),
+                    None => Cell::Missing(missing_reason(record)),
+                }
+            });
+            let mut row: Vec<Cell> = vec![
+                Cell::Text(reference.name.clone()),
+                quantity.name().into(),
+                sample.name().into(),
+            ];
+            row.extend(errors);
+            rows.push(row);
+        }
+    }
+    Table {
+        title: format!("{}: {}", case.scene.name(), case.label()),
+        columns,
+        rows,
+        notes: vec![
+            "relative L2 error over the points, weighted with volume; settlement as s/s_exact − 1".to_owned(),
+            work_note(record),
+        ],
+    }
+}
+
+const MEASURES: [(Quantity, Sample, Norm); 5] = [
+    (Quantity::Pressure, Sample::Points, Norm::L2),
+    (Quantity::Pressure, Sample::Centres, Norm::L2),
+    (Quantity::EffectiveStress, Sample::Points, Norm::L2),
+    (Quantity::Displacement, Sample::Nodes, Norm::L2),
+    (Quantity::Settlement, Sample::Surface, Norm::Relative),
+];
+
+fn missing_reason(record: &Record) -> String {
+    match &record.status {
+        Status::Ok => "the exact field is zero".to_owned(),
+        Status::Failed(failure) => format!("{} at step {}", failure.kind.name(), failure.step),
+    }
+}
+
+fn work_note(record: &Record) -> String {
+    let wall: f64 = record.wall.iter().map(|sample| sample.seconds).sum();
+    format!(
+        "{} steps of at most {:.3e} s ({:.2} of the predicted critical step), {} point updates, {wall:.3} s",
+        record.counters.steps, record.step_sizes.largest, record.groups.step_over_limit, record.counters.point_updates,
+    )
+}
+
+/// Start checks, balances and dimensionless groups of a record.
+pub fn checks_table(record: &Record) -> Table {
+    let mut rows: Vec<Vec<Cell>> = Vec::new();
+    let mut add = |name: &str, value: Cell| rows.push(vec![name.into(), value]);
+    if let Some(start) = &record.start {
+        add("points at the start", Cell::Count(start.points as u64));
+        add("points that there should be", Cell::Count(start.points_expected as u64));
+        add("volume at the start, relative error", Cell::Error(start.volume_error));
+        add("undrained pressure at the start, relative error", Cell::Error(start.undrained_pressure_error));
+        add("unbalanced force at the start, over the load", Cell::Error(start.unbalanced_force));
+    }
+    if let Some(last) = record.balance.last() {
+        add("mass of solids, drift at the end", Cell::Error(last.solid_mass_drift));
+        add("water balance at the end, over the outflow", Cell::Error(last.water_imbalance));
+        add("sum of internal forces at the end, relative", Cell::Error(last.internal_force_imbalance));
+        add("(σ' − p + q)/q at the end, rms", Cell::Error(last.equilibrium_residual));
+    }
+    add("storage n E_oed/K_w", Cell::Error(record.groups.storage));
+    add("finite strain m_vl q", Cell::Error(record.groups.finite_strain));
+    add("inertia c_v/(H V)", Cell::Error(record.groups.inertia));
+    Table {
+        title: "checks and groups".to_owned(),
+        columns: vec![Column::text("what"), Column::number("value")],
+        rows,
+        notes: Vec::new(),
+    }
+}
