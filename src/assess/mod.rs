@@ -3,9 +3,16 @@
 //! Everything here is mathematics on plain numbers: nothing knows of solvers, studies or files.
 //! What has no value is returned as a named reason, never as a number that could pass a test.
 
+mod bend;
+mod cancelling;
+pub mod class;
+pub mod classify;
 pub mod floor;
+pub mod limiter;
 pub mod norms;
 pub mod orders;
 pub mod oscillation;
 pub mod series;
 pub mod two_terms;
+pub mod window;
+pub mod wording;
