@@ -5,8 +5,10 @@
 
 mod bend;
 mod cancelling;
+mod case;
 pub mod class;
 pub mod classify;
+pub mod expectation;
 pub mod floor;
 pub mod limiter;
 pub mod norms;
@@ -14,5 +16,6 @@ pub mod orders;
 pub mod oscillation;
 pub mod series;
 pub mod two_terms;
+pub mod verdict;
 pub mod window;
 pub mod wording;

@@ -1,8 +1,8 @@
 //! The class of a steadily falling error, judged on its finest window.
 
 use super::bend::{Bend, explain};
+use super::case::{Case, plain};
 use super::class::{Class, Classification};
-use super::classify::{Case, plain};
 use super::wording::{order, orders, short};
 
 /// An observed order within this of the formal one is the formal one.
@@ -126,16 +126,17 @@ fn governed(case: &Case, bend: &Bend, window: &str) -> Option<Classification> {
     let percent = 100.0 * share;
     match bend {
         Bend::Floor(_) => Some(case.limited(&format!(
-            "{window}: falling, and a floor makes up {percent:.0} % of the finest error"
+            "{window}, and a floor makes up {percent:.0} % of the finest error"
         ))),
         Bend::Lower(_) => Some(contaminated(
             format!(
-                "{window}: falling, and a term of order {} makes up {percent:.0} % of the finest error",
+                "{window}, and a term of order {} makes up {percent:.0} % of the finest error",
                 order(terms.low)
             ),
-            &terms.crossover().map_or_else(String::new, |at| {
-                format!("the term of lower order governs below size {}", short(at))
-            }),
+            &terms.crossover().map_or_else(
+                || "it governs every level".to_owned(),
+                |at| format!("the term of lower order governs below size {}", short(at)),
+            ),
         )),
         Bend::Higher(_) => None,
     }

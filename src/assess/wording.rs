@@ -7,7 +7,14 @@ pub fn short(value: f64) -> String {
         let rounded = format!("{value:.3e}").parse().unwrap_or(value);
         return format!("{rounded}");
     }
-    format!("{value:.2e}")
+    let text = format!("{value:.2e}");
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => {
+            let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
+            format!("{mantissa}e{exponent}")
+        }
+        None => text,
+    }
 }
 
 /// An order of convergence with two decimals; -0.00 is written 0.00.
@@ -39,6 +46,7 @@ mod tests {
         assert_eq!(short(1.0 / 3.0), "0.3333");
         assert_eq!(short(160.0), "160");
         assert_eq!(short(2.345_67e-7), "2.35e-7");
+        assert_eq!(short(-2e-4), "-2e-4");
         assert_eq!(short(0.0), "0");
         assert_eq!(short(f64::NAN), "NaN");
         assert_eq!(orders(&[2.0, -0.001, 1.234]), "2.00, 0.00, 1.23");
