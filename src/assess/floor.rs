@@ -109,7 +109,7 @@ fn from_terms(
             .map(|point| point.0)
             .filter(|size| fit.share(*size) <= 0.5)
     };
-    let bounds = holding().next().zip(holding().last());
+    let bounds = holding().next().zip(holding().next_back());
     fit.order_holds = bounds;
     Ok(fit)
 }

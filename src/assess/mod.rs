@@ -1,12 +1,23 @@
 //! From computed numbers to judgements: norms, oscillation, orders, floors, verdicts, cost.
 //!
-//! Everything here is mathematics on plain numbers: nothing knows of solvers, studies or files.
+//! Mathematics on plain numbers, but for `measure` and `summary`, which bring runs to numbers and
+//! records to series.
 //! What has no value is returned as a named reason, never as a number that could pass a test.
 
+mod bend;
+mod cancelling;
+mod case;
+pub mod class;
+pub mod classify;
+pub mod expectation;
 pub mod floor;
+pub mod limiter;
+pub mod measure;
 pub mod norms;
 pub mod orders;
 pub mod oscillation;
 pub mod series;
 pub mod two_terms;
-pub mod measure;
+pub mod verdict;
+pub mod window;
+pub mod wording;

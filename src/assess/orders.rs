@@ -109,12 +109,11 @@ pub(super) fn slope_of(points: &[(f64, f64)]) -> Result<SlopeFit, Undefined> {
     let residual: f64 = logs()
         .map(|(x, y)| (y - mean_y - order * (x - mean_x)).powi(2))
         .sum();
-    let half_width = match count {
-        2 => None,
-        _ => {
-            let freedom = (count - 2) as f64;
-            student_975(freedom).map(|t| t * (residual / freedom / spread).sqrt())
-        }
+    let half_width = if count > 2 {
+        let freedom = (count - 2) as f64;
+        student_975(freedom).map(|t| t * (residual / freedom / spread).sqrt())
+    } else {
+        None
     };
     let coefficient = (mean_y - order * (mean_x + first.0.ln()) + first.1.ln()).exp();
     Ok(SlopeFit {

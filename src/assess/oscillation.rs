@@ -24,7 +24,7 @@ pub struct Oscillation {
     /// where the exact profile is flat too.
     pub excess_over_peak: f64,
     /// Share of the error's energy, from 0 to 1, in wavelengths of at most four cells: the
-    /// oscillatory half of the modes of a mesh (Briggs, Henson & McCormick 2000, chapter 2).
+    /// oscillatory half of the modes of a mesh (Briggs, Henson & `McCormick` 2000, chapter 2).
     /// `None` where the error is zero.
     pub short_wave_share: Option<f64>,
 }

@@ -183,6 +183,7 @@ mod reading {
         Name(String),
     }
 
+    #[expect(clippy::ref_option, reason = "the signature that serde calls")]
     pub(super) fn serialize<S: Serializer>(
         error: &Option<f64>,
         serializer: S,

@@ -1,0 +1,151 @@
+//! A series that can be evaluated, and how a floor under it is described.
+
+use super::cancelling::CancellingFit;
+use super::class::{Class, Classification, Context, Floor};
+use super::floor::fit_floor;
+use super::limiter::{Limiter, LimiterKind, advice, identify};
+use super::orders::{WINDOW, log_ratio, slope_of};
+use super::series::{ErrorSeries, Undefined};
+use super::wording::short;
+
+/// A series that can be evaluated, with what the checks share.
+pub(super) struct Case<'a> {
+    /// Sizes and errors from coarse to fine, all positive.
+    pub(super) points: &'a [(f64, f64)],
+    /// Orders between neighbouring levels.
+    pub(super) pairs: Vec<f64>,
+    /// Least-squares order on the finest window.
+    pub(super) order: f64,
+    /// Formal order, where known.
+    pub(super) formal: Option<f64>,
+    /// What may put a floor under the errors.
+    pub(super) limiters: Vec<Limiter>,
+}
+
+/// A classification without order, floor and advice.
+pub(super) fn plain(class: Class, reason: String) -> Classification {
+    Classification {
+        class,
+        reason,
+        advice: None,
+        order: None,
+        floor: None,
+    }
+}
+
+/// A classification with advice.
+pub(super) fn advised(class: Class, reason: String, advice: &str) -> Classification {
+    Classification {
+        advice: Some(advice.to_owned()),
+        ..plain(class, reason)
+    }
+}
+
+impl<'a> Case<'a> {
+    pub(super) fn of(points: &'a [(f64, f64)], context: &Context) -> Result<Self, Undefined> {
+        let pair =
+            |pair: &[(f64, f64)]| log_ratio(pair[0].1, pair[1].1) / log_ratio(pair[0].0, pair[1].0);
+        let mut limiters = context.limiters.clone();
+        let known = |kind, name: &str, magnitude: Option<f64>| {
+            magnitude
+                .filter(|magnitude| *magnitude > 0.0)
+                .map(|magnitude| Limiter {
+                    kind,
+                    name: name.to_owned(),
+                    magnitude: Some(magnitude),
+                    order: None,
+                })
+        };
+        limiters.extend(known(
+            LimiterKind::Reference,
+            "the reference's accuracy",
+            context.reference_accuracy,
+        ));
+        limiters.extend(known(LimiterKind::RoundOff, "round-off", context.round_off));
+        let window = &points[points.len().saturating_sub(WINDOW)..];
+        Ok(Self {
+            points,
+            pairs: points.windows(2).map(pair).collect(),
+            order: slope_of(window)?.order,
+            formal: context.formal_order,
+            limiters,
+        })
+    }
+
+    pub(super) fn finest(&self) -> (f64, f64) {
+        self.points.last().copied().unwrap_or((f64::NAN, f64::NAN))
+    }
+
+    pub(super) fn coarsest(&self) -> (f64, f64) {
+        self.points.first().copied().unwrap_or((f64::NAN, f64::NAN))
+    }
+
+    /// A converging error and a floor of opposite sign that cancel at one level.
+    pub(super) fn cancelled(&self, fit: &CancellingFit) -> Classification {
+        let limiter = identify(fit.floor, &self.limiters);
+        let limits_from = self
+            .points
+            .iter()
+            .find(|(_, error)| *error <= 2.0 * fit.floor);
+        let limits_from = limits_from.map_or(self.finest().0, |point| point.0);
+        let target = 0.1 * fit.coefficient * self.finest().0.powf(fit.order);
+        let cause = limiter.map_or_else(String::new, |limiter| format!(", by {}", limiter.name));
+        Classification {
+            class: Class::FloorLimited,
+            reason: format!(
+                "the error falls, cancels near size {} and grows again to a floor of {} of opposite \
+                 sign, which limits the levels from size {} on{cause}",
+                short(fit.cancels_at),
+                short(fit.floor),
+                short(limits_from)
+            ),
+            advice: Some(advice(fit.floor, Some(target), limiter, &self.limiters)),
+            order: Some(fit.order),
+            floor: Some(Floor {
+                value: fit.floor,
+                fitted: true,
+                limits_from,
+                limiter: limiter.map(|limiter| limiter.kind),
+            }),
+        }
+    }
+
+    /// A floor-limited classification with the floor fitted, its cause and advice.
+    pub(super) fn limited(&self, reason: &str) -> Classification {
+        let series = ErrorSeries::of(self.points);
+        let fit = fit_floor(&series)
+            .ok()
+            .filter(|fit| fit.significant && fit.residual < 0.1);
+        let (size, error) = self.finest();
+        let value = fit.map_or(error, |fit| fit.floor);
+        let from = self.points.iter().find(|point| point.1 <= 2.0 * value);
+        let converging = fit.map(|fit| fit.coefficient * size.powf(fit.order));
+        let limiter = identify(value, &self.limiters);
+        let target = converging
+            .map(|part| 0.1 * part)
+            .filter(|target| *target > 0.0);
+        let limits_from = from.map_or(size, |point| point.0);
+        let cause = limiter.map_or_else(String::new, |limiter| format!(", by {}", limiter.name));
+        let height = if fit.is_some() {
+            "a floor of"
+        } else {
+            "a floor not above"
+        };
+        Classification {
+            class: Class::FloorLimited,
+            reason: format!(
+                "{reason}; {height} {} limits the levels from size {} on{cause}",
+                short(value),
+                short(limits_from)
+            ),
+            advice: Some(advice(value, target, limiter, &self.limiters)),
+            order: fit.map(|fit| fit.order),
+            floor: Some(Floor {
+                value,
+                fitted: fit.is_some(),
+                limits_from,
+                limiter: limiter.map(|limiter| limiter.kind),
+            }),
+        }
+    }
+}

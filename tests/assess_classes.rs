@@ -1,0 +1,403 @@
+//! Every series of errors gets its class, and nonsense never passes as asymptotic.
+
+use oedometer::assess::class::{Class, Classification, Context};
+use oedometer::assess::classify::classify;
+use oedometer::assess::limiter::{Limiter, LimiterKind};
+use oedometer::assess::series::{ErrorSeries, Level};
+use proptest::prelude::*;
+
+const SIZES: [f64; 6] = [
+    1.0 / 5.0,
+    1.0 / 10.0,
+    1.0 / 20.0,
+    1.0 / 40.0,
+    1.0 / 80.0,
+    1.0 / 160.0,
+];
+
+fn series(error: impl Fn(f64) -> f64) -> ErrorSeries {
+    ErrorSeries::of(&SIZES.map(|size| (size, error(size))))
+}
+
+fn listed(errors: &[f64]) -> ErrorSeries {
+    ErrorSeries::of(
+        &SIZES
+            .into_iter()
+            .zip(errors.iter().copied())
+            .collect::<Vec<_>>(),
+    )
+}
+
+fn formal(order: f64) -> Context {
+    Context {
+        formal_order: Some(order),
+        ..Context::default()
+    }
+}
+
+fn class(series: &ErrorSeries) -> [Class; 2] {
+    [None, Some(2.0)].map(|formal_order| {
+        classify(
+            series,
+            &Context {
+                formal_order,
+                ..Context::default()
+            },
+        )
+        .class
+    })
+}
+
+fn both(class: Class) -> [Class; 2] {
+    [class; 2]
+}
+
+#[test]
+fn the_four_series_of_the_issue() {
+    for context in [formal(2.0), Context::default()] {
+        let higher = classify(&series(|h| h * h + 8.0 * h.powi(3)), &context);
+        assert_eq!(higher.class, Class::Asymptotic, "{higher:?}");
+        assert!((higher.order.unwrap() - 2.096).abs() < 1e-3, "{higher:?}");
+
+        let lower = classify(&series(|h| h * h + 0.05 * h), &context);
+        assert_eq!(lower.class, Class::Contaminated, "{lower:?}");
+        assert!(lower.reason.contains("order 1.00"), "{lower:?}");
+        assert!(lower.advice.unwrap().contains("below size 0.05"));
+
+        let floored = classify(&series(|h| h * h + 2e-4), &context);
+        assert_eq!(floored.class, Class::FloorLimited, "{floored:?}");
+        let floor = floored.floor.unwrap();
+        assert!((floor.value - 2e-4).abs() < 1e-8 && floor.fitted);
+        assert_eq!(floor.limits_from, 1.0 / 80.0);
+        assert!((floored.order.unwrap() - 2.0).abs() < 1e-4);
+
+        let growing = classify(&series(|h| 1.0 / h), &context);
+        assert_eq!(growing.class, Class::Divergent, "{growing:?}");
+        assert_eq!(growing.order, None);
+    }
+}
+
+#[test]
+fn clean_series_are_asymptotic_at_any_ratio() {
+    assert_eq!(class(&series(|h| h * h)), both(Class::Asymptotic));
+    let mixed = [5.0, 8.0, 11.0, 30.0, 37.0_f64].map(|n| (1.0 / n, 3.0 / n / n));
+    let found = classify(&ErrorSeries::of(&mixed), &formal(2.0));
+    assert_eq!(found.class, Class::Asymptotic, "{found:?}");
+    assert!((found.order.unwrap() - 2.0).abs() < 1e-12);
+    // The paper's method on Terzaghi's column, as measured.
+    assert_eq!(
+        class(&listed(&[1.36e-2, 3.6e-3, 8.9e-4, 2.23e-4])),
+        both(Class::Asymptotic)
+    );
+}
+
+#[test]
+fn nonsense_is_not_evaluable() {
+    for bad in [
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        -1e-3,
+        0.0,
+        1e-310,
+    ] {
+        for place in 0..6 {
+            let mut errors = SIZES.map(|h| h * h);
+            errors[place] = bad;
+            assert_eq!(
+                class(&listed(&errors)),
+                both(Class::NotEvaluable),
+                "{bad} at {place}"
+            );
+        }
+    }
+    assert_eq!(class(&listed(&[f64::NAN; 6])), both(Class::NotEvaluable));
+    assert_eq!(class(&ErrorSeries::default()), both(Class::NotEvaluable));
+    assert_eq!(class(&listed(&[0.04])), both(Class::NotEvaluable));
+    assert_eq!(class(&listed(&[0.04, 0.01])), both(Class::NotEvaluable));
+    let close = [100.0, 110.0, 121.0, 133.0_f64].map(|n| (1.0 / n, 1.0 / n / n));
+    assert_eq!(class(&ErrorSeries::of(&close)), both(Class::NotEvaluable));
+    let same = [(0.2, 0.04), (0.1, 0.01), (0.1, 0.01), (0.05, 0.0025)];
+    assert_eq!(class(&ErrorSeries::of(&same)), both(Class::NotEvaluable));
+    let mut levels = series(|h| h * h).levels().to_vec();
+    levels[5].error = None;
+    let gap = classify(&ErrorSeries::new(levels), &Context::default());
+    assert_eq!(gap.class, Class::NotEvaluable);
+    assert!(gap.reason.contains("missing"), "{gap:?}");
+    for size in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+        let sizes = [(0.2, 0.04), (0.1, 0.01), (0.05, 0.0025), (size, 0.1)];
+        assert_eq!(class(&ErrorSeries::of(&sizes)), both(Class::NotEvaluable));
+    }
+}
+
+#[test]
+fn round_off_is_exact_and_not_an_order() {
+    assert_eq!(class(&listed(&[0.0; 4])), both(Class::Exact));
+    assert_eq!(class(&listed(&[1e-310; 4])), both(Class::Exact));
+    let noise = listed(&[3e-16, 1e-16, 2e-16, 5e-17]);
+    let context = Context {
+        round_off: Some(1e-14),
+        ..Context::default()
+    };
+    assert_eq!(classify(&noise, &context).class, Class::Exact);
+    let reaching = listed(&[1e-6, 1e-9, 1e-12, 1e-15]);
+    let found = classify(&reaching, &context);
+    assert_eq!(found.class, Class::FloorLimited, "{found:?}");
+    assert_eq!(found.floor.unwrap().limiter, Some(LimiterKind::RoundOff));
+}
+
+#[test]
+fn standing_still_is_a_floor() {
+    assert_eq!(class(&listed(&[0.3; 6])), both(Class::FloorLimited));
+    assert_eq!(class(&listed(&[0.3; 3])), both(Class::FloorLimited));
+    assert_eq!(
+        class(&listed(&[4e-2, 1e-2, 2.7e-3, 2.2e-3])),
+        both(Class::FloorLimited)
+    );
+    let noisy = listed(&[4e-2, 1e-2, 2.6e-3, 2.1e-3, 2.5e-3, 2.2e-3]);
+    assert_eq!(class(&noisy), both(Class::FloorLimited));
+    assert_eq!(class(&series(|h| h.powf(0.2))), both(Class::FloorLimited));
+    // A floor of opposite sign: the error dips at 1/80 and comes up again to 2e-4.
+    let dip = classify(&series(|h| (h * h - 2e-4).abs()), &formal(2.0));
+    assert_eq!(dip.class, Class::FloorLimited, "{dip:?}");
+    assert!((dip.floor.unwrap().value - 2e-4).abs() < 1e-9);
+}
+
+#[test]
+fn growing_and_oscillating_are_told_apart() {
+    assert_eq!(class(&listed(&[1.0, 2.0, 4.0])), both(Class::Divergent));
+    assert_eq!(
+        class(&listed(&[4e-2, 1e-2, 2.5e-3, 6e-3, 2e-2])),
+        both(Class::Divergent)
+    );
+    assert_eq!(
+        class(&listed(&[1.0, 1.1, 1.2, 1.3, 1.4, 1.5])),
+        both(Class::Divergent)
+    );
+    assert_eq!(
+        class(&listed(&[1.0, 0.5, 1.0, 0.5, 1.0, 0.5])),
+        both(Class::Oscillatory)
+    );
+    assert_eq!(
+        class(&listed(&[1.0, 0.3, 0.6, 0.1, 0.2])),
+        both(Class::Oscillatory)
+    );
+    // Falling all the way, with an order that jumps: 0.4, 3.6, 0.4, 3.6, …
+    let jumping = [1.5, 0.5, 1.5, 0.5, 1.5, 0.5];
+    let errors: Vec<_> = SIZES
+        .iter()
+        .zip(jumping)
+        .map(|(h, factor)| factor * h * h)
+        .collect();
+    assert_eq!(class(&listed(&errors)), both(Class::Oscillatory));
+}
+
+#[test]
+fn orders_off_the_formal_one_have_their_names() {
+    let with_two = |error: fn(f64) -> f64| classify(&series(error), &formal(2.0));
+    assert_eq!(with_two(|h| h).class, Class::Contaminated);
+    assert_eq!(with_two(|h| h.powi(3)).class, Class::Superconvergent);
+    assert_eq!(
+        with_two(|h| h * h + 80.0 * h.powi(3)).class,
+        Class::PreAsymptotic
+    );
+    assert_eq!(
+        with_two(|h| h * h + 800.0 * h.powi(3)).class,
+        Class::PreAsymptotic
+    );
+    // Rising towards 2 from below, as where the coarse levels do not resolve the solution.
+    assert_eq!(
+        with_two(|h| h * h / (1.0 + 9000.0 * h * h)).class,
+        Class::PreAsymptotic
+    );
+    let absurd = classify(&series(|h| h.powf(75.98)), &Context::default());
+    assert_eq!(absurd.class, Class::Superconvergent);
+    assert_eq!(
+        classify(&series(|h| h), &Context::default()).class,
+        Class::Asymptotic
+    );
+}
+
+#[test]
+fn a_floor_is_put_down_to_what_fits_it_with_advice() {
+    let limiter = |kind, name: &str, magnitude| Limiter {
+        kind,
+        name: name.to_owned(),
+        magnitude,
+        order: None,
+    };
+    let step = limiter(LimiterKind::Step, "the time step", Some(2.2e-4));
+    let model = limiter(LimiterKind::Model, "the water's storage", Some(1.4e-4));
+    let floored = |floor: f64, limiters: &[Limiter]| {
+        let context = Context {
+            limiters: limiters.to_vec(),
+            ..formal(2.0)
+        };
+        classify(&series(|h| h * h + floor), &context)
+    };
+    let found = floored(2e-4, &[step.clone(), model.clone()]);
+    assert_eq!(
+        found.floor.clone().unwrap().limiter,
+        Some(LimiterKind::Step),
+        "{found:?}"
+    );
+    assert_eq!(found.advice.unwrap(), "lower the time step by 64");
+    let found = floored(1.4e-4, &[step.clone(), model]);
+    assert_eq!(
+        found.floor.clone().unwrap().limiter,
+        Some(LimiterKind::Model)
+    );
+    assert!(found.advice.unwrap().contains("its own equations"));
+    let found = floored(1e-2, &[step]);
+    assert_eq!(found.floor.unwrap().limiter, None);
+}
+
+#[test]
+fn a_poor_reference_is_no_evidence() {
+    let context = |accuracy| Context {
+        reference_accuracy: Some(accuracy),
+        ..formal(2.0)
+    };
+    let clean = series(|h| h * h);
+    assert_eq!(classify(&clean, &context(1e-7)).class, Class::Asymptotic);
+    assert_eq!(classify(&clean, &context(0.0)).class, Class::Asymptotic);
+    let poor = classify(&clean, &context(2e-5));
+    assert_eq!(poor.class, Class::NotEvaluable, "{poor:?}");
+    let floored = classify(&series(|h| h * h + 2e-4), &context(1.9e-4));
+    assert_eq!(floored.floor.unwrap().limiter, Some(LimiterKind::Reference));
+}
+
+#[test]
+fn a_context_of_nonsense_does_not_pass() {
+    let clean = series(|h| h * h);
+    for bad in [f64::NAN, f64::INFINITY, -1.0] {
+        let contexts = [
+            Context {
+                formal_order: Some(bad),
+                ..Context::default()
+            },
+            Context {
+                round_off: Some(bad),
+                ..Context::default()
+            },
+            Context {
+                reference_accuracy: Some(bad),
+                ..Context::default()
+            },
+        ];
+        for context in contexts {
+            assert_eq!(
+                classify(&clean, &context).class,
+                Class::NotEvaluable,
+                "{context:?}"
+            );
+        }
+    }
+}
+
+fn any_error() -> impl Strategy<Value = Option<f64>> {
+    let nonsense = vec![0.0, f64::NAN, f64::INFINITY, 1e-310, -1.0];
+    prop_oneof![
+        16 => (-12.0..2.0_f64).prop_map(|log| Some(log.exp())),
+        2 => any::<f64>().prop_map(Some),
+        1 => Just(None),
+        1 => prop::sample::select(nonsense).prop_map(Some),
+    ]
+}
+
+fn never_wrong(found: &Classification, levels: &[Level]) -> Result<(), TestCaseError> {
+    prop_assert!(!found.reason.is_empty());
+    if found.class == Class::Asymptotic {
+        // Counted anew, apart from the code: steady positive orders on sound finest levels.
+        let order = |pair: &[Level]| {
+            let (a, b) = (pair[0].error.unwrap(), pair[1].error.unwrap());
+            (a.ln() - b.ln()) / (pair[0].size / pair[1].size).ln()
+        };
+        let pairs: Vec<_> = levels.windows(2).map(order).collect();
+        let (coarse, fine) = (pairs[pairs.len() - 2], pairs[pairs.len() - 1]);
+        prop_assert!(levels.iter().all(|level| level.error.unwrap().is_normal()));
+        prop_assert!(
+            (coarse - fine).abs() <= 0.2501 && fine > 0.29,
+            "{:?} {:?}",
+            found,
+            pairs
+        );
+    }
+    if let Some(order) = found.order {
+        prop_assert!(order.is_finite());
+        let without = [
+            Class::NotEvaluable,
+            Class::Exact,
+            Class::Divergent,
+            Class::Oscillatory,
+        ];
+        prop_assert!(!without.contains(&found.class));
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #[test]
+    fn any_numbers_get_a_class_and_none_passes_wrongly(
+        errors in prop::collection::vec(any_error(), 0..7),
+        ratios in prop::collection::vec(1.0..4.0_f64, 7),
+        formal_order in prop::option::of(0.5..4.0_f64),
+        round_off in prop::option::of(Just(1e-13)),
+    ) {
+        let mut size = 1.0;
+        let levels: Vec<_> = errors.iter().zip(&ratios).map(|(error, ratio)| {
+            size /= ratio;
+            Level { size, error: *error }
+        }).collect();
+        let context = Context { formal_order, round_off, ..Context::default() };
+        let series = ErrorSeries::new(levels);
+        never_wrong(&classify(&series, &context), series.levels())?;
+    }
+
+    #[test]
+    fn nearly_steady_series_never_pass_wrongly(
+        slopes in prop::collection::vec(-0.5..3.0_f64, 2..6),
+        formal_order in prop::option::of(0.5..3.0_f64),
+    ) {
+        let mut error = 1.0;
+        let mut points = vec![(SIZES[0], error)];
+        for (slope, size) in slopes.iter().zip(&SIZES[1..]) {
+            error *= 0.5_f64.powf(*slope);
+            points.push((*size, error));
+        }
+        let context = Context { formal_order, ..Context::default() };
+        let series = ErrorSeries::of(&points);
+        never_wrong(&classify(&series, &context), series.levels())?;
+    }
+
+    #[test]
+    fn scaling_errors_or_sizes_leaves_the_class(
+        logs in prop::collection::vec(-3.0..3.0_f64, 3..7),
+        slope in -1.0..4.0_f64,
+        noise in 0.0..0.3_f64,
+        factor in -20.0..20.0_f64,
+        formal_order in prop::option::of(0.5..4.0_f64),
+    ) {
+        let points: Vec<_> = logs.iter().zip(SIZES)
+            .map(|(log, h)| (h, h.powf(slope) * (noise * log).exp())).collect();
+        let context = Context { formal_order, ..Context::default() };
+        let k = factor.exp();
+        let plain = classify(&ErrorSeries::of(&points), &context).class;
+        let errors: Vec<_> = points.iter().map(|(h, e)| (*h, k * e)).collect();
+        let meshes: Vec<_> = points.iter().map(|(h, e)| (k * h, *e)).collect();
+        prop_assert_eq!(classify(&ErrorSeries::of(&errors), &context).class, plain);
+        prop_assert_eq!(classify(&ErrorSeries::of(&meshes), &context).class, plain);
+    }
+
+    #[test]
+    fn power_laws_of_the_formal_order_are_asymptotic(
+        p in 0.5..5.0_f64, c in -20.0..20.0_f64, noise in prop::collection::vec(-1.0..1.0_f64, 6),
+    ) {
+        // 1 % of noise is 0.02/ln 2 = 0.03 in a pair order at most.
+        let points: Vec<_> = SIZES.iter().zip(&noise)
+            .map(|(h, noise)| (*h, c.exp() * h.powf(p) * (1.0 + 0.01 * noise))).collect();
+        let found = classify(&ErrorSeries::of(&points), &formal(p));
+        prop_assert_eq!(found.class, Class::Asymptotic, "{:?}", found);
+    }
+}
