@@ -265,16 +265,19 @@ fn crowd() -> Chart {
             "relative L_∞ error of the effective vertical stress σ'_yy at the cell centres (–)",
         ),
     );
-    for i in 0..14 {
-        let name = format!("TL-{}-patch-with-long-name-{i}", METHODS[i % 5]);
-        let p = 1.0 + 0.25 * i as f64;
+    for i in 0..14_u8 {
+        let name = format!(
+            "TL-{}-patch-with-long-name-{i}",
+            METHODS[usize::from(i % 5)]
+        );
+        let p = 1.0 + 0.25 * f64::from(i);
         let points = (0..6)
             .map(|k| 2f64.powi(-2 * k))
-            .map(|h| (h, 10f64.powi(2 - i as i32 / 3) * h.powf(p)));
+            .map(|h| (h, 10f64.powi(2 - i32::from(i) / 3) * h.powf(p)));
         chart.series.push(Series::new(name, points.collect()));
     }
-    for slope in [1.0, 2.5, 4.0] {
-        let place = Place::Beside(chart.series[(slope as usize) * 3].name.clone());
+    for (i, slope) in [(3, 1.0), (6, 2.5), (12, 4.0)] {
+        let place = Place::Beside(chart.series[i].name.clone());
         chart.triangles.push(SlopeTriangle { slope, place });
     }
     chart.rules.push(Rule {
