@@ -1,7 +1,7 @@
 //! Text with subscripts and superscripts, so that `T_v`, `10⁻³` and `m²` read well in every font.
 //!
 //! A single letter, an underscore and letters or digits is a symbol with a subscript (`K_w`,
-//! `E_oed`, `L_∞`); `points_per_cell` is a name and stays as it is. Unicode superscripts and
+//! `Δt_crit`, `L_∞`); `points_per_cell` is a name and stays as it is. Unicode superscripts and
 //! subscripts are taken apart, because few fonts hold all of them.
 
 /// Where a piece of text stands.
@@ -26,11 +26,13 @@ pub(crate) fn runs(text: &str) -> Vec<Run> {
     let mut i = 0;
     while i < chars.len() {
         let c = chars[i];
-        if let Some(end) = subscript_end(&chars, i) {
-            push(&mut out, Level::Base, c);
-            for &s in &chars[i + 2..end] {
-                push(&mut out, Level::Sub, s);
-            }
+        if let Some((line, end)) = subscript_at(&chars, i) {
+            chars[i..line]
+                .iter()
+                .for_each(|&c| push(&mut out, Level::Base, c));
+            chars[line + 1..end]
+                .iter()
+                .for_each(|&c| push(&mut out, Level::Sub, c));
             i = end;
             continue;
         }
@@ -61,15 +63,27 @@ fn push(out: &mut Vec<Run>, level: Level, c: char) {
     }
 }
 
-/// The end of a subscript that starts with the symbol at `i`.
-fn subscript_end(chars: &[char], i: usize) -> Option<usize> {
-    let alone = i == 0 || !(chars[i - 1].is_alphanumeric() || chars[i - 1] == '_');
-    if !alone || !chars[i].is_alphabetic() || chars.get(i + 1) != Some(&'_') {
+/// Where the underscore of a symbol at `i` stands, and where its subscript ends.
+fn subscript_at(chars: &[char], i: usize) -> Option<(usize, usize)> {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    // A difference is a symbol too.
+    let start = if i > 0 && chars[i - 1] == 'Δ' {
+        i - 1
+    } else {
+        i
+    };
+    let alone = start == 0 || !is_word(chars[start - 1]);
+    let prime = usize::from(chars.get(i + 1) == Some(&'\''));
+    let line = i + 1 + prime;
+    if !alone || !chars[i].is_alphabetic() || chars.get(line) != Some(&'_') {
         return None;
     }
-    let tail = chars[i + 2..].iter().take_while(|&&c| belongs(c)).count();
-    let end = i + 2 + tail;
-    (tail > 0 && chars.get(end) != Some(&'_')).then_some(end)
+    let tail = chars[line + 1..]
+        .iter()
+        .take_while(|&&c| belongs(c))
+        .count();
+    let end = line + 1 + tail;
+    (tail > 0 && chars.get(end) != Some(&'_')).then_some((line, end))
 }
 
 fn belongs(c: char) -> bool {
@@ -191,6 +205,7 @@ mod tests {
         assert_eq!(spelled("L_∞"), "L<∞>");
         assert_eq!(spelled("x_"), "x_");
         assert_eq!(spelled("p_exact²"), "p<exact>^2^");
+        assert_eq!(spelled("Δt_crit, σ'_yy"), "Δt<crit>, σ'<yy>");
     }
 
     #[test]

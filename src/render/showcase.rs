@@ -138,7 +138,7 @@ fn the_showcase_is_written() {
     let html = render_html(&page).unwrap_or_else(|e| panic!("{e}"));
     let markdown = render_markdown(&page).unwrap_or_else(|e| panic!("{e}"));
     let drawn = figures(&page).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(drawn.len(), 8);
+    assert_eq!(drawn.len(), 10);
     write("index.html", &html).unwrap_or_else(|e| panic!("{e}"));
     write("index.md", &markdown).unwrap_or_else(|e| panic!("{e}"));
     for (name, svg) in drawn {

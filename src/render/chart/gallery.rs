@@ -256,8 +256,75 @@ pub(super) fn nothing() -> Chart {
     .with(series)
 }
 
+/// More than a figure should hold, with long words everywhere.
+fn crowd() -> Chart {
+    let mut chart = Chart::new(
+        "Everything at once: fourteen methods with long names, over sixteen decades of error, so that a title needs two lines and the legend all of its room",
+        Axis::log10("time step over the predicted limit of the explicit scheme, Δt/Δt_crit (–)"),
+        Axis::log10(
+            "relative L_∞ error of the effective vertical stress σ'_yy at the cell centres (–)",
+        ),
+    );
+    for i in 0..14_u8 {
+        let name = format!(
+            "TL-{}-patch-with-long-name-{i}",
+            METHODS[usize::from(i % 5)]
+        );
+        let p = 1.0 + 0.25 * f64::from(i);
+        let points = (0..6)
+            .map(|k| 2f64.powi(-2 * k))
+            .map(|h| (h, 10f64.powi(2 - i32::from(i) / 3) * h.powf(p)));
+        chart.series.push(Series::new(name, points.collect()));
+    }
+    for (i, slope) in [(3, 1.0), (6, 2.5), (12, 4.0)] {
+        let place = Place::Beside(chart.series[i].name.clone());
+        chart.triangles.push(SlopeTriangle { slope, place });
+    }
+    chart.rules.push(Rule {
+        axis: Direction::X,
+        at: 0.5,
+        label: "half the limit".into(),
+    });
+    chart.annotations.push(Annotation {
+        at: (1e-2, 1e-6),
+        text: "round-off".into(),
+    });
+    chart.notes.push("A note of the caller's own.".into());
+    chart
+}
+
+/// A slender body with units of the same length, and a note at its top.
+fn column() -> Chart {
+    let y_edges: Vec<f64> = steps(20).collect();
+    let values = (0..20)
+        .map(|i| pressure(1.0 - (f64::from(i) + 0.5) / 20.0, 0.1) * 2e5)
+        .collect();
+    let mut chart = Chart::new(
+        "Pressure in the column",
+        Axis::linear("x (m)"),
+        Axis::linear("y (m)"),
+    );
+    chart.field = Some(Field {
+        label: "p (Pa)".into(),
+        x_edges: vec![0.0, 0.1],
+        y_edges,
+        values,
+        colours: Colours::Sequential,
+        scale: Scale::Linear,
+        range: Range::Fixed(0.0, 2e5),
+    });
+    chart.size = Size {
+        width: 320.0,
+        plot_height: 360.0,
+        equal_units: true,
+    };
+    chart
+}
+
 pub(in crate::render) fn gallery() -> Vec<(&'static str, Chart)> {
     vec![
+        ("crowd", crowd()),
+        ("column", column()),
         ("convergence", convergence()),
         ("isochrones", isochrones()),
         ("degree", degree()),

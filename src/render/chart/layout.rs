@@ -148,8 +148,19 @@ pub(super) fn lay_out(chart: &Chart, legend: &Legend, notes: &[String]) -> Layou
         Bar { frame, edge }
     });
     let y = y_edge(plot_height);
+    // A slender body leaves room that nobody needs.
+    let lines = [(TITLE * 1.05, &title), (SMALL, &subtitle), (NOTE, &notes)];
+    let words = lines
+        .into_iter()
+        .flat_map(|(font, lines)| lines.iter().map(move |l| font * width(l)));
+    let needed = words.fold(plot.right + right - PAD, |most, w| most.max(PAD + w)) + PAD;
+    let slender = chart.size.equal_units && side != Side::Below;
     Layout {
-        width: wide,
+        width: if slender {
+            needed.min(wide).ceil()
+        } else {
+            wide
+        },
         height: height.ceil(),
         plot,
         x,

@@ -119,12 +119,19 @@ impl Legend {
             .sum()
     }
 
-    /// Places of the entries in rows of at most `room` pixels, and the height of all rows.
+    /// Places of the entries within `room` pixels, in columns if there is room for two, and the
+    /// height of all rows.
     fn rows(&self, room: f64) -> (Vec<Px>, f64) {
+        let column = self.column_width();
+        let even = 2.0 * column + BETWEEN <= room;
         let (mut x, mut y, mut tall) = (0.0, 0.0, 0.0_f64);
         let mut places = Vec::new();
         for (_, lines) in &self.entries {
-            let wide = Self::entry_width(lines);
+            let wide = if even {
+                column
+            } else {
+                Self::entry_width(lines)
+            };
             if x > 0.0 && x + wide > room {
                 (x, y, tall) = (0.0, y + tall, 0.0);
             }

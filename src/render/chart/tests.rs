@@ -130,3 +130,118 @@ fn hostile_descriptions_still_make_a_figure() {
         assert!(svg(&field).ends_with("</svg>\n"));
     }
 }
+
+/// The value of an attribute of the element that `tag` opens.
+fn attribute(tag: &str, name: &str) -> Option<String> {
+    let (_, after) = tag.split_once(&format!(" {name}=\""))?;
+    Some(after.split_once('"')?.0.to_owned())
+}
+
+fn number(tag: &str, name: &str) -> f64 {
+    attribute(tag, name)
+        .and_then(|v| v.parse().ok())
+        .unwrap_or_else(|| panic!("{name} in {tag}"))
+}
+
+fn without_tags(text: &str) -> String {
+    let mut out = String::new();
+    let mut inside = false;
+    for c in text.chars() {
+        match c {
+            '<' => inside = true,
+            '>' => inside = false,
+            c if !inside => out.push(c),
+            _ => {}
+        }
+    }
+    out
+}
+
+#[test]
+fn no_text_is_clipped() {
+    for (name, chart) in gallery() {
+        let text = svg(&chart);
+        let (wide, high) = (
+            10.0 * number(&text, "width"),
+            10.0 * number(&text, "height"),
+        );
+        let mut seen = 0;
+        for line in text.lines().filter(|l| l.contains("<text ")) {
+            let (tag, words) = line.split_once('>').unwrap_or_else(|| panic!("{line}"));
+            let length =
+                number(tag, "font-size") * crate::render::script::width(&without_tags(words));
+            let share = match attribute(tag, "text-anchor").as_deref() {
+                Some("middle") => 0.5,
+                Some("end") => 1.0,
+                _ => 0.0,
+            };
+            let (x, y) = (number(tag, "x"), number(tag, "y"));
+            if tag.contains("rotate(270") {
+                assert!(
+                    y - length / 2.0 > 0.0 && y + length / 2.0 < high,
+                    "{name}: {line}"
+                );
+            } else {
+                // The estimate of a bold title is tight, and the widths are upper bounds.
+                assert!(x - share * length > -10.0, "{name}: {line}");
+                assert!(x + (1.0 - share) * length < wide + 10.0, "{name}: {line}");
+                assert!(y > 0.0 && y < high, "{name}: {line}");
+            }
+            seen += 1;
+        }
+        assert!(seen > 5, "{name}: {seen}");
+    }
+}
+
+#[test]
+fn theory_lies_above_other_lines_and_beneath_markers() {
+    let chart = Chart::new("t", Axis::linear("x"), Axis::linear("y"))
+        .with(Series::theory("exact", vec![(0.0, 0.0), (1.0, 1.0)]))
+        .with(Series::new("a", vec![(0.0, 0.1), (1.0, 0.9)]));
+    let text = svg(&chart);
+    let line = |colour: &str| {
+        text.find(&format!("<polyline fill=\"none\" stroke=\"{colour}\""))
+            .unwrap_or(0)
+    };
+    let marker = text.find("<circle").unwrap_or(0);
+    assert!(
+        0 < line("#0072B2") && line("#0072B2") < line("#1A1A1A") && line("#1A1A1A") < marker,
+        "{text}"
+    );
+}
+
+#[test]
+fn depth_runs_downwards() {
+    let rows = |axis: Axis| {
+        let points = vec![(0.0, 0.0), (1.0, 1.0)];
+        let series = Series::new("a", points).style(Style::Markers);
+        let text = svg(&Chart::new("t", Axis::linear("x"), axis).with(series));
+        let discs = text
+            .lines()
+            .filter(|l| l.starts_with("<circle") && l.contains("#0072B2"));
+        discs.map(|l| number(l, "cy")).collect::<Vec<_>>()
+    };
+    let (up, down) = (
+        rows(Axis::linear("y")),
+        rows(Axis::linear("depth").inverted()),
+    );
+    assert!(up[0] > up[1], "{up:?}");
+    assert!(down[0] < down[1], "{down:?}");
+}
+
+#[test]
+fn the_first_row_of_a_field_is_the_lowest() {
+    let mut chart = pressure_field();
+    if let Some(field) = &mut chart.field {
+        (field.x_edges, field.y_edges) = (vec![0.0, 1.0], vec![0.0, 1.0, 2.0]);
+        (field.values, field.colours) = (vec![0.0, 1.0], Colours::Sequential);
+    }
+    let text = svg(&chart);
+    let cell = |colour: &str| {
+        let line = text
+            .lines()
+            .find(|l| l.starts_with("<rect") && l.contains(colour));
+        number(line.unwrap_or_else(|| panic!("{colour}")), "y")
+    };
+    assert!(cell("#440154") > cell("#FDE725"));
+}

@@ -138,3 +138,41 @@ fn beside(at: Px, slope: f64, layout: &Layout, distances: &[f64]) -> Vec<(Triang
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::chart::layout::lay_out;
+    use crate::render::chart::legend::Legend;
+    use crate::render::chart::{Axis, Series};
+
+    #[test]
+    fn the_slanted_side_has_the_slope_it_is_named_after() {
+        let points = vec![(1e-3, 1e-5), (1e-1, 3e-2)];
+        for (axis, sign) in [(Axis::log10("h"), 1.0), (Axis::log10("h").inverted(), -1.0)] {
+            let chart =
+                Chart::new("", axis, Axis::log10("e")).with(Series::new("a", points.clone()));
+            let layout = lay_out(&chart, &Legend::of(&chart, &[], &[]), &[]);
+            let decades = |r: &Ruler, from: f64, to: f64| {
+                (to - from) / (r.to - r.from) * (r.span.high / r.span.low).log10()
+            };
+            for slope in [1.0, 2.0, -1.5, 4.0] {
+                for (t, _) in beside((400.0, 200.0), slope, &layout, &[16.0, 30.0]) {
+                    let [a, corner, c] = t.corners;
+                    let x = decades(&layout.x.ruler, a.0, c.0);
+                    let y = decades(&layout.y.ruler, a.1, c.1);
+                    assert!((y / x - slope).abs() < 1e-9, "{slope} {x} {y}");
+                    assert!(x * sign > 0.0);
+                    let legs = (
+                        corner.0 == a.0 || corner.0 == c.0,
+                        corner.1 == a.1 || corner.1 == c.1,
+                    );
+                    assert_eq!(legs, (true, true));
+                    // The slanted side is the one that faces the curve.
+                    let away = (t.rise.0 - 400.0).hypot(t.rise.1 - 200.0);
+                    assert!(away > 5.0);
+                }
+            }
+        }
+    }
+}
