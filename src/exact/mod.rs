@@ -9,6 +9,7 @@
 pub mod consolidation;
 mod error;
 mod parameters;
+mod quadrature;
 pub mod reference;
 pub mod single_mode;
 pub mod terzaghi;
