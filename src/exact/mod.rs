@@ -7,6 +7,7 @@
 //! [`reference::Reference`] is the one door for the rest of the crate.
 
 pub mod consolidation;
+pub mod dynamic_column;
 mod error;
 mod parameters;
 mod quadrature;
