@@ -308,9 +308,9 @@ mod tests {
                 break;
             }
             if waves(middle) == 1 {
-                over = middle
+                over = middle;
             } else {
-                under = middle
+                under = middle;
             }
         }
         let start = InitialState {
