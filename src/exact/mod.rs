@@ -7,8 +7,10 @@
 //! [`reference::Reference`] is the one door for the rest of the crate.
 
 pub mod consolidation;
+pub mod dynamic_column;
 mod error;
 mod parameters;
+mod quadrature;
 pub mod reference;
 pub mod single_mode;
 pub mod terzaghi;

@@ -3,6 +3,7 @@
 use core::fmt;
 use core::str::FromStr;
 
+use super::dynamic_column::{DynamicColumn, Start};
 use super::error::ExactError;
 use super::parameters::ColumnParameters;
 use super::single_mode::SingleMode;
@@ -20,15 +21,21 @@ pub enum ReferenceKind {
     SingleMode,
     /// Large strain after Xie & Leo, with incompressible water.
     XieLeo,
+    /// Terzaghi's column with compressible water and the inertia of both phases, step load.
+    DynamicColumn,
+    /// The slowest mode with compressible water and the inertia of both phases.
+    DynamicSingleMode,
 }
 
 impl ReferenceKind {
     /// All kinds, in the order of the documentation.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 6] = [
         Self::Terzaghi,
         Self::TerzaghiIncompressible,
         Self::SingleMode,
         Self::XieLeo,
+        Self::DynamicColumn,
+        Self::DynamicSingleMode,
     ];
 
     /// Name in study files and tables.
@@ -38,6 +45,8 @@ impl ReferenceKind {
             Self::TerzaghiIncompressible => "terzaghi-incompressible",
             Self::SingleMode => "single-mode",
             Self::XieLeo => "xie-leo",
+            Self::DynamicColumn => "dynamic-column",
+            Self::DynamicSingleMode => "dynamic-single-mode",
         }
     }
 }
@@ -93,6 +102,7 @@ enum Solution {
     Terzaghi(Terzaghi),
     SingleMode(SingleMode),
     XieLeo(XieLeo),
+    Dynamic(DynamicColumn),
 }
 
 /// One `match` for all that every solution answers.
@@ -102,6 +112,7 @@ macro_rules! ask {
             Solution::Terzaghi($solution) => $answer,
             Solution::SingleMode($solution) => $answer,
             Solution::XieLeo($solution) => $answer,
+            Solution::Dynamic($solution) => $answer,
         }
     };
 }
@@ -130,6 +141,12 @@ impl Reference {
                 Solution::SingleMode(SingleMode::compressible(parameters)?)
             }
             ReferenceKind::XieLeo => Solution::XieLeo(XieLeo::new(parameters)?),
+            ReferenceKind::DynamicColumn => {
+                Solution::Dynamic(DynamicColumn::new(parameters, Start::Step, time_factors)?)
+            }
+            ReferenceKind::DynamicSingleMode => {
+                Solution::Dynamic(DynamicColumn::new(parameters, Start::Mode, time_factors)?)
+            }
         };
         Ok(Self { kind, solution })
     }

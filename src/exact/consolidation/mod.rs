@@ -17,6 +17,7 @@ mod inverse;
 mod series;
 
 pub use inverse::time_factor_for_degree;
+pub use series::eigenvalue;
 
 use super::error::{ExactError, checked_depth, checked_time_factor};
 

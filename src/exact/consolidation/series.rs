@@ -7,7 +7,7 @@ use super::SeriesValue;
 /// Terms below this share of the first are left out: a quarter of `f64`'s round-off.
 const RELATIVE_TAIL: f64 = 2.8e-17;
 
-/// `M_j = (j + ½)π`.
+/// Eigenvalue `M_j = (j + ½)π` of the column drained at one end.
 pub fn eigenvalue(mode: usize) -> f64 {
     (mode as f64 + 0.5) * PI
 }

@@ -1,0 +1,315 @@
+//! The column with inertia of both phases, exact.
+
+mod modes;
+mod quartic;
+mod steady;
+
+use std::borrow::Cow;
+
+use super::consolidation::eigenvalue;
+use super::error::{ExactError, checked_depth, checked_time_factor, positive};
+use super::parameters::ColumnParameters;
+use super::reference::{Accuracy, FieldValues};
+use super::single_mode::PhaseVelocities;
+use modes::{Amplitude, Drive, InitialState, Mode};
+use steady::{Steady, steady};
+
+/// More modes are not summed: beyond, a wave front is still sharp and the sum's tail says so.
+const MOST_MODES: usize = 4096;
+/// Modes below this share of the load are left out.
+const RELATIVE_TAIL: f64 = 1e-18;
+
+/// How the column is set in motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Start {
+    /// The whole load at `t = 0`: a discontinuous wave front.
+    Step,
+    /// A load that grows linearly.
+    Ramp {
+        /// Time until the whole load acts, s.
+        duration: f64,
+    },
+    /// No load; let go from `p = σ' = p_0 sin(M_0 ζ)` with the velocities that
+    /// [`SingleMode::velocities`](super::single_mode::SingleMode::velocities) has at `t = 0`.
+    Mode,
+}
+
+/// Linear v–w column: fixed base, drained and loaded top (theory after Zienkiewicz et al. 1980).
+///
+/// ```text
+/// (1−n) ρ_s ü + d (u̇ − U̇_w) = [E_oed + Q(1−n)²] u'' + Qn(1−n) U_w''
+///     n ρ_w Ü_w − d (u̇ − U̇_w) = Qn(1−n) u'' + Qn² U_w''              d = n² γ_w/k
+/// p = −Q [(1−n) u' + n U_w']        σ' = E_oed u'
+/// ```
+///
+/// The departure from the final state `u = −(q/E_oed) y`, `(1−n) u + n U_w = 0`, expands in
+/// `sin(M_j y/H)`; every mode is a damped oscillator of two degrees of freedom, solved by the
+/// residues of its transform.
+#[derive(Clone, Debug)]
+pub struct DynamicColumn {
+    parameters: ColumnParameters,
+    start: Start,
+    /// Modal coefficients at the times that were asked for in advance.
+    prepared: Vec<Snapshot>,
+}
+
+/// Modal coefficients of the departure at one time.
+#[derive(Clone, Debug)]
+struct Snapshot {
+    time_factor: f64,
+    amplitudes: Vec<Amplitude>,
+    /// Bound on the omitted modes' pressure and stress, Pa.
+    tail: f64,
+}
+
+/// Both phases' fields at one depth and time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DynamicFields {
+    /// Pressure, effective stress and displacement of the solid.
+    pub solid: FieldValues,
+    /// Displacement of the water, upward positive, m.
+    pub water_displacement: f64,
+    /// Velocities of both phases.
+    pub velocities: PhaseVelocities,
+}
+
+impl DynamicColumn {
+    /// The column, with its modes summed in advance at `time_factors`.
+    ///
+    /// # Errors
+    /// When the parameters or the ramp's duration are impossible or a time factor is negative or not finite.
+    pub fn new(
+        parameters: &ColumnParameters,
+        start: Start,
+        time_factors: &[f64],
+    ) -> Result<Self, ExactError> {
+        parameters.validate()?;
+        if let Start::Ramp { duration } = start {
+            positive("duration of the ramp", duration)?;
+        }
+        let mut column = Self {
+            parameters: *parameters,
+            start,
+            prepared: Vec::new(),
+        };
+        column.prepared = time_factors
+            .iter()
+            .map(|&time_factor| Ok(column.snapshot(checked_time_factor(time_factor)?)))
+            .collect::<Result<_, ExactError>>()?;
+        Ok(column)
+    }
+
+    /// Wave number `M_j/H`, 1/m.
+    fn wave_number(&self, mode: usize) -> f64 {
+        eigenvalue(mode) / self.parameters.height
+    }
+
+    /// Drive of a mode under the unit ramp or the step: the load's force on `sin(M_j y/H)`.
+    fn drive(&self, mode: usize) -> Drive {
+        // −q m² b, with y = Σ b_j sin(m_j y).
+        let sign = if mode.is_multiple_of(2) { -2.0 } else { 2.0 };
+        let force = sign * self.parameters.load / self.parameters.height;
+        match self.start {
+            Start::Step => Drive::Step { force },
+            Start::Ramp { duration } => Drive::Ramp {
+                rate: force / duration,
+            },
+            Start::Mode => Drive::Release(self.released()),
+        }
+    }
+
+    /// Coefficients of the slowest mode at the start of [`Start::Mode`].
+    fn released(&self) -> InitialState {
+        let column = &self.parameters;
+        let wave_number = self.wave_number(0);
+        let solid = column.load / (column.oedometric_modulus() * wave_number);
+        let mixture = -column.load / (column.coupling_modulus() * wave_number);
+        let discharge = wave_number * column.hydraulic_conductivity * column.load
+            / column.unit_weight_of_water();
+        let solid_velocity = -column.storage_ratio() * discharge;
+        InitialState {
+            displacement: [
+                solid,
+                (mixture - (1.0 - column.porosity) * solid) / column.porosity,
+            ],
+            velocity: [solid_velocity, solid_velocity + discharge / column.porosity],
+        }
+    }
+
+    /// Coefficients of one mode at a time in s.
+    fn amplitude(&self, mode: usize, time: f64) -> Amplitude {
+        let oscillator = Mode::new(&self.parameters, self.wave_number(mode));
+        let drive = self.drive(mode);
+        let mut amplitude = oscillator.amplitude(drive, time);
+        if let Start::Ramp { duration } = self.start
+            && time > duration
+        {
+            let earlier = oscillator.amplitude(drive, time - duration);
+            amplitude.solid -= earlier.solid;
+            amplitude.mixture -= earlier.mixture;
+            amplitude.solid_rate -= earlier.solid_rate;
+            amplitude.mixture_rate -= earlier.mixture_rate;
+            amplitude.envelope += earlier.envelope;
+        }
+        amplitude
+    }
+
+    /// Sums as many modes as matter at a time factor.
+    fn snapshot(&self, time_factor: f64) -> Snapshot {
+        let time = self.parameters.time(time_factor);
+        let mut snapshot = Snapshot {
+            time_factor,
+            amplitudes: Vec::new(),
+            tail: 0.0,
+        };
+        if self.start == Start::Mode {
+            snapshot.amplitudes.push(self.amplitude(0, time));
+            return snapshot;
+        }
+        if time_factor == 0.0 {
+            return snapshot;
+        }
+        let negligible = RELATIVE_TAIL * self.parameters.load;
+        let mut last = self.amplitude(0, time);
+        snapshot.amplitudes.push(last);
+        for mode in 1..MOST_MODES {
+            let amplitude = self.amplitude(mode, time);
+            snapshot.amplitudes.push(amplitude);
+            // Higher modes decay faster: the tail is below the geometric series of the last ratio.
+            let slowest = mode as f64 / (mode as f64 + 1.0);
+            let ratio = (amplitude.envelope / last.envelope.max(f64::MIN_POSITIVE)).min(slowest);
+            snapshot.tail = amplitude.envelope * ratio / (1.0 - ratio);
+            last = amplitude;
+            if snapshot.tail <= negligible {
+                break;
+            }
+        }
+        snapshot.tail += self.sharp_front(snapshot.amplitudes.len(), time);
+        snapshot
+    }
+
+    /// What very high modes may add, Pa: their attenuation no longer grows with the frequency.
+    fn sharp_front(&self, modes: usize, time: f64) -> f64 {
+        let far = 1_000_000;
+        let front = self.amplitude(far, time).envelope * far as f64;
+        match self.start {
+            Start::Ramp { .. } => front * far as f64 / modes as f64,
+            Start::Step | Start::Mode => front,
+        }
+    }
+
+    /// The modes at a time factor: the prepared ones, or summed afresh.
+    fn modes_at(&self, time_factor: f64) -> Cow<'_, Snapshot> {
+        self.prepared
+            .iter()
+            .find(|snapshot| snapshot.time_factor == time_factor)
+            .map_or_else(|| Cow::Owned(self.snapshot(time_factor)), Cow::Borrowed)
+    }
+
+    /// All fields of both phases at a relative depth.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
+    pub fn dynamic_fields(&self, time_factor: f64, zeta: f64) -> Result<DynamicFields, ExactError> {
+        let (zeta, time_factor) = (checked_depth(zeta)?, checked_time_factor(time_factor)?);
+        let column = &self.parameters;
+        let snapshot = self.modes_at(time_factor);
+        let mut state = if time_factor > 0.0 {
+            steady(
+                column,
+                self.start,
+                column.time(time_factor),
+                column.height * (1.0 - zeta),
+            )
+        } else {
+            Steady::default()
+        };
+        for (mode, amplitude) in snapshot.amplitudes.iter().enumerate().rev() {
+            let m = self.wave_number(mode);
+            // sin(M_j y/H) and cos(M_j y/H) = ± sin(M_j ζ) vanish exactly at base and surface.
+            let sine = libm::sin(eigenvalue(mode) * (1.0 - zeta));
+            let sign = if mode % 2 == 0 { 1.0 } else { -1.0 };
+            let cosine = sign * libm::sin(eigenvalue(mode) * zeta);
+            state.solid += amplitude.solid * sine;
+            state.mixture += amplitude.mixture * sine;
+            state.solid_rate += amplitude.solid_rate * sine;
+            state.mixture_rate += amplitude.mixture_rate * sine;
+            state.solid_strain += amplitude.solid * m * cosine;
+            state.pressure -= column.coupling_modulus() * amplitude.mixture * m * cosine;
+        }
+        let mut fields = self.assemble(&state);
+        if self.start == Start::Mode {
+            let sine = libm::sin(eigenvalue(0) * (1.0 - zeta));
+            let [solid, water] = self.released().displacement;
+            fields.solid.displacement -= solid * sine;
+            fields.water_displacement -= water * sine;
+        }
+        Ok(fields)
+    }
+
+    /// Fields of both phases from those of the solid and the mixture.
+    fn assemble(&self, state: &Steady) -> DynamicFields {
+        let column = &self.parameters;
+        let water = |mixture: f64, solid: f64| {
+            (mixture - (1.0 - column.porosity) * solid) / column.porosity
+        };
+        DynamicFields {
+            solid: FieldValues {
+                pressure: state.pressure,
+                effective_stress: column.oedometric_modulus() * state.solid_strain,
+                displacement: state.solid,
+            },
+            water_displacement: water(state.mixture, state.solid),
+            velocities: PhaseVelocities {
+                solid: state.solid_rate,
+                water: water(state.mixture_rate, state.solid_rate),
+            },
+        }
+    }
+
+    /// Pressure, effective stress and displacement of the solid at a relative depth.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
+    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        Ok(self.dynamic_fields(time_factor, zeta)?.solid)
+    }
+
+    /// Settlement of the surface, downward positive, m.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        Ok(-self.fields(time_factor, 0.0)?.displacement)
+    }
+
+    /// Settlement over its final value. Where waves run it may exceed 1 or be negative.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
+        let end = match self.start {
+            Start::Step | Start::Ramp { .. } => self.parameters.final_settlement(),
+            Start::Mode => self.released().displacement[0],
+        };
+        Ok(self.settlement(time_factor)? / end)
+    }
+
+    /// Modes summed and the bound on the others' pressure and effective stress, over the load.
+    ///
+    /// As long as a wave front is sharp, the bound is the height of its jump: near the front the
+    /// sum of the modes rings, whatever their number.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        let snapshot = self.modes_at(checked_time_factor(time_factor)?);
+        Ok(Accuracy {
+            terms: snapshot.amplitudes.len(),
+            tail_bound: snapshot.tail / self.parameters.load,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;
