@@ -109,7 +109,7 @@ fn nonsense_never_passes_an_order() {
 fn a_missing_row_is_a_failure_even_where_only_another_is_asked_for() {
     let at = Some(ErrorBound {
         size: 0.2,
-        below: 1.0,
+        below: 1.0, above: 0.0
     });
     let bounded = Expectation {
         at,
@@ -125,7 +125,7 @@ fn a_missing_row_is_a_failure_even_where_only_another_is_asked_for() {
     assert!(!verdict(&bounded, &ErrorSeries::default()).pass);
     let elsewhere = Some(ErrorBound {
         size: 0.3,
-        below: 1.0,
+        below: 1.0, above: 0.0
     });
     let nowhere = verdict(
         &Expectation {
@@ -141,7 +141,7 @@ fn a_missing_row_is_a_failure_even_where_only_another_is_asked_for() {
 fn a_doubled_constant_keeps_the_order_and_fails_the_level() {
     let at = Some(ErrorBound {
         size: 0.1,
-        below: 1.2e-2,
+        below: 1.2e-2, above: 0.0
     });
     let expectation = Expectation {
         at,

@@ -24,6 +24,9 @@ pub struct ErrorBound {
     pub size: f64,
     /// The error must be smaller than this, in its own unit.
     pub below: f64,
+    /// The error must be at least this: a result that is too good is as suspect.
+    #[serde(default)]
+    pub above: f64,
 }
 
 /// Where the floor under the errors must lie; none at all counts as 0.
@@ -113,6 +116,10 @@ impl Expectation {
             demand(
                 positive(at.below),
                 "`below` of `at` must be a positive number",
+            );
+            demand(
+                width(at.above) && at.above < at.below,
+                "`above` of `at` must be a number from 0 on and smaller than `below`",
             );
         }
         if let Some(floor) = self.floor {

@@ -17,6 +17,7 @@ pub mod norms;
 pub mod orders;
 pub mod oscillation;
 pub mod series;
+pub mod summary;
 pub mod two_terms;
 pub mod verdict;
 pub mod window;

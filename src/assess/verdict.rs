@@ -234,9 +234,16 @@ fn error_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
     match found.positive_error() {
         Err(undefined) => check("error", false, None, undefined.to_string()),
         Ok(error) => {
-            let pass = error < bound.below;
-            let relation = if pass { "below" } else { "not below" };
-            let below = short(bound.below);
+            let pass = error < bound.below && error >= bound.above;
+            let relation = match (error < bound.below, error >= bound.above) {
+                (true, true) => "below",
+                (true, false) => "too good: expected between",
+                (false, _) => "not below",
+            };
+            let below = match relation {
+                "too good: expected between" => format!("{} and {}", short(bound.above), short(bound.below)),
+                _ => short(bound.below),
+            };
             let reason = format!("error {} at {level} {relation} {below}", short(error));
             check("error", pass, Some(error), reason)
         }

@@ -2,12 +2,14 @@
 
 use super::case::{Case, IntegratorKind};
 use super::diagnostic::{Diagnostic, StudyError, one_of};
-use super::expectation::{Axis, Band, Expectation, LevelBound, StrictFailure};
+use super::expectation::{Axis, Expectation, Measure};
 use super::file::{
     ColumnTable, ExpectTable, IntegratorTable, LevelTable, MaterialTable, MethodEntry, MethodTable, OutputTable,
     StudyFile, StudySource, SweepTable, TimeStepTable,
 };
 use super::sweep::{AXES, Sweep};
+use crate::assess::class::Class;
+use crate::assess::expectation::{Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure};
 use crate::assess::norms::Norm;
 use crate::exact::ReferenceKind;
 use crate::record::{Quantity, Sample};
@@ -23,6 +25,8 @@ use toml::Spanned;
 const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
 /// Share of the critical step where a sweep names no rule.
 const DEFAULT_SHARE: f64 = 0.8;
+/// Half-width of an order's band where an expectation names none.
+const DEFAULT_BAND: f64 = 0.1;
 /// More cells than a column is ever given on purpose.
 const MOST_CELLS: i64 = 100_000;
 /// More points a cell and direction than any scheme uses.
@@ -91,7 +95,7 @@ impl Study {
     /// Every complaint with its place.
     pub fn check(source: &StudySource) -> Result<Self, StudyError> {
         let file = source.parse()?;
-        let mut checker = Checker { source, diagnostics: Vec::new() };
+        let mut checker = Checker { source, diagnostics: Vec::new(), column_height: None };
         let study = checker.study(&file);
         match study {
             Some(study) if checker.diagnostics.is_empty() => Ok(study),
@@ -109,6 +113,8 @@ impl Study {
 struct Checker<'a> {
     source: &'a StudySource,
     diagnostics: Vec<Diagnostic>,
+    /// Height by which the levels of expectations are sized, once it is known.
+    column_height: Option<f64>,
 }
 
 impl Checker<'_> {
@@ -119,6 +125,7 @@ impl Checker<'_> {
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.scene(&file.scene)?;
         let column = self.column(&file.column);
+        self.column_height = Some(column.height);
         let material = self.material(&file.material);
         let settings = self.settings(&file.integrator);
         let time_factors = match &file.output.time_factors {
@@ -510,62 +517,71 @@ impl Checker<'_> {
             Some(typed) => Some(self.method(typed)?),
             None => None,
         };
+        let Some(height) = self.column_height else { return None };
+        let demand = Demand {
+            order: table.order.as_ref().map(|order| Band {
+                value: *order.get_ref().value.get_ref(),
+                minus: order.get_ref().minus.as_ref().map_or(DEFAULT_BAND, |typed| *typed.get_ref()),
+                plus: order.get_ref().plus.as_ref().map_or(DEFAULT_BAND, |typed| *typed.get_ref()),
+            }),
+            at: table.at.as_ref().and_then(|level| self.error_bound(level, axis, height)),
+            class: match &table.class {
+                Some(word) => Some(Class::ALL[self.word(word, "class", &Class::ALL.map(Class::name))?]),
+                None => None,
+            },
+            floor: table.floor.as_ref().map(|floor| FloorBand {
+                above: floor.get_ref().above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
+                below: floor.get_ref().below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
+            }),
+            oscillation_below: None,
+            xfail: table.xfail.as_ref().map(|known| KnownFailure {
+                strict: known.get_ref().strict.as_ref().is_none_or(|typed| *typed.get_ref()),
+                reason: known.get_ref().reason.get_ref().clone(),
+            }),
+        };
+        for problem in demand.problems() {
+            self.complain(entry.span(), problem, "see the other expectations of the shipped studies");
+        }
+        let tiers = Tier::ALL.map(Tier::name);
+        let tier = table.tier.as_ref().map_or(Some(1), |word| self.word(word, "tier", &tiers));
         let expectation = Expectation {
             method,
             cells: self.count(table.cells.as_ref(), "cells", 1..=MOST_CELLS),
             points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
             drag: table.drag.as_ref().and_then(|word| self.drag(word)),
             mapping_back: table.mapping_back.as_ref().map(|typed| *typed.get_ref()),
-            quantity,
-            norm,
-            sample,
-            time_factor,
+            measure: Measure { quantity, sample, norm, reference: reference.name().to_owned(), time_factor },
             reference,
             axis,
-            order: table.order.as_ref().map(|order| Band {
-                value: *order.get_ref().value.get_ref(),
-                minus: order.get_ref().minus.as_ref().map_or(0.1, |typed| *typed.get_ref()),
-                plus: order.get_ref().plus.as_ref().map_or(0.1, |typed| *typed.get_ref()),
-            }),
-            at: table.at.as_ref().and_then(|level| self.level_bound(level)),
-            class: table.class.as_ref().map(|typed| typed.get_ref().clone()),
-            floor: table.floor.as_ref().map(|floor| {
-                let floor = floor.get_ref();
-                (
-                    floor.above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
-                    floor.below.as_ref().map_or(f64::INFINITY, |typed| *typed.get_ref()),
-                )
-            }),
-            xfail: table.xfail.as_ref().map(|known| StrictFailure {
-                reason: known.get_ref().reason.get_ref().clone(),
-            }),
+            demand,
+            tier: Tier::ALL[tier?],
             line: self.source.text[..entry.span().start.min(self.source.text.len())].lines().count().max(1),
         };
-        let asks = expectation.order.is_some()
-            || expectation.at.is_some()
-            || expectation.class.is_some()
-            || expectation.floor.is_some();
-        if !asks {
-            self.complain(entry.span(), "the expectation asks for nothing", "add `order`, `at`, `class` or `floor`");
-        }
         (self.diagnostics.len() == before).then_some(expectation)
     }
 
-    fn level_bound(&mut self, level: &Spanned<LevelTable>) -> Option<LevelBound> {
+    /// A bound at a level that is named in the words of its axis.
+    fn error_bound(&mut self, level: &Spanned<LevelTable>, axis: Axis, height: f64) -> Option<ErrorBound> {
         let table = level.get_ref();
-        let Some(cells) = self.count(table.cells.as_ref(), "at.cells", 1..=MOST_CELLS) else {
-            self.complain(level.span(), "the bound names no level", "add `cells = 10`");
+        let size = match axis {
+            Axis::Cells => {
+                self.count(table.cells.as_ref(), "at.cells", 1..=MOST_CELLS).map(|cells| height / cells as f64)
+            }
+            Axis::PointsPerCell => self
+                .count(table.points_per_cell.as_ref(), "at.points_per_cell", 1..=MOST_POINTS)
+                .map(|points| 1.0 / points as f64),
+            Axis::TimeStep => table.seconds.as_ref().map(|typed| *typed.get_ref()),
+        };
+        let (Some(size), Some(below)) = (size, &table.below) else {
+            self.complain(
+                level.span(),
+                "the bound names no level of its axis, or no bound",
+                "write like { cells = 10, below = 5.0e-3 }",
+            );
             return None;
         };
-        let bound = LevelBound {
-            cells,
-            below: table.below.as_ref().map(|typed| *typed.get_ref()),
-            above: table.above.as_ref().map(|typed| *typed.get_ref()),
-        };
-        if bound.below.is_none() && bound.above.is_none() {
-            self.complain(level.span(), "the bound has no bound", "add `below = 5.0e-3`");
-        }
-        Some(bound)
+        let above = table.above.as_ref().map_or(0.0, |typed| *typed.get_ref());
+        Some(ErrorBound { size, below: *below.get_ref(), above })
     }
 
     /// Index of an optional word, or that of the default.

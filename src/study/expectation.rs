@@ -1,13 +1,17 @@
-//! What a study expects of its own results, checked and ready to be judged.
+//! What a study expects of its own results: which series, and what of it.
 
+use super::check::Tier;
+use crate::assess::expectation::Expectation as Demand;
 use crate::assess::norms::Norm;
 use crate::exact::ReferenceKind;
 use crate::record::{Quantity, Sample};
 use crate::solver::explicit::Drag;
 use crate::solver::method::Method;
+use serde::{Deserialize, Serialize};
 
 /// What is refined along a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Axis {
     /// Cell size, by the number of cells.
     Cells,
@@ -31,36 +35,22 @@ impl Axis {
     }
 }
 
-/// A two-sided band around a value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Band {
-    /// Middle.
-    pub value: f64,
-    /// How far below it may lie.
-    pub minus: f64,
-    /// How far above it may lie.
-    pub plus: f64,
+/// Which error of a run: what, where, in which norm, against which reference, when.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measure {
+    /// Quantity.
+    pub quantity: Quantity,
+    /// Places.
+    pub sample: Sample,
+    /// Norm.
+    pub norm: Norm,
+    /// Name of the reference.
+    pub reference: String,
+    /// Time factor.
+    pub time_factor: f64,
 }
 
-/// A bound on the error at one level.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LevelBound {
-    /// Cells of the level.
-    pub cells: usize,
-    /// The error must lie below.
-    pub below: Option<f64>,
-    /// The error must lie above: a result that is too good is as suspect.
-    pub above: Option<f64>,
-}
-
-/// A failure that is known and must stay one.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct StrictFailure {
-    /// Why it fails.
-    pub reason: String,
-}
-
-/// One expectation: which series, and what of it.
+/// One expectation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expectation {
     /// Method, where one is named.
@@ -73,28 +63,16 @@ pub struct Expectation {
     pub drag: Option<Drag>,
     /// Mapping back, where it is named.
     pub mapping_back: Option<bool>,
-    /// Measured quantity.
-    pub quantity: Quantity,
-    /// Norm.
-    pub norm: Norm,
-    /// Places.
-    pub sample: Sample,
-    /// Time factor.
-    pub time_factor: f64,
-    /// Reference.
+    /// Which error.
+    pub measure: Measure,
+    /// Reference, typed.
     pub reference: ReferenceKind,
     /// Axis of the series.
     pub axis: Axis,
-    /// Order on the finest window.
-    pub order: Option<Band>,
-    /// Error at a named level.
-    pub at: Option<LevelBound>,
-    /// Class of the verdict.
-    pub class: Option<String>,
-    /// Band of the floor that the series must run into.
-    pub floor: Option<(f64, f64)>,
-    /// Known failure.
-    pub xfail: Option<StrictFailure>,
+    /// What is wanted of the series.
+    pub demand: Demand,
+    /// Smallest tier whose cases can answer it.
+    pub tier: Tier,
     /// The file's line, for messages.
     pub line: usize,
 }

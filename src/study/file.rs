@@ -148,6 +148,7 @@ pub struct ExpectTable {
     pub class: Typed<String>,
     pub floor: Typed<FloorTable>,
     pub xfail: Typed<XfailTable>,
+    pub tier: Typed<String>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -163,6 +164,7 @@ pub struct OrderTable {
 pub struct LevelTable {
     pub cells: Typed<i64>,
     pub points_per_cell: Typed<i64>,
+    pub seconds: Typed<f64>,
     pub below: Typed<f64>,
     pub above: Typed<f64>,
 }

@@ -1,0 +1,277 @@
+//! From the records of a study to its series of errors, and to verdicts on them.
+
+use super::class::{Classification, Context};
+use super::classify::classify;
+use super::expectation::Expectation as Demand;
+use super::limiter::{Limiter, LimiterKind};
+use super::measure::exact_samples;
+use super::norms::{Norm, relative_error};
+use super::orders::{FinestOrder, PairOrder, SlopeFit, finest_order, pair_orders, slope};
+use super::series::{ErrorSeries, Level, Undefined};
+use super::verdict::{Verdict, judge};
+use crate::exact::{Reference, ReferenceKind};
+use crate::record::{Quantity, Record, Sample};
+use crate::scene::column_parameters;
+use crate::solver::method::{PressureIntegration, Recovery, StrainGradient};
+use crate::study::{Axis, Case, Expectation, Measure, Study, Tier};
+
+/// Errors up to this are round-off of a long run.
+const ROUND_OFF: f64 = 1e-12;
+
+/// The records of one path through a study: alike in everything but the axis.
+#[derive(Clone, Debug)]
+pub struct Path<'a> {
+    /// What is refined.
+    pub axis: Axis,
+    /// Records from coarse to fine.
+    pub records: Vec<&'a Record>,
+}
+
+/// A series of errors with everything that is said of it.
+#[derive(Clone, Debug)]
+pub struct SeriesSummary<'a> {
+    /// The runs.
+    pub path: Path<'a>,
+    /// Which error.
+    pub measure: Measure,
+    /// Sizes and absolute values of the errors.
+    pub series: ErrorSeries,
+    /// Orders between neighbours.
+    pub pairs: Vec<PairOrder>,
+    /// Straight fit over all levels.
+    pub slope: Result<SlopeFit, Undefined>,
+    /// Order on the finest window.
+    pub finest: Result<FinestOrder, Undefined>,
+    /// Class, reason and floor.
+    pub classification: Classification,
+}
+
+/// The judgement of one expectation of a study.
+#[derive(Clone, Debug)]
+pub struct Judgement {
+    /// Line of the expectation in its file.
+    pub line: usize,
+    /// What was judged, in words.
+    pub subject: String,
+    /// The verdict.
+    pub verdict: Verdict,
+}
+
+/// Paths of the records along an axis: every group of at least two levels.
+pub fn paths(records: &[Record], axis: Axis) -> Vec<Path<'_>> {
+    let mut groups: Vec<Path<'_>> = Vec::new();
+    for record in records {
+        match groups.iter_mut().find(|group| alike(&group.records[0].case, &record.case, axis)) {
+            Some(group) => group.records.push(record),
+            None => groups.push(Path { axis, records: vec![record] }),
+        }
+    }
+    groups.retain(|group| group.records.len() > 1);
+    for group in &mut groups {
+        group.records.sort_by(|a, b| level_size(b, axis).total_cmp(&level_size(a, axis)));
+    }
+    groups
+}
+
+/// Whether two cases differ along the axis at most. What is only asked for at the output, time
+/// factors, makes no difference.
+fn alike(a: &Case, b: &Case, axis: Axis) -> bool {
+    let mut b = Case { time_factors: a.time_factors.clone(), ..b.clone() };
+    match axis {
+        Axis::Cells => b.cells = a.cells,
+        Axis::TimeStep => b.time_step = a.time_step,
+        Axis::PointsPerCell => b.points_per_cell = a.points_per_cell,
+    }
+    *a == b
+}
+
+/// Size of a record's level: cell size (m), time step (s), or spacing of points in cells.
+pub fn level_size(record: &Record, axis: Axis) -> f64 {
+    match axis {
+        Axis::Cells => record.case.cell_size(),
+        Axis::TimeStep => record.step_sizes.target,
+        Axis::PointsPerCell => 1.0 / record.case.points_per_cell as f64,
+    }
+}
+
+impl<'a> Path<'a> {
+    /// The series of one error along the path. Levels whose case does not ask for the time factor
+    /// are no levels of it; a level that should have an error and has none stays, empty.
+    pub fn series(&self, measure: &Measure) -> ErrorSeries {
+        let asked = |record: &&&Record| record.case.time_factors.contains(&measure.time_factor);
+        let levels = self.records.iter().filter(asked).map(|record| Level {
+            size: level_size(record, self.axis),
+            error: error_of(record, measure),
+        });
+        ErrorSeries::new(levels.collect())
+    }
+
+    /// The series with orders and class.
+    pub fn summary(&self, measure: &Measure) -> SeriesSummary<'a> {
+        let series = self.series(measure);
+        SeriesSummary {
+            pairs: pair_orders(&series),
+            slope: slope(&series),
+            finest: finest_order(&series),
+            classification: classify(&series, &self.context(measure)),
+            path: self.clone(),
+            measure: measure.clone(),
+            series,
+        }
+    }
+
+    /// What is known beside the errors: formal order, accuracy of the reference, and the model's
+    /// difference where the reference is not of the scene's own equations.
+    fn context(&self, measure: &Measure) -> Context {
+        let case = &self.records[0].case;
+        let finest = self.records[self.records.len() - 1];
+        let used = finest.references.iter().find(|used| used.name == measure.reference);
+        Context {
+            formal_order: (self.axis == Axis::Cells).then(|| formal_order(case, measure)).flatten(),
+            round_off: Some(ROUND_OFF),
+            reference_accuracy: used.map(|used| used.tail_bound),
+            limiters: model_limiter(finest, measure).into_iter().collect(),
+        }
+    }
+
+    /// What the runs of the path share, in words.
+    pub fn label(&self) -> String {
+        let case = &self.records[0].case;
+        let mut label = case.method.to_string();
+        if self.axis != Axis::Cells {
+            label += &format!(", {} cells", case.cells);
+        }
+        if self.axis != Axis::PointsPerCell {
+            label += &format!(", {} points a cell", case.points_per_cell);
+        }
+        let variant = case.variant();
+        if variant.is_empty() { label } else { format!("{label}, {variant}") }
+    }
+}
+
+/// Size of a measured error.
+fn error_of(record: &Record, measure: &Measure) -> Option<f64> {
+    record
+        .error(measure.quantity, measure.sample, measure.norm, &measure.reference, measure.time_factor)
+        .map(|row| row.value.abs())
+}
+
+/// Order in the cell size that a method's operators promise at small strain, where they promise
+/// one: constant fields in a cell are of first order at points and of second at the centres.
+fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
+    let method = &case.method;
+    let by_points = |second: bool| if second { 2.0 } else { 1.0 };
+    match (measure.quantity, measure.sample) {
+        (Quantity::Pressure, Sample::Points) => {
+            Some(by_points(method.pressure == PressureIntegration::Sri && method.recovery == Recovery::Patch))
+        }
+        (Quantity::EffectiveStress, Sample::Points) => Some(by_points(method.strain == StrainGradient::Cmpm)),
+        (Quantity::Pressure | Quantity::EffectiveStress, Sample::Centres)
+        | (Quantity::Settlement, _)
+        | (Quantity::Displacement, Sample::Nodes) => Some(2.0),
+        _ => None,
+    }
+}
+
+/// The floor that a reference of other equations puts under an error: its own distance from the
+/// scene's reference, in the same norm and at the same places.
+fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
+    let case = &finest.case;
+    let kind: ReferenceKind = measure.reference.parse().ok()?;
+    let difference = case.scene.model_difference(kind)?;
+    let parameters = column_parameters(&case.column, &case.material);
+    let times = [measure.time_factor];
+    let own = Reference::new(case.scene.references()[0], &parameters, &times).ok()?;
+    let other = Reference::new(kind, &parameters, &times).ok()?;
+    let magnitude = if measure.quantity == Quantity::Settlement {
+        let settlement = |reference: &Reference| reference.settlement(measure.time_factor).ok();
+        (settlement(&own)? / settlement(&other)? - 1.0).abs()
+    } else {
+        let index = case.time_factors.iter().position(|factor| *factor == measure.time_factor)?;
+        let snapshot = finest.snapshots.get(index)?;
+        let samples = match measure.sample {
+            Sample::Points => &snapshot.points,
+            Sample::Centres => &snapshot.centres,
+            Sample::Nodes | Sample::Surface => &snapshot.nodes,
+        };
+        let field = |reference: &Reference| {
+            let exact = exact_samples(case, reference, measure.time_factor, samples).ok()?;
+            Some(match measure.quantity {
+                Quantity::Pressure => exact.pressure,
+                Quantity::EffectiveStress => exact.effective_stress,
+                Quantity::Displacement | Quantity::Settlement => exact.displacement,
+            })
+        };
+        relative_error(measure.norm, &field(&own)?, &field(&other)?, &samples.volume).ok()?
+    };
+    Some(Limiter {
+        kind: LimiterKind::Model,
+        name: difference.to_owned(),
+        magnitude: Some(magnitude),
+        order: None,
+    })
+}
+
+/// Judges every expectation of a study that its tier can answer.
+pub fn judge_study(study: &Study, records: &[Record], tier: Tier) -> Vec<Judgement> {
+    study
+        .expectations
+        .iter()
+        .filter(|expectation| expectation.tier <= tier)
+        .flat_map(|expectation| judge_expectation(expectation, records))
+        .collect()
+}
+
+/// One judgement a path that the expectation selects; where it selects none, one that fails.
+fn judge_expectation(expectation: &Expectation, records: &[Record]) -> Vec<Judgement> {
+    let measure = &expectation.measure;
+    let what = format!(
+        "{} {} {} against {} at T_v = {}",
+        measure.quantity.name(),
+        measure.norm,
+        measure.sample.name(),
+        measure.reference,
+        measure.time_factor
+    );
+    let all = paths(records, expectation.axis);
+    let selected: Vec<_> = all
+        .iter()
+        .filter(|path| selects(expectation, &path.records[0].case))
+        .filter(|path| !path.series(measure).levels().is_empty())
+        .collect();
+    if selected.is_empty() {
+        let method = expectation.method.map_or("any method".to_owned(), |method| method.to_string());
+        let nothing = ErrorSeries::new(Vec::new());
+        let verdict = judge(&strict(&expectation.demand), &nothing, &Context::default(), None);
+        return vec![Judgement { line: expectation.line, subject: format!("{method}: {what}"), verdict }];
+    }
+    selected
+        .into_iter()
+        .map(|path| Judgement {
+            line: expectation.line,
+            subject: format!("{}: {what}", path.label()),
+            verdict: judge(&expectation.demand, &path.series(measure), &path.context(measure), None),
+        })
+        .collect()
+}
+
+/// A demand without its pardon: nothing was measured, and that is no known failure.
+fn strict(demand: &Demand) -> Demand {
+    Demand { xfail: None, ..demand.clone() }
+}
+
+fn selects(expectation: &Expectation, case: &Case) -> bool {
+    fn fits<T: PartialEq>(asked: Option<T>, has: T) -> bool {
+        asked.is_none_or(|asked| asked == has)
+    }
+    fits(expectation.method, case.method)
+        && (expectation.axis == Axis::Cells || fits(expectation.cells, case.cells))
+        && (expectation.axis == Axis::PointsPerCell || fits(expectation.points_per_cell, case.points_per_cell))
+        && fits(expectation.drag, case.settings.drag)
+        && fits(expectation.mapping_back, case.settings.mapping_back)
+}
+
+/// The norm in which a quantity is reported first.
+pub fn first_norm(quantity: Quantity) -> Norm {
+    if quantity == Quantity::Settlement { Norm::Relative } else { Norm::L2 }
+}
