@@ -112,8 +112,10 @@ mod tests {
         let offers = [offer(50.0, 50.0), offer(50.0, 20.0), offer(99.0, 20.0)];
         assert_eq!(space.best(&offers, None), Some(1));
         assert_eq!(space.best(&offers, Some(0)), Some(0));
+        let others = [offers[1], offer(20.0, 80.0)];
+        assert_eq!(space.best(&others, None), Some(0));
         space.take(offers[1].room);
-        assert_eq!(space.best(&offers[1..], None), Some(0));
+        assert_eq!(space.best(&others, None), Some(1));
         assert_eq!(space.best(&[], None), None);
     }
 

@@ -119,20 +119,31 @@ fn write_block(block: &Block, out: &mut String, number: &mut usize) -> Result<()
 
 fn write_figure(figure: &Figure, out: &mut String, number: &mut usize) -> Result<(), RenderError> {
     *number += 1;
-    let _ = write!(
-        out,
-        "<figure id=\"figure-{}\">\n<div class=\"card\">{}</div>\n",
-        figure.name,
-        figure.svg()?
-    );
+    let svg = figure.svg()?;
+    // No screen makes a figure larger than it was meant to be.
+    let own = natural_width(&svg).map_or(String::new(), |w| format!(" style=\"--own: {w}px\""));
     let caption = paragraphs(&figure.caption)
         .iter()
         .map(|p| to_html(p))
         .collect::<Vec<_>>()
         .join("<br>");
-    let _ = writeln!(
+    let _ = write!(
         out,
-        "<figcaption><b>Figure {number}.</b> {caption}</figcaption>\n</figure>"
+        "<figure id=\"figure-{}\">\n<div class=\"card\"{own}>{svg}</div>\n\
+         <figcaption><b>Figure {number}.</b> {caption}</figcaption>\n</figure>\n",
+        figure.name,
     );
     Ok(())
+}
+
+/// The width that an SVG document gives itself, in pixels.
+fn natural_width(svg: &str) -> Option<f64> {
+    let (head, _) = svg.split_once('>')?;
+    let (_, after) = head.split_once(" width=\"")?;
+    after
+        .split_once('"')?
+        .0
+        .parse()
+        .ok()
+        .filter(|w: &f64| w.is_finite())
 }

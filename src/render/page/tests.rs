@@ -133,6 +133,22 @@ fn figures_are_the_same_in_both_pages() {
 }
 
 #[test]
+fn a_figure_is_never_shown_larger_than_it_is() {
+    let mut page = page();
+    let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"216\" height=\"9\"></svg>";
+    let picture = Picture::Svg(svg.into());
+    let figure = Figure {
+        name: "slim".into(),
+        picture,
+        caption: String::new(),
+    };
+    page.sections[2].blocks.push(Block::Figure(figure));
+    let html = written(render_html(&page));
+    assert!(html.contains("style=\"--own: 216px\""), "{html}");
+    assert_eq!(html.matches("style=\"--own: 760px\"").count(), 3);
+}
+
+#[test]
 fn names_must_be_safe_and_differ() {
     for bad in ["", "../x", ".hidden", "A", "a b", "a/b", "ä"] {
         let mut page = page();
