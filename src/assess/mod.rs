@@ -6,8 +6,11 @@
 mod bend;
 mod cancelling;
 mod case;
+mod least_squares;
+
 pub mod class;
 pub mod classify;
+pub mod eca_hoekstra;
 pub mod expectation;
 pub mod floor;
 pub mod limiter;
@@ -16,6 +19,7 @@ pub mod orders;
 pub mod oscillation;
 pub mod series;
 pub mod two_terms;
+pub mod uncertainty;
 pub mod verdict;
 pub mod window;
 pub mod wording;
