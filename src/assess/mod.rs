@@ -7,8 +7,11 @@
 mod bend;
 mod cancelling;
 mod case;
+mod least_squares;
+
 pub mod class;
 pub mod classify;
+pub mod eca_hoekstra;
 pub mod expectation;
 pub mod floor;
 pub mod limiter;
@@ -19,6 +22,7 @@ pub mod oscillation;
 pub mod series;
 pub mod summary;
 pub mod two_terms;
+pub mod uncertainty;
 pub mod verdict;
 pub mod window;
 pub mod wording;
