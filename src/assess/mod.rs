@@ -7,12 +7,14 @@ mod bend;
 mod cancelling;
 mod case;
 mod least_squares;
+mod pattern_search;
 
 pub mod class;
 pub mod classify;
 pub mod eca_hoekstra;
 pub mod expectation;
 pub mod floor;
+pub mod joint;
 pub mod limiter;
 pub mod norms;
 pub mod orders;
