@@ -9,6 +9,7 @@
 pub mod consolidation;
 pub mod dynamic_column;
 mod error;
+pub mod large_strain;
 mod parameters;
 mod quadrature;
 pub mod reference;
