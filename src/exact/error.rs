@@ -58,6 +58,28 @@ pub enum ExactError {
     /// A name that is no soil law, continuity or water model.
     #[error("there is no model named `{0}`")]
     UnknownModel(String),
+    /// A quantity of either sign that is not finite.
+    #[error("the {quantity} must be finite, got {value}")]
+    NotFinite {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// Value that was given.
+        value: f64,
+    },
+    /// A point above or below a layer.
+    #[error("the point at {y} lies outside the layer, whose height is {height}")]
+    OutsideLayer {
+        /// Place over the base, m.
+        y: f64,
+        /// Height of the layer, m.
+        height: f64,
+    },
+    /// A layer so long that its waves cannot be told from a uniform load.
+    #[error("the layer's length is {ratio} times its height: too long to be solved as a wave")]
+    LayerSingular {
+        /// `L/H`.
+        ratio: f64,
+    },
     /// A numerical reference that does not settle under refinement.
     #[error(
         "the large-strain reference did not converge: two resolutions still differ by {difference} \
