@@ -13,6 +13,10 @@ use super::parameters::ColumnParameters;
 use super::reference::Accuracy;
 use elastic::{Constants, Local, Regime, Solution};
 
+/// `B T_v` from which on the slowest mode is below round-off, and the contour so near the origin
+/// that flow and stress can hardly be told apart.
+const ENDED: f64 = 100.0;
+
 /// How the layer rests on its impermeable base.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub enum Base {
@@ -137,6 +141,13 @@ impl CosineLayer {
     fn inverted(&self, time_factor: f64, nodes: usize) -> Result<LayerState, ExactError> {
         if checked_time_factor(time_factor)? == 0.0 {
             return self.undrained();
+        }
+        let storage_ratio = match self.constants.storage {
+            0.0 => 1.0,
+            _ => self.parameters.storage_ratio(),
+        };
+        if storage_ratio * time_factor > ENDED {
+            return self.drained();
         }
         let time = positive("time", self.parameters.time(time_factor))?;
         // The load is a step: 1/s.

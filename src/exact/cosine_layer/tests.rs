@@ -128,8 +128,10 @@ fn limits_are_approached_in_time() {
     let early = layer.at(1e-7).unwrap().fields(0.0, 0.5).unwrap();
     assert!((early.pressure - undrained.pressure).abs() < 1e-3);
     let drained = layer.drained().unwrap().fields(0.0, 0.5).unwrap();
-    let late = layer.at(1e3).unwrap().fields(0.0, 0.5).unwrap();
-    assert!((late.displacement[1] / drained.displacement[1] - 1.0).abs() < 1e-12);
+    for (time_factor, allowed) in [(10.0, 1e-12), (50.0, 1e-12), (1e3, 0.0)] {
+        let late = layer.at(time_factor).unwrap().fields(0.0, 0.5).unwrap();
+        assert!((late.displacement[1] / drained.displacement[1] - 1.0).abs() <= allowed);
+    }
     assert_eq!(
         layer.at(0.0).unwrap().fields(0.0, 1.0).unwrap().pressure,
         layer
