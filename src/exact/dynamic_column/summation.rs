@@ -90,16 +90,11 @@ impl DynamicColumn {
             return snapshot;
         }
         let negligible = RELATIVE_TAIL * self.parameters.load;
-        let mut last = self.amplitude(0, time);
-        snapshot.amplitudes.push(last);
-        for mode in 1..MOST_MODES {
+        for mode in 0..MOST_MODES {
             let amplitude = self.amplitude(mode, time);
             snapshot.amplitudes.push(amplitude);
-            // Higher modes decay faster: the tail is below the geometric series of the last ratio.
-            let slowest = mode as f64 / (mode as f64 + 1.0);
-            let ratio = (amplitude.envelope / last.envelope.max(f64::MIN_POSITIVE)).min(slowest);
-            snapshot.tail = amplitude.envelope * ratio / (1.0 - ratio);
-            last = amplitude;
+            // Even where only the waves' 1/M is left of the decay, the tail is about this.
+            snapshot.tail = amplitude.envelope * (mode as f64 + 1.0);
             if snapshot.tail <= negligible {
                 break;
             }
