@@ -111,9 +111,5 @@ pub(super) fn checked_time_factor(time_factor: f64) -> Result<f64, ExactError> {
 
 /// Passes a relative depth `0 ≤ zeta ≤ 1` on, refuses any other.
 pub(super) fn checked_depth(zeta: f64) -> Result<f64, ExactError> {
-    if (0.0..=1.0).contains(&zeta) {
-        Ok(zeta)
-    } else {
-        Err(ExactError::Depth(zeta))
-    }
+    if (0.0..=1.0).contains(&zeta) { Ok(zeta) } else { Err(ExactError::Depth(zeta)) }
 }

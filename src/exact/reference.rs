@@ -148,9 +148,7 @@ impl Reference {
             ReferenceKind::TerzaghiIncompressible => {
                 Solution::Terzaghi(Terzaghi::incompressible(parameters)?)
             }
-            ReferenceKind::SingleMode => {
-                Solution::SingleMode(SingleMode::compressible(parameters)?)
-            }
+            ReferenceKind::SingleMode => Solution::SingleMode(SingleMode::compressible(parameters)?),
             ReferenceKind::XieLeo => Solution::XieLeo(XieLeo::new(parameters)?),
             ReferenceKind::DynamicColumn => {
                 Solution::Dynamic(DynamicColumn::new(parameters, Start::Step, time_factors)?)
@@ -225,11 +223,7 @@ mod tests {
 
     #[test]
     fn every_reference_agrees_with_itself() {
-        let column = ColumnParameters {
-            height: 2.0,
-            load: 1.0e5,
-            ..ColumnParameters::default()
-        };
+        let column = ColumnParameters { height: 2.0, load: 1.0e5, ..ColumnParameters::default() };
         let times = [0.05, 0.3, 1.0];
         for kind in ReferenceKind::ALL {
             let reference = Reference::new(kind, &column, &times).unwrap();

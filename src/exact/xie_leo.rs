@@ -52,23 +52,13 @@ impl XieLeo {
     /// `n = 1 − (1 − n_0)/J` would end below zero.
     pub fn drained(parameters: &ColumnParameters, drainage: Drainage) -> Result<Self, ExactError> {
         parameters.validate()?;
-        let strain = positive(
-            "load over the oedometric modulus",
-            parameters.load / parameters.oedometric_modulus(),
-        )?;
+        let strain =
+            positive("load over the oedometric modulus", parameters.load / parameters.oedometric_modulus())?;
         let limit = -libm::log1p(-parameters.porosity);
         if strain >= limit {
-            return Err(ExactError::LoadClosesPores {
-                load: strain,
-                limit,
-                porosity: parameters.porosity,
-            });
+            return Err(ExactError::LoadClosesPores { load: strain, limit, porosity: parameters.porosity });
         }
-        Ok(Self {
-            parameters: *parameters,
-            strain,
-            drainage,
-        })
+        Ok(Self { parameters: *parameters, strain, drainage })
     }
 
     /// Time factor and depth of the column drained at its top that this one consists of.

@@ -101,13 +101,10 @@ impl Solution {
             coefficients: Vec::new(),
         };
         let unknowns = if layer.is_some() { 6 } else { 4 };
-        let top: Vec<_> = (0..unknowns)
-            .map(|k| solution.term(k, constants.height))
-            .collect();
+        let top: Vec<_> = (0..unknowns).map(|k| solution.term(k, constants.height)).collect();
         let base: Vec<_> = (0..unknowns).map(|k| solution.term(k, 0.0)).collect();
-        let system = DMatrix::from_fn(unknowns, unknowns, |row, k| {
-            solution.condition(row, &top[k], &base[k])
-        });
+        let system =
+            DMatrix::from_fn(unknowns, unknowns, |row, k| solution.condition(row, &top[k], &base[k]));
         let mut load = DVector::zeros(unknowns);
         load[0] = Complex::new(-1.0, 0.0);
         solution.coefficients = system
@@ -155,11 +152,7 @@ impl Solution {
 
     /// One of the six terms at a height over the base in m.
     fn term(&self, index: usize, y: f64) -> Local {
-        let side = if index.is_multiple_of(2) {
-            Side::Top
-        } else {
-            Side::Base
-        };
+        let side = if index.is_multiple_of(2) { Side::Top } else { Side::Base };
         let (sign, from) = match side {
             Side::Top => (1.0, self.constants.height),
             Side::Base => (-1.0, 0.0),
@@ -195,20 +188,18 @@ impl Solution {
                     pressure_slope: Complex::from(-self.theta * sign * beta * decay),
                 }
             }
-            _ => self
-                .layer
-                .map_or_else(Local::default, |(alpha, potential)| {
-                    let pressure = (alpha * (sign * away)).exp();
-                    let slope = alpha * sign * pressure;
-                    Local {
-                        horizontal: -pressure * potential * beta,
-                        horizontal_slope: -slope * potential * beta,
-                        vertical: slope * potential,
-                        vertical_slope: alpha * alpha * pressure * potential,
-                        pressure,
-                        pressure_slope: slope,
-                    }
-                }),
+            _ => self.layer.map_or_else(Local::default, |(alpha, potential)| {
+                let pressure = (alpha * (sign * away)).exp();
+                let slope = alpha * sign * pressure;
+                Local {
+                    horizontal: -pressure * potential * beta,
+                    horizontal_slope: -slope * potential * beta,
+                    vertical: slope * potential,
+                    vertical_slope: alpha * alpha * pressure * potential,
+                    pressure,
+                    pressure_slope: slope,
+                }
+            }),
         }
     }
 

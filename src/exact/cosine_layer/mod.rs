@@ -95,10 +95,7 @@ impl CosineLayer {
             height: parameters.height,
             base,
         };
-        Ok(Self {
-            parameters: *parameters,
-            constants,
-        })
+        Ok(Self { parameters: *parameters, constants })
     }
 
     /// A limit in closed form.
@@ -106,10 +103,7 @@ impl CosineLayer {
         Ok(LayerState {
             constants: self.constants,
             load: self.parameters.load,
-            parts: vec![(
-                Solution::new(self.constants, regime)?,
-                Complex::new(1.0, 0.0),
-            )],
+            parts: vec![(Solution::new(self.constants, regime)?, Complex::new(1.0, 0.0))],
         })
     }
 
@@ -157,11 +151,7 @@ impl CosineLayer {
                 Ok((Solution::new(self.constants, regime)?, weight / z))
             })
             .collect::<Result<_, ExactError>>()?;
-        Ok(LayerState {
-            constants: self.constants,
-            load: self.parameters.load,
-            parts,
-        })
+        Ok(LayerState { constants: self.constants, load: self.parameters.load, parts })
     }
 
     /// Settlement under the crest of the load, `x = 0`, downward positive, m.
@@ -187,10 +177,7 @@ impl CosineLayer {
             let difference = fine.fields(0.0, y)?.pressure - coarse.fields(0.0, y)?.pressure;
             worst = worst.max(difference.abs() / self.parameters.load);
         }
-        Ok(Accuracy {
-            terms: talbot::NODES,
-            tail_bound: worst,
-        })
+        Ok(Accuracy { terms: talbot::NODES, tail_bound: worst })
     }
 }
 
@@ -205,10 +192,7 @@ impl LayerState {
             return Err(ExactError::OutsideLayer { y, height });
         }
         if !x.is_finite() {
-            return Err(ExactError::NotFinite {
-                quantity: "place along the layer",
-                value: x,
-            });
+            return Err(ExactError::NotFinite { quantity: "place along the layer", value: x });
         }
         let beta = self.constants.wave_number;
         let (sine, cosine) = (libm::sin(beta * x), libm::cos(beta * x));
@@ -219,10 +203,7 @@ impl LayerState {
             sum.displacement[0] += part.displacement[0] * sine;
             sum.displacement[1] += part.displacement[1] * cosine;
             sum.pressure += part.pressure * cosine;
-            for (total, stress) in sum.effective_stress[..3]
-                .iter_mut()
-                .zip(part.effective_stress)
-            {
+            for (total, stress) in sum.effective_stress[..3].iter_mut().zip(part.effective_stress) {
                 *total += stress * cosine;
             }
             sum.effective_stress[3] += part.effective_stress[3] * sine;

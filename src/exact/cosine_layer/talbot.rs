@@ -18,11 +18,8 @@ pub fn contour(nodes: usize) -> impl Iterator<Item = (Complex<f64>, Complex<f64>
         let scaled = 0.6407 * angle;
         let cotangent = 1.0 / scaled.tan();
         let z = count * Complex::new(0.5017 * angle * cotangent - 0.6122, 0.2645 * angle);
-        let slope = count
-            * Complex::new(
-                0.5017 * (cotangent - scaled * (1.0 + cotangent * cotangent)),
-                0.2645,
-            );
+        let slope =
+            count * Complex::new(0.5017 * (cotangent - scaled * (1.0 + cotangent * cotangent)), 0.2645);
         (z, z.exp() * slope * Complex::new(0.0, -2.0 / count))
     })
 }
@@ -32,9 +29,7 @@ mod tests {
     use super::*;
 
     fn invert(f: impl Fn(Complex<f64>) -> Complex<f64>, time: f64) -> f64 {
-        contour(NODES)
-            .map(|(z, weight)| (weight * f(z / time)).re / time)
-            .sum()
+        contour(NODES).map(|(z, weight)| (weight * f(z / time)).re / time).sum()
     }
 
     #[test]

@@ -14,11 +14,7 @@ fn layer_matches_high_precision_values() {
     for line in include_str!("../data/cosine_layer.csv").lines().skip(1) {
         let cells: Vec<&str> = line.split(',').collect();
         let number = |i: usize| cells[i].parse::<f64>().unwrap();
-        let base = if cells[1] == "rough" {
-            Base::Rough
-        } else {
-            Base::Smooth
-        };
+        let base = if cells[1] == "rough" { Base::Rough } else { Base::Smooth };
         let water = match cells[2] {
             "compressible" => Water::Compressible,
             _ => Water::Incompressible,
@@ -33,18 +29,8 @@ fn layer_matches_high_precision_values() {
         // sin βx = 1 in the middle, cos βx = 1 at x = 0.
         let horizontal = state.fields(0.5 * number(0), y).unwrap().displacement[0];
         let crest = state.fields(0.0, y).unwrap();
-        let scale = layer
-            .drained()
-            .unwrap()
-            .fields(0.0, 1.0)
-            .unwrap()
-            .displacement[1]
-            .abs();
-        let errors = [
-            (horizontal - ux) / scale,
-            (-crest.displacement[1] - uz) / scale,
-            crest.pressure - p,
-        ];
+        let scale = layer.drained().unwrap().fields(0.0, 1.0).unwrap().displacement[1].abs();
+        let errors = [(horizontal - ux) / scale, (-crest.displacement[1] - uz) / scale, crest.pressure - p];
         for (worst, error) in worst.iter_mut().zip(errors) {
             *worst = worst.max(error.abs());
         }
@@ -59,9 +45,7 @@ fn long_layers_on_a_rough_base_are_terzaghis() {
     let column = ColumnParameters::default();
     let closed = Terzaghi::compressible(&column).unwrap();
     let difference = |length: f64| {
-        let state = seed_layer(length, Base::Rough, Water::Compressible)
-            .at(0.1)
-            .unwrap();
+        let state = seed_layer(length, Base::Rough, Water::Compressible).at(0.1).unwrap();
         let at = |zeta: f64| {
             let layer = state.fields(0.0, 1.0 - zeta).unwrap();
             let exact = closed.fields(0.1, zeta).unwrap();
@@ -72,20 +56,13 @@ fn long_layers_on_a_rough_base_are_terzaghis() {
     };
     let (long, longer, longest) = (difference(20.0), difference(200.0), difference(1000.0));
     // The distance falls with the square of the length, until round-off of the nearly plane waves.
-    assert!(
-        (long / longer / 100.0 - 1.0).abs() < 0.1,
-        "{long:e} {longer:e}"
-    );
+    assert!((long / longer / 100.0 - 1.0).abs() < 0.1, "{long:e} {longer:e}");
     assert!(longest < 1e-4 && longest < longer, "{longest:e}");
 }
 
 #[test]
 fn boundaries_and_equilibrium_hold() {
-    let column = ColumnParameters {
-        height: 0.7,
-        load: 3.0e3,
-        ..ColumnParameters::default()
-    };
+    let column = ColumnParameters { height: 0.7, load: 3.0e3, ..ColumnParameters::default() };
     let length = 1.3;
     for base in [Base::Rough, Base::Smooth] {
         let layer = CosineLayer::new(&column, length, base, Water::Compressible).unwrap();
@@ -134,12 +111,7 @@ fn limits_are_approached_in_time() {
     }
     assert_eq!(
         layer.at(0.0).unwrap().fields(0.0, 1.0).unwrap().pressure,
-        layer
-            .undrained()
-            .unwrap()
-            .fields(0.0, 1.0)
-            .unwrap()
-            .pressure
+        layer.undrained().unwrap().fields(0.0, 1.0).unwrap().pressure
     );
     assert!(layer.accuracy(0.05).unwrap().tail_bound < 1e-10);
 }
@@ -152,8 +124,5 @@ fn impossible_questions_are_refused() {
     let layer = seed_layer(1.0, Base::Smooth, Water::Incompressible);
     assert!(layer.at(-1.0).is_err());
     let error = layer.undrained().unwrap().fields(0.5, 1.5).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "the point at 1.5 lies outside the layer, whose height is 1"
-    );
+    assert_eq!(error.to_string(), "the point at 1.5 lies outside the layer, whose height is 1");
 }

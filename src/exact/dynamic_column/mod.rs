@@ -74,11 +74,7 @@ impl DynamicColumn {
         if let Start::Ramp { duration } = start {
             positive("duration of the ramp", duration)?;
         }
-        let mut column = Self {
-            parameters: *parameters,
-            start,
-            prepared: Vec::new(),
-        };
+        let mut column = Self { parameters: *parameters, start, prepared: Vec::new() };
         column.prepared = time_factors
             .iter()
             .map(|&time_factor| Ok(column.snapshot(checked_time_factor(time_factor)?)))
@@ -103,12 +99,7 @@ impl DynamicColumn {
         let column = &self.parameters;
         let snapshot = self.modes_at(time_factor);
         let mut state = if time_factor > 0.0 {
-            steady(
-                column,
-                self.start,
-                column.time(time_factor),
-                column.height * (1.0 - zeta),
-            )
+            steady(column, self.start, column.time(time_factor), column.height * (1.0 - zeta))
         } else {
             Steady::default()
         };
@@ -138,9 +129,7 @@ impl DynamicColumn {
     /// Fields of both phases from those of the solid and the mixture.
     fn assemble(&self, state: &Steady) -> DynamicFields {
         let column = &self.parameters;
-        let water = |mixture: f64, solid: f64| {
-            (mixture - (1.0 - column.porosity) * solid) / column.porosity
-        };
+        let water = |mixture: f64, solid: f64| (mixture - (1.0 - column.porosity) * solid) / column.porosity;
         DynamicFields {
             solid: FieldValues {
                 pressure: state.pressure,
@@ -192,10 +181,7 @@ impl DynamicColumn {
     /// When `time_factor` is negative or not finite.
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let snapshot = self.modes_at(checked_time_factor(time_factor)?);
-        Ok(Accuracy {
-            terms: snapshot.amplitudes.len(),
-            tail_bound: snapshot.tail / self.parameters.load,
-        })
+        Ok(Accuracy { terms: snapshot.amplitudes.len(), tail_bound: snapshot.tail / self.parameters.load })
     }
 }
 

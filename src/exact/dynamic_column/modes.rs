@@ -76,8 +76,7 @@ impl Mode {
         let porosity = column.porosity;
         let solid_mass = (1.0 - porosity) * column.grain_density;
         let water_mass = porosity * column.water_density;
-        let drag =
-            porosity * porosity * column.unit_weight_of_water() / column.hydraulic_conductivity;
+        let drag = porosity * porosity * column.unit_weight_of_water() / column.hydraulic_conductivity;
         let (modulus, coupling) = (column.oedometric_modulus(), column.coupling_modulus());
         let squared = wave_number * wave_number;
         let (skeleton, water) = (squared * modulus, squared * coupling);
@@ -131,8 +130,7 @@ impl Mode {
                         + s * d * momentum
                         + (solid * n - water * (1.0 - n)) * (coupling * n))
                         / mass,
-                    (s * s
-                        * (solid * ((1.0 - n) * self.water_mass) + water * (n * self.solid_mass))
+                    (s * s * (solid * ((1.0 - n) * self.water_mass) + water * (n * self.solid_mass))
                         + s * d * momentum
                         + water * (n * skeleton))
                         / mass,
@@ -150,10 +148,8 @@ impl Mode {
                 continue;
             }
             let s = self.roots[k];
-            let others: Complex<f64> = (0..4)
-                .filter(|&other| other != k)
-                .map(|other| s - self.roots[other])
-                .product();
+            let others: Complex<f64> =
+                (0..4).filter(|&other| other != k).map(|other| s - self.roots[other]).product();
             self.add(&mut amplitude, drive, time, s, others.inv());
         }
         if let Some((a, b)) = cluster {
@@ -163,18 +159,9 @@ impl Mode {
     }
 
     /// Adds `weight · N(s) exp(s t)` and what belongs to it.
-    fn add(
-        &self,
-        amplitude: &mut Amplitude,
-        drive: Drive,
-        time: f64,
-        s: Complex<f64>,
-        weight: Complex<f64>,
-    ) {
+    fn add(&self, amplitude: &mut Amplitude, drive: Drive, time: f64, s: Complex<f64>, weight: Complex<f64>) {
         let factor = weight * (s * time).exp();
-        let [solid, mixture] = self
-            .numerators(s, drive)
-            .map(|numerator| numerator * factor);
+        let [solid, mixture] = self.numerators(s, drive).map(|numerator| numerator * factor);
         amplitude.solid += solid.re;
         amplitude.mixture += mixture.re;
         amplitude.solid_rate += (solid * s).re;
@@ -214,13 +201,7 @@ impl Mode {
             let arm = Complex::from_polar(radius, angle);
             let s = centre + arm;
             let (value, _) = quartic::evaluate(&self.characteristic, s);
-            self.add(
-                amplitude,
-                drive,
-                time,
-                s,
-                arm / value / CONTOUR_POINTS as f64,
-            );
+            self.add(amplitude, drive, time, s, arm / value / CONTOUR_POINTS as f64);
         }
     }
 }

@@ -31,9 +31,7 @@ impl DynamicColumn {
         let force = sign * self.parameters.load / self.parameters.height;
         match self.start {
             Start::Step => Drive::Step { force },
-            Start::Ramp { duration } => Drive::Ramp {
-                rate: force / duration,
-            },
+            Start::Ramp { duration } => Drive::Ramp { rate: force / duration },
             Start::Mode => Drive::Release(self.released()),
         }
     }
@@ -44,14 +42,11 @@ impl DynamicColumn {
         let wave_number = self.wave_number(0);
         let solid = column.load / (column.oedometric_modulus() * wave_number);
         let mixture = -column.load / (column.coupling_modulus() * wave_number);
-        let discharge = wave_number * column.hydraulic_conductivity * column.load
-            / column.unit_weight_of_water();
+        let discharge =
+            wave_number * column.hydraulic_conductivity * column.load / column.unit_weight_of_water();
         let solid_velocity = -column.storage_ratio() * discharge;
         InitialState {
-            displacement: [
-                solid,
-                (mixture - (1.0 - column.porosity) * solid) / column.porosity,
-            ],
+            displacement: [solid, (mixture - (1.0 - column.porosity) * solid) / column.porosity],
             velocity: [solid_velocity, solid_velocity + discharge / column.porosity],
         }
     }
@@ -77,11 +72,7 @@ impl DynamicColumn {
     /// Sums as many modes as matter at a time factor.
     pub(super) fn snapshot(&self, time_factor: f64) -> Snapshot {
         let time = self.parameters.time(time_factor);
-        let mut snapshot = Snapshot {
-            time_factor,
-            amplitudes: Vec::new(),
-            tail: 0.0,
-        };
+        let mut snapshot = Snapshot { time_factor, amplitudes: Vec::new(), tail: 0.0 };
         if self.start == Start::Mode {
             snapshot.amplitudes.push(self.amplitude(0, time));
             return snapshot;

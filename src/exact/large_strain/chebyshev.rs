@@ -7,9 +7,7 @@ use nalgebra::DMatrix;
 /// Lobatto points `cos(jπ/N)`, from 1 down to −1.
 pub fn points(order: usize) -> Vec<f64> {
     // As sines, which are exactly odd about the middle.
-    (0..=order)
-        .map(|j| libm::sin(PI * (order as f64 - 2.0 * j as f64) / (2.0 * order as f64)))
-        .collect()
+    (0..=order).map(|j| libm::sin(PI * (order as f64 - 2.0 * j as f64) / (2.0 * order as f64))).collect()
 }
 
 /// Matrix of the first derivative at the Lobatto points (Trefethen 2000, program `cheb`).
@@ -20,11 +18,7 @@ pub fn derivative(order: usize) -> DMatrix<f64> {
         if j.is_multiple_of(2) { end } else { -end }
     };
     let mut matrix = DMatrix::from_fn(order + 1, order + 1, |i, j| {
-        if i == j {
-            0.0
-        } else {
-            weight(i) / weight(j) / (x[i] - x[j])
-        }
+        if i == j { 0.0 } else { weight(i) / weight(j) / (x[i] - x[j]) }
     });
     // The derivative of a constant vanishes to round-off only with this diagonal.
     for i in 0..=order {
@@ -43,9 +37,7 @@ pub fn coefficients(values: &[f64]) -> Vec<f64> {
                 .iter()
                 .enumerate()
                 .map(|(j, value)| {
-                    halved(j)
-                        * value
-                        * libm::cos(PI * ((k * j) % (2 * order)) as f64 / order as f64)
+                    halved(j) * value * libm::cos(PI * ((k * j) % (2 * order)) as f64 / order as f64)
                 })
                 .sum();
             2.0 / order as f64 * halved(k) * sum
@@ -67,11 +59,7 @@ pub fn integral_to_one(coefficients: &[f64], x: f64) -> f64 {
     let angle = libm::acos(x.clamp(-1.0, 1.0));
     // ∫ T_n = T_{n+1}/(2(n+1)) − T_{n−1}/(2(n−1)), written as the departure from its value at 1.
     let fall = |n: f64| {
-        if n == 0.0 {
-            0.0
-        } else {
-            (1.0 - libm::cos(n * angle)) / (2.0 * n)
-        }
+        if n == 0.0 { 0.0 } else { (1.0 - libm::cos(n * angle)) / (2.0 * n) }
     };
     coefficients
         .iter()
@@ -100,12 +88,7 @@ pub fn even_integral_from_zero(coefficients: &[f64], x: f64) -> f64 {
         .rev()
         .map(|(k, coefficient)| {
             let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
-            coefficient
-                * if k == 0 {
-                    x
-                } else {
-                    0.5 * (odd(k as f64, sign) - odd(k as f64 - 1.0, -sign))
-                }
+            coefficient * if k == 0 { x } else { 0.5 * (odd(k as f64, sign) - odd(k as f64 - 1.0, -sign)) }
         })
         .sum()
 }
@@ -134,10 +117,7 @@ mod tests {
 
     #[test]
     fn even_integral_of_a_cosine() {
-        let values: Vec<f64> = points(16)
-            .iter()
-            .map(|s| ((1.0 + s) / 2.0).sqrt().cos())
-            .collect();
+        let values: Vec<f64> = points(16).iter().map(|s| ((1.0 + s) / 2.0).sqrt().cos()).collect();
         let series = coefficients(&values);
         for x in [0.0_f64, 0.1, 0.6, 1.0] {
             assert!((even_integral_from_zero(&series, x) - x.sin()).abs() < 1e-15);

@@ -28,18 +28,9 @@ impl EvenGrid {
         let twice = &derivative * &derivative;
         let metric: Vec<f64> = points[1..].iter().map(|s| 8.0 * (1.0 + s)).collect();
         let first = derivative.view((1, 1), (order, order)).into_owned();
-        let second = DMatrix::from_fn(order, order, |i, j| {
-            metric[i] * twice[(i + 1, j + 1)] + 4.0 * first[(i, j)]
-        });
-        let heights = points
-            .iter()
-            .map(|s| (0.5 * (1.0 + s)).max(0.0).sqrt())
-            .collect();
-        Self {
-            metric,
-            first,
-            second,
-            heights,
-        }
+        let second =
+            DMatrix::from_fn(order, order, |i, j| metric[i] * twice[(i + 1, j + 1)] + 4.0 * first[(i, j)]);
+        let heights = points.iter().map(|s| (0.5 * (1.0 + s)).max(0.0).sqrt()).collect();
+        Self { metric, first, second, heights }
     }
 }

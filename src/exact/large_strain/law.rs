@@ -128,32 +128,18 @@ impl Diffusion {
     ///
     /// # Errors
     /// When the parameters are impossible or the load would close the pores.
-    pub fn new(
-        model: LargeStrainModel,
-        column: &ColumnParameters,
-        share: f64,
-    ) -> Result<Self, ExactError> {
+    pub fn new(model: LargeStrainModel, column: &ColumnParameters, share: f64) -> Result<Self, ExactError> {
         column.validate()?;
-        let load = positive(
-            "load over the oedometric modulus",
-            share * column.load / column.oedometric_modulus(),
-        )?;
+        let load =
+            positive("load over the oedometric modulus", share * column.load / column.oedometric_modulus())?;
         let compliance = match model.water {
             Water::Compressible => column.oedometric_modulus() / column.water_bulk_modulus,
             Water::Incompressible => 0.0,
         };
-        let diffusion = Self {
-            model,
-            load,
-            porosity: column.porosity,
-            compliance,
-        };
+        let diffusion = Self { model, load, porosity: column.porosity, compliance };
         let shrinkage = diffusion.shrinkage(0.0);
         if model.law != SoilLaw::Linear && shrinkage >= column.porosity {
-            return Err(ExactError::PoresClose {
-                shrinkage,
-                porosity: column.porosity,
-            });
+            return Err(ExactError::PoresClose { shrinkage, porosity: column.porosity });
         }
         Ok(diffusion)
     }
@@ -174,10 +160,7 @@ impl Diffusion {
         // dσ'/dJ over E_oed, k/(k_0 J) and its logarithmic derivative.
         let (tangent, conductance, growth) = match self.model.law {
             SoilLaw::Linear => {
-                return Coefficients {
-                    storage: 1.0 + self.porosity * self.compliance,
-                    steepening: 0.0,
-                };
+                return Coefficients { storage: 1.0 + self.porosity * self.compliance, steepening: 0.0 };
             }
             SoilLaw::LogLinear => (volume.recip(), volume, volume.recip()),
             SoilLaw::PorosityDependent => ((volume * volume).recip(), volume, volume.recip()),
@@ -224,14 +207,8 @@ mod tests {
     use super::*;
 
     fn diffusion(law: SoilLaw) -> Diffusion {
-        let column = ColumnParameters {
-            load: 2.0e5,
-            ..ColumnParameters::default()
-        };
-        let model = LargeStrainModel {
-            law,
-            ..LargeStrainModel::default()
-        };
+        let column = ColumnParameters { load: 2.0e5, ..ColumnParameters::default() };
+        let model = LargeStrainModel { law, ..LargeStrainModel::default() };
         Diffusion::new(model, &column, 1.0).unwrap()
     }
 
@@ -247,13 +224,9 @@ mod tests {
     fn coefficients_are_the_laws_derivatives() {
         // −dJ/dr = d(shrinkage)/dr must be −q/(dσ'/dJ), which storage at compliance 0 holds.
         for &law in SoilLaw::ALL {
-            let diffusion = Diffusion {
-                compliance: 0.0,
-                ..diffusion(law)
-            };
+            let diffusion = Diffusion { compliance: 0.0, ..diffusion(law) };
             let step = 1e-6;
-            let slope =
-                (diffusion.shrinkage(0.4 + step) - diffusion.shrinkage(0.4 - step)) / (2.0 * step);
+            let slope = (diffusion.shrinkage(0.4 + step) - diffusion.shrinkage(0.4 - step)) / (2.0 * step);
             let conductance = match law {
                 SoilLaw::Linear => 1.0,
                 _ => 1.0 - diffusion.shrinkage(0.4),
@@ -281,14 +254,8 @@ mod tests {
             assert_eq!(continuity.name().parse(), Ok(continuity));
         }
         assert!("compressed".parse::<Water>().is_err());
-        let column = ColumnParameters {
-            load: 6.0e5,
-            ..ColumnParameters::default()
-        };
+        let column = ColumnParameters { load: 6.0e5, ..ColumnParameters::default() };
         let error = Diffusion::new(LargeStrainModel::default(), &column, 1.0).unwrap_err();
-        assert!(
-            error.to_string().contains("more water than the pores hold"),
-            "{error}"
-        );
+        assert!(error.to_string().contains("more water than the pores hold"), "{error}");
     }
 }

@@ -64,38 +64,21 @@ impl Profile {
 impl March {
     /// A march on `order` points with steps of up to `growth` times the time that has passed.
     pub fn new(diffusion: Diffusion, order: usize, growth: f64) -> Self {
-        Self {
-            diffusion,
-            grid: EvenGrid::new(order),
-            weights: weights(),
-            growth,
-        }
+        Self { diffusion, grid: EvenGrid::new(order), weights: weights(), growth }
     }
 
     /// State at a time factor at which the front has not reached the base.
     pub fn start(&self, front: &Front, time_factor: f64) -> State {
-        let ratio = self.grid.heights[1..]
-            .iter()
-            .map(|height| front.pressure_ratio(time_factor, 1.0 - height));
-        State {
-            time_factor,
-            ratio: DVector::from_iterator(self.grid.heights.len() - 1, ratio),
-        }
+        let ratio =
+            self.grid.heights[1..].iter().map(|height| front.pressure_ratio(time_factor, 1.0 - height));
+        State { time_factor, ratio: DVector::from_iterator(self.grid.heights.len() - 1, ratio) }
     }
 
     /// Functions of the depth through a state.
     pub fn profile(&self, state: &State) -> Profile {
-        let values: Vec<f64> = core::iter::once(0.0)
-            .chain(state.ratio.iter().copied())
-            .collect();
-        let shrinkage: Vec<f64> = values
-            .iter()
-            .map(|&ratio| self.diffusion.shrinkage(ratio))
-            .collect();
-        Profile {
-            ratio: chebyshev::coefficients(&values),
-            shrinkage: chebyshev::coefficients(&shrinkage),
-        }
+        let values: Vec<f64> = core::iter::once(0.0).chain(state.ratio.iter().copied()).collect();
+        let shrinkage: Vec<f64> = values.iter().map(|&ratio| self.diffusion.shrinkage(ratio)).collect();
+        Profile { ratio: chebyshev::coefficients(&values), shrinkage: chebyshev::coefficients(&shrinkage) }
     }
 
     /// Depths of the points.
@@ -121,11 +104,7 @@ impl March {
                 Some(ratio) => {
                     now.ratio = ratio;
                     let last = step >= left;
-                    now.time_factor = if last {
-                        time_factor
-                    } else {
-                        now.time_factor + step
-                    };
+                    now.time_factor = if last { time_factor } else { now.time_factor + step };
                 }
                 None if halvings < MOST_HALVINGS => {
                     halvings += 1;

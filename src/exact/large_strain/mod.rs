@@ -83,8 +83,7 @@ impl LargeStrain {
         let mut difference = f64::INFINITY;
         let mut resolution = 0;
         for (order, growth) in RESOLUTIONS {
-            let Ok(attempt) = Attempt::new(parameters, model, diffusion, order, growth, &times)
-            else {
+            let Ok(attempt) = Attempt::new(parameters, model, diffusion, order, growth, &times) else {
                 continue;
             };
             if let Some(before) = &before {
@@ -118,9 +117,7 @@ impl LargeStrain {
 
     /// Profile at a time factor after the front: a prepared one, or marched to from the last before.
     fn profile(&self, time_factor: f64) -> Result<Profile, ExactError> {
-        let later = self
-            .states
-            .partition_point(|(state, _)| state.time_factor <= time_factor);
+        let later = self.states.partition_point(|(state, _)| state.time_factor <= time_factor);
         let (state, profile) = &self.states[later.saturating_sub(1)];
         if state.time_factor == time_factor {
             return Ok(profile.clone());
@@ -128,9 +125,7 @@ impl LargeStrain {
         self.march
             .advance(state, time_factor)
             .map(|state| self.march.profile(&state))
-            .ok_or(ExactError::NotConverged {
-                difference: f64::INFINITY,
-            })
+            .ok_or(ExactError::NotConverged { difference: f64::INFINITY })
     }
 
     /// `p/q` and `∫_ζ^1 (1 − J) dζ` at a depth.
@@ -196,10 +191,7 @@ impl LargeStrain {
     /// When `time_factor` is negative or not finite.
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         checked_time_factor(time_factor)?;
-        Ok(Accuracy {
-            terms: self.resolution,
-            tail_bound: self.difference,
-        })
+        Ok(Accuracy { terms: self.resolution, tail_bound: self.difference })
     }
 }
 
@@ -219,9 +211,7 @@ impl Attempt {
             let partly = Diffusion::new(model, parameters, share)?;
             front = Some(Front::new(&partly, 2 * order + 8, front.as_ref())?);
         }
-        let failed = ExactError::NotConverged {
-            difference: f64::INFINITY,
-        };
+        let failed = ExactError::NotConverged { difference: f64::INFINITY };
         let front = front.ok_or(failed.clone())?;
         let march = March::new(diffusion, order, growth);
         let first = march.start(&front, front.valid_until());
@@ -233,32 +223,19 @@ impl Attempt {
                 states.push((now.clone(), march.profile(&now)));
             }
         }
-        Ok(Self {
-            front,
-            march,
-            states,
-        })
+        Ok(Self { front, march, states })
     }
 
     /// Largest difference of the pressure ratio from another resolution's at all its times.
     fn difference(&self, other: &Self) -> f64 {
         let early = self.march.depths().map(|zeta| {
             let time_factor = self.front.valid_until();
-            self.front.pressure_ratio(time_factor, zeta)
-                - other.front.pressure_ratio(time_factor, zeta)
+            self.front.pressure_ratio(time_factor, zeta) - other.front.pressure_ratio(time_factor, zeta)
         });
-        let late = self
-            .states
-            .iter()
-            .zip(&other.states)
-            .flat_map(|((_, fine), (_, coarse))| {
-                self.march
-                    .depths()
-                    .map(|zeta| fine.pressure_ratio(zeta) - coarse.pressure_ratio(zeta))
-            });
-        early
-            .chain(late)
-            .fold(0.0, |worst, difference| difference.abs().max(worst))
+        let late = self.states.iter().zip(&other.states).flat_map(|((_, fine), (_, coarse))| {
+            self.march.depths().map(|zeta| fine.pressure_ratio(zeta) - coarse.pressure_ratio(zeta))
+        });
+        early.chain(late).fold(0.0, |worst, difference| difference.abs().max(worst))
     }
 }
 

@@ -17,10 +17,7 @@ const POINTS: [f64; STAGES] = [
 /// Weights `a_ij = ∫_0^{c_i} ℓ_j`, row by row.
 pub fn weights() -> [[f64; STAGES]; STAGES] {
     let lagrange = |j: usize, x: f64| -> f64 {
-        (0..STAGES)
-            .filter(|&k| k != j)
-            .map(|k| (x - POINTS[k]) / (POINTS[j] - POINTS[k]))
-            .product()
+        (0..STAGES).filter(|&k| k != j).map(|k| (x - POINTS[k]) / (POINTS[j] - POINTS[k])).product()
     };
     POINTS.map(|to| core::array::from_fn(|j| integrate(|x| lagrange(j, x), 0.0, to, 1)))
 }
@@ -34,17 +31,13 @@ mod tests {
         let weights = weights();
         for power in 1..=5 {
             for (row, point) in weights.iter().zip(POINTS) {
-                let sum: f64 = (0..STAGES)
-                    .map(|j| row[j] * POINTS[j].powi(power - 1))
-                    .sum();
+                let sum: f64 = (0..STAGES).map(|j| row[j] * POINTS[j].powi(power - 1)).sum();
                 assert!((sum - point.powi(power) / f64::from(power)).abs() < 1e-15);
             }
         }
         // The last row integrates polynomials of degree 8: order 9.
         for power in 1..=9 {
-            let sum: f64 = (0..STAGES)
-                .map(|j| weights[STAGES - 1][j] * POINTS[j].powi(power - 1))
-                .sum();
+            let sum: f64 = (0..STAGES).map(|j| weights[STAGES - 1][j] * POINTS[j].powi(power - 1)).sum();
             assert!((sum - 1.0 / f64::from(power)).abs() < 1e-15);
         }
     }

@@ -33,18 +33,11 @@ impl Front {
     ///
     /// # Errors
     /// When Newton's iteration does not converge.
-    pub fn new(
-        diffusion: &Diffusion,
-        order: usize,
-        guess: Option<&Self>,
-    ) -> Result<Self, ExactError> {
+    pub fn new(diffusion: &Diffusion, order: usize, guess: Option<&Self>) -> Result<Self, ExactError> {
         let undrained = diffusion.undrained_ratio();
         let far = diffusion.coefficients(undrained).storage.sqrt();
         let reach = REACH / far;
-        let eta: Vec<f64> = chebyshev::points(order)
-            .iter()
-            .map(|x| 0.5 * reach * (1.0 - x))
-            .collect();
+        let eta: Vec<f64> = chebyshev::points(order).iter().map(|x| 0.5 * reach * (1.0 - x)).collect();
         let first = chebyshev::derivative(order) * (-2.0 / reach);
         let second = &first * &first;
         let mut ratio = DVector::from_iterator(
@@ -80,12 +73,7 @@ impl Front {
             let size = step.amax();
             // Round-off of the second derivative stops the iteration somewhere above 1e-14.
             if size < 1e-14 || (size < 1e-10 && size >= 0.5 * last) {
-                return Ok(Self::tabulated(
-                    diffusion,
-                    reach,
-                    undrained,
-                    ratio.as_slice(),
-                ));
+                return Ok(Self::tabulated(diffusion, reach, undrained, ratio.as_slice()));
             }
             if !size.is_finite() {
                 break;
@@ -97,10 +85,8 @@ impl Front {
 
     fn tabulated(diffusion: &Diffusion, reach: f64, undrained: f64, ratio: &[f64]) -> Self {
         let undrained_shrinkage = diffusion.shrinkage(undrained);
-        let shrinkage: Vec<f64> = ratio
-            .iter()
-            .map(|&ratio| diffusion.shrinkage(ratio) - undrained_shrinkage)
-            .collect();
+        let shrinkage: Vec<f64> =
+            ratio.iter().map(|&ratio| diffusion.shrinkage(ratio) - undrained_shrinkage).collect();
         Self {
             reach,
             undrained,
@@ -159,8 +145,5 @@ pub fn with_slopes(diffusion: &Diffusion, ratio: f64) -> ([f64; 2], [f64; 2]) {
         [coefficients.storage, coefficients.steepening]
     };
     let (before, after) = (values(ratio - step), values(ratio + step));
-    (
-        values(ratio),
-        [0, 1].map(|i| (after[i] - before[i]) / (2.0 * step)),
-    )
+    (values(ratio), [0, 1].map(|i| (after[i] - before[i]) / (2.0 * step)))
 }

@@ -7,19 +7,11 @@ use super::*;
 const TIMES: [f64; 8] = [1e-6, 0.001, 0.01, 0.05, 0.2, 0.5, 1.0, 3.0];
 
 fn column(load: f64) -> ColumnParameters {
-    ColumnParameters {
-        load,
-        height: 2.0,
-        ..ColumnParameters::default()
-    }
+    ColumnParameters { load, height: 2.0, ..ColumnParameters::default() }
 }
 
 fn model(law: SoilLaw, continuity: Continuity, water: Water) -> LargeStrainModel {
-    LargeStrainModel {
-        law,
-        continuity,
-        water,
-    }
+    LargeStrainModel { law, continuity, water }
 }
 
 const INCOMPRESSIBLE: LargeStrainModel = LargeStrainModel {
@@ -55,15 +47,8 @@ fn incompressible_limit_is_xie_leo() {
 #[test]
 fn linear_law_is_terzaghi_with_storage() {
     for water_bulk_modulus in [2.2e9, 1.0e6] {
-        let column = ColumnParameters {
-            water_bulk_modulus,
-            ..column(3.0e3)
-        };
-        let linear = model(
-            SoilLaw::Linear,
-            Continuity::ConstantPorosityGradient,
-            Water::Compressible,
-        );
+        let column = ColumnParameters { water_bulk_modulus, ..column(3.0e3) };
+        let linear = model(SoilLaw::Linear, Continuity::ConstantPorosityGradient, Water::Compressible);
         let general = LargeStrain::new(&column, linear, &TIMES).unwrap();
         let closed = Terzaghi::compressible(&column).unwrap();
         for time_factor in [0.0].into_iter().chain(TIMES) {
@@ -84,18 +69,14 @@ fn linear_law_is_terzaghi_with_storage() {
 #[test]
 fn governing_equations_hold() {
     // Finite differences of the published fields, put into the equations as they are printed.
-    let column = ColumnParameters {
-        water_bulk_modulus: 1.0e7,
-        ..column(2.0e5)
-    };
+    let column = ColumnParameters { water_bulk_modulus: 1.0e7, ..column(2.0e5) };
     let (time_factor, zeta) = (0.15, 0.3);
     let (dt, dz) = (1e-4, 1e-3);
     let times = [time_factor - dt, time_factor, time_factor + dt];
     for &law in &SoilLaw::ALL[1..] {
         for &continuity in Continuity::ALL {
             let general =
-                LargeStrain::new(&column, model(law, continuity, Water::Compressible), &times)
-                    .unwrap();
+                LargeStrain::new(&column, model(law, continuity, Water::Compressible), &times).unwrap();
             let volume = |t: f64, z: f64| general.volume_ratio(t, z).unwrap();
             let pressure = |t: f64, z: f64| general.fields(t, z).unwrap().pressure;
             let solids = 1.0 - column.porosity;
@@ -108,9 +89,7 @@ fn governing_equations_hold() {
                 let conductivity = column.hydraulic_conductivity * ratio * ratio;
                 -conductivity / (column.unit_weight_of_water() * ratio) * gradient
             };
-            let along = |f: &dyn Fn(f64) -> f64| {
-                -(f(zeta + dz) - f(zeta - dz)) / (2.0 * dz * column.height)
-            };
+            let along = |f: &dyn Fn(f64) -> f64| -(f(zeta + dz) - f(zeta - dz)) / (2.0 * dz * column.height);
             let outflow = match continuity {
                 Continuity::Conservative => along(&discharge),
                 Continuity::ConstantPorosityGradient => {
@@ -121,8 +100,7 @@ fn governing_equations_hold() {
                 (f(times[2], zeta) - f(times[0], zeta)) / column.time(times[2] - times[0])
             };
             let ratio = volume(time_factor, zeta);
-            let stored = rate(&volume)
-                + porosity(zeta) * ratio / column.water_bulk_modulus * rate(&pressure);
+            let stored = rate(&volume) + porosity(zeta) * ratio / column.water_bulk_modulus * rate(&pressure);
             let misfit = (stored + outflow) / outflow;
             assert!(misfit.abs() < 2e-5, "{misfit:e} for {law} {continuity}");
             // The stress that the law gives at this volume is the published one.
@@ -162,8 +140,7 @@ fn unprepared_times_are_marched_to() {
     let prepared = LargeStrain::new(&column, INCOMPRESSIBLE, &[0.3, 0.05]).unwrap();
     let closed = XieLeo::new(&column).unwrap();
     for time_factor in [0.0, 0.02, 0.05, 0.11, 0.3, 0.7, 60.0] {
-        let difference =
-            prepared.settlement(time_factor).unwrap() - closed.settlement(time_factor).unwrap();
+        let difference = prepared.settlement(time_factor).unwrap() - closed.settlement(time_factor).unwrap();
         assert!(difference.abs() < 1e-11, "{difference:e} at {time_factor}");
     }
 }
@@ -182,19 +159,14 @@ fn distance(time_factor: f64, a: &LargeStrain, b: &XieLeo) -> f64 {
 
 #[test]
 fn traps_are_as_far_off_as_measured() {
-    let column = ColumnParameters {
-        load: 2.0e5,
-        ..ColumnParameters::default()
-    };
+    let column = ColumnParameters { load: 2.0e5, ..ColumnParameters::default() };
     let times = [0.05, 0.2, 0.5, 1.0];
     let closed = XieLeo::new(&column).unwrap();
     let figures = |law, continuity| {
-        let general =
-            LargeStrain::new(&column, model(law, continuity, Water::Compressible), &times).unwrap();
+        let general = LargeStrain::new(&column, model(law, continuity, Water::Compressible), &times).unwrap();
         times.map(|time_factor| {
-            let settlement = general.settlement(time_factor).unwrap()
-                / closed.settlement(time_factor).unwrap()
-                - 1.0;
+            let settlement =
+                general.settlement(time_factor).unwrap() / closed.settlement(time_factor).unwrap() - 1.0;
             (distance(time_factor, &general, &closed), settlement)
         })
     };
@@ -230,10 +202,7 @@ fn traps_are_as_far_off_as_measured() {
         for (i, (pressure, settlement)) in found.into_iter().enumerate() {
             let near = |value: f64, printed: f64| (value - printed).abs() < 0.03 * printed.abs();
             assert!(near(pressure, pressures[i]), "{law} {continuity} {found:?}");
-            assert!(
-                near(settlement, settlements[i]),
-                "{law} {continuity} {found:?}"
-            );
+            assert!(near(settlement, settlements[i]), "{law} {continuity} {found:?}");
         }
     }
 }
@@ -243,8 +212,7 @@ fn loads_near_the_limit_still_converge() {
     for &law in SoilLaw::ALL {
         for &continuity in Continuity::ALL {
             let column = column(3.2e5);
-            let general =
-                LargeStrain::new(&column, model(law, continuity, Water::Compressible), &TIMES);
+            let general = LargeStrain::new(&column, model(law, continuity, Water::Compressible), &TIMES);
             assert!(general.is_ok_and(|g| g.accuracy(0.1).is_ok_and(|a| a.tail_bound < 1e-8)));
         }
     }

@@ -16,7 +16,8 @@ const QUOTED_CELLS: usize = 10;
 /// What a reader should know first.
 pub fn lead(results: &[StudyResults<'_>]) -> String {
     let judged: usize = results.iter().map(|one| one.judgements.len()).sum();
-    let met = results.iter().flat_map(|one| &one.judgements).filter(|judgement| judgement.verdict.pass).count();
+    let met =
+        results.iter().flat_map(|one| &one.judgements).filter(|judgement| judgement.verdict.pass).count();
     let runs: usize = results.iter().map(|one| one.records.len()).sum();
     format!(
         "{} studies, {runs} runs, {met} of {judged} expectations met. Every error is held against an exact solution \
@@ -43,7 +44,10 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
     let mut rows = Vec::new();
     let mut floors = Vec::new();
     for one in results {
-        for path in paths(one.records, Axis::Cells).iter().filter(|path| path.records.len() >= WINDOW) {
+        let mut all = paths(one.records, Axis::Cells);
+        all.retain(|path| path.records.len() >= WINDOW);
+        let labels = labels::path_labels(&all);
+        for (path, label) in all.iter().zip(&labels.each) {
             let times = &path.records[0].case.time_factors;
             let Some(time_factor) = times.get((times.len() - 1) / 2) else { continue };
             for reference in &one.study.references {
@@ -57,10 +61,16 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
                     };
                     quote(path, &measure, &mut floors)
                 });
-                let mut row: Vec<Cell> =
-                    vec![one.study.name.as_str().into(), Cell::Code(path.label()), reference.name().into()];
-                row.extend(cells);
-                rows.push(row);
+                // Against another theory than its own a run is quoted where that is the question.
+                if *reference == one.study.references[0] || asks_for(one, reference.name()) {
+                    let mut row: Vec<Cell> = vec![
+                        one.study.name.as_str().into(),
+                        Cell::Code(label.clone()),
+                        reference.name().into(),
+                    ];
+                    row.extend(cells);
+                    rows.push(row);
+                }
             }
         }
     }
@@ -74,10 +84,14 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
                 .to_owned(),
         ],
     };
-    let unmet = results.iter().flat_map(|one| &one.judgements).filter(|judgement| !judgement.verdict.pass).count();
+    let unmet =
+        results.iter().flat_map(|one| &one.judgements).filter(|judgement| !judgement.verdict.pass).count();
     let mut blocks = Vec::new();
     if unmet > 0 {
-        blocks.push(Block::Callout(Mood::Fail, format!("{unmet} expectations are not met: see their studies.")));
+        blocks.push(Block::Callout(
+            Mood::Fail,
+            format!("{unmet} expectations are not met: see their studies."),
+        ));
     }
     blocks.push(Block::Table(table));
     if !floors.is_empty() {
@@ -92,28 +106,43 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
     }
 }
 
+/// Whether an expectation of the study is about a reference.
+fn asks_for(results: &StudyResults<'_>, reference: &str) -> bool {
+    results.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
+}
+
 /// Order and error of one series in a few characters; its floor, where there is one, is told at
 /// length.
 fn quote(path: &Path<'_>, measure: &Measure, floors: &mut Vec<String>) -> Cell {
     let summary = path.summary(measure);
     let class = &summary.classification;
-    if let Some(floor) = &class.floor {
+    let is_pressure = (measure.quantity, measure.sample) == (Quantity::Pressure, Sample::Points);
+    if let Some(floor) = class.floor.as_ref().filter(|_| is_pressure) {
         floors.push(format!(
             "**{}**, {} against `{}`: {}. {}",
             path.label(),
             labels::measure(measure),
             measure.reference,
             class.reason,
-            class.advice.clone().unwrap_or_else(|| format!("The floor is {:.2e}.", floor.value)),
+            capitalised(class.advice.as_deref())
+                .unwrap_or_else(|| format!("The floor is {:.2e}.", floor.value)),
         ));
     }
     let on_ten = path.records.iter().position(|record| record.case.cells == QUOTED_CELLS);
     let error = on_ten.and_then(|index| summary.series.levels().get(index)?.error);
-    let error = error.map_or(String::new(), |error| format!(", {}", number::error(error)));
+    let error =
+        error.map_or(String::new(), |error| format!(", {}", number::error(error).replace('-', "\u{2011}")));
     let head = match (class.order, class.class) {
         (Some(order), Class::Asymptotic | Class::Superconvergent) => number::order(order),
         (Some(order), other) => format!("{} ({other})", number::order(order)),
         (None, other) => other.name().to_owned(),
     };
     Cell::Text(head + &error)
+}
+
+/// Advice as a sentence of its own.
+fn capitalised(advice: Option<&str>) -> Option<String> {
+    let mut letters = advice?.chars();
+    let first = letters.next()?;
+    Some(format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }

@@ -60,19 +60,10 @@ proptest! {
 fn confluent_roots_are_no_exception() {
     // Bisect the conductivity onto the double root of the slow waves.
     let mode = |k: f64| {
-        let column = ColumnParameters {
-            hydraulic_conductivity: k,
-            ..ColumnParameters::default()
-        };
+        let column = ColumnParameters { hydraulic_conductivity: k, ..ColumnParameters::default() };
         Mode::new(&column, 1.5)
     };
-    let waves = |k: f64| {
-        mode(k)
-            .roots
-            .iter()
-            .filter(|s| s.im > 1e-6 * s.norm())
-            .count()
-    };
+    let waves = |k: f64| mode(k).roots.iter().filter(|s| s.im > 1e-6 * s.norm()).count();
     let (mut over, mut under) = (1e-4, 1.0);
     assert_eq!((waves(over), waves(under)), (1, 2));
     while under / over > 1.0 + 1e-15 {
@@ -86,10 +77,7 @@ fn confluent_roots_are_no_exception() {
             under = middle;
         }
     }
-    let start = InitialState {
-        displacement: [1.0, -0.5],
-        velocity: [10.0, 3.0],
-    };
+    let start = InitialState { displacement: [1.0, -0.5], velocity: [10.0, 3.0] };
     for k in [over, over * (1.0 + 1e-9), over * 1.001, over * 1.01] {
         let critical = mode(k);
         assert!(k > over * 1.0001 || critical.cluster().is_some());
