@@ -139,7 +139,10 @@ fn an_expectation_of_nonsense_never_passes() {
         order: Some(Band { value, minus, plus }),
         ..Expectation::default()
     };
-    let at = |size, below| Expectation { at: Some(ErrorBound { size, below }), ..Expectation::default() };
+    let at = |size, below| Expectation {
+        at: Some(ErrorBound { size, below, above: 0.0 }),
+        ..Expectation::default()
+    };
     let unexplained =
         Expectation { xfail: Some(KnownFailure { strict: true, reason: " ".to_owned() }), ..second_order() };
     let expectations = [
