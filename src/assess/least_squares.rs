@@ -38,7 +38,12 @@ pub(super) fn solve_nonnegative(
     target: &[f64],
     weights: &[f64],
 ) -> Option<(Vec<f64>, f64)> {
-    let mut best: Option<(Vec<f64>, f64)> = None;
+    // Mostly none wants to be negative, and then the whole set is the best.
+    let mut best = solve(columns, target, weights)
+        .filter(|(found, _)| found.iter().all(|coefficient| *coefficient >= 0.0));
+    if best.is_some() {
+        return best;
+    }
     for subset in 1..1_u32 << columns.len() {
         let members: Vec<_> = (0..columns.len())
             .filter(|j| subset >> j & 1 == 1)

@@ -7,19 +7,24 @@
 mod bend;
 mod cancelling;
 mod case;
-mod least_squares;
-
 pub mod class;
 pub mod classify;
+pub mod curves;
 pub mod eca_hoekstra;
 pub mod expectation;
 pub mod floor;
+pub mod joint;
+mod least_squares;
 pub mod limiter;
 pub mod measure;
 pub mod norms;
 pub mod orders;
 pub mod oscillation;
+pub mod pareto;
+mod pattern_search;
 pub mod series;
+pub mod statistics;
+pub mod study_check;
 pub mod summary;
 pub mod two_terms;
 pub mod uncertainty;

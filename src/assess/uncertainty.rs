@@ -173,7 +173,7 @@ fn order_of(differences: f64, r21: f64, r32: f64) -> Option<f64> {
     let side = |p: f64| b * p + (-(-b * p).exp_m1()).ln() - (-(-a * p).exp_m1()).ln();
     let wanted = differences.ln();
     let (mut low, mut high) = (0.0, LARGEST_ORDER);
-    if !(side(high) > wanted) {
+    if side(high) <= wanted {
         return None;
     }
     for _ in 0..200 {

@@ -1,4 +1,47 @@
+//! `oedometer report`: run what is missing, render everything.
+
 use super::exit::Exit;
+use super::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
+use crate::record::{Record, write_whole};
+use crate::render::page::{figures, render_html, render_markdown};
+use crate::render::report::{StudyResults, page_of};
+use crate::study::{RunOptions, Study, Tier};
+use std::path::PathBuf;
+
+/// Arguments of `report`.
 #[derive(Debug, clap::Args)]
-pub struct Arguments {}
-pub fn run(_: &Arguments) -> anyhow::Result<Exit> { Ok(Exit::Pass) }
+pub struct Arguments {
+    /// Study files; every shipped one where none is named
+    #[arg(value_name = "STUDY.toml")]
+    studies: Vec<PathBuf>,
+    /// Folder for the report
+    #[arg(long, value_name = "DIR", default_value = "report")]
+    out: PathBuf,
+    /// Folder of the records
+    #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
+    records: PathBuf,
+    /// Cases at the same time; all cores where not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
+    jobs: Option<u64>,
+}
+
+/// Runs, renders and writes `index.html`, `report.md` and `figures/`.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    let studies = load_or_shipped(&arguments.studies)?;
+    let options = RunOptions { jobs: jobs_of(arguments.jobs), tier: Tier::Full, shard: None, resume: true };
+    let mut runs: Vec<(&Study, Vec<Record>)> = Vec::new();
+    for study in &studies {
+        runs.push((study, run_and_store(study, &options, &arguments.records)?.records));
+    }
+    let results: Vec<StudyResults<'_>> =
+        runs.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();
+    let page = page_of(&results)?;
+    let html = arguments.out.join("index.html");
+    write_whole(&html, render_html(&page)?.as_bytes())?;
+    write_whole(&arguments.out.join("report.md"), render_markdown(&page)?.as_bytes())?;
+    for (name, svg) in figures(&page)? {
+        write_whole(&arguments.out.join("figures").join(name), svg.as_bytes())?;
+    }
+    eprintln!("the report is {}", html.display());
+    Ok(Exit::Pass)
+}

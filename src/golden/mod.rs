@@ -1,1 +1,142 @@
-//! Placeholder of the first commit.
+//! Golden values: what a study gave when somebody last looked and said why it is right.
+//!
+//! A golden file carries values, the tolerance with its basis, the reason and the provenance. A
+//! comparison reports what moved, what is missing and what is new; better than the golden beyond
+//! the tolerance is stale, not wrong.
+
+mod compare;
+
+pub use compare::{Change, Difference, compare};
+
+use crate::record::{Provenance, Record, StoreError, write_whole};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Version of the file's layout.
+const SCHEMA: u32 = 1;
+/// Allowed relative change.
+const RELATIVE_TOLERANCE: f64 = 1e-7;
+/// Allowed absolute change of an error: round-off of a run of a million steps.
+const ABSOLUTE_TOLERANCE: f64 = 1e-12;
+/// Where the tolerances come from.
+const BASIS: &str = "round-off: the point-wise and the assembled kernel, which differ in every rounding, agree to \
+                     better than a tenth of it (solver::run::tests, `solve --point-wise`)";
+
+/// Golden values of a study.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GoldenFile {
+    /// Version of this layout.
+    pub schema: u32,
+    /// Study.
+    pub study: String,
+    /// Why these values were taken.
+    pub reason: String,
+    /// Allowed change relative to the larger of the values.
+    pub relative_tolerance: f64,
+    /// Allowed absolute change.
+    pub absolute_tolerance: f64,
+    /// Where the tolerances come from.
+    pub basis: String,
+    /// What made the values.
+    pub provenance: Provenance,
+    /// Signed errors and work counters by case and measure.
+    pub values: BTreeMap<String, f64>,
+}
+
+/// Why golden values could not be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum GoldenError {
+    /// There is no file.
+    #[error("there is no golden file {0}: look at the results, then `oedometer accept` them with a reason")]
+    Missing(PathBuf),
+    /// The file cannot be read.
+    #[error("the golden file {path} cannot be read: {reason}")]
+    Unreadable {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// The file cannot be written.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+impl GoldenFile {
+    /// The values of records as golden, for a reason.
+    pub fn of(study: &str, records: &[Record], reason: &str) -> Self {
+        Self {
+            schema: SCHEMA,
+            study: study.to_owned(),
+            reason: reason.to_owned(),
+            relative_tolerance: RELATIVE_TOLERANCE,
+            absolute_tolerance: ABSOLUTE_TOLERANCE,
+            basis: BASIS.to_owned(),
+            provenance: Provenance::of_this_program(),
+            values: values_of(records),
+        }
+    }
+
+    /// Path of a study's golden file in a folder.
+    pub fn path(folder: &Path, study: &str) -> PathBuf {
+        folder.join(format!("{study}.json"))
+    }
+
+    /// Reads a study's golden file.
+    ///
+    /// # Errors
+    /// When it is missing or unreadable.
+    pub fn read(folder: &Path, study: &str) -> Result<Self, GoldenError> {
+        let path = Self::path(folder, study);
+        let unreadable = |path: PathBuf, reason: String| GoldenError::Unreadable { path, reason };
+        let text = match std::fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(GoldenError::Missing(path)),
+            Err(error) => return Err(unreadable(path, error.to_string())),
+        };
+        let file: Self = serde_json::from_str(&text).map_err(|error| unreadable(path.clone(), error.to_string()))?;
+        if file.schema != SCHEMA || file.study != study {
+            return Err(unreadable(path, format!("it is of study `{}` and layout {}", file.study, file.schema)));
+        }
+        Ok(file)
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn write(&self, folder: &Path) -> Result<PathBuf, GoldenError> {
+        let path = Self::path(folder, &self.study);
+        let text = serde_json::to_string_pretty(self)
+            .map_err(|source| StoreError::Json { path: path.clone(), source })?;
+        write_whole(&path, (text + "\n").as_bytes())?;
+        Ok(path)
+    }
+}
+
+/// Every measured error and work counter of records, by name.
+pub fn values_of(records: &[Record]) -> BTreeMap<String, f64> {
+    let mut values = BTreeMap::new();
+    for record in records {
+        let label = record.case.label();
+        values.insert(format!("{label} | steps"), record.counters.steps as f64);
+        values.insert(format!("{label} | point updates"), record.counters.point_updates as f64);
+        for row in &record.errors {
+            let measure = format!(
+                "{} {} {} {} T_v={}",
+                row.quantity.name(),
+                row.sample.name(),
+                row.norm,
+                row.reference,
+                row.time_factor
+            );
+            values.insert(format!("{label} | {measure}"), row.value);
+        }
+        for balance in &record.balance {
+            values.insert(format!("{label} | water balance T_v={}", balance.time_factor), balance.water_imbalance);
+        }
+    }
+    values
+}

@@ -3,12 +3,15 @@
 pub mod chart;
 mod error;
 mod escape;
+pub mod junit;
 pub mod measures;
 pub mod number;
 pub mod page;
+pub mod report;
 mod script;
 #[cfg(test)]
 mod showcase;
 pub mod table;
+pub mod verdicts;
 
 pub use error::RenderError;

@@ -1,0 +1,277 @@
+//! Statistics of wall times: medians, spreads, ratios of interleaved pairs, and their noise.
+//!
+//! On a busy machine medians of the *same* code taken one after the other differ by up to 26 %,
+//! medians of interleaved paired ratios by 4 %: so variants are timed in rounds, every sample is
+//! kept, and a difference counts only beyond what the code shows against itself.
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// Why a statistic has no value.
+#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
+pub enum UndefinedStatistic {
+    /// There are no samples.
+    #[error("there are no samples")]
+    Empty,
+    /// A sample is NaN or infinite.
+    #[error("sample {number} is not finite")]
+    NotFinite {
+        /// Number of the sample, from 1.
+        number: usize,
+    },
+    /// A time is not positive.
+    #[error("sample {number} is not a positive time")]
+    NotPositive {
+        /// Number of the sample, from 1.
+        number: usize,
+    },
+    /// The two lists of a pairing are of different lengths.
+    #[error("{first} and {second} samples cannot be paired")]
+    Unpaired {
+        /// Length of the first list.
+        first: usize,
+        /// Length of the second list.
+        second: usize,
+    },
+}
+
+/// A list of samples in a few numbers, in their unit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// Number of samples.
+    pub count: usize,
+    /// Median.
+    pub median: f64,
+    /// Median absolute deviation from the median, times 1.4826: the standard deviation where the
+    /// samples are normal, and hardly moved by outliers.
+    pub deviation: f64,
+    /// Smallest sample.
+    pub minimum: f64,
+    /// Largest sample.
+    pub maximum: f64,
+}
+
+/// The ratio of two variants timed in rounds, one of each a round.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PairedRatio {
+    /// Spread of the ratios first over second, round by round.
+    pub ratios: Spread,
+    /// Distribution-free interval of the median of at least 95 % (order statistics); `None` below
+    /// six rounds.
+    pub interval: Option<(f64, f64)>,
+}
+
+/// What a paired ratio says, beyond the noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Timing {
+    /// The first variant is faster.
+    Faster,
+    /// No difference can be told.
+    Same,
+    /// The first variant is slower.
+    Slower,
+}
+
+/// Median of samples; the mean of the middle two for an even number.
+///
+/// # Errors
+/// [`UndefinedStatistic`] when there are none, or one is not finite.
+pub fn median(samples: &[f64]) -> Result<f64, UndefinedStatistic> {
+    Ok(middle(&sorted(samples)?))
+}
+
+/// Median, deviation and extremes of samples.
+///
+/// # Errors
+/// [`UndefinedStatistic`] when there are none, or one is not finite.
+pub fn spread(samples: &[f64]) -> Result<Spread, UndefinedStatistic> {
+    let ordered = sorted(samples)?;
+    let median = middle(&ordered);
+    let deviations: Vec<_> = ordered
+        .iter()
+        .map(|sample| (sample - median).abs())
+        .collect();
+    Ok(Spread {
+        count: ordered.len(),
+        median,
+        deviation: 1.4826 * middle(&sorted(&deviations)?),
+        minimum: ordered[0],
+        maximum: ordered[ordered.len() - 1],
+    })
+}
+
+/// Ratios of times first over second, paired by round.
+///
+/// # Errors
+/// [`UndefinedStatistic`] when the lists cannot be paired or hold what is no positive time.
+pub fn paired_ratio(first: &[f64], second: &[f64]) -> Result<PairedRatio, UndefinedStatistic> {
+    if first.len() != second.len() {
+        return Err(UndefinedStatistic::Unpaired {
+            first: first.len(),
+            second: second.len(),
+        });
+    }
+    for times in [first, second] {
+        if let Some(index) = sorted(times).and(Ok(times.iter().position(|time| *time <= 0.0)))? {
+            return Err(UndefinedStatistic::NotPositive { number: index + 1 });
+        }
+    }
+    let ratios: Vec<_> = first.iter().zip(second).map(|(a, b)| a / b).collect();
+    let ordered = sorted(&ratios)?;
+    let interval =
+        median_rank(ordered.len()).map(|rank| (ordered[rank - 1], ordered[ordered.len() - rank]));
+    Ok(PairedRatio {
+        ratios: spread(&ratios)?,
+        interval,
+    })
+}
+
+/// How far from 1 the ratio of the same code against itself may lie: the far end of the median's
+/// interval, or for fewer than six rounds the furthest ratio seen.
+pub fn noise_floor(against_itself: &PairedRatio) -> f64 {
+    let ratios = against_itself.ratios;
+    let (low, high) = against_itself
+        .interval
+        .unwrap_or((ratios.minimum, ratios.maximum));
+    (1.0 - low).abs().max((high - 1.0).abs())
+}
+
+/// Whether a ratio differs from 1 by more than the noise, and with its whole interval. Without
+/// an interval nothing is told.
+pub fn compare(ratio: &PairedRatio, noise_floor: f64) -> Timing {
+    match ratio.interval {
+        Some((low, _)) if low > 1.0 && ratio.ratios.median > 1.0 + noise_floor => Timing::Slower,
+        Some((_, high)) if high < 1.0 && ratio.ratios.median < 1.0 / (1.0 + noise_floor) => {
+            Timing::Faster
+        }
+        _ => Timing::Same,
+    }
+}
+
+/// Rank `k` such that the `k`-th smallest and `k`-th largest of `count` samples enclose the median
+/// with at least 95 %: the largest with `P(Binomial(count, ½) < k) ≤ 2.5 %`.
+fn median_rank(count: usize) -> Option<usize> {
+    let mut term = 0.5_f64.powi(i32::try_from(count).ok()?);
+    let (mut below, mut rank) = (0.0, 0);
+    while below + term <= 0.025 && rank < count {
+        below += term;
+        term *= (count - rank) as f64 / (rank + 1) as f64;
+        rank += 1;
+    }
+    // For thousands of samples the first term underflows; nobody times that many rounds.
+    (rank > 0 && rank < count.div_ceil(2)).then_some(rank)
+}
+
+fn middle(ordered: &[f64]) -> f64 {
+    let half = ordered.len() / 2;
+    if ordered.len() % 2 == 1 {
+        ordered[half]
+    } else {
+        f64::midpoint(ordered[half - 1], ordered[half])
+    }
+}
+
+/// The samples in order; they are at least one, and finite.
+fn sorted(samples: &[f64]) -> Result<Vec<f64>, UndefinedStatistic> {
+    if samples.is_empty() {
+        return Err(UndefinedStatistic::Empty);
+    }
+    if let Some(index) = samples.iter().position(|sample| !sample.is_finite()) {
+        return Err(UndefinedStatistic::NotFinite { number: index + 1 });
+    }
+    let mut ordered = samples.to_vec();
+    ordered.sort_by(f64::total_cmp);
+    Ok(ordered)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians_and_spreads_are_those_of_the_definition() {
+        assert_eq!(median(&[3.0, 1.0, 2.0]), Ok(2.0));
+        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), Ok(2.5));
+        let found = spread(&[1.0, 2.0, 3.0, 4.0, 100.0]).unwrap();
+        assert_eq!(
+            (found.median, found.minimum, found.maximum, found.count),
+            (3.0, 1.0, 100.0, 5)
+        );
+        assert!((found.deviation - 1.4826).abs() < 1e-12);
+    }
+
+    #[test]
+    fn ranks_are_those_of_the_table() {
+        // Ranks of the 95 % interval of the median, from any table of the sign test.
+        for (count, rank) in [
+            (6, 1),
+            (8, 1),
+            (9, 2),
+            (11, 2),
+            (12, 3),
+            (15, 4),
+            (20, 6),
+            (50, 18),
+        ] {
+            assert_eq!(median_rank(count), Some(rank), "{count}");
+        }
+        assert_eq!(median_rank(5), None);
+        assert_eq!(median_rank(0), None);
+    }
+
+    /// Times of two rounds-interleaved variants on a machine whose speed drifts by half.
+    fn rounds(factor: f64) -> (Vec<f64>, Vec<f64>) {
+        let drift = |round: i32| 1.0 + 0.5 * (f64::from(round) * 0.4).sin();
+        let jitter = |round: i32| 1.0 + 0.02 * (f64::from(round) * 7.3).sin();
+        let first = (0..20)
+            .map(|round| factor * drift(round) * jitter(round))
+            .collect();
+        let second = (0..20)
+            .map(|round| drift(round) * jitter(round + 100))
+            .collect();
+        (first, second)
+    }
+
+    #[test]
+    fn pairs_see_through_a_drifting_machine() {
+        let ratio = |factor| {
+            let (first, second) = rounds(factor);
+            paired_ratio(&first, &second).unwrap()
+        };
+        let noise = noise_floor(&ratio(1.0));
+        assert!(noise > 0.0 && noise < 0.03, "{noise}");
+        assert_eq!(compare(&ratio(1.0), noise), Timing::Same);
+        assert_eq!(compare(&ratio(1.1), noise), Timing::Slower);
+        assert_eq!(compare(&ratio(0.9), noise), Timing::Faster);
+        let few = paired_ratio(&[2.0; 3], &[1.0; 3]).unwrap();
+        assert_eq!((few.interval, compare(&few, 0.0)), (None, Timing::Same));
+        assert_eq!(noise_floor(&few), 1.0);
+    }
+
+    #[test]
+    fn what_has_no_value_is_named() {
+        use UndefinedStatistic as Undefined;
+        assert_eq!(median(&[]), Err(Undefined::Empty));
+        assert_eq!(
+            spread(&[1.0, f64::NAN]),
+            Err(Undefined::NotFinite { number: 2 })
+        );
+        assert_eq!(
+            paired_ratio(&[1.0], &[]),
+            Err(Undefined::Unpaired {
+                first: 1,
+                second: 0
+            })
+        );
+        assert_eq!(paired_ratio(&[], &[]), Err(Undefined::Empty));
+        assert_eq!(
+            paired_ratio(&[1.0], &[0.0]),
+            Err(Undefined::NotPositive { number: 1 })
+        );
+        assert_eq!(
+            paired_ratio(&[f64::NAN], &[1.0]),
+            Err(Undefined::NotFinite { number: 1 })
+        );
+    }
+}

@@ -1,0 +1,215 @@
+//! Errors under refinement: figures with slope triangles, and tables of orders.
+
+use super::{StudyResults, labels};
+use crate::assess::orders::WINDOW;
+use crate::assess::summary::{Path, SeriesSummary, first_norm, paths};
+use crate::record::{Quantity, Sample};
+use crate::render::chart::{Axis as ChartAxis, Chart, Direction, Place, Rule, Series, SlopeTriangle, Style};
+use crate::render::page::{Block, Figure, slug};
+use crate::render::table::{Cell, Column, Table};
+use crate::study::{Axis, Measure, step_label};
+
+/// Quantities of one figure, side by side.
+const PANELS: [(Quantity, Sample); 4] = [
+    (Quantity::Pressure, Sample::Points),
+    (Quantity::Pressure, Sample::Centres),
+    (Quantity::EffectiveStress, Sample::Points),
+    (Quantity::Settlement, Sample::Surface),
+];
+
+/// Figures and tables of a study along an axis; none where nothing was refined on it.
+pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
+    let all = longest_paths(results, axis);
+    if all.is_empty() {
+        return Vec::new();
+    }
+    let times = common_times(&all);
+    let Some(shown) = times.get(times.len().saturating_sub(1) / 2).copied() else { return Vec::new() };
+    let mut blocks = vec![Block::Heading(heading(axis).to_owned())];
+    let references: Vec<&str> = results.study.references.iter().map(|kind| kind.name()).collect();
+    let own = references.first().copied().unwrap_or_default();
+    let figures = PANELS.map(|(quantity, sample)| figure(results, &all, axis, quantity, sample, own, shown));
+    blocks.push(Block::Figures(figures.into_iter().flatten().collect()));
+    if let (true, Some(other)) = (floors_of_model(results), references.get(1)) {
+        blocks.extend(figure(results, &all, axis, Quantity::Pressure, Sample::Points, other, shown).map(Block::Figure));
+    }
+    blocks.push(Block::Table(orders_table(&all, axis, own, shown)));
+    let mut more: Vec<Block> =
+        times.iter().filter(|time| **time != shown).map(|time| Block::Table(orders_table(&all, axis, own, *time))).collect();
+    for other in references.iter().skip(1) {
+        more.push(Block::Table(orders_table(&all, axis, other, shown)));
+    }
+    if !more.is_empty() {
+        blocks.push(Block::Details { summary: "The other times and references".to_owned(), blocks: more });
+    }
+    blocks
+}
+
+/// Paths of at least three levels; in a study of variants with two levels there is no order.
+fn longest_paths<'a>(results: &StudyResults<'a>, axis: Axis) -> Vec<Path<'a>> {
+    let mut all = paths(results.records, axis);
+    all.retain(|path| path.records.len() >= WINDOW);
+    all
+}
+
+/// Whether the study expects to run into the difference of two models.
+fn floors_of_model(results: &StudyResults<'_>) -> bool {
+    let own = results.study.references.first().copied();
+    results.study.expectations.iter().any(|one| Some(one.reference) != own)
+}
+
+fn common_times(all: &[Path<'_>]) -> Vec<f64> {
+    let first = all[0].records[0].case.time_factors.clone();
+    first.into_iter().filter(|time| all.iter().all(|path| path.records[0].case.time_factors.contains(time))).collect()
+}
+
+fn heading(axis: Axis) -> &'static str {
+    match axis {
+        Axis::Cells => "Error against the mesh",
+        Axis::TimeStep => "Error against the time step",
+        Axis::PointsPerCell => "Error against the points in a cell",
+    }
+}
+
+fn figure(
+    results: &StudyResults<'_>,
+    all: &[Path<'_>],
+    axis: Axis,
+    quantity: Quantity,
+    sample: Sample,
+    reference: &str,
+    time_factor: f64,
+) -> Option<Figure> {
+    let measure =
+        Measure { quantity, sample, norm: first_norm(quantity), reference: reference.to_owned(), time_factor };
+    let summaries: Vec<SeriesSummary<'_>> = all.iter().map(|path| path.summary(&measure)).collect();
+    if summaries.iter().all(|summary| summary.series.levels().iter().all(|level| level.error.is_none())) {
+        return None;
+    }
+    let title = format!("Error of the {}", labels::measure(&measure));
+    let ticks = summaries[0].series.levels().iter().map(|level| level.size).collect();
+    let mut chart = Chart::new(
+        title,
+        ChartAxis::log10(labels::axis(axis)).with_ticks(ticks),
+        ChartAxis::log10(labels::error_axis(&measure)),
+    );
+    chart.subtitle = Some(format!("T_v = {time_factor}, against `{reference}`").replace('`', ""));
+    for summary in &summaries {
+        let points = summary.series.levels().iter().filter_map(|level| Some((level.size, level.error?))).collect();
+        chart.series.push(Series::new(summary.path.label(), points).style(Style::LineAndMarkers));
+    }
+    if axis == Axis::Cells {
+        add_triangles(&mut chart, &summaries);
+    }
+    let floor = summaries.iter().find_map(|summary| summary.classification.floor.clone());
+    if let Some(floor) = floor.filter(|_| axis == Axis::Cells) {
+        chart.rules.push(Rule { axis: Direction::Y, at: floor.value, label: "floor".to_owned() });
+    }
+    let name = slug(&format!("{}-{}-{}-{}-{reference}", results.study.name, axis.name(), quantity.name(), sample.name()));
+    let caption = captions(&summaries);
+    Some(Figure::new(name, chart, caption))
+}
+
+/// One triangle for each order that a series comes near.
+fn add_triangles(chart: &mut Chart, summaries: &[SeriesSummary<'_>]) {
+    for slope in [1.0, 2.0] {
+        let near = summaries.iter().find(|summary| {
+            summary.finest.as_ref().is_ok_and(|finest| (finest.order - slope).abs() < 0.3)
+        });
+        if let Some(summary) = near {
+            chart.triangles.push(SlopeTriangle { slope, place: Place::Beside(summary.path.label()) });
+        }
+    }
+}
+
+/// The class of every series of a figure, those that share a class together.
+fn captions(summaries: &[SeriesSummary<'_>]) -> String {
+    let mut said: Vec<(String, Vec<String>)> = Vec::new();
+    for summary in summaries {
+        let class = summary.classification.class.name().to_owned();
+        let order = match (&summary.classification.order, summary.path.axis) {
+            (Some(order), Axis::Cells) => format!("{} (order {order:.2})", summary.path.records[0].case.method),
+            _ => summary.path.records[0].case.method.to_string(),
+        };
+        match said.iter_mut().find(|(known, _)| *known == class) {
+            Some((_, labels)) => labels.push(order),
+            None => said.push((class, vec![order])),
+        }
+    }
+    let parts: Vec<String> = said.iter().map(|(class, labels)| format!("*{class}*: {}", labels.join(", "))).collect();
+    parts.join("; ") + "."
+}
+
+/// Errors at every level with pairwise orders, fit, finest window and class.
+fn orders_table(all: &[Path<'_>], axis: Axis, reference: &str, time_factor: f64) -> Table {
+    let levels = level_names(all, axis);
+    let mut columns = vec![Column::text("method"), Column::text("error of")];
+    columns.extend(levels.iter().map(|level| Column::number(level.clone())));
+    if axis == Axis::Cells {
+        columns.extend(["pair orders", "fit, 95 %", "finest 3"].map(Column::number));
+    }
+    columns.push(Column::text("class"));
+    let mut rows = Vec::new();
+    let mut notes = Vec::new();
+    for (quantity, sample) in PANELS {
+        let measure =
+            Measure { quantity, sample, norm: first_norm(quantity), reference: reference.to_owned(), time_factor };
+        for path in all {
+            let summary = path.summary(&measure);
+            if let (Some(floor), Some(advice)) = (&summary.classification.floor, &summary.classification.advice) {
+                notes.push(format!(
+                    "{}, {}: floor {:.1e}; {advice}",
+                    path.label(),
+                    labels::measure(&measure),
+                    floor.value
+                ));
+            }
+            rows.push(orders_row(&summary, &measure, levels.len(), axis));
+        }
+    }
+    notes.push(format!("{} over the volume; settlement |s/s_exact − 1|", first_norm(Quantity::Pressure).formula()));
+    Table { title: format!("T_v = {time_factor}, against {reference}"), columns, rows, notes }
+}
+
+fn orders_row(summary: &SeriesSummary<'_>, measure: &Measure, levels: usize, axis: Axis) -> Vec<Cell> {
+    let mut row = vec![Cell::Code(summary.path.label()), labels::measure(measure).as_str().into()];
+    let errors = summary.series.levels().iter().map(|level| match level.error {
+        Some(error) => Cell::Error(error),
+        None => Cell::Missing("no error was measured".to_owned()),
+    });
+    row.extend(errors);
+    row.resize(2 + levels, Cell::Missing("not run".to_owned()));
+    if axis == Axis::Cells {
+        let pairs: Vec<String> = summary
+            .pairs
+            .iter()
+            .map(|pair| pair.order.as_ref().map_or("–".to_owned(), |order| format!("{order:.2}")))
+            .collect();
+        row.push(pairs.join(", ").as_str().into());
+        row.push(match &summary.slope {
+            Ok(fit) => fit.half_width.map_or(Cell::Order(fit.order), |half| Cell::OrderWithin(fit.order, half)),
+            Err(undefined) => Cell::Missing(undefined.to_string()),
+        });
+        row.push(match &summary.finest {
+            Ok(finest) => Cell::Order(finest.order),
+            Err(undefined) => Cell::Missing(undefined.to_string()),
+        });
+    }
+    row.push(summary.classification.class.name().into());
+    row
+}
+
+/// Names of the levels, from the path that has most of them.
+fn level_names(all: &[Path<'_>], axis: Axis) -> Vec<String> {
+    let longest = all.iter().max_by_key(|path| path.records.len());
+    longest.map_or(Vec::new(), |path| {
+        path.records
+            .iter()
+            .map(|record| match axis {
+                Axis::Cells => format!("{} cells", record.case.cells),
+                Axis::TimeStep => step_label(&record.case.time_step).replace("seconds=", "Δt = ") + " s",
+                Axis::PointsPerCell => format!("m = {}", record.case.points_per_cell),
+            })
+            .collect()
+    })
+}

@@ -1,0 +1,56 @@
+//! The report: one page over the records of studies, as HTML and as Markdown.
+
+mod appendix;
+mod checks;
+mod convergence;
+mod findings;
+mod labels;
+mod profiles;
+mod section;
+mod work;
+
+use super::page::Page;
+use crate::assess::summary::{Judgement, judge_study};
+use crate::exact::ExactError;
+use crate::record::Record;
+use crate::study::{Study, Tier};
+
+/// A study with its records and the judgements on them.
+pub struct StudyResults<'a> {
+    /// The study.
+    pub study: &'a Study,
+    /// Its records.
+    pub records: &'a [Record],
+    /// Its expectations, judged.
+    pub judgements: Vec<Judgement>,
+}
+
+impl<'a> StudyResults<'a> {
+    /// Judges the records of a study.
+    pub fn new(study: &'a Study, records: &'a [Record], tier: Tier) -> Self {
+        Self { study, records, judgements: judge_study(study, records, tier) }
+    }
+
+    /// Whether every expectation is met.
+    fn passes(&self) -> bool {
+        self.judgements.iter().all(|judgement| judgement.verdict.pass)
+    }
+}
+
+/// The page over the results of studies.
+///
+/// # Errors
+/// When a reference refuses a case.
+pub fn page_of(results: &[StudyResults<'_>]) -> Result<Page, ExactError> {
+    let mut sections = vec![findings::section(results)];
+    for one in results {
+        sections.push(section::of_study(one)?);
+    }
+    sections.push(appendix::section(results));
+    Ok(Page {
+        title: "Convergence report".to_owned(),
+        lead: findings::lead(results),
+        sections,
+        footer: appendix::footer(results),
+    })
+}

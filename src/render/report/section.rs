@@ -1,0 +1,40 @@
+//! The section of one study: what it asks, what was expected, figures, tables, checks.
+
+use super::{StudyResults, checks, convergence, profiles, work};
+use crate::exact::ExactError;
+use crate::render::page::{Block, Section};
+use crate::render::table::Mood;
+use crate::render::verdicts::judgements_table;
+use crate::study::Axis;
+
+/// The section of a study.
+pub fn of_study(results: &StudyResults<'_>) -> Result<Section, ExactError> {
+    let study = results.study;
+    let mut blocks = vec![Block::Paragraph(study.summary.clone())];
+    if !results.judgements.is_empty() {
+        let met = results.judgements.iter().filter(|judgement| judgement.verdict.pass).count();
+        let mood = if results.passes() { Mood::Pass } else { Mood::Fail };
+        blocks.push(Block::Callout(mood, format!("{met} of {} expectations are met.", results.judgements.len())));
+    }
+    blocks.extend(profiles::blocks(results)?);
+    for axis in Axis::ALL {
+        blocks.extend(convergence::blocks(results, axis));
+    }
+    blocks.extend(work::blocks(results));
+    blocks.push(checks::block(results));
+    if !results.judgements.is_empty() {
+        let all: Vec<_> = results.judgements.iter().collect();
+        blocks.push(Block::Details {
+            summary: "Every expectation, with the reason of its verdict".to_owned(),
+            blocks: vec![Block::Table(judgements_table("Expectations", &all))],
+        });
+    }
+    let command = format!("oedometer run studies/{}.toml", study.name);
+    blocks.push(Block::Paragraph(format!("Run it again: `{command}`.")));
+    Ok(Section {
+        heading: study.title.clone(),
+        id: study.name.clone(),
+        mood: Some(if results.passes() { Mood::Pass } else { Mood::Fail }),
+        blocks,
+    })
+}

@@ -1,0 +1,142 @@
+//! What `check` says: verdicts and golden values of studies, as text and as Markdown.
+
+use super::RenderError;
+use super::number;
+use super::table::{Cell, Column, Mood, Table};
+use crate::assess::study_check::StudyCheck;
+use crate::assess::summary::Judgement;
+use crate::assess::verdict::Outcome;
+use crate::golden::Difference;
+use std::fmt::Write;
+
+/// Differences shown before the rest is only counted.
+const MOST_DIFFERENCES: usize = 40;
+
+/// A study's check as text.
+///
+/// # Errors
+/// If a table cannot be written.
+pub fn text_of(check: &StudyCheck) -> Result<String, RenderError> {
+    let mut text = format!("{}: {}\n", check.study, headline(check));
+    for table in tables_of(check) {
+        let _ = write!(text, "\n{}\n", table.to_text()?);
+    }
+    Ok(text)
+}
+
+/// The checks of several studies as Markdown.
+///
+/// # Errors
+/// If a table cannot be written.
+pub fn markdown_of(checks: &[StudyCheck]) -> Result<String, RenderError> {
+    let mut text = "## oedometer check\n".to_owned();
+    for check in checks {
+        let _ = write!(text, "\n### {}: {}\n", check.study, headline(check));
+        for table in tables_of(check) {
+            let _ = write!(text, "\n{}\n", table.to_markdown()?);
+        }
+    }
+    Ok(text)
+}
+
+fn headline(check: &StudyCheck) -> String {
+    let passed = check.judgements.iter().filter(|judgement| judgement.verdict.pass).count();
+    let golden = match &check.golden {
+        Ok(differences) if differences.is_empty() => format!("{} golden values agree", check.agreeing),
+        Ok(differences) => format!("{} golden values agree, {} do not", check.agreeing, differences.len()),
+        Err(error) => error.to_string(),
+    };
+    let failed = match check.failed_cases.len() {
+        0 => String::new(),
+        count => format!(", {count} cases failed"),
+    };
+    format!("{passed} of {} expectations met{failed}, {golden}", check.judgements.len())
+}
+
+fn tables_of(check: &StudyCheck) -> Vec<Table> {
+    let mut tables = Vec::new();
+    let unmet: Vec<_> = check.judgements.iter().filter(|judgement| !judgement.verdict.pass).collect();
+    if !unmet.is_empty() {
+        tables.push(judgements_table("expectations not met", &unmet));
+    }
+    if !check.failed_cases.is_empty() {
+        let rows = check.failed_cases.iter().map(|(case, why)| vec![Cell::Code(case.clone()), why.as_str().into()]);
+        tables.push(Table {
+            title: "failed cases".to_owned(),
+            columns: vec![Column::text("case"), Column::text("how")],
+            rows: rows.collect(),
+            notes: Vec::new(),
+        });
+    }
+    if !check.differences().is_empty() {
+        tables.push(differences_table(check.differences()));
+    }
+    tables
+}
+
+/// Judgements as a table, each with its reason.
+pub fn judgements_table(title: &str, judgements: &[&Judgement]) -> Table {
+    let rows = judgements.iter().map(|judgement| {
+        let verdict = &judgement.verdict;
+        let mood = match (verdict.pass, verdict.outcome) {
+            (true, Outcome::KnownFailure) => Mood::Note,
+            (true, _) => Mood::Pass,
+            (false, _) => Mood::Fail,
+        };
+        let outcome = match verdict.outcome {
+            Outcome::Passed => "pass",
+            Outcome::Failed => "fail",
+            Outcome::KnownFailure => "known failure",
+            Outcome::UnexpectedPass => "unexpected pass",
+        };
+        vec![
+            Cell::Verdict(mood, outcome.to_owned()),
+            judgement.subject.as_str().into(),
+            verdict.classification.class.name().into(),
+            verdict.reason.as_str().into(),
+        ]
+    });
+    Table {
+        title: title.to_owned(),
+        columns: vec![
+            Column::text("verdict"),
+            Column::text("series"),
+            Column::text("class"),
+            Column::text("reason"),
+        ],
+        rows: rows.collect(),
+        notes: Vec::new(),
+    }
+}
+
+fn differences_table(differences: &[Difference]) -> Table {
+    let value = |value: Option<f64>| value.map_or(Cell::Missing("no value".to_owned()), |v| number::exact(v).as_str().into());
+    let rows = differences.iter().take(MOST_DIFFERENCES).map(|one| {
+        let change = match (one.golden, one.found) {
+            (Some(golden), Some(found)) => Cell::Error(found - golden),
+            _ => Cell::Missing("nothing to compare".to_owned()),
+        };
+        vec![
+            one.change.name().into(),
+            one.name.as_str().into(),
+            value(one.golden),
+            value(one.found),
+            change,
+            Cell::Error(one.tolerance),
+        ]
+    });
+    let rest = differences.len().saturating_sub(MOST_DIFFERENCES);
+    Table {
+        title: "golden values that moved".to_owned(),
+        columns: vec![
+            Column::text("change"),
+            Column::text("value"),
+            Column::number("golden"),
+            Column::number("now"),
+            Column::number("difference"),
+            Column::number("tolerance"),
+        ],
+        rows: rows.collect(),
+        notes: if rest > 0 { vec![format!("and {rest} more")] } else { Vec::new() },
+    }
+}
