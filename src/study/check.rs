@@ -272,7 +272,7 @@ impl Checker<'_> {
     /// of thought.
     fn permeability_unit(&mut self, table: &MaterialTable, soil: &Material) {
         if let Some(typed) = &table.hydraulic_conductivity {
-            if soil.hydraulic_conductivity > 10.0 {
+            if soil.hydraulic_conductivity > 10.0 && soil.hydraulic_conductivity.is_finite() {
                 self.complain(
                     typed.span(),
                     format!("a hydraulic conductivity of {} m/s is no soil's", soil.hydraulic_conductivity),
@@ -281,7 +281,7 @@ impl Checker<'_> {
             }
         }
         if let Some(typed) = &table.youngs_modulus {
-            if soil.youngs_modulus < 1e2 {
+            if soil.youngs_modulus > 0.0 && soil.youngs_modulus < 1e2 {
                 self.complain(
                     typed.span(),
                     format!("a Young's modulus of {} Pa is no soil's", soil.youngs_modulus),
@@ -290,7 +290,7 @@ impl Checker<'_> {
             }
         }
         if let Some(typed) = &table.water_bulk_modulus {
-            if soil.water_bulk_modulus < 1e3 {
+            if soil.water_bulk_modulus > 0.0 && soil.water_bulk_modulus < 1e3 {
                 self.complain(
                     typed.span(),
                     format!("a bulk modulus of {} Pa is no liquid's", soil.water_bulk_modulus),
