@@ -126,6 +126,7 @@ fn impossible_materials_are_refused_with_what_is_possible() {
         ("grain_density = 0", ["`material.grain_density` is 0", "positive and finite"]),
         ("water_density = nan", ["`material.water_density` is NaN", "positive and finite"]),
         ("water_bulk_modulus = -2.2e9", ["`material.water_bulk_modulus` is", "positive and finite"]),
+        ("hydraulic_conductivity = inf", ["`material.hydraulic_conductivity` is inf", "positive and finite"]),
         ("hydraulic_conductivity = 0", ["`material.hydraulic_conductivity` is 0 m/s", "positive and finite"]),
         ("gravity = 0", ["`material.gravity` is 0", "positive and finite"]),
         ("youngs_modulus = 1.0", ["a Young's modulus of 1 Pa is no soil's", "give pascals"]),
@@ -134,7 +135,9 @@ fn impossible_materials_are_refused_with_what_is_possible() {
         ("law = \"linaer\"", ["no law is called `linaer`", "did you mean `linear`?"]),
         ("continuity = \"exact\"", ["no continuity is called `exact`", "`conservative`"]),
     ] {
-        assert_says(&refused_with("porosity = 0.3", line), &parts);
+        let told = refused_with("porosity = 0.3", line);
+        assert_says(&told, &parts);
+        assert_eq!(told.matches("error: ").count(), 1, "one complaint for one fault: {told}");
     }
 }
 
