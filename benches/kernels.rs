@@ -82,9 +82,11 @@ fn exact_degree_of_consolidation(bencher: Bencher, time_factor: f64) {
 
 /// The seed column, from its undrained start.
 fn problem(method: &str, cells: usize, configuration: Configuration) -> Problem<1> {
-    let method = Method { configuration: Some(configuration), ..Method::named(method).expect("a known method") };
+    let method =
+        Method { configuration: Some(configuration), ..Method::named(method).expect("a known method") };
     let (column, soil) = (Column::default(), Material::default());
-    column_problem(SceneKind::Terzaghi, &column, &soil, method, cells, POINTS_PER_CELL).expect("the seed column")
+    column_problem(SceneKind::Terzaghi, &column, &soil, method, cells, POINTS_PER_CELL)
+        .expect("the seed column")
 }
 
 /// A closure that takes `STEPS` steps.

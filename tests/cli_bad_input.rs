@@ -60,7 +60,7 @@ fn refused_with(line: &str, replacement: &str) -> String {
     let text = SOUND.replacen(line, replacement, 1);
     let told = refused_study(&text);
     let (before, _) = text.split_once(replacement).expect("it was put there");
-    let number = before.lines().count() + 1;
+    let number = before.matches('\n').count() + 1;
     let reached = number + replacement.lines().count();
     let placed = (number..=reached).any(|number| told.contains(&format!("study.toml:{number}:")));
     assert!(placed, "line {number} of\n{text}is not named by\n{told}");
@@ -201,12 +201,20 @@ fn names_that_are_none_are_refused_with_the_names_there_are() {
     let told = refused_with("\"GC-SRI-patch\"", "\"GC-SRI-pach\"");
     assert_snapshot("bad_input_unknown_method", &told);
     for (line, replacement, parts) in [
-        ("scene = \"terzaghi\"", "scene = \"tezaghi\"", ["no scene is called `tezaghi`", "did you mean `terzaghi`?"]),
+        (
+            "scene = \"terzaghi\"",
+            "scene = \"tezaghi\"",
+            ["no scene is called `tezaghi`", "did you mean `terzaghi`?"],
+        ),
         ("cells = [2]", "cells = [2]\nintegrator = [\"implict\"]", ["no integrator is called", "`explicit`"]),
         ("cells = [2]", "cells = [2]\ntier = \"big\"", ["no tier is called `big`", "`smoke`, `ci`, `full`"]),
         ("cells = [2]", "cells = [2]\ndrag = [\"none\"]", ["no drag is called `none`", "`implicit`"]),
         ("cells = [2]", "cells = [2]\nflip = [1.5]", ["a FLIP share of 1.5", "between 0 (PIC) and 1 (FLIP)"]),
-        ("cells = [2]", "cells = [2]\npath = [\"cell\"]", ["no axis is called `cell`", "did you mean `cells`?"]),
+        (
+            "cells = [2]",
+            "cells = [2]\npath = [\"cell\"]",
+            ["no axis is called `cell`", "did you mean `cells`?"],
+        ),
         ("[\"GC-SRI-patch\"]", "[{ basis = \"hat\" }]", ["the method names no `strain`", "standard, cmpm"]),
         (
             "time_factors = [0.001]",
@@ -305,7 +313,8 @@ fn assignments_are_judged_like_a_study() {
         for command in ["solve", "exact"] {
             let told = refused(&[command, "terzaghi", "--set", assignment]);
             // `exact` has the same lines at other numbers.
-            let parts: Vec<&str> = if assignment.ends_with('=') { vec!["command line"] } else { parts.to_vec() };
+            let parts: Vec<&str> =
+                if assignment.ends_with('=') { vec!["command line"] } else { parts.to_vec() };
             assert_says(&told, &parts);
         }
     }

@@ -122,7 +122,9 @@ fn a_run_leaves_one_record_a_case_and_one_tidy_table() {
         let record: serde_json::Value = serde_json::from_slice(bytes).expect("JSON");
         assert_eq!(record["hash"], hash.as_str());
         assert_eq!(record["status"], "ok");
-        for key in ["schema", "case", "counters", "groups", "start", "balance", "errors", "references", "provenance"] {
+        for key in
+            ["schema", "case", "counters", "groups", "start", "balance", "errors", "references", "provenance"]
+        {
             assert!(!record[key].is_null(), "`{key}` is missing");
         }
         let text = String::from_utf8_lossy(bytes);
@@ -137,9 +139,14 @@ fn a_run_leaves_one_record_a_case_and_one_tidy_table() {
     // 8 cases × 2 times × 2 references × (27 errors of fields + the settlement).
     assert_eq!(order.len(), 8 * 2 * 2 * 28);
     assert!(place.column("out", "value").iter().all(|value| value.parse::<f64>().is_ok_and(f64::is_finite)));
-    assert!(!place.path().join("out/short/cases").read_dir().expect("cases").any(|entry| {
-        entry.expect("an entry").file_name().to_string_lossy().contains(".part")
-    }));
+    assert!(
+        !place
+            .path()
+            .join("out/short/cases")
+            .read_dir()
+            .expect("cases")
+            .any(|entry| { entry.expect("an entry").file_name().to_string_lossy().contains(".part") })
+    );
 }
 
 #[test]
@@ -188,8 +195,9 @@ fn a_record_of_other_sources_or_of_an_older_layout_is_run_again() {
     assert_eq!(place.run(&[]).code, 0);
     let records = place.record_bytes("out");
     let hashes: Vec<&String> = records.keys().collect();
-    for (hash, (key, value)) in
-        hashes.iter().zip([("/provenance/sources", serde_json::json!("other")), ("/schema", serde_json::json!(0))])
+    for (hash, (key, value)) in hashes
+        .iter()
+        .zip([("/provenance/sources", serde_json::json!("other")), ("/schema", serde_json::json!(0))])
     {
         let mut record: serde_json::Value = serde_json::from_slice(&records[*hash]).expect("JSON");
         *record.pointer_mut(key).expect("the key") = value;
@@ -205,7 +213,8 @@ fn a_resumed_run_follows_the_study_and_not_the_folder() {
     let place = Place::with(STUDY);
     assert_eq!(place.run(&[]).code, 0);
     // Same meaning in other words and another order: the same cases.
-    let reworded = STUDY.replace("Eight", "8").replace("[0.01, 0.02]", "[0.02, 1e-2]").replace("[3, 4]", "[4, 3]");
+    let reworded =
+        STUDY.replace("Eight", "8").replace("[0.01, 0.02]", "[0.02, 1e-2]").replace("[3, 4]", "[4, 3]");
     fs::write(place.path().join("short.toml"), reworded).expect("written");
     assert!(place.run(&["--resume"]).err.contains("(8 from disk"));
     // Another load: other cases.
@@ -233,7 +242,8 @@ fn shards_part_the_cases_exactly() {
 
 #[test]
 fn a_failed_case_is_told_and_the_others_go_on() {
-    let text = STUDY.replace("[{ stable = 0.8 }]", "[{ stable = 0.8 }, { stable = 1.2 }]").replace("[3, 4]", "[3]");
+    let text =
+        STUDY.replace("[{ stable = 0.8 }]", "[{ stable = 0.8 }, { stable = 1.2 }]").replace("[3, 4]", "[3]");
     let place = Place::with(&text);
     let told = place.run(&["--jobs", "2"]);
     assert_eq!(told.code, 3, "{}", told.err);
@@ -282,9 +292,9 @@ fn one_record_that_cannot_be_written_is_told_and_the_others_stay() {
     let told = place.run(&["--jobs", "2"]);
     assert_ne!(told.code, 0, "{}", told.err);
     assert!(told.err.contains(&hash), "the place is named: {}", told.err);
-    let kept = fs::read_dir(place.records("out")).expect("cases").filter(|entry| {
-        entry.as_ref().is_ok_and(|entry| entry.path().join("record.json").is_file())
-    });
+    let kept = fs::read_dir(place.records("out"))
+        .expect("cases")
+        .filter(|entry| entry.as_ref().is_ok_and(|entry| entry.path().join("record.json").is_file()));
     assert_eq!(kept.count(), 7);
 }
 

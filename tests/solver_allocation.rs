@@ -30,7 +30,8 @@ fn allocations(mut work: impl FnMut()) -> usize {
 }
 
 fn problem(name: &str, configuration: Configuration, continuity: Continuity) -> Problem<1> {
-    let method = Method { configuration: Some(configuration), ..Method::named(name).expect("a known method") };
+    let method =
+        Method { configuration: Some(configuration), ..Method::named(name).expect("a known method") };
     let soil = Material { continuity, ..Material::default() };
     column_problem(SceneKind::Terzaghi, &Column::default(), &soil, method, 6, 2).expect("the seed column")
 }
