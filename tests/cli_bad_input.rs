@@ -60,7 +60,7 @@ fn refused_with(line: &str, replacement: &str) -> String {
     let text = SOUND.replacen(line, replacement, 1);
     let told = refused_study(&text);
     let (before, _) = text.split_once(replacement).expect("it was put there");
-    let number = before.lines().count() + 1;
+    let number = before.matches('\n').count() + 1;
     let reached = number + replacement.lines().count();
     let placed = (number..=reached).any(|number| told.contains(&format!("study.toml:{number}:")));
     assert!(placed, "line {number} of\n{text}is not named by\n{told}");
