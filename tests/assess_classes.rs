@@ -219,6 +219,23 @@ fn orders_off_the_formal_one_have_their_names() {
 }
 
 #[test]
+fn round_off_does_not_choose_between_explanations() {
+    // One power, 3.1, noisy, with 3.65 expected: a floor of nothing and a lower-order term alone
+    // fit it alike, and which came first once depended on the unit of length.
+    let errors =
+        [0.0, 2.331_423_7, 0.766_776_1, 1.965_436_8].map(|log: f64| (0.039_874 * log).exp());
+    let points = |unit: f64| {
+        let noisy = |(h, factor): (&f64, f64)| (unit * h, h.powf(3.108_930_8) * factor);
+        ErrorSeries::of(&SIZES.iter().zip(errors).map(noisy).collect::<Vec<_>>())
+    };
+    let classes = [1.0, 3.4e-3, 1e3, 0.7].map(|unit| classify(&points(unit), &formal(3.65)).class);
+    assert!(
+        classes.iter().all(|class| *class == classes[0]),
+        "{classes:?}"
+    );
+}
+
+#[test]
 fn a_floor_is_put_down_to_what_fits_it_with_advice() {
     let limiter = |kind, name: &str, magnitude| Limiter {
         kind,

@@ -22,6 +22,9 @@ const POOR: f64 = 0.05;
 /// Lowest exponent told apart from a floor.
 const LEAST_ORDER: f64 = 0.3;
 
+/// A second term with less of the finest error than this is none.
+const LEAST_SHARE: f64 = 0.01;
+
 impl Bend {
     /// The fit, whatever it says.
     pub(super) fn terms(&self) -> &TwoTerms {
@@ -73,10 +76,18 @@ fn about_formal(points: &[(f64, f64)], formal: f64) -> Option<Bend> {
             .flatten(),
         fit(Fixed(formal), higher).map(Bend::Higher),
     ];
+    // With a second term of nothing all three are the same single power, and round-off would
+    // choose among them.
+    let finest = points.last()?.0;
+    let real = |bend: &Bend| match bend {
+        Bend::Floor(terms) | Bend::Lower(terms) => terms.low_share(finest) > LEAST_SHARE,
+        Bend::Higher(_) => true,
+    };
     let residual = |bend: &Bend| bend.terms().residual;
     candidates
         .into_iter()
         .flatten()
+        .filter(real)
         .min_by(|a, b| residual(a).total_cmp(&residual(b)))
 }
 

@@ -288,7 +288,9 @@ mod tests {
         let found = of([100.0, 98.0, 101.0, 98.4, 100.5, 99.0, 100.1]);
         assert!(found.deviation > found.data_range && found.safety_factor == 3.0);
         for grid in &found.grids {
-            assert!(grid.uncertainty.is_finite() && grid.uncertainty > 1.0);
+            let sum = grid.error.abs() + found.deviation + grid.misfit.abs();
+            let wanted = 3.0 * found.deviation / found.data_range * sum;
+            assert!((grid.uncertainty / wanted - 1.0).abs() < 1e-12 && wanted > 1.0);
         }
     }
 

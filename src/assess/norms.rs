@@ -379,6 +379,14 @@ mod tests {
     }
 
     #[test]
+    fn a_sample_without_volume_counts_in_no_norm() {
+        for norm in [Norm::L1, Norm::L2, Norm::Linf] {
+            let error = absolute_error(norm, &[1.5, 9.0], &[1.0, 1.0], &[2.0, 0.0]).unwrap();
+            assert!((error - 0.5).abs() < 1e-15, "{norm}: {error}");
+        }
+    }
+
+    #[test]
     fn names_parse_back() {
         for norm in Norm::ALL {
             assert_eq!(norm.name().parse::<Norm>(), Ok(norm));

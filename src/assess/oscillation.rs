@@ -282,21 +282,29 @@ mod tests {
     }
 
     #[test]
+    fn an_offset_counts_as_smooth_with_its_full_energy() {
+        // An offset of 1 has energy N, a cosine of amplitude 1 has N/2: a third is short.
+        let wave = |i: u32| 2.0 + (PI * 20.0 * (f64::from(i) + 0.5) / 32.0).cos();
+        let wavy: Vec<f64> = (0..32).map(wave).collect();
+        let share = oscillation(&wavy, &[1.0; 32], 1.0)
+            .unwrap()
+            .short_wave_share
+            .unwrap();
+        assert!((share - 1.0 / 3.0).abs() < 1e-12, "{share}");
+    }
+
+    #[test]
     fn round_off_in_a_flat_stretch_does_not_hide_a_wiggle() {
         // Early in time the exact profile is 1 to round-off away from the drained end.
-        let exact: Vec<f64> = (0..20)
-            .map(|i| if i == 0 { 0.2 } else { 1.0 + 1e-16 * sign(i) })
-            .collect();
-        let computed: Vec<f64> = (0..20)
-            .map(|i| if i == 0 { 0.2 } else { 1.0 + 0.1 * sign(i) })
-            .collect();
-        assert!(
-            oscillation(&computed, &exact, 2.0)
-                .unwrap()
-                .reversal
-                .unwrap()
-                > 1.0
-        );
+        for end in [0.2, 1.8] {
+            let profile = |wiggle: f64| -> Vec<f64> {
+                (0..20)
+                    .map(|i| if i == 0 { end } else { 1.0 + wiggle * sign(i) })
+                    .collect()
+            };
+            let found = oscillation(&profile(0.1), &profile(2e-16), 2.0).unwrap();
+            assert!(found.reversal.unwrap() > 1.0, "{found:?}");
+        }
     }
 
     #[test]
