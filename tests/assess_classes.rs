@@ -220,19 +220,46 @@ fn orders_off_the_formal_one_have_their_names() {
 
 #[test]
 fn round_off_does_not_choose_between_explanations() {
-    // One power, 3.1, noisy, with 3.65 expected: a floor of nothing and a lower-order term alone
-    // fit it alike, and which came first once depended on the unit of length.
-    let errors =
-        [0.0, 2.331_423_7, 0.766_776_1, 1.965_436_8].map(|log: f64| (0.039_874 * log).exp());
+    // One power, 3.1, noisy, with 4 expected: a floor of nothing and a lower-order term alone fit
+    // it alike, and which came first once depended on the unit of length.
+    let logs = [
+        -2.864_802_598_733_636,
+        0.106_719_851_636_363_06,
+        -2.029_327_346_204_365,
+        -0.921_801_065_561_571_9,
+    ];
     let points = |unit: f64| {
-        let noisy = |(h, factor): (&f64, f64)| (unit * h, h.powf(3.108_930_8) * factor);
-        ErrorSeries::of(&SIZES.iter().zip(errors).map(noisy).collect::<Vec<_>>())
+        let noisy = |(h, log): (&f64, f64)| {
+            (
+                unit * h,
+                h.powf(3.090_663_476_155_412_6) * (0.041_887_047_716_129_21 * log).exp(),
+            )
+        };
+        ErrorSeries::of(&SIZES.iter().zip(logs).map(noisy).collect::<Vec<_>>())
     };
-    let classes = [1.0, 3.4e-3, 1e3, 0.7].map(|unit| classify(&points(unit), &formal(3.65)).class);
-    assert!(
-        classes.iter().all(|class| *class == classes[0]),
-        "{classes:?}"
-    );
+    let context = formal(3.986_613_621_413_895);
+    for unit in [1.0, 12.208_959_938_961_737_f64.exp(), 1e3, 1e-3, 0.7] {
+        assert_eq!(
+            classify(&points(unit), &context).class,
+            Class::Contaminated,
+            "{unit}"
+        );
+    }
+}
+
+#[test]
+fn a_second_term_is_told_before_the_order_leaves_the_band() {
+    // At a fifth of the finest error a floor governs, though the order is still above 1.75.
+    let with_floor = |floor: f64| classify(&series(|h| h * h + floor), &formal(2.0)).class;
+    assert_eq!(with_floor(1.1e-5), Class::FloorLimited);
+    assert_eq!(with_floor(4e-6), Class::Asymptotic);
+}
+
+#[test]
+fn a_lower_order_that_has_settled_is_wrong_only_where_another_is_expected() {
+    let sizes = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0, 640.0_f64].map(f64::recip);
+    let late = ErrorSeries::of(&sizes.map(|h| (h, h * h + 0.05 * h)));
+    assert_eq!(class(&late), [Class::Asymptotic, Class::Contaminated]);
 }
 
 #[test]

@@ -163,6 +163,16 @@ mod tests {
     }
 
     #[test]
+    fn what_nothing_fits_is_not_explained() {
+        let mut data = points(|h| h * h, 6);
+        for (point, factor) in data.iter_mut().zip([1.0, 0.3, 2.0, 0.5, 1.0, 2.0]) {
+            point.1 *= factor;
+        }
+        assert_eq!(explain(&data, Some(2.0)), None);
+        assert_eq!(explain(&data, None), None);
+    }
+
+    #[test]
     fn noise_of_two_per_cent_does_not_change_the_answer() {
         let noise = [0.02, -0.015, 0.01, -0.02, 0.02, -0.01];
         let noisy = |error: fn(f64) -> f64| {

@@ -258,6 +258,18 @@ mod tests {
     }
 
     #[test]
+    fn the_exponents_keep_their_distance() {
+        let data = points(|h| h.powi(2) * (1.0 + 0.05 * (70.0 * h).sin()));
+        let fit = fit_two_terms(
+            &data,
+            Exponent::Between(1.5, 6.0),
+            Exponent::Between(0.5, 2.0),
+        );
+        let fit = fit.unwrap();
+        assert!(fit.high >= fit.low + GAP - 1e-12, "{fit:?}");
+    }
+
+    #[test]
     fn a_negative_term_is_left_out() {
         let data = points(|h| h * h - 0.5 * h.powi(3));
         let fit = fit_two_terms(&data, Exponent::Fixed(2.0), Exponent::Fixed(3.0)).unwrap();
