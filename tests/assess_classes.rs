@@ -221,7 +221,7 @@ fn orders_off_the_formal_one_have_their_names() {
 #[test]
 fn round_off_does_not_choose_between_explanations() {
     // One power, 3.1, noisy, with 4 expected: a floor of nothing and a lower-order term alone fit
-    // it alike, and which came first once depended on the unit of length.
+    // it alike, and which came first once depended on the unit of the error.
     let logs = [
         -2.864_802_598_733_636,
         0.106_719_851_636_363_06,
@@ -231,8 +231,8 @@ fn round_off_does_not_choose_between_explanations() {
     let points = |unit: f64| {
         let noisy = |(h, log): (&f64, f64)| {
             (
-                unit * h,
-                h.powf(3.090_663_476_155_412_6) * (0.041_887_047_716_129_21 * log).exp(),
+                *h,
+                unit * h.powf(3.090_663_476_155_412_6) * (0.041_887_047_716_129_21 * log).exp(),
             )
         };
         ErrorSeries::of(&SIZES.iter().zip(logs).map(noisy).collect::<Vec<_>>())

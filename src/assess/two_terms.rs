@@ -85,7 +85,7 @@ pub fn fit_two_terms(
         .collect();
     let best_high = |low: f64| {
         let high = match high {
-            Exponent::Fixed(high) => Exponent::Fixed(high.max(low + GAP)),
+            Exponent::Fixed(high) => Exponent::Fixed(high),
             Exponent::Between(from, to) => {
                 Exponent::Between(from.max(low + GAP), to.max(low + GAP))
             }
