@@ -84,7 +84,7 @@ fn clean_series_are_asymptotic_at_any_ratio() {
     let found = classify(&ErrorSeries::of(&mixed), &formal(2.0));
     assert_eq!(found.class, Class::Asymptotic, "{found:?}");
     assert!((found.order.unwrap() - 2.0).abs() < 1e-12);
-    // The paper's method on Terzaghi's column, as measured.
+    // Second order with three digits and a few per cent of noise.
     assert_eq!(
         class(&listed(&[1.36e-2, 3.6e-3, 8.9e-4, 2.23e-4])),
         both(Class::Asymptotic)
