@@ -31,6 +31,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             writer.write_record([study.name.as_str(), &case.hash(), &updates, &case.label()])?;
         }
     }
-    writer.into_inner().map_err(|error| error.into_error())?.flush()?;
+    writer.into_inner().map_err(csv::IntoInnerError::into_error)?.flush()?;
     Ok(exit)
 }
