@@ -257,8 +257,8 @@ proptest! {
         prop_assert!(imbalance.abs() < 1e-8, "{}", imbalance);
     }
 
-    /// On the regular lattice the domains of the points tile the cells, so GIMP's gradients are the
-    /// hat's and the mean over a cell is its centre's.
+    /// On the regular lattice no domain crosses a cell face, so GIMP's weights are the hat's, whose
+    /// gradient is that of the cell's centre.
     #[test]
     fn full_and_reduced_integration_and_hat_and_gimp_are_one_on_the_lattice(
         cells in 2..8_usize,
@@ -275,15 +275,11 @@ proptest! {
         let mut full = of("GIMP", TimeStepRule::Stable(0.5));
         let same_step = TimeStepRule::Seconds(full.step_sizes.target);
         let full = full.snapshots.pop().expect("an output");
-        for name in ["GIMP-SRI", "uGIMP", "uGIMP-SRI"] {
+        for name in ["MPM", "GIMP-SRI", "uGIMP", "uGIMP-SRI"] {
             let other = of(name, same_step).snapshots.pop().expect("an output");
             let largest = field_difference(&other, &full);
             prop_assert!(largest < 1e-9, "{name}: {}", largest);
         }
-        // The hat has other masses and the same gradients: another step towards the same pressures.
-        let hat = of("MPM", same_step).snapshots.pop().expect("an output");
-        let largest = difference(&hat.points.pressure, &full.points.pressure);
-        prop_assert!(largest < 1e-3, "MPM: {}", largest);
     }
 }
 
