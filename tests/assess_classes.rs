@@ -6,46 +6,23 @@ use oedometer::assess::limiter::{Limiter, LimiterKind};
 use oedometer::assess::series::{ErrorSeries, Level};
 use proptest::prelude::*;
 
-const SIZES: [f64; 6] = [
-    1.0 / 5.0,
-    1.0 / 10.0,
-    1.0 / 20.0,
-    1.0 / 40.0,
-    1.0 / 80.0,
-    1.0 / 160.0,
-];
+const SIZES: [f64; 6] = [1.0 / 5.0, 1.0 / 10.0, 1.0 / 20.0, 1.0 / 40.0, 1.0 / 80.0, 1.0 / 160.0];
 
 fn series(error: impl Fn(f64) -> f64) -> ErrorSeries {
     ErrorSeries::of(&SIZES.map(|size| (size, error(size))))
 }
 
 fn listed(errors: &[f64]) -> ErrorSeries {
-    ErrorSeries::of(
-        &SIZES
-            .into_iter()
-            .zip(errors.iter().copied())
-            .collect::<Vec<_>>(),
-    )
+    ErrorSeries::of(&SIZES.into_iter().zip(errors.iter().copied()).collect::<Vec<_>>())
 }
 
 fn formal(order: f64) -> Context {
-    Context {
-        formal_order: Some(order),
-        ..Context::default()
-    }
+    Context { formal_order: Some(order), ..Context::default() }
 }
 
 fn class(series: &ErrorSeries) -> [Class; 2] {
-    [None, Some(2.0)].map(|formal_order| {
-        classify(
-            series,
-            &Context {
-                formal_order,
-                ..Context::default()
-            },
-        )
-        .class
-    })
+    [None, Some(2.0)]
+        .map(|formal_order| classify(series, &Context { formal_order, ..Context::default() }).class)
 }
 
 fn both(class: Class) -> [Class; 2] {
@@ -85,30 +62,16 @@ fn clean_series_are_asymptotic_at_any_ratio() {
     assert_eq!(found.class, Class::Asymptotic, "{found:?}");
     assert!((found.order.unwrap() - 2.0).abs() < 1e-12);
     // The paper's method on Terzaghi's column, as measured.
-    assert_eq!(
-        class(&listed(&[1.36e-2, 3.6e-3, 8.9e-4, 2.23e-4])),
-        both(Class::Asymptotic)
-    );
+    assert_eq!(class(&listed(&[1.36e-2, 3.6e-3, 8.9e-4, 2.23e-4])), both(Class::Asymptotic));
 }
 
 #[test]
 fn nonsense_is_not_evaluable() {
-    for bad in [
-        f64::NAN,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-        -1e-3,
-        0.0,
-        1e-310,
-    ] {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1e-3, 0.0, 1e-310] {
         for place in 0..6 {
             let mut errors = SIZES.map(|h| h * h);
             errors[place] = bad;
-            assert_eq!(
-                class(&listed(&errors)),
-                both(Class::NotEvaluable),
-                "{bad} at {place}"
-            );
+            assert_eq!(class(&listed(&errors)), both(Class::NotEvaluable), "{bad} at {place}");
         }
     }
     assert_eq!(class(&listed(&[f64::NAN; 6])), both(Class::NotEvaluable));
@@ -135,10 +98,7 @@ fn round_off_is_exact_and_not_an_order() {
     assert_eq!(class(&listed(&[0.0; 4])), both(Class::Exact));
     assert_eq!(class(&listed(&[1e-310; 4])), both(Class::Exact));
     let noise = listed(&[3e-16, 1e-16, 2e-16, 5e-17]);
-    let context = Context {
-        round_off: Some(1e-14),
-        ..Context::default()
-    };
+    let context = Context { round_off: Some(1e-14), ..Context::default() };
     assert_eq!(classify(&noise, &context).class, Class::Exact);
     let reaching = listed(&[1e-6, 1e-9, 1e-12, 1e-15]);
     let found = classify(&reaching, &context);
@@ -150,10 +110,7 @@ fn round_off_is_exact_and_not_an_order() {
 fn standing_still_is_a_floor() {
     assert_eq!(class(&listed(&[0.3; 6])), both(Class::FloorLimited));
     assert_eq!(class(&listed(&[0.3; 3])), both(Class::FloorLimited));
-    assert_eq!(
-        class(&listed(&[4e-2, 1e-2, 2.7e-3, 2.2e-3])),
-        both(Class::FloorLimited)
-    );
+    assert_eq!(class(&listed(&[4e-2, 1e-2, 2.7e-3, 2.2e-3])), both(Class::FloorLimited));
     let noisy = listed(&[4e-2, 1e-2, 2.6e-3, 2.1e-3, 2.5e-3, 2.2e-3]);
     assert_eq!(class(&noisy), both(Class::FloorLimited));
     assert_eq!(class(&series(|h| h.powf(0.2))), both(Class::FloorLimited));
@@ -166,29 +123,13 @@ fn standing_still_is_a_floor() {
 #[test]
 fn growing_and_oscillating_are_told_apart() {
     assert_eq!(class(&listed(&[1.0, 2.0, 4.0])), both(Class::Divergent));
-    assert_eq!(
-        class(&listed(&[4e-2, 1e-2, 2.5e-3, 6e-3, 2e-2])),
-        both(Class::Divergent)
-    );
-    assert_eq!(
-        class(&listed(&[1.0, 1.1, 1.2, 1.3, 1.4, 1.5])),
-        both(Class::Divergent)
-    );
-    assert_eq!(
-        class(&listed(&[1.0, 0.5, 1.0, 0.5, 1.0, 0.5])),
-        both(Class::Oscillatory)
-    );
-    assert_eq!(
-        class(&listed(&[1.0, 0.3, 0.6, 0.1, 0.2])),
-        both(Class::Oscillatory)
-    );
+    assert_eq!(class(&listed(&[4e-2, 1e-2, 2.5e-3, 6e-3, 2e-2])), both(Class::Divergent));
+    assert_eq!(class(&listed(&[1.0, 1.1, 1.2, 1.3, 1.4, 1.5])), both(Class::Divergent));
+    assert_eq!(class(&listed(&[1.0, 0.5, 1.0, 0.5, 1.0, 0.5])), both(Class::Oscillatory));
+    assert_eq!(class(&listed(&[1.0, 0.3, 0.6, 0.1, 0.2])), both(Class::Oscillatory));
     // Falling all the way, with an order that jumps: 0.4, 3.6, 0.4, 3.6, …
     let jumping = [1.5, 0.5, 1.5, 0.5, 1.5, 0.5];
-    let errors: Vec<_> = SIZES
-        .iter()
-        .zip(jumping)
-        .map(|(h, factor)| factor * h * h)
-        .collect();
+    let errors: Vec<_> = SIZES.iter().zip(jumping).map(|(h, factor)| factor * h * h).collect();
     assert_eq!(class(&listed(&errors)), both(Class::Oscillatory));
 }
 
@@ -197,56 +138,30 @@ fn orders_off_the_formal_one_have_their_names() {
     let with_two = |error: fn(f64) -> f64| classify(&series(error), &formal(2.0));
     assert_eq!(with_two(|h| h).class, Class::Contaminated);
     assert_eq!(with_two(|h| h.powi(3)).class, Class::Superconvergent);
-    assert_eq!(
-        with_two(|h| h * h + 80.0 * h.powi(3)).class,
-        Class::PreAsymptotic
-    );
-    assert_eq!(
-        with_two(|h| h * h + 800.0 * h.powi(3)).class,
-        Class::PreAsymptotic
-    );
+    assert_eq!(with_two(|h| h * h + 80.0 * h.powi(3)).class, Class::PreAsymptotic);
+    assert_eq!(with_two(|h| h * h + 800.0 * h.powi(3)).class, Class::PreAsymptotic);
     // Rising towards 2 from below, as where the coarse levels do not resolve the solution.
-    assert_eq!(
-        with_two(|h| h * h / (1.0 + 9000.0 * h * h)).class,
-        Class::PreAsymptotic
-    );
+    assert_eq!(with_two(|h| h * h / (1.0 + 9000.0 * h * h)).class, Class::PreAsymptotic);
     let absurd = classify(&series(|h| h.powf(75.98)), &Context::default());
     assert_eq!(absurd.class, Class::Superconvergent);
-    assert_eq!(
-        classify(&series(|h| h), &Context::default()).class,
-        Class::Asymptotic
-    );
+    assert_eq!(classify(&series(|h| h), &Context::default()).class, Class::Asymptotic);
 }
 
 #[test]
 fn a_floor_is_put_down_to_what_fits_it_with_advice() {
-    let limiter = |kind, name: &str, magnitude| Limiter {
-        kind,
-        name: name.to_owned(),
-        magnitude,
-        order: None,
-    };
+    let limiter =
+        |kind, name: &str, magnitude| Limiter { kind, name: name.to_owned(), magnitude, order: None };
     let step = limiter(LimiterKind::Step, "the time step", Some(2.2e-4));
     let model = limiter(LimiterKind::Model, "the water's storage", Some(1.4e-4));
     let floored = |floor: f64, limiters: &[Limiter]| {
-        let context = Context {
-            limiters: limiters.to_vec(),
-            ..formal(2.0)
-        };
+        let context = Context { limiters: limiters.to_vec(), ..formal(2.0) };
         classify(&series(|h| h * h + floor), &context)
     };
     let found = floored(2e-4, &[step.clone(), model.clone()]);
-    assert_eq!(
-        found.floor.clone().unwrap().limiter,
-        Some(LimiterKind::Step),
-        "{found:?}"
-    );
+    assert_eq!(found.floor.clone().unwrap().limiter, Some(LimiterKind::Step), "{found:?}");
     assert_eq!(found.advice.unwrap(), "lower the time step by 64");
     let found = floored(1.4e-4, &[step.clone(), model]);
-    assert_eq!(
-        found.floor.clone().unwrap().limiter,
-        Some(LimiterKind::Model)
-    );
+    assert_eq!(found.floor.clone().unwrap().limiter, Some(LimiterKind::Model));
     assert!(found.advice.unwrap().contains("its own equations"));
     let found = floored(1e-2, &[step]);
     assert_eq!(found.floor.unwrap().limiter, None);
@@ -254,10 +169,7 @@ fn a_floor_is_put_down_to_what_fits_it_with_advice() {
 
 #[test]
 fn a_poor_reference_is_no_evidence() {
-    let context = |accuracy| Context {
-        reference_accuracy: Some(accuracy),
-        ..formal(2.0)
-    };
+    let context = |accuracy| Context { reference_accuracy: Some(accuracy), ..formal(2.0) };
     let clean = series(|h| h * h);
     assert_eq!(classify(&clean, &context(1e-7)).class, Class::Asymptotic);
     assert_eq!(classify(&clean, &context(0.0)).class, Class::Asymptotic);
@@ -272,25 +184,12 @@ fn a_context_of_nonsense_does_not_pass() {
     let clean = series(|h| h * h);
     for bad in [f64::NAN, f64::INFINITY, -1.0] {
         let contexts = [
-            Context {
-                formal_order: Some(bad),
-                ..Context::default()
-            },
-            Context {
-                round_off: Some(bad),
-                ..Context::default()
-            },
-            Context {
-                reference_accuracy: Some(bad),
-                ..Context::default()
-            },
+            Context { formal_order: Some(bad), ..Context::default() },
+            Context { round_off: Some(bad), ..Context::default() },
+            Context { reference_accuracy: Some(bad), ..Context::default() },
         ];
         for context in contexts {
-            assert_eq!(
-                classify(&clean, &context).class,
-                Class::NotEvaluable,
-                "{context:?}"
-            );
+            assert_eq!(classify(&clean, &context).class, Class::NotEvaluable, "{context:?}");
         }
     }
 }
@@ -316,21 +215,11 @@ fn never_wrong(found: &Classification, levels: &[Level]) -> Result<(), TestCaseE
         let pairs: Vec<_> = levels.windows(2).map(order).collect();
         let (coarse, fine) = (pairs[pairs.len() - 2], pairs[pairs.len() - 1]);
         prop_assert!(levels.iter().all(|level| level.error.unwrap().is_normal()));
-        prop_assert!(
-            (coarse - fine).abs() <= 0.2501 && fine > 0.29,
-            "{:?} {:?}",
-            found,
-            pairs
-        );
+        prop_assert!((coarse - fine).abs() <= 0.2501 && fine > 0.29, "{:?} {:?}", found, pairs);
     }
     if let Some(order) = found.order {
         prop_assert!(order.is_finite());
-        let without = [
-            Class::NotEvaluable,
-            Class::Exact,
-            Class::Divergent,
-            Class::Oscillatory,
-        ];
+        let without = [Class::NotEvaluable, Class::Exact, Class::Divergent, Class::Oscillatory];
         prop_assert!(!without.contains(&found.class));
     }
     Ok(())

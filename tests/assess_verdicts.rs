@@ -11,15 +11,8 @@ fn series(error: impl Fn(f64) -> f64) -> ErrorSeries {
 }
 
 fn second_order() -> Expectation {
-    let order = Some(Band {
-        value: 2.0,
-        minus: 0.1,
-        plus: 0.15,
-    });
-    Expectation {
-        order,
-        ..Expectation::default()
-    }
+    let order = Some(Band { value: 2.0, minus: 0.1, plus: 0.15 });
+    Expectation { order, ..Expectation::default() }
 }
 
 fn verdict(expectation: &Expectation, series: &ErrorSeries) -> Verdict {
@@ -27,25 +20,13 @@ fn verdict(expectation: &Expectation, series: &ErrorSeries) -> Verdict {
 }
 
 fn known(strict: bool, expectation: &Expectation) -> Expectation {
-    let xfail = Some(KnownFailure {
-        strict,
-        reason: "issue 7".to_owned(),
-    });
-    Expectation {
-        xfail,
-        ..expectation.clone()
-    }
+    let xfail = Some(KnownFailure { strict, reason: "issue 7".to_owned() });
+    Expectation { xfail, ..expectation.clone() }
 }
 
 #[test]
 fn the_band_is_two_sided() {
-    for (p, pass) in [
-        (1.85, false),
-        (1.91, true),
-        (2.0, true),
-        (2.14, true),
-        (2.2, false),
-    ] {
+    for (p, pass) in [(1.85, false), (1.91, true), (2.0, true), (2.14, true), (2.2, false)] {
         let found = verdict(&second_order(), &series(|h| h.powf(p)));
         assert_eq!(found.pass, pass, "{p}: {found:?}");
     }
@@ -53,36 +34,17 @@ fn the_band_is_two_sided() {
 
 #[test]
 fn only_the_expected_class_passes() {
-    let failing: [fn(f64) -> f64; 5] = [
-        |h| h * h + 0.05 * h,
-        |h| h * h + 2e-4,
-        |h| 1.0 / h,
-        |h| h.powi(3),
-        |_| 0.1,
-    ];
+    let failing: [fn(f64) -> f64; 5] =
+        [|h| h * h + 0.05 * h, |h| h * h + 2e-4, |h| 1.0 / h, |h| h.powi(3), |_| 0.1];
     for error in failing {
         let found = verdict(&second_order(), &series(error));
         assert!(!found.pass && found.outcome == Outcome::Failed, "{found:?}");
-        assert!(
-            found.reason.contains("instead of asymptotic"),
-            "{}",
-            found.reason
-        );
+        assert!(found.reason.contains("instead of asymptotic"), "{}", found.reason);
         for class in Class::ALL {
-            let expectation = Expectation {
-                class: Some(class),
-                ..Expectation::default()
-            };
-            let context = Context {
-                formal_order: Some(2.0),
-                ..Context::default()
-            };
+            let expectation = Expectation { class: Some(class), ..Expectation::default() };
+            let context = Context { formal_order: Some(2.0), ..Context::default() };
             let named = judge(&expectation, &series(error), &context, None);
-            assert_eq!(
-                named.pass,
-                class == found.classification.class,
-                "{class}: {named:?}"
-            );
+            assert_eq!(named.pass, class == found.classification.class, "{class}: {named:?}");
         }
     }
 }
@@ -93,11 +55,7 @@ fn nonsense_never_passes_an_order() {
         for place in 0..6 {
             let mut levels = series(|h| h * h).levels().to_vec();
             levels[place].error = Some(bad);
-            for expectation in [
-                second_order(),
-                known(true, &second_order()),
-                known(false, &second_order()),
-            ] {
+            for expectation in [second_order(), known(true, &second_order()), known(false, &second_order())] {
                 let found = verdict(&expectation, &ErrorSeries::new(levels.clone()));
                 assert!(!found.pass, "{bad} at {place}: {found:?}");
             }
@@ -107,14 +65,8 @@ fn nonsense_never_passes_an_order() {
 
 #[test]
 fn a_missing_row_is_a_failure_even_where_only_another_is_asked_for() {
-    let at = Some(ErrorBound {
-        size: 0.2,
-        below: 1.0, above: 0.0
-    });
-    let bounded = Expectation {
-        at,
-        ..Expectation::default()
-    };
+    let at = Some(ErrorBound { size: 0.2, below: 1.0, above: 0.0 });
+    let bounded = Expectation { at, ..Expectation::default() };
     let full = series(|h| h * h);
     assert!(verdict(&bounded, &full).pass);
     let mut levels = full.levels().to_vec();
@@ -123,58 +75,26 @@ fn a_missing_row_is_a_failure_even_where_only_another_is_asked_for() {
     assert!(!found.pass && found.reason.contains("missing"), "{found:?}");
     assert!(!verdict(&second_order(), &ErrorSeries::new(levels)).pass);
     assert!(!verdict(&bounded, &ErrorSeries::default()).pass);
-    let elsewhere = Some(ErrorBound {
-        size: 0.3,
-        below: 1.0, above: 0.0
-    });
-    let nowhere = verdict(
-        &Expectation {
-            at: elsewhere,
-            ..Expectation::default()
-        },
-        &full,
-    );
+    let elsewhere = Some(ErrorBound { size: 0.3, below: 1.0, above: 0.0 });
+    let nowhere = verdict(&Expectation { at: elsewhere, ..Expectation::default() }, &full);
     assert!(!nowhere.pass && nowhere.reason.contains("no level of size 0.3"));
 }
 
 #[test]
 fn a_doubled_constant_keeps_the_order_and_fails_the_level() {
-    let at = Some(ErrorBound {
-        size: 0.1,
-        below: 1.2e-2, above: 0.0
-    });
-    let expectation = Expectation {
-        at,
-        ..second_order()
-    };
+    let at = Some(ErrorBound { size: 0.1, below: 1.2e-2, above: 0.0 });
+    let expectation = Expectation { at, ..second_order() };
     assert!(verdict(&expectation, &series(|h| h * h)).pass);
     let doubled = verdict(&expectation, &series(|h| 2.0 * h * h));
-    assert!(
-        !doubled.pass && doubled.reason == "error 0.02 at size 0.1 not below 0.012",
-        "{doubled:?}"
-    );
-    let single = ErrorSeries::new(vec![Level {
-        size: 0.1,
-        error: Some(1e-2),
-    }]);
-    assert!(
-        verdict(
-            &Expectation {
-                at,
-                ..Expectation::default()
-            },
-            &single
-        )
-        .pass
-    );
+    assert!(!doubled.pass && doubled.reason == "error 0.02 at size 0.1 not below 0.012", "{doubled:?}");
+    let single = ErrorSeries::new(vec![Level { size: 0.1, error: Some(1e-2) }]);
+    assert!(verdict(&Expectation { at, ..Expectation::default() }, &single).pass);
 }
 
 #[test]
 fn a_floor_is_held_between_its_bounds() {
-    let floor = |above, below| Expectation {
-        floor: Some(FloorBand { above, below }),
-        ..Expectation::default()
-    };
+    let floor =
+        |above, below| Expectation { floor: Some(FloorBand { above, below }), ..Expectation::default() };
     let model = series(|h| h * h + 1.4e-4);
     assert!(verdict(&floor(1.2e-4, 1.6e-4), &model).pass);
     assert!(!verdict(&floor(0.0, 2e-5), &model).pass);
@@ -202,18 +122,12 @@ fn a_strict_known_failure_must_fail() {
     // A crash is not the failure that was known.
     let mut levels = bad.levels().to_vec();
     levels[5].error = None;
-    assert_eq!(
-        verdict(&strict, &ErrorSeries::new(levels)).outcome,
-        Outcome::Failed
-    );
+    assert_eq!(verdict(&strict, &ErrorSeries::new(levels)).outcome, Outcome::Failed);
 }
 
 #[test]
 fn oscillation_is_judged_where_asked() {
-    let expectation = Expectation {
-        oscillation_below: Some(0.05),
-        ..second_order()
-    };
+    let expectation = Expectation { oscillation_below: Some(0.05), ..second_order() };
     let of = |index| judge(&expectation, &series(|h| h * h), &Context::default(), index).pass;
     assert!(of(Some(0.01)) && of(Some(-0.01)));
     assert!(!of(Some(0.06)) && !of(Some(f64::NAN)) && !of(None));
@@ -225,17 +139,9 @@ fn an_expectation_of_nonsense_never_passes() {
         order: Some(Band { value, minus, plus }),
         ..Expectation::default()
     };
-    let at = |size, below| Expectation {
-        at: Some(ErrorBound { size, below }),
-        ..Expectation::default()
-    };
-    let unexplained = Expectation {
-        xfail: Some(KnownFailure {
-            strict: true,
-            reason: " ".to_owned(),
-        }),
-        ..second_order()
-    };
+    let at = |size, below| Expectation { at: Some(ErrorBound { size, below }), ..Expectation::default() };
+    let unexplained =
+        Expectation { xfail: Some(KnownFailure { strict: true, reason: " ".to_owned() }), ..second_order() };
     let expectations = [
         Expectation::default(),
         unexplained,
@@ -246,17 +152,8 @@ fn an_expectation_of_nonsense_never_passes() {
         at(0.1, f64::NAN),
         at(0.1, f64::INFINITY),
         at(f64::NAN, 1.0),
-        Expectation {
-            floor: Some(FloorBand {
-                above: 2.0,
-                below: 1.0,
-            }),
-            ..second_order()
-        },
-        Expectation {
-            oscillation_below: Some(f64::INFINITY),
-            ..second_order()
-        },
+        Expectation { floor: Some(FloorBand { above: 2.0, below: 1.0 }), ..second_order() },
+        Expectation { oscillation_below: Some(f64::INFINITY), ..second_order() },
     ];
     for expectation in expectations {
         for error in [|h: f64| h * h, |h: f64| h] {
@@ -264,20 +161,14 @@ fn an_expectation_of_nonsense_never_passes() {
             assert!(!found.pass, "{expectation:?}: {found:?}");
             let marked = known(true, &expectation);
             let found = judge(&marked, &series(error), &Context::default(), Some(0.0));
-            assert!(
-                !found.pass || expectation.xfail.is_some(),
-                "{marked:?}: {found:?}"
-            );
+            assert!(!found.pass || expectation.xfail.is_some(), "{marked:?}: {found:?}");
         }
     }
 }
 
 #[test]
 fn exactness_can_be_expected() {
-    let expectation = Expectation {
-        class: Some(Class::Exact),
-        ..Expectation::default()
-    };
+    let expectation = Expectation { class: Some(Class::Exact), ..Expectation::default() };
     assert!(verdict(&expectation, &series(|_| 0.0)).pass);
     assert!(!verdict(&expectation, &series(|h| h * h)).pass);
     assert!(!verdict(&expectation, &series(|_| f64::NAN)).pass);

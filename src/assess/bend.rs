@@ -45,39 +45,18 @@ fn about_formal(points: &[(f64, f64)], formal: f64) -> Option<Bend> {
     let fit = |low, high| fit_two_terms(points, low, high).ok();
     // Three levels leave one residual to two coefficients; a fourth frees one exponent.
     let free = points.len() > 3;
-    let floor_high = if free {
-        Between(0.75 * formal, formal + 0.5)
-    } else {
-        Fixed(formal)
-    };
-    let next_low = if formal >= 1.5 {
-        formal - 1.0
-    } else {
-        0.5 * formal
-    };
-    let lower_low = if free {
-        Between(LEAST_ORDER, formal - 0.4)
-    } else {
-        Fixed(next_low)
-    };
-    let higher = if free {
-        Between(formal + 0.4, formal + 4.0)
-    } else {
-        Fixed(formal + 1.0)
-    };
+    let floor_high = if free { Between(0.75 * formal, formal + 0.5) } else { Fixed(formal) };
+    let next_low = if formal >= 1.5 { formal - 1.0 } else { 0.5 * formal };
+    let lower_low = if free { Between(LEAST_ORDER, formal - 0.4) } else { Fixed(next_low) };
+    let higher = if free { Between(formal + 0.4, formal + 4.0) } else { Fixed(formal + 1.0) };
     let has_lower = formal - 0.4 > LEAST_ORDER;
     let candidates = [
         fit(Fixed(0.0), floor_high).map(Bend::Floor),
-        has_lower
-            .then(|| fit(lower_low, Fixed(formal)).map(Bend::Lower))
-            .flatten(),
+        has_lower.then(|| fit(lower_low, Fixed(formal)).map(Bend::Lower)).flatten(),
         fit(Fixed(formal), higher).map(Bend::Higher),
     ];
     let residual = |bend: &Bend| bend.terms().residual;
-    candidates
-        .into_iter()
-        .flatten()
-        .min_by(|a, b| residual(a).total_cmp(&residual(b)))
+    candidates.into_iter().flatten().min_by(|a, b| residual(a).total_cmp(&residual(b)))
 }
 
 /// Without a formal order the higher power counts as sought where it was seen first: it governs
@@ -89,16 +68,8 @@ fn without_formal(points: &[(f64, f64)]) -> Option<Bend> {
     match (floor, powers) {
         // The floor has one free number less, and is believed until clearly worse.
         (Some(floor), Some(powers)) if powers.residual < 0.5 * floor.residual => {
-            let seen_first = points
-                .iter()
-                .filter(|(h, _)| powers.low_share(*h) < 0.49)
-                .count()
-                > 1;
-            Some(if seen_first {
-                Bend::Lower(powers)
-            } else {
-                Bend::Higher(powers)
-            })
+            let seen_first = points.iter().filter(|(h, _)| powers.low_share(*h) < 0.49).count() > 1;
+            Some(if seen_first { Bend::Lower(powers) } else { Bend::Higher(powers) })
         }
         (Some(floor), _) => Some(Bend::Floor(floor)),
         (None, _) => None,
@@ -122,20 +93,11 @@ mod tests {
             for levels in [5, 6, 7] {
                 let bend = |error: fn(f64) -> f64| explain(&points(error, levels), formal);
                 let floor = bend(|h| h * h + 2e-4);
-                assert!(
-                    matches!(floor, Some(Bend::Floor(_))),
-                    "{formal:?} {levels}: {floor:?}"
-                );
+                assert!(matches!(floor, Some(Bend::Floor(_))), "{formal:?} {levels}: {floor:?}");
                 let lower = bend(|h| h * h + 0.05 * h);
-                assert!(
-                    matches!(lower, Some(Bend::Lower(_))),
-                    "{formal:?} {levels}: {lower:?}"
-                );
+                assert!(matches!(lower, Some(Bend::Lower(_))), "{formal:?} {levels}: {lower:?}");
                 let higher = bend(|h| h * h + 8.0 * h.powi(3));
-                assert!(
-                    matches!(higher, Some(Bend::Higher(_))),
-                    "{formal:?} {levels}: {higher:?}"
-                );
+                assert!(matches!(higher, Some(Bend::Higher(_))), "{formal:?} {levels}: {higher:?}");
             }
         }
     }
@@ -145,10 +107,7 @@ mod tests {
         let bend = |error: fn(f64) -> f64| explain(&points(error, 3), Some(2.0));
         assert!(matches!(bend(|h| h * h + 2e-3), Some(Bend::Floor(_))));
         assert!(matches!(bend(|h| h * h + 0.05 * h), Some(Bend::Lower(_))));
-        assert!(matches!(
-            bend(|h| h * h + 8.0 * h.powi(3)),
-            Some(Bend::Higher(_))
-        ));
+        assert!(matches!(bend(|h| h * h + 8.0 * h.powi(3)), Some(Bend::Higher(_))));
     }
 
     #[test]
@@ -163,9 +122,6 @@ mod tests {
         };
         assert!(matches!(noisy(|h| h * h + 2e-4), Some(Bend::Floor(_))));
         assert!(matches!(noisy(|h| h * h + 0.05 * h), Some(Bend::Lower(_))));
-        assert!(matches!(
-            noisy(|h| h * h + 8.0 * h.powi(3)),
-            Some(Bend::Higher(_))
-        ));
+        assert!(matches!(noisy(|h| h * h + 8.0 * h.powi(3)), Some(Bend::Higher(_))));
     }
 }

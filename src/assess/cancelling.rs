@@ -27,9 +27,7 @@ pub(super) fn fit_cancelling(points: &[(f64, f64)]) -> Result<CancellingFit, Und
         return Err(Undefined::TooFewLevels { levels, needed: 5 });
     }
     let (first_size, first_error) = points[0];
-    let dip = (0..levels)
-        .min_by(|a, b| points[*a].1.total_cmp(&points[*b].1))
-        .unwrap_or(0);
+    let dip = (0..levels).min_by(|a, b| points[*a].1.total_cmp(&points[*b].1)).unwrap_or(0);
     let fit = |negative_from: usize| {
         let columns = |order: f64| -> Vec<(f64, f64)> {
             let column = |(index, (size, error)): (usize, &(f64, f64))| {
@@ -69,9 +67,7 @@ mod tests {
     use super::*;
 
     fn points(error: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-        [5.0, 10.0, 20.0, 40.0, 80.0, 160.0]
-            .map(|n| (1.0 / n, error(1.0 / n)))
-            .to_vec()
+        [5.0, 10.0, 20.0, 40.0, 80.0, 160.0].map(|n| (1.0 / n, error(1.0 / n))).to_vec()
     }
 
     #[test]

@@ -24,37 +24,25 @@ pub(super) struct Case<'a> {
 
 /// A classification without order, floor and advice.
 pub(super) fn plain(class: Class, reason: String) -> Classification {
-    Classification {
-        class,
-        reason,
-        advice: None,
-        order: None,
-        floor: None,
-    }
+    Classification { class, reason, advice: None, order: None, floor: None }
 }
 
 /// A classification with advice.
 pub(super) fn advised(class: Class, reason: String, advice: &str) -> Classification {
-    Classification {
-        advice: Some(advice.to_owned()),
-        ..plain(class, reason)
-    }
+    Classification { advice: Some(advice.to_owned()), ..plain(class, reason) }
 }
 
 impl<'a> Case<'a> {
     pub(super) fn of(points: &'a [(f64, f64)], context: &Context) -> Result<Self, Undefined> {
-        let pair =
-            |pair: &[(f64, f64)]| log_ratio(pair[0].1, pair[1].1) / log_ratio(pair[0].0, pair[1].0);
+        let pair = |pair: &[(f64, f64)]| log_ratio(pair[0].1, pair[1].1) / log_ratio(pair[0].0, pair[1].0);
         let mut limiters = context.limiters.clone();
         let known = |kind, name: &str, magnitude: Option<f64>| {
-            magnitude
-                .filter(|magnitude| *magnitude > 0.0)
-                .map(|magnitude| Limiter {
-                    kind,
-                    name: name.to_owned(),
-                    magnitude: Some(magnitude),
-                    order: None,
-                })
+            magnitude.filter(|magnitude| *magnitude > 0.0).map(|magnitude| Limiter {
+                kind,
+                name: name.to_owned(),
+                magnitude: Some(magnitude),
+                order: None,
+            })
         };
         limiters.extend(known(
             LimiterKind::Reference,
@@ -83,10 +71,7 @@ impl<'a> Case<'a> {
     /// A converging error and a floor of opposite sign that cancel at one level.
     pub(super) fn cancelled(&self, fit: &CancellingFit) -> Classification {
         let limiter = identify(fit.floor, &self.limiters);
-        let limits_from = self
-            .points
-            .iter()
-            .find(|(_, error)| *error <= 2.0 * fit.floor);
+        let limits_from = self.points.iter().find(|(_, error)| *error <= 2.0 * fit.floor);
         let limits_from = limits_from.map_or(self.finest().0, |point| point.0);
         let target = 0.1 * fit.coefficient * self.finest().0.powf(fit.order);
         let cause = limiter.map_or_else(String::new, |limiter| format!(", by {}", limiter.name));
@@ -113,24 +98,16 @@ impl<'a> Case<'a> {
     /// A floor-limited classification with the floor fitted, its cause and advice.
     pub(super) fn limited(&self, reason: &str) -> Classification {
         let series = ErrorSeries::of(self.points);
-        let fit = fit_floor(&series)
-            .ok()
-            .filter(|fit| fit.significant && fit.residual < 0.1);
+        let fit = fit_floor(&series).ok().filter(|fit| fit.significant && fit.residual < 0.1);
         let (size, error) = self.finest();
         let value = fit.map_or(error, |fit| fit.floor);
         let from = self.points.iter().find(|point| point.1 <= 2.0 * value);
         let converging = fit.map(|fit| fit.coefficient * size.powf(fit.order));
         let limiter = identify(value, &self.limiters);
-        let target = converging
-            .map(|part| 0.1 * part)
-            .filter(|target| *target > 0.0);
+        let target = converging.map(|part| 0.1 * part).filter(|target| *target > 0.0);
         let limits_from = from.map_or(size, |point| point.0);
         let cause = limiter.map_or_else(String::new, |limiter| format!(", by {}", limiter.name));
-        let height = if fit.is_some() {
-            "a floor of"
-        } else {
-            "a floor not above"
-        };
+        let height = if fit.is_some() { "a floor of" } else { "a floor not above" };
         Classification {
             class: Class::FloorLimited,
             reason: format!(

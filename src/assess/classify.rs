@@ -28,9 +28,7 @@ const PLATEAU: f64 = 1.5;
 
 /// The class of a series, with its reason.
 pub fn classify(series: &ErrorSeries, context: &Context) -> Classification {
-    let found = wrong_context(context)
-        .or_else(|| exact(series, context))
-        .or_else(|| not_evaluable(series));
+    let found = wrong_context(context).or_else(|| exact(series, context)).or_else(|| not_evaluable(series));
     if let Some(found) = found {
         return found;
     }
@@ -43,22 +41,14 @@ pub fn classify(series: &ErrorSeries, context: &Context) -> Classification {
 
 fn wrong_context(context: &Context) -> Option<Classification> {
     let wrong = |name: &str, value: Option<f64>, least: f64| {
-        value
-            .filter(|value| !value.is_finite() || *value <= least)
-            .map(|value| {
-                let reason = format!("the {name} given, {}, is none", short(value));
-                plain(Class::NotEvaluable, reason)
-            })
+        value.filter(|value| !value.is_finite() || *value <= least).map(|value| {
+            let reason = format!("the {name} given, {}, is none", short(value));
+            plain(Class::NotEvaluable, reason)
+        })
     };
     // A round-off or a reference error of exactly 0 is a claim, and a legal one.
     wrong("formal order", context.formal_order, 0.0)
-        .or_else(|| {
-            wrong(
-                "round-off",
-                context.round_off.filter(|value| *value != 0.0),
-                0.0,
-            )
-        })
+        .or_else(|| wrong("round-off", context.round_off.filter(|value| *value != 0.0), 0.0))
         .or_else(|| {
             let accuracy = context.reference_accuracy.filter(|value| *value != 0.0);
             wrong("reference accuracy", accuracy, 0.0)
@@ -72,14 +62,8 @@ fn exact(series: &ErrorSeries, context: &Context) -> Option<Classification> {
     if levels.is_empty() || !levels.iter().all(|level| level.error.is_some_and(below)) {
         return None;
     }
-    let largest = levels
-        .iter()
-        .filter_map(|level| level.error)
-        .fold(0.0, f64::max);
-    let reason = format!(
-        "every error is round-off: the largest is {}",
-        short(largest)
-    );
+    let largest = levels.iter().filter_map(|level| level.error).fold(0.0, f64::max);
+    let reason = format!("every error is round-off: the largest is {}", short(largest));
     Some(advised(
         Class::Exact,
         reason,
@@ -101,15 +85,10 @@ fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
         }
         Some(other) => other.to_string(),
         None if levels.len() < WINDOW => {
-            format!(
-                "{} levels: a class needs {WINDOW}, two orders to compare",
-                levels.len()
-            )
+            format!("{} levels: a class needs {WINDOW}, two orders to compare", levels.len())
         }
         None => {
-            let close = levels
-                .windows(2)
-                .find(|pair| pair[0].size < LEAST_RATIO * pair[1].size)?;
+            let close = levels.windows(2).find(|pair| pair[0].size < LEAST_RATIO * pair[1].size)?;
             let ratio = close[0].size / close[1].size;
             format!(
                 "sizes {} and {} are too close for an order: ratio {ratio:.3}, {LEAST_RATIO} is needed",
@@ -176,16 +155,12 @@ impl Case<'_> {
         let stalled = (-FLAT..STALLED).contains(&last);
         let window = &self.points[self.points.len() - WINDOW..];
         let highest = window.iter().map(|point| point.1).fold(0.0, f64::max);
-        let lowest = window
-            .iter()
-            .map(|point| point.1)
-            .fold(f64::INFINITY, f64::min);
+        let lowest = window.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
         let level = self.order.abs() < STALLED && highest <= PLATEAU * lowest;
         let fell = self.coarsest().1 > PLATEAU * highest;
         let still = self.pairs.iter().all(|order| order.abs() <= FLAT);
         (stalled || still || (level && fell)).then(|| {
-            let ((size, error), (before, earlier)) =
-                (self.finest(), self.points[self.points.len() - 2]);
+            let ((size, error), (before, earlier)) = (self.finest(), self.points[self.points.len() - 2]);
             self.limited(&format!(
                 "refining from size {} to {} leaves the error at {} (was {})",
                 short(before),
@@ -198,15 +173,8 @@ impl Case<'_> {
 
     /// Changes of direction, standstills left out.
     fn ups_and_downs(&self) -> Option<Classification> {
-        let moves: Vec<_> = self
-            .pairs
-            .iter()
-            .filter(|order| order.abs() > FLAT)
-            .collect();
-        let turns = moves
-            .windows(2)
-            .filter(|pair| (*pair[0] > 0.0) != (*pair[1] > 0.0))
-            .count();
+        let moves: Vec<_> = self.pairs.iter().filter(|order| order.abs() > FLAT).collect();
+        let turns = moves.windows(2).filter(|pair| (*pair[0] > 0.0) != (*pair[1] > 0.0)).count();
         let (coarse, fine) = (self.coarsest(), self.finest());
         if turns > 1 {
             let reason = format!(
@@ -217,19 +185,14 @@ impl Case<'_> {
                 short(fine.0),
                 orders(&self.pairs)
             );
-            let advice =
-                "look for cell crossing, waves or a start that differs from level to level";
+            let advice = "look for cell crossing, waves or a start that differs from level to level";
             return Some(advised(Class::Oscillatory, reason, advice));
         }
         moves.last().filter(|order| ***order < 0.0)?;
         if let Ok(fit) = fit_cancelling(self.points) {
             return Some(self.cancelled(&fit));
         }
-        let least = self
-            .points
-            .iter()
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .unwrap_or(&fine);
+        let least = self.points.iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(&fine);
         Some(advised(
             Class::Divergent,
             format!(
@@ -251,10 +214,7 @@ impl Case<'_> {
         jumps.then(|| {
             advised(
                 Class::Oscillatory,
-                format!(
-                    "the order jumps to and fro under refinement: {}",
-                    orders(&self.pairs)
-                ),
+                format!("the order jumps to and fro under refinement: {}", orders(&self.pairs)),
                 "look whether every level keeps the same path of points per cell and time step",
             )
         })
@@ -263,14 +223,8 @@ impl Case<'_> {
     /// Errors that the reference is not good enough to show are no evidence of an order.
     fn poor_reference(&self, context: &Context, found: &Classification) -> Option<Classification> {
         let judged = [Class::FloorLimited, Class::Divergent, Class::Oscillatory];
-        let least = self
-            .points
-            .iter()
-            .map(|point| point.1)
-            .fold(f64::INFINITY, f64::min);
-        let accuracy = context
-            .reference_accuracy
-            .filter(|accuracy| 10.0 * accuracy > least)?;
+        let least = self.points.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
+        let accuracy = context.reference_accuracy.filter(|accuracy| 10.0 * accuracy > least)?;
         (!judged.contains(&found.class)).then(|| {
             advised(
                 Class::NotEvaluable,

@@ -14,7 +14,11 @@ const CURVE_START: f64 = 1e-3;
 ///
 /// # Errors
 /// When the reference refuses the case.
-pub fn theory_isochrone(case: &Case, kind: ReferenceKind, time_factor: f64) -> Result<Vec<(f64, f64)>, ExactError> {
+pub fn theory_isochrone(
+    case: &Case,
+    kind: ReferenceKind,
+    time_factor: f64,
+) -> Result<Vec<(f64, f64)>, ExactError> {
     let parameters = column_parameters(&case.column, &case.material);
     let reference = Reference::new(kind, &parameters, &[time_factor])?;
     (0..=LINE_POINTS)
@@ -29,7 +33,11 @@ pub fn theory_isochrone(case: &Case, kind: ReferenceKind, time_factor: f64) -> R
 ///
 /// # Errors
 /// When the reference refuses the case.
-pub fn theory_consolidation(case: &Case, kind: ReferenceKind, end: f64) -> Result<Vec<(f64, f64)>, ExactError> {
+pub fn theory_consolidation(
+    case: &Case,
+    kind: ReferenceKind,
+    end: f64,
+) -> Result<Vec<(f64, f64)>, ExactError> {
     let parameters = column_parameters(&case.column, &case.material);
     let growth = (end / CURVE_START).ln() / f64::from(LINE_POINTS);
     let times: Vec<f64> = (0..=LINE_POINTS).map(|i| CURVE_START * (growth * f64::from(i)).exp()).collect();
@@ -44,7 +52,9 @@ pub fn computed_isochrone(record: &Record, time_factor: f64) -> Vec<(f64, f64)> 
     let points = &snapshot.points;
     let pairs = points.pressure.iter().zip(&points.initial_height);
     pairs
-        .map(|(pressure, height)| (pressure / record.case.column.load, 1.0 - height / record.case.column.height))
+        .map(|(pressure, height)| {
+            (pressure / record.case.column.load, 1.0 - height / record.case.column.height)
+        })
         .collect()
 }
 
@@ -67,7 +77,8 @@ mod tests {
     use crate::study::{Study, StudySource};
 
     fn seed_case() -> Case {
-        let text = "title = 'x'\nscene = 'terzaghi'\n[[sweep]]\nmethod = ['GIMP-SRI']\ncells = [10]\n".to_owned();
+        let text =
+            "title = 'x'\nscene = 'terzaghi'\n[[sweep]]\nmethod = ['GIMP-SRI']\ncells = [10]\n".to_owned();
         let study = Study::check(&StudySource { name: "x.toml".to_owned(), text }).expect("a sound study");
         study.planned[0].case.clone()
     }

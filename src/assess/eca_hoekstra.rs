@@ -85,15 +85,10 @@ pub fn least_squares_uncertainty(
 ) -> Result<LeastSquaresUncertainty, Undefined> {
     let grids = checked(grids, formal_order)?;
     let largest = grids[0].0;
-    let scaled: Vec<_> = grids
-        .iter()
-        .map(|(size, value)| (size / largest, *value))
-        .collect();
+    let scaled: Vec<_> = grids.iter().map(|(size, value)| (size / largest, *value)).collect();
     let extremes = |pick: fn(f64, f64) -> f64| grids.iter().map(|grid| grid.1).reduce(pick);
     let (highest, lowest) = (extremes(f64::max), extremes(f64::min));
-    let range = highest
-        .zip(lowest)
-        .map_or(f64::NAN, |(high, low)| high - low);
+    let range = highest.zip(lowest).map_or(f64::NAN, |(high, low)| high - low);
     let magnitude = grids.iter().map(|grid| grid.1.abs()).fold(0.0, f64::max);
     if !range.is_finite() || !magnitude.is_finite() {
         return Err(Undefined::NotFinite { size: largest });
@@ -109,11 +104,7 @@ pub fn least_squares_uncertainty(
     } else if observed_order > formal_order {
         best(&scaled, &[ErrorModel::FirstOrder, ErrorModel::SecondOrder])?
     } else {
-        let rest = [
-            ErrorModel::FirstOrder,
-            ErrorModel::SecondOrder,
-            ErrorModel::FirstAndSecondOrder,
-        ];
+        let rest = [ErrorModel::FirstOrder, ErrorModel::SecondOrder, ErrorModel::FirstAndSecondOrder];
         best(&scaled, &rest)?
     };
     let good = fit.deviation < data_range;
@@ -128,12 +119,7 @@ pub fn least_squares_uncertainty(
         } else {
             3.0 * (fit.deviation / data_range) * (error.abs() + fit.deviation + misfit.abs())
         };
-        GridUncertainty {
-            size: *size,
-            error,
-            misfit,
-            uncertainty,
-        }
+        GridUncertainty { size: *size, error, misfit, uncertainty }
     };
     Ok(LeastSquaresUncertainty {
         model: fit.model,
@@ -149,12 +135,8 @@ pub fn least_squares_uncertainty(
 
 /// The fit of least deviation among models, each with and without weights.
 fn best(grids: &[(f64, f64)], models: &[ErrorModel]) -> Result<Fit, Undefined> {
-    let fits = models
-        .iter()
-        .flat_map(|model| [false, true].map(|weighted| fit(grids, *model, weighted)));
-    fits.flatten()
-        .min_by(|a, b| a.deviation.total_cmp(&b.deviation))
-        .ok_or(Undefined::NotDetermined)
+    let fits = models.iter().flat_map(|model| [false, true].map(|weighted| fit(grids, *model, weighted)));
+    fits.flatten().min_by(|a, b| a.deviation.total_cmp(&b.deviation)).ok_or(Undefined::NotDetermined)
 }
 
 fn fit(grids: &[(f64, f64)], model: ErrorModel, weighted: bool) -> Option<Fit> {
@@ -165,11 +147,7 @@ fn fit(grids: &[(f64, f64)], model: ErrorModel, weighted: bool) -> Option<Fit> {
     let values: Vec<_> = grids.iter().map(|grid| grid.1).collect();
     let solution = |exponents: &[f64]| {
         let mut columns = vec![vec![1.0; grids.len()]];
-        columns.extend(
-            exponents
-                .iter()
-                .map(|p| grids.iter().map(|(size, _)| size.powf(*p)).collect()),
-        );
+        columns.extend(exponents.iter().map(|p| grids.iter().map(|(size, _)| size.powf(*p)).collect()));
         solve(&columns, &values, &weights)
     };
     let (exponents, freedom) = match model {
@@ -187,11 +165,7 @@ fn fit(grids: &[(f64, f64)], model: ErrorModel, weighted: bool) -> Option<Fit> {
         weighted,
         order: exponents[0],
         limit: coefficients[0],
-        terms: exponents
-            .iter()
-            .copied()
-            .zip(coefficients[1..].iter().copied())
-            .collect(),
+        terms: exponents.iter().copied().zip(coefficients[1..].iter().copied()).collect(),
         deviation: (square / freedom).sqrt(),
     })
 }
@@ -199,10 +173,7 @@ fn fit(grids: &[(f64, f64)], model: ErrorModel, weighted: bool) -> Option<Fit> {
 /// The grids from coarse to fine.
 fn checked(grids: &[(f64, f64)], formal_order: f64) -> Result<Vec<(f64, f64)>, Undefined> {
     if grids.len() < LEAST_GRIDS {
-        return Err(Undefined::TooFewLevels {
-            levels: grids.len(),
-            needed: LEAST_GRIDS,
-        });
+        return Err(Undefined::TooFewLevels { levels: grids.len(), needed: LEAST_GRIDS });
     }
     if !formal_order.is_finite() || formal_order < 0.5 {
         return Err(Undefined::NotDetermined);
@@ -217,9 +188,7 @@ fn checked(grids: &[(f64, f64)], formal_order: f64) -> Result<Vec<(f64, f64)>, U
     }
     let mut grids = grids.to_vec();
     grids.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let same = grids
-        .windows(2)
-        .find(|pair| pair[0].0 <= pair[1].0 * (1.0 + 1e-9));
+    let same = grids.windows(2).find(|pair| pair[0].0 <= pair[1].0 * (1.0 + 1e-9));
     same.map_or(Ok(()), |pair| Err(Undefined::SameSize { size: pair[1].0 }))?;
     Ok(grids)
 }
@@ -246,26 +215,19 @@ mod tests {
         let b = of([1190, 1278, 1352, 1433, 1506, 1536, 1587].map(above));
         assert!((b.observed_order - 0.98).abs() < 0.08, "{b:?}");
         let c = of([1639, 1624, 1610, 1624, 1654, 1646, 1632].map(above));
-        assert!(
-            c.observed_order < 0.5 && c.model != ErrorModel::PowerLaw,
-            "{c:?}"
-        );
+        assert!(c.observed_order < 0.5 && c.model != ErrorModel::PowerLaw, "{c:?}");
         assert_eq!(c.safety_factor, 3.0);
     }
 
     #[test]
     fn a_manufactured_value_is_extrapolated_and_covered() {
-        for (p, model) in [
-            (1.5, ErrorModel::PowerLaw),
-            (2.0, ErrorModel::PowerLaw),
-            (1.0, ErrorModel::PowerLaw),
-        ] {
+        for (p, model) in
+            [(1.5, ErrorModel::PowerLaw), (2.0, ErrorModel::PowerLaw), (1.0, ErrorModel::PowerLaw)]
+        {
             let found = of(SIZES.map(|h| 3.0 + 0.01 * h.powf(p)));
             // At the formal order itself, round-off decides which of two equal models is taken.
             assert!(found.model == model || p == 2.0, "{found:?}");
-            assert!(
-                (found.extrapolated - 3.0).abs() < 1e-6 && (found.observed_order - p).abs() < 1e-3
-            );
+            assert!((found.extrapolated - 3.0).abs() < 1e-6 && (found.observed_order - p).abs() < 1e-3);
             assert_eq!(found.safety_factor, 1.25);
             for grid in &found.grids {
                 let error = 0.01 * grid.size.powf(p);
@@ -295,41 +257,20 @@ mod tests {
     #[test]
     fn what_cannot_be_used_is_named() {
         let equal: Vec<_> = SIZES.iter().map(|h| (*h, 0.3)).collect();
-        assert_eq!(
-            least_squares_uncertainty(&equal, 2.0),
-            Err(Undefined::EqualValues)
-        );
+        assert_eq!(least_squares_uncertainty(&equal, 2.0), Err(Undefined::EqualValues));
         let zero: Vec<_> = SIZES.iter().map(|h| (*h, 0.0)).collect();
-        assert_eq!(
-            least_squares_uncertainty(&zero, 2.0),
-            Err(Undefined::EqualValues)
-        );
+        assert_eq!(least_squares_uncertainty(&zero, 2.0), Err(Undefined::EqualValues));
         let few = least_squares_uncertainty(&equal[..3], 2.0);
-        assert_eq!(
-            few,
-            Err(Undefined::TooFewLevels {
-                levels: 3,
-                needed: 4
-            })
-        );
+        assert_eq!(few, Err(Undefined::TooFewLevels { levels: 3, needed: 4 }));
         for bad in [f64::NAN, f64::INFINITY] {
             let mut grids: Vec<_> = SIZES.iter().map(|h| (*h, h * h)).collect();
             grids[2].1 = bad;
-            assert_eq!(
-                least_squares_uncertainty(&grids, 2.0),
-                Err(Undefined::NotFinite { size: 2.0 })
-            );
+            assert_eq!(least_squares_uncertainty(&grids, 2.0), Err(Undefined::NotFinite { size: 2.0 }));
             grids[2] = (bad, 1.0);
-            assert_eq!(
-                least_squares_uncertainty(&grids, 2.0),
-                Err(Undefined::BadSize { number: 3 })
-            );
+            assert_eq!(least_squares_uncertainty(&grids, 2.0), Err(Undefined::BadSize { number: 3 }));
         }
         let mut twice: Vec<_> = SIZES.iter().map(|h| (*h, h * h)).collect();
         twice[2].0 = twice[1].0;
-        assert!(matches!(
-            least_squares_uncertainty(&twice, 2.0),
-            Err(Undefined::SameSize { .. })
-        ));
+        assert!(matches!(least_squares_uncertainty(&twice, 2.0), Err(Undefined::SameSize { .. })));
     }
 }

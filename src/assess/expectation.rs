@@ -99,24 +99,15 @@ impl Expectation {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         let width = |value: f64| value.is_finite() && value >= 0.0;
         if let Some(band) = self.order {
-            demand(
-                positive(band.value),
-                "the order expected must be a positive number",
-            );
+            demand(positive(band.value), "the order expected must be a positive number");
             demand(
                 width(band.minus) && width(band.plus),
                 "`minus` and `plus` of the order must be numbers from 0 on",
             );
         }
         if let Some(at) = self.at {
-            demand(
-                positive(at.size),
-                "the level of `at` must have a positive size",
-            );
-            demand(
-                positive(at.below),
-                "`below` of `at` must be a positive number",
-            );
+            demand(positive(at.size), "the level of `at` must have a positive size");
+            demand(positive(at.below), "`below` of `at` must be a positive number");
             demand(
                 width(at.above) && at.above < at.below,
                 "`above` of `at` must be a number from 0 on and smaller than `below`",
@@ -129,16 +120,10 @@ impl Expectation {
             );
         }
         if let Some(bound) = self.oscillation_below {
-            demand(
-                bound.is_finite(),
-                "the bound on the oscillation must be a number",
-            );
+            demand(bound.is_finite(), "the bound on the oscillation must be a number");
         }
         if let Some(known) = &self.xfail {
-            demand(
-                !known.reason.trim().is_empty(),
-                "a known failure needs a reason",
-            );
+            demand(!known.reason.trim().is_empty(), "a known failure needs a reason");
         }
         let asked = self.order.is_some()
             || self.at.is_some()

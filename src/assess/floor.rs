@@ -54,11 +54,7 @@ impl FloorFit {
 pub fn fit_floor(series: &ErrorSeries) -> Result<FloorFit, Undefined> {
     let points = series.points()?;
     let (least, most) = ORDER_RANGE;
-    let fit = fit_two_terms(
-        &points,
-        Exponent::Fixed(0.0),
-        Exponent::Between(least, most),
-    )?;
+    let fit = fit_two_terms(&points, Exponent::Fixed(0.0), Exponent::Between(least, most))?;
     if fit.high <= least * 1.001 || fit.high >= most * 0.999 {
         return Err(Undefined::NotDetermined);
     }
@@ -78,11 +74,7 @@ pub fn fit_floor_of_order(series: &ErrorSeries, order: f64) -> Result<FloorFit, 
     from_terms(&points, &fit, 2)
 }
 
-fn from_terms(
-    points: &[(f64, f64)],
-    fit: &TwoTerms,
-    parameters: usize,
-) -> Result<FloorFit, Undefined> {
+fn from_terms(points: &[(f64, f64)], fit: &TwoTerms, parameters: usize) -> Result<FloorFit, Undefined> {
     let finest = points.last().map_or(f64::NAN, |point| point.0);
     if fit.high_coefficient <= 0.0 {
         return Err(Undefined::NotDetermined);
@@ -103,23 +95,14 @@ fn from_terms(
         }
         (fit.floor, fit.significant, fit.crossover) = (0.0, false, None);
     }
-    let holding = || {
-        points
-            .iter()
-            .map(|point| point.0)
-            .filter(|size| fit.share(*size) <= 0.5)
-    };
+    let holding = || points.iter().map(|point| point.0).filter(|size| fit.share(*size) <= 0.5);
     let bounds = holding().next().zip(holding().next_back());
     fit.order_holds = bounds;
     Ok(fit)
 }
 
 /// F-test of one more parameter: does the floor explain more than a straight line does?
-fn is_significant(
-    points: &[(f64, f64)],
-    fit: &TwoTerms,
-    parameters: usize,
-) -> Result<bool, Undefined> {
+fn is_significant(points: &[(f64, f64)], fit: &TwoTerms, parameters: usize) -> Result<bool, Undefined> {
     let count = points.len() as f64;
     let freedom = count - parameters as f64;
     let straight = if parameters == 3 {
@@ -129,14 +112,8 @@ fn is_significant(
         points.iter().map(off).sum::<f64>()
     } else {
         let only = |(h, e): &(f64, f64)| h.powf(fit.high) / e;
-        let (sum, square) = points
-            .iter()
-            .map(only)
-            .fold((0.0, 0.0), |(s, q), x| (s + x, q + x * x));
-        points
-            .iter()
-            .map(|point| (sum / square * only(point) - 1.0).powi(2))
-            .sum::<f64>()
+        let (sum, square) = points.iter().map(only).fold((0.0, 0.0), |(s, q), x| (s + x, q + x * x));
+        points.iter().map(|point| (sum / square * only(point) - 1.0).powi(2)).sum::<f64>()
     };
     let with_floor = (fit.residual * fit.residual * count).max(count * f64::EPSILON.powi(2));
     let ratio = (straight - with_floor) / (with_floor / freedom);
@@ -157,10 +134,7 @@ mod tests {
     #[test]
     fn a_floor_is_found_and_its_range_named() {
         let fit = fit_floor(&series(|h| h * h + 2e-4)).unwrap();
-        assert!(
-            (fit.order - 2.0).abs() < 1e-9 && (fit.floor / 2e-4 - 1.0).abs() < 1e-9,
-            "{fit:?}"
-        );
+        assert!((fit.order - 2.0).abs() < 1e-9 && (fit.floor / 2e-4 - 1.0).abs() < 1e-9, "{fit:?}");
         assert!(fit.significant && (fit.coefficient - 1.0).abs() < 1e-8);
         assert!((fit.crossover.unwrap() - 2e-4_f64.sqrt()).abs() < 1e-9);
         // h² is above 2e-4 down to 1/40, where it is 6e-4; at 1/80 it is 1.6e-4.
@@ -177,29 +151,17 @@ mod tests {
             level.error = level.error.map(|error| error * (1.0 + noise));
         }
         let fit = fit_floor(&ErrorSeries::new(levels)).unwrap();
-        assert!(
-            !fit.significant && fit.significant_floor() == 0.0,
-            "{fit:?}"
-        );
+        assert!(!fit.significant && fit.significant_floor() == 0.0, "{fit:?}");
     }
 
     #[test]
     fn what_has_no_order_is_undefined() {
-        assert_eq!(
-            fit_floor(&series(|h| 1.0 / h)),
-            Err(Undefined::NotDetermined)
-        );
+        assert_eq!(fit_floor(&series(|h| 1.0 / h)), Err(Undefined::NotDetermined));
         assert_eq!(fit_floor(&series(|_| 1.0)), Err(Undefined::NotDetermined));
         let cliff = series(|h| if h > 0.15 { 1.0 } else { 1e-3 });
         assert_eq!(fit_floor(&cliff), Err(Undefined::NotDetermined));
         let short = ErrorSeries::new(series(|h| h).levels()[..3].to_vec());
-        assert_eq!(
-            fit_floor(&short),
-            Err(Undefined::TooFewLevels {
-                levels: 3,
-                needed: 4
-            })
-        );
+        assert_eq!(fit_floor(&short), Err(Undefined::TooFewLevels { levels: 3, needed: 4 }));
         assert!(fit_floor_of_order(&short, f64::NAN).is_err());
     }
 

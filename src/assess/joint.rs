@@ -54,11 +54,7 @@ pub struct Exponents {
 impl Default for Exponents {
     fn default() -> Self {
         let free = Exponent::Between(0.5, 4.0);
-        Self {
-            mesh: free,
-            step: free,
-            points_per_cell: free,
-        }
+        Self { mesh: free, step: free, points_per_cell: free }
     }
 }
 
@@ -148,25 +144,14 @@ struct Varied {
 /// [`NoJointFit`] says what the runs lack.
 pub fn fit_jointly(runs: &[Run], exponents: &Exponents) -> Result<JointFit, NoJointFit> {
     let positive = |value: f64| value.is_normal() && value > 0.0;
-    let sound = |run: &Run| {
-        [run.cell_size, run.time_step, run.points_per_cell, run.error]
-            .into_iter()
-            .all(positive)
-    };
+    let sound =
+        |run: &Run| [run.cell_size, run.time_step, run.points_per_cell, run.error].into_iter().all(positive);
     if let Some(index) = runs.iter().position(|run| !sound(run)) {
         return Err(NoJointFit::BadRun { number: index + 1 });
     }
     let axes = [
-        (
-            Axis::Mesh,
-            exponents.mesh,
-            runs.iter().map(|run| run.cell_size).collect::<Vec<_>>(),
-        ),
-        (
-            Axis::Step,
-            exponents.step,
-            runs.iter().map(|run| run.time_step).collect(),
-        ),
+        (Axis::Mesh, exponents.mesh, runs.iter().map(|run| run.cell_size).collect::<Vec<_>>()),
+        (Axis::Step, exponents.step, runs.iter().map(|run| run.time_step).collect()),
         (
             Axis::PointsPerCell,
             exponents.points_per_cell,
@@ -180,37 +165,25 @@ pub fn fit_jointly(runs: &[Run], exponents: &Exponents) -> Result<JointFit, NoJo
             not_varied.push(axis);
         } else {
             let values = values.iter().map(|value| value / largest).collect();
-            varied.push(Varied {
-                axis,
-                values,
-                largest,
-                exponent,
-            });
+            varied.push(Varied { axis, values, largest, exponent });
         }
     }
     if varied.is_empty() {
         return Err(NoJointFit::NothingVaried);
     }
     if tied(&varied) {
-        return Err(NoJointFit::Tied {
-            axes: varied.iter().map(|axis| axis.axis).collect(),
-        });
+        return Err(NoJointFit::Tied { axes: varied.iter().map(|axis| axis.axis).collect() });
     }
     let free = |axis: &&Varied| matches!(axis.exponent, Exponent::Between(..));
     let needed = varied.len() + 1 + varied.iter().filter(free).count() + 1;
     if runs.len() < needed {
-        return Err(NoJointFit::TooFewRuns {
-            runs: runs.len(),
-            needed,
-        });
+        return Err(NoJointFit::TooFewRuns { runs: runs.len(), needed });
     }
     let errors: Vec<f64> = runs.iter().map(|run| run.error).collect();
     let ranges: Vec<_> = varied.iter().map(|axis| axis.exponent.range()).collect();
-    let square =
-        |orders: &[f64]| project(&varied, &errors, orders).map_or(f64::INFINITY, |found| found.1);
+    let square = |orders: &[f64]| project(&varied, &errors, orders).map_or(f64::INFINITY, |found| found.1);
     let orders = least(&ranges, square);
-    let (coefficients, square) =
-        project(&varied, &errors, &orders).ok_or(NoJointFit::NotDetermined)?;
+    let (coefficients, square) = project(&varied, &errors, &orders).ok_or(NoJointFit::NotDetermined)?;
     let residual = (square / runs.len() as f64).sqrt();
     describe(&varied, not_varied, &coefficients, &orders, residual).ok_or(NoJointFit::NotDetermined)
 }
@@ -220,15 +193,9 @@ fn tied(varied: &[Varied]) -> bool {
     let count = varied[0].values.len();
     let column = |j: usize| {
         let mean = varied[j].values.iter().map(|value| value.ln()).sum::<f64>() / count as f64;
-        let logs: Vec<_> = varied[j]
-            .values
-            .iter()
-            .map(|value| value.ln() - mean)
-            .collect();
+        let logs: Vec<_> = varied[j].values.iter().map(|value| value.ln() - mean).collect();
         let norm = logs.iter().map(|log| log * log).sum::<f64>().sqrt();
-        logs.into_iter()
-            .map(move |log| log / norm)
-            .collect::<Vec<_>>()
+        logs.into_iter().map(move |log| log / norm).collect::<Vec<_>>()
     };
     let columns: Vec<_> = (0..varied.len()).map(column).collect();
     let matrix = DMatrix::from_fn(count, varied.len(), |row, j| columns[j][row]);
@@ -238,11 +205,7 @@ fn tied(varied: &[Varied]) -> bool {
 /// Coefficients of the terms (floor last) and the sum of squared relative residuals.
 fn project(varied: &[Varied], errors: &[f64], orders: &[f64]) -> Option<(Vec<f64>, f64)> {
     let column = |(axis, order): (&Varied, &f64)| -> Vec<f64> {
-        axis.values
-            .iter()
-            .zip(errors)
-            .map(|(x, error)| x.powf(*order) / error)
-            .collect()
+        axis.values.iter().zip(errors).map(|(x, error)| x.powf(*order) / error).collect()
     };
     let mut columns: Vec<_> = varied.iter().zip(orders).map(column).collect();
     columns.push(errors.iter().map(|error| 1.0 / error).collect());
@@ -282,35 +245,19 @@ fn describe(
         })
         .collect();
     let floor = *coefficients.last()?;
-    terms.push(Term {
-        axis: Axis::Floor,
-        coefficient: floor,
-        order: 0.0,
-    });
+    terms.push(Term { axis: Axis::Floor, coefficient: floor, order: 0.0 });
     let shares = |run: usize| {
         let part = |(axis, (c, order)): (&Varied, (&f64, &f64))| c * axis.values[run].powf(*order);
-        let mut parts: Vec<_> = varied
-            .iter()
-            .zip(coefficients.iter().zip(orders))
-            .map(part)
-            .collect();
+        let mut parts: Vec<_> = varied.iter().zip(coefficients.iter().zip(orders)).map(part).collect();
         parts.push(floor);
         let total: f64 = parts.iter().sum();
         let shares: Vec<_> = parts.iter().map(|part| part / total).collect();
         let largest = (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b]))?;
-        Some(Shares {
-            limiting: terms[largest].axis,
-            shares,
-        })
+        Some(Shares { limiting: terms[largest].axis, shares })
     };
     let runs: Option<Vec<_>> = (0..varied.first()?.values.len()).map(shares).collect();
     let finite = terms.iter().all(|term| term.coefficient.is_finite()) && residual.is_finite();
-    let fit = JointFit {
-        runs: runs?,
-        terms,
-        not_varied,
-        residual,
-    };
+    let fit = JointFit { runs: runs?, terms, not_varied, residual };
     finite.then_some(fit)
 }
 
@@ -324,12 +271,7 @@ mod tests {
             for time_step in [1e-3, 5e-4, 2.5e-4, 1.25e-4] {
                 for points_per_cell in [1.0, 2.0, 4.0] {
                     let error = error(cell_size, time_step, points_per_cell);
-                    runs.push(Run {
-                        cell_size,
-                        time_step,
-                        points_per_cell,
-                        error,
-                    });
+                    runs.push(Run { cell_size, time_step, points_per_cell, error });
                 }
             }
         }
@@ -349,20 +291,13 @@ mod tests {
         for (axis, coefficient, order) in wanted {
             let term = fit.term(axis).unwrap();
             assert!((term.order - order).abs() < 1e-4, "{term:?}");
-            assert!(
-                (term.coefficient / coefficient - 1.0).abs() < 1e-3,
-                "{term:?}"
-            );
+            assert!((term.coefficient / coefficient - 1.0).abs() < 1e-3, "{term:?}");
         }
         assert!(fit.residual < 1e-6);
         // 0.2, 1e-3, 4: the mesh has 0.012 of 0.0141. 0.025, 1e-3, 4: the step has 0.002.
         assert_eq!(fit.runs[2].limiting, Axis::Mesh);
         assert_eq!(fit.runs[38].limiting, Axis::Step);
-        assert!(
-            fit.runs
-                .iter()
-                .all(|run| (run.shares.iter().sum::<f64>() - 1.0).abs() < 1e-12)
-        );
+        assert!(fit.runs.iter().all(|run| (run.shares.iter().sum::<f64>() - 1.0).abs() < 1e-12));
     }
 
     #[test]
@@ -371,19 +306,10 @@ mod tests {
         for (index, run) in data.iter_mut().enumerate() {
             run.error *= 1.0 + 0.02 * (index as f64 * 1.7).sin();
         }
-        let fixed = Exponents {
-            points_per_cell: Exponent::Fixed(1.0),
-            ..Exponents::default()
-        };
+        let fixed = Exponents { points_per_cell: Exponent::Fixed(1.0), ..Exponents::default() };
         let fit = fit_jointly(&data, &fixed).unwrap();
-        assert!(
-            (fit.term(Axis::Mesh).unwrap().order - 2.0).abs() < 0.15,
-            "{fit:?}"
-        );
-        assert!(
-            (fit.term(Axis::Step).unwrap().order - 1.0).abs() < 0.15,
-            "{fit:?}"
-        );
+        assert!((fit.term(Axis::Mesh).unwrap().order - 2.0).abs() < 0.15, "{fit:?}");
+        assert!((fit.term(Axis::Step).unwrap().order - 1.0).abs() < 0.15, "{fit:?}");
         assert!(fit.term(Axis::PointsPerCell).unwrap().coefficient < 1e-4);
         assert!(fit.residual < 0.02);
     }
@@ -392,10 +318,7 @@ mod tests {
     fn an_axis_held_still_goes_to_the_floor() {
         let mut data = runs(|h, _, _| 0.3 * h * h + 2e-3);
         data.retain(|run| run.time_step == 1e-3 && run.points_per_cell == 2.0);
-        let exponents = Exponents {
-            mesh: Exponent::Fixed(2.0),
-            ..Exponents::default()
-        };
+        let exponents = Exponents { mesh: Exponent::Fixed(2.0), ..Exponents::default() };
         let fit = fit_jointly(&data, &exponents).unwrap();
         assert_eq!(fit.not_varied, [Axis::Step, Axis::PointsPerCell]);
         assert!((fit.term(Axis::Floor).unwrap().coefficient / 2e-3 - 1.0).abs() < 1e-9);
@@ -407,12 +330,7 @@ mod tests {
         let mut data = runs(|h, dt, _| h * h + dt);
         data.retain(|run| (run.time_step / run.cell_size - 5e-3).abs() < 1e-9);
         let tied = fit_jointly(&data, &Exponents::default());
-        assert_eq!(
-            tied,
-            Err(NoJointFit::Tied {
-                axes: vec![Axis::Mesh, Axis::Step, Axis::PointsPerCell]
-            })
-        );
+        assert_eq!(tied, Err(NoJointFit::Tied { axes: vec![Axis::Mesh, Axis::Step, Axis::PointsPerCell] }));
     }
 
     #[test]
@@ -421,20 +339,11 @@ mod tests {
         for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0, 1e-310] {
             let mut broken = data.clone();
             broken[4].error = bad;
-            assert_eq!(
-                fit_jointly(&broken, &Exponents::default()),
-                Err(NoJointFit::BadRun { number: 5 })
-            );
+            assert_eq!(fit_jointly(&broken, &Exponents::default()), Err(NoJointFit::BadRun { number: 5 }));
         }
         let none = Exponents::default();
         assert_eq!(fit_jointly(&[], &none), Err(NoJointFit::NothingVaried));
-        assert_eq!(
-            fit_jointly(&data[..1], &none),
-            Err(NoJointFit::NothingVaried)
-        );
-        assert_eq!(
-            fit_jointly(&data[..3], &none),
-            Err(NoJointFit::TooFewRuns { runs: 3, needed: 4 })
-        );
+        assert_eq!(fit_jointly(&data[..1], &none), Err(NoJointFit::NothingVaried));
+        assert_eq!(fit_jointly(&data[..3], &none), Err(NoJointFit::TooFewRuns { runs: 3, needed: 4 }));
     }
 }

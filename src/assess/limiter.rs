@@ -52,9 +52,7 @@ pub fn identify(floor: f64, candidates: &[Limiter]) -> Option<&Limiter> {
     if let Some((_, candidate)) = near {
         return Some(candidate);
     }
-    let mut unknown = candidates
-        .iter()
-        .filter(|candidate| candidate.magnitude.is_none());
+    let mut unknown = candidates.iter().filter(|candidate| candidate.magnitude.is_none());
     match (unknown.next(), unknown.next()) {
         (Some(only), None) => Some(only),
         _ => None,
@@ -62,17 +60,9 @@ pub fn identify(floor: f64, candidates: &[Limiter]) -> Option<&Limiter> {
 }
 
 /// What to change so that the floor falls to `target`, or how to find out what causes it.
-pub fn advice(
-    floor: f64,
-    target: Option<f64>,
-    limiter: Option<&Limiter>,
-    candidates: &[Limiter],
-) -> String {
+pub fn advice(floor: f64, target: Option<f64>, limiter: Option<&Limiter>, candidates: &[Limiter]) -> String {
     let Some(limiter) = limiter else {
-        let names: Vec<_> = candidates
-            .iter()
-            .map(|candidate| candidate.name.as_str())
-            .collect();
+        let names: Vec<_> = candidates.iter().map(|candidate| candidate.name.as_str()).collect();
         let suspects = if names.is_empty() {
             "the time step, the points per cell, the reference and the model".to_owned()
         } else {
@@ -80,10 +70,7 @@ pub fn advice(
         };
         return format!("no known cause fits: vary one at a time of {suspects}");
     };
-    let order = limiter
-        .order
-        .filter(|order| order.is_finite() && *order > 0.0)
-        .unwrap_or(1.0);
+    let order = limiter.order.filter(|order| order.is_finite() && *order > 0.0).unwrap_or(1.0);
     let factor = target.map_or(4.0, |target| (floor / target).powf(1.0 / order));
     // Rounded up to a power of two, as people halve things.
     let factor = factor.clamp(2.0, 1e9).log2().ceil().exp2();
@@ -91,12 +78,11 @@ pub fn advice(
         LimiterKind::Step => format!("lower the time step by {factor}"),
         LimiterKind::Mesh => format!("refine the mesh by {factor}"),
         LimiterKind::PointsPerCell => format!("raise the points per cell by {factor}"),
-        LimiterKind::Reference => format!(
-            "use a reference good to {}, or stop refining",
-            short(target.unwrap_or(0.1 * floor))
-        ),
+        LimiterKind::Reference => {
+            format!("use a reference good to {}, or stop refining", short(target.unwrap_or(0.1 * floor)))
+        }
         LimiterKind::Model => format!(
-            "hold the run against the reference of its own equations: {} makes the difference",
+            "Hold the run against the reference of its own equations: {} makes the difference",
             limiter.name
         ),
         LimiterKind::RoundOff => "drop the finest levels: they show round-off".to_owned(),
@@ -108,12 +94,7 @@ mod tests {
     use super::*;
 
     fn candidate(kind: LimiterKind, magnitude: Option<f64>) -> Limiter {
-        Limiter {
-            kind,
-            name: format!("{kind:?}"),
-            magnitude,
-            order: None,
-        }
+        Limiter { kind, name: format!("{kind:?}"), magnitude, order: None }
     }
 
     #[test]
@@ -125,10 +106,7 @@ mod tests {
         assert_eq!(identify(6e-5, &both), Some(&model));
         assert_eq!(identify(1e-2, &both), None);
         let unknown = candidate(LimiterKind::PointsPerCell, None);
-        assert_eq!(
-            identify(1e-2, &[step.clone(), unknown.clone()]),
-            Some(&unknown)
-        );
+        assert_eq!(identify(1e-2, &[step.clone(), unknown.clone()]), Some(&unknown));
         assert_eq!(identify(1e-2, &[unknown.clone(), unknown]), None);
         let nonsense = candidate(LimiterKind::Step, Some(f64::NAN));
         assert_eq!(identify(1e-2, &[nonsense]), None);
@@ -137,23 +115,11 @@ mod tests {
     #[test]
     fn the_advice_counts_with_the_order_of_the_cause() {
         let mut step = candidate(LimiterKind::Step, None);
-        assert_eq!(
-            advice(4e-4, Some(1e-4), Some(&step), &[]),
-            "lower the time step by 4"
-        );
-        assert_eq!(
-            advice(5e-4, Some(1e-4), Some(&step), &[]),
-            "lower the time step by 8"
-        );
+        assert_eq!(advice(4e-4, Some(1e-4), Some(&step), &[]), "lower the time step by 4");
+        assert_eq!(advice(5e-4, Some(1e-4), Some(&step), &[]), "lower the time step by 8");
         step.order = Some(2.0);
-        assert_eq!(
-            advice(4e-4, Some(1e-4), Some(&step), &[]),
-            "lower the time step by 2"
-        );
-        assert_eq!(
-            advice(4e-4, None, Some(&step), &[]),
-            "lower the time step by 4"
-        );
+        assert_eq!(advice(4e-4, Some(1e-4), Some(&step), &[]), "lower the time step by 2");
+        assert_eq!(advice(4e-4, None, Some(&step), &[]), "lower the time step by 4");
         assert!(advice(1.0, None, None, &[step]).contains("Step"));
     }
 }

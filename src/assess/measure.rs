@@ -3,8 +3,8 @@
 use super::norms::{self, Norm};
 use crate::exact::{ExactError, Reference, ReferenceKind};
 use crate::record::{
-    Balance, ErrorRow, Groups, HistoryRow, Provenance, Quantity, Record, ReferenceUse, SCHEMA, Sample, StartChecks,
-    Status,
+    Balance, ErrorRow, Groups, HistoryRow, Provenance, Quantity, Record, ReferenceUse, SCHEMA, Sample,
+    StartChecks, Status,
 };
 use crate::scene::{SceneKind, column_parameters};
 use crate::solver::limits;
@@ -82,9 +82,11 @@ fn snapshot_errors(
     let load = case.column.load;
     let final_settlement = reference.settlement(LONG_AFTER)?;
     let mut rows = Vec::new();
-    for (sample, samples) in
-        [(Sample::Points, &snapshot.points), (Sample::Centres, &snapshot.centres), (Sample::Nodes, &snapshot.nodes)]
-    {
+    for (sample, samples) in [
+        (Sample::Points, &snapshot.points),
+        (Sample::Centres, &snapshot.centres),
+        (Sample::Nodes, &snapshot.nodes),
+    ] {
         let exact = exact_samples(case, reference, time_factor, samples)?;
         for (quantity, computed, exact, scale) in [
             (Quantity::Pressure, &samples.pressure, &exact.pressure, load),
@@ -148,7 +150,8 @@ fn groups(case: &Case, step_over_limit: f64) -> Groups {
     Groups {
         storage: soil.oedometric_modulus() / soil.coupling_modulus(),
         finite_strain: case.column.load / soil.oedometric_modulus(),
-        inertia: soil.coefficient_of_consolidation() / (case.column.height * limits::undrained_wave_speed(soil)),
+        inertia: soil.coefficient_of_consolidation()
+            / (case.column.height * limits::undrained_wave_speed(soil)),
         step_over_limit,
     }
 }
@@ -183,7 +186,8 @@ fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) -> B
     let load = case.column.load;
     let applied = if case.scene.is_loaded() { load } else { 0.0 };
     let stresses = now.points.effective_stress.iter().zip(&now.points.pressure);
-    let squares: f64 = stresses.map(|(stress, pressure)| ((stress - pressure + applied) / load).powi(2)).sum();
+    let squares: f64 =
+        stresses.map(|(stress, pressure)| ((stress - pressure + applied) / load).powi(2)).sum();
     let outflow = now.totals.surface_flux + now.settlement - start.settlement;
     let excess = now.totals.surface_flux - now.totals.water_expansion;
     Balance {

@@ -121,10 +121,7 @@ impl FromStr for Norm {
     type Err = UnknownNorm;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Self::ALL
-            .into_iter()
-            .find(|norm| norm.name() == text)
-            .ok_or_else(|| UnknownNorm(text.to_owned()))
+        Self::ALL.into_iter().find(|norm| norm.name() == text).ok_or_else(|| UnknownNorm(text.to_owned()))
     }
 }
 
@@ -173,22 +170,13 @@ pub fn relative_error_of_number(computed: f64, exact: f64) -> Result<f64, Undefi
 }
 
 fn differences(computed: &[f64], exact: &[f64]) -> Vec<f64> {
-    computed
-        .iter()
-        .zip(exact)
-        .map(|(computed, exact)| computed - exact)
-        .collect()
+    computed.iter().zip(exact).map(|(computed, exact)| computed - exact).collect()
 }
 
 /// The norm as a mean over the volume, scaled by the largest entry so that squares of very small
 /// or very large fields neither vanish nor overflow.
 fn mean_norm(norm: Norm, field: &[f64], volumes: &[f64]) -> f64 {
-    let counted = || {
-        field
-            .iter()
-            .zip(volumes)
-            .filter(|(_, volume)| **volume > 0.0)
-    };
+    let counted = || field.iter().zip(volumes).filter(|(_, volume)| **volume > 0.0);
     let largest = counted().map(|(value, _)| value.abs()).fold(0.0, f64::max);
     if largest == 0.0 || !largest.is_finite() {
         return largest;
@@ -209,19 +197,10 @@ fn mean_norm(norm: Norm, field: &[f64], volumes: &[f64]) -> f64 {
 }
 
 fn finite(value: f64) -> Result<f64, UndefinedNorm> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(UndefinedNorm::Overflow)
-    }
+    if value.is_finite() { Ok(value) } else { Err(UndefinedNorm::Overflow) }
 }
 
-fn check(
-    norm: Norm,
-    computed: &[f64],
-    exact: &[f64],
-    volumes: &[f64],
-) -> Result<(), UndefinedNorm> {
+fn check(norm: Norm, computed: &[f64], exact: &[f64], volumes: &[f64]) -> Result<(), UndefinedNorm> {
     if computed.len() != exact.len() || computed.len() != volumes.len() {
         return Err(UndefinedNorm::LengthMismatch {
             computed: computed.len(),
@@ -233,22 +212,14 @@ fn check(
         return Err(UndefinedNorm::Empty);
     }
     if norm == Norm::Relative && computed.len() > 1 {
-        return Err(UndefinedNorm::NotScalar {
-            samples: computed.len(),
-        });
+        return Err(UndefinedNorm::NotScalar { samples: computed.len() });
     }
     for (which, values) in [("computed", computed), ("exact", exact)] {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-            return Err(UndefinedNorm::NotFinite {
-                which: which.to_owned(),
-                index,
-            });
+            return Err(UndefinedNorm::NotFinite { which: which.to_owned(), index });
         }
     }
-    if let Some(index) = volumes
-        .iter()
-        .position(|volume| !volume.is_finite() || *volume < 0.0)
-    {
+    if let Some(index) = volumes.iter().position(|volume| !volume.is_finite() || *volume < 0.0) {
         return Err(UndefinedNorm::BadVolume { index });
     }
     if !volumes.iter().any(|volume| *volume > 0.0) {
@@ -287,15 +258,8 @@ mod tests {
                     absolute_error(norm, &computed, &exact, &volumes).unwrap()
                 })
                 .collect();
-            assert!(
-                ((absolute[0] / absolute[1]).log2() - 2.0).abs() < 1e-9,
-                "{norm}: {absolute:?}"
-            );
-            assert!(
-                (absolute[0] - 0.01).abs() < 1e-12,
-                "{norm}: {}",
-                absolute[0]
-            );
+            assert!(((absolute[0] / absolute[1]).log2() - 2.0).abs() < 1e-9, "{norm}: {absolute:?}");
+            assert!((absolute[0] - 0.01).abs() < 1e-12, "{norm}: {}", absolute[0]);
 
             let relative: Vec<f64> = [1000, 2000]
                 .into_iter()
@@ -304,13 +268,9 @@ mod tests {
                     relative_error(norm, &computed, &exact, &volumes).unwrap()
                 })
                 .collect();
-            assert!(
-                ((relative[0] / relative[1]).log2() - 2.0).abs() < 1e-3,
-                "{norm}: {relative:?}"
-            );
+            assert!(((relative[0] / relative[1]).log2() - 2.0).abs() < 1e-3, "{norm}: {relative:?}");
         }
-        let errors =
-            [0.01, 0.0025].map(|error| relative_error_of_number(2.0 + error, 2.0).unwrap());
+        let errors = [0.01, 0.0025].map(|error| relative_error_of_number(2.0 + error, 2.0).unwrap());
         assert!(((errors[0] / errors[1]).log2() - 2.0).abs() < 1e-9);
     }
 
@@ -335,22 +295,10 @@ mod tests {
         assert_eq!(undefined(&[], &[], &[]), UndefinedNorm::Empty);
         assert_eq!(undefined(&[1.0], &[0.0], &[1.0]), UndefinedNorm::ZeroExact);
         assert_eq!(undefined(&[1.0], &[1.0], &[0.0]), UndefinedNorm::NoVolume);
-        assert_eq!(
-            undefined(&[1.0], &[1.0], &[-1.0]),
-            UndefinedNorm::BadVolume { index: 0 }
-        );
-        assert_eq!(
-            undefined(&[1.0], &[1.0], &[f64::NAN]),
-            UndefinedNorm::BadVolume { index: 0 }
-        );
-        assert_eq!(
-            undefined(&[f64::MAX], &[-f64::MAX], &[1.0]),
-            UndefinedNorm::Overflow
-        );
-        assert!(matches!(
-            undefined(&[1.0], &[1.0, 2.0], &[1.0]),
-            UndefinedNorm::LengthMismatch { .. }
-        ));
+        assert_eq!(undefined(&[1.0], &[1.0], &[-1.0]), UndefinedNorm::BadVolume { index: 0 });
+        assert_eq!(undefined(&[1.0], &[1.0], &[f64::NAN]), UndefinedNorm::BadVolume { index: 0 });
+        assert_eq!(undefined(&[f64::MAX], &[-f64::MAX], &[1.0]), UndefinedNorm::Overflow);
+        assert!(matches!(undefined(&[1.0], &[1.0, 2.0], &[1.0]), UndefinedNorm::LengthMismatch { .. }));
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert!(matches!(
                 undefined(&[1.0, bad], &[1.0; 2], &[1.0; 2]),
@@ -368,12 +316,7 @@ mod tests {
     #[test]
     fn very_small_and_very_large_fields_keep_their_error() {
         for scale in [1e-300, 1.0, 1e300] {
-            let error = relative_error(
-                Norm::L2,
-                &[1.1 * scale, 1.1 * scale],
-                &[scale; 2],
-                &[1.0; 2],
-            );
+            let error = relative_error(Norm::L2, &[1.1 * scale, 1.1 * scale], &[scale; 2], &[1.0; 2]);
             assert!((error.unwrap() - 0.1).abs() < 1e-12);
         }
     }
@@ -383,11 +326,6 @@ mod tests {
         for norm in Norm::ALL {
             assert_eq!(norm.name().parse::<Norm>(), Ok(norm));
         }
-        assert!(
-            "L2".parse::<Norm>()
-                .unwrap_err()
-                .to_string()
-                .contains("l1, l2, linf, relative")
-        );
+        assert!("L2".parse::<Norm>().unwrap_err().to_string().contains("l1, l2, linf, relative"));
     }
 }

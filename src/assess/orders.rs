@@ -71,11 +71,7 @@ fn pair_order(coarse: &Level, fine: &Level) -> Result<f64, Undefined> {
 /// of logarithms serves where it leaves the range of a double.
 pub(super) fn log_ratio(a: f64, b: f64) -> f64 {
     let quotient = a / b;
-    if quotient.is_normal() {
-        quotient.ln()
-    } else {
-        a.ln() - b.ln()
-    }
+    if quotient.is_normal() { quotient.ln() } else { a.ln() - b.ln() }
 }
 
 /// Least-squares slope of `ln e` on `ln h` over all levels, with its Student-t 95 % interval.
@@ -89,26 +85,17 @@ pub fn slope(series: &ErrorSeries) -> Result<SlopeFit, Undefined> {
 pub(super) fn slope_of(points: &[(f64, f64)]) -> Result<SlopeFit, Undefined> {
     let count = points.len();
     let [first, _, ..] = points else {
-        return Err(Undefined::TooFewLevels {
-            levels: count,
-            needed: 2,
-        });
+        return Err(Undefined::TooFewLevels { levels: count, needed: 2 });
     };
     let logs = || {
-        let log =
-            |&(size, error): &(f64, f64)| (log_ratio(size, first.0), log_ratio(error, first.1));
+        let log = |&(size, error): &(f64, f64)| (log_ratio(size, first.0), log_ratio(error, first.1));
         points.iter().map(log)
     };
     let mean_x = logs().map(|(x, _)| x).sum::<f64>() / count as f64;
     let mean_y = logs().map(|(_, y)| y).sum::<f64>() / count as f64;
     let spread: f64 = logs().map(|(x, _)| (x - mean_x).powi(2)).sum();
-    let order = logs()
-        .map(|(x, y)| (x - mean_x) * (y - mean_y))
-        .sum::<f64>()
-        / spread;
-    let residual: f64 = logs()
-        .map(|(x, y)| (y - mean_y - order * (x - mean_x)).powi(2))
-        .sum();
+    let order = logs().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum::<f64>() / spread;
+    let residual: f64 = logs().map(|(x, y)| (y - mean_y - order * (x - mean_x)).powi(2)).sum();
     let half_width = if count > 2 {
         let freedom = (count - 2) as f64;
         student_975(freedom).map(|t| t * (residual / freedom / spread).sqrt())
@@ -116,19 +103,12 @@ pub(super) fn slope_of(points: &[(f64, f64)]) -> Result<SlopeFit, Undefined> {
         None
     };
     let coefficient = (mean_y - order * (mean_x + first.0.ln()) + first.1.ln()).exp();
-    Ok(SlopeFit {
-        order,
-        coefficient,
-        half_width,
-        levels: count,
-    })
+    Ok(SlopeFit { order, coefficient, half_width, levels: count })
 }
 
 /// 97.5 % quantile of Student's t for this number of degrees of freedom.
 fn student_975(freedom: f64) -> Option<f64> {
-    StudentsT::new(0.0, 1.0, freedom)
-        .ok()
-        .map(|student| student.inverse_cdf(0.975))
+    StudentsT::new(0.0, 1.0, freedom).ok().map(|student| student.inverse_cdf(0.975))
 }
 
 /// The order on the finest [`WINDOW`] levels of a series.
@@ -139,20 +119,12 @@ pub fn finest_order(series: &ErrorSeries) -> Result<FinestOrder, Undefined> {
     series.check_sizes()?;
     let levels = series.levels();
     let Some([a, b, c]) = levels.last_chunk::<WINDOW>() else {
-        return Err(Undefined::TooFewLevels {
-            levels: levels.len(),
-            needed: WINDOW,
-        });
+        return Err(Undefined::TooFewLevels { levels: levels.len(), needed: WINDOW });
     };
     let (coarse_pair, fine_pair) = (pair_order(a, b)?, pair_order(b, c)?);
     let window = ErrorSeries::new(vec![*a, *b, *c]);
     let order = slope(&window)?.order;
-    Ok(FinestOrder {
-        order,
-        coarse_pair,
-        fine_pair,
-        sizes: [a.size, b.size, c.size],
-    })
+    Ok(FinestOrder { order, coarse_pair, fine_pair, sizes: [a.size, b.size, c.size] })
 }
 
 #[cfg(test)]
@@ -166,10 +138,7 @@ mod tests {
     }
 
     fn all_orders(series: &ErrorSeries) -> Vec<f64> {
-        let mut orders: Vec<f64> = pair_orders(series)
-            .into_iter()
-            .map(|pair| pair.order.unwrap())
-            .collect();
+        let mut orders: Vec<f64> = pair_orders(series).into_iter().map(|pair| pair.order.unwrap()).collect();
         orders.push(slope(series).unwrap().order);
         orders.push(finest_order(series).unwrap().order);
         orders
@@ -180,10 +149,7 @@ mod tests {
         let fit = slope(&halvings(|h| h * h + 8.0 * h.powi(3))).unwrap();
         // Computed apart: 2.254 ± 0.119 shuts out the true order, 2.
         assert!((fit.order - 2.254_128).abs() < 1e-6, "{fit:?}");
-        assert!(
-            (fit.half_width.unwrap() - 0.119_408).abs() < 1e-5,
-            "{fit:?}"
-        );
+        assert!((fit.half_width.unwrap() - 0.119_408).abs() < 1e-5, "{fit:?}");
         let finest = finest_order(&halvings(|h| h * h + 8.0 * h.powi(3))).unwrap();
         assert!((finest.order - 2.096).abs() < 1e-3, "{finest:?}");
     }
@@ -209,13 +175,7 @@ mod tests {
     #[test]
     fn a_window_that_cannot_be_used_is_named() {
         let two = ErrorSeries::of(&[(0.2, 1.0), (0.1, 0.5)]);
-        assert_eq!(
-            finest_order(&two),
-            Err(Undefined::TooFewLevels {
-                levels: 2,
-                needed: 3
-            })
-        );
+        assert_eq!(finest_order(&two), Err(Undefined::TooFewLevels { levels: 2, needed: 3 }));
         let zero = ErrorSeries::of(&[(0.4, 1.0), (0.2, 0.5), (0.1, 0.0)]);
         assert_eq!(finest_order(&zero), Err(Undefined::Vanishing { size: 0.1 }));
         assert!(slope(&zero).is_err());

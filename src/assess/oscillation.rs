@@ -75,9 +75,7 @@ pub fn oscillation(
         return Err(UndefinedOscillation::LengthMismatch { computed, exact });
     }
     if computed.len() < 3 {
-        return Err(UndefinedOscillation::TooFewSamples {
-            samples: computed.len(),
-        });
+        return Err(UndefinedOscillation::TooFewSamples { samples: computed.len() });
     }
     if !samples_per_cell.is_finite() || samples_per_cell <= 0.0 {
         return Err(UndefinedOscillation::BadSamplesPerCell);
@@ -90,18 +88,9 @@ pub fn oscillation(
         return Err(UndefinedOscillation::ZeroExact);
     }
     let (variation, exact_variation) = (total_variation(computed), total_variation(exact));
-    let error: Vec<f64> = computed
-        .iter()
-        .zip(exact)
-        .map(|(x, exact)| (x - exact) / peak)
-        .collect();
+    let error: Vec<f64> = computed.iter().zip(exact).map(|(x, exact)| (x - exact) / peak).collect();
     // Sums of finite values can overflow.
-    let sums = [
-        variation,
-        exact_variation,
-        total_variation(&error),
-        error.iter().sum(),
-    ];
+    let sums = [variation, exact_variation, total_variation(&error), error.iter().sum()];
     if sums.iter().any(|value: &f64| !value.is_finite()) {
         return Err(UndefinedOscillation::NotFinite);
     }
@@ -117,10 +106,7 @@ pub fn oscillation(
 
 /// Total variation `Σ |x_{i+1} − x_i|` of a profile, in its unit.
 pub fn total_variation(profile: &[f64]) -> f64 {
-    profile
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]).abs())
-        .sum()
+    profile.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
 }
 
 /// Sum of the computed profile's net changes between the turning points of the exact one.
@@ -128,10 +114,7 @@ fn net_changes(computed: &[f64], exact: &[f64]) -> f64 {
     let mut stations = vec![0];
     stations.extend(turning_points(exact));
     stations.push(computed.len() - 1);
-    stations
-        .windows(2)
-        .map(|ends| (computed[ends[1]] - computed[ends[0]]).abs())
-        .sum()
+    stations.windows(2).map(|ends| (computed[ends[1]] - computed[ends[0]]).abs()).sum()
 }
 
 /// Interior extremes of a profile; a turn counts once it has gone back by more than round-off.
@@ -204,9 +187,7 @@ mod tests {
     use super::*;
 
     fn decay(count: usize) -> Vec<f64> {
-        (0..count)
-            .map(|index| (PI / 2.0 * (index as f64 + 0.5) / count as f64).sin())
-            .collect()
+        (0..count).map(|index| (PI / 2.0 * (index as f64 + 0.5) / count as f64).sin()).collect()
     }
 
     fn sign(index: usize) -> f64 {
@@ -223,46 +204,26 @@ mod tests {
         assert!(measured.short_wave_share.unwrap() < 0.01, "{measured:?}");
 
         let same = oscillation(&exact, &exact, 2.0).unwrap();
-        assert_eq!(
-            (same.variation_excess, same.reversal),
-            (Some(0.0), Some(0.0))
-        );
+        assert_eq!((same.variation_excess, same.reversal), (Some(0.0), Some(0.0)));
         assert_eq!((same.excess_over_peak, same.short_wave_share), (0.0, None));
     }
 
     #[test]
     fn a_checkerboard_by_cells_is_all_short_wave() {
         let exact = decay(40);
-        let wavy: Vec<f64> = exact
-            .iter()
-            .enumerate()
-            .map(|(i, x)| x + 0.1 * sign(i / 2))
-            .collect();
+        let wavy: Vec<f64> = exact.iter().enumerate().map(|(i, x)| x + 0.1 * sign(i / 2)).collect();
         let measured = oscillation(&wavy, &exact, 2.0).unwrap();
         assert!(measured.short_wave_share.unwrap() > 0.95, "{measured:?}");
         // 19 jumps of 0.2 between 20 cells, against a profile that rises by about 1.
-        assert!(
-            (measured.excess_over_peak - 3.8).abs() < 0.7,
-            "{measured:?}"
-        );
+        assert!((measured.excess_over_peak - 3.8).abs() < 0.7, "{measured:?}");
         assert!(measured.reversal.unwrap() > 2.0 && measured.variation_excess.unwrap() > 2.0);
     }
 
     #[test]
     fn a_saw_inside_the_cells_is_short_wave_too() {
         let exact = decay(40);
-        let saw: Vec<f64> = exact
-            .iter()
-            .enumerate()
-            .map(|(i, x)| x + 0.02 * sign(i))
-            .collect();
-        assert!(
-            oscillation(&saw, &exact, 2.0)
-                .unwrap()
-                .short_wave_share
-                .unwrap()
-                > 0.98
-        );
+        let saw: Vec<f64> = exact.iter().enumerate().map(|(i, x)| x + 0.02 * sign(i)).collect();
+        assert!(oscillation(&saw, &exact, 2.0).unwrap().short_wave_share.unwrap() > 0.98);
     }
 
     #[test]
@@ -272,10 +233,7 @@ mod tests {
             let wave: Vec<f64> = (0..count)
                 .map(|i| 1.0 + (PI * mode as f64 * (i as f64 + 0.5) / count as f64).cos())
                 .collect();
-            let share = oscillation(&wave, &exact, 1.0)
-                .unwrap()
-                .short_wave_share
-                .unwrap();
+            let share = oscillation(&wave, &exact, 1.0).unwrap().short_wave_share.unwrap();
             let wanted = if mode >= 16 { 1.0 } else { 0.0 };
             assert!((share - wanted).abs() < 1e-12, "mode {mode}: {share}");
         }
@@ -284,19 +242,9 @@ mod tests {
     #[test]
     fn round_off_in_a_flat_stretch_does_not_hide_a_wiggle() {
         // Early in time the exact profile is 1 to round-off away from the drained end.
-        let exact: Vec<f64> = (0..20)
-            .map(|i| if i == 0 { 0.2 } else { 1.0 + 1e-16 * sign(i) })
-            .collect();
-        let computed: Vec<f64> = (0..20)
-            .map(|i| if i == 0 { 0.2 } else { 1.0 + 0.1 * sign(i) })
-            .collect();
-        assert!(
-            oscillation(&computed, &exact, 2.0)
-                .unwrap()
-                .reversal
-                .unwrap()
-                > 1.0
-        );
+        let exact: Vec<f64> = (0..20).map(|i| if i == 0 { 0.2 } else { 1.0 + 1e-16 * sign(i) }).collect();
+        let computed: Vec<f64> = (0..20).map(|i| if i == 0 { 0.2 } else { 1.0 + 0.1 * sign(i) }).collect();
+        assert!(oscillation(&computed, &exact, 2.0).unwrap().reversal.unwrap() > 1.0);
     }
 
     #[test]
@@ -304,13 +252,7 @@ mod tests {
         let exact: Vec<f64> = (0..60).map(|i| (f64::from(i) * PI / 20.0).cos()).collect();
         assert_eq!(turning_points(&exact), vec![20, 40]);
         let computed: Vec<f64> = exact.iter().map(|value| 1.2 * value).collect();
-        assert!(
-            oscillation(&computed, &exact, 1.0)
-                .unwrap()
-                .reversal
-                .unwrap()
-                < 1e-12
-        );
+        assert!(oscillation(&computed, &exact, 1.0).unwrap().reversal.unwrap() < 1e-12);
     }
 
     #[test]
@@ -324,21 +266,11 @@ mod tests {
     #[test]
     fn what_has_no_value_is_named() {
         use UndefinedOscillation as Undefined;
-        let of = |computed: &[f64], exact: &[f64], samples| {
-            oscillation(computed, exact, samples).unwrap_err()
-        };
-        assert_eq!(
-            of(&[1.0; 2], &[1.0; 2], 1.0),
-            Undefined::TooFewSamples { samples: 2 }
-        );
+        let of =
+            |computed: &[f64], exact: &[f64], samples| oscillation(computed, exact, samples).unwrap_err();
+        assert_eq!(of(&[1.0; 2], &[1.0; 2], 1.0), Undefined::TooFewSamples { samples: 2 });
         assert_eq!(of(&[1.0; 3], &[0.0; 3], 1.0), Undefined::ZeroExact);
-        assert_eq!(
-            of(&[1.0; 3], &[1.0; 4], 1.0),
-            Undefined::LengthMismatch {
-                computed: 3,
-                exact: 4
-            }
-        );
+        assert_eq!(of(&[1.0; 3], &[1.0; 4], 1.0), Undefined::LengthMismatch { computed: 3, exact: 4 });
         for bad in [f64::NAN, f64::INFINITY] {
             assert_eq!(of(&[1.0, bad, 1.0], &[1.0; 3], 1.0), Undefined::NotFinite);
             assert_eq!(of(&[1.0; 3], &[1.0, bad, 1.0], 1.0), Undefined::NotFinite);

@@ -81,23 +81,13 @@ pub fn against_golden(
     error_tolerance: f64,
 ) -> ParetoChange {
     let tolerance = |value: f64| value.is_finite() && value >= 0.0;
-    if !point.is_usable()
-        || !golden.is_usable()
-        || !tolerance(cost_tolerance)
-        || !tolerance(error_tolerance)
+    if !point.is_usable() || !golden.is_usable() || !tolerance(cost_tolerance) || !tolerance(error_tolerance)
     {
         return ParetoChange::NotComparable;
     }
-    let pairs = [
-        (point.cost, golden.cost, cost_tolerance),
-        (point.error, golden.error, error_tolerance),
-    ];
-    let worse = pairs
-        .iter()
-        .any(|(new, old, tolerance)| *new > old * (1.0 + tolerance));
-    let better = pairs
-        .iter()
-        .any(|(new, old, tolerance)| *new * (1.0 + tolerance) < *old);
+    let pairs = [(point.cost, golden.cost, cost_tolerance), (point.error, golden.error, error_tolerance)];
+    let worse = pairs.iter().any(|(new, old, tolerance)| *new > old * (1.0 + tolerance));
+    let better = pairs.iter().any(|(new, old, tolerance)| *new * (1.0 + tolerance) < *old);
     match (better, worse) {
         (false, false) => ParetoChange::Same,
         (true, false) => ParetoChange::Better,
@@ -152,33 +142,19 @@ pub fn cost_to_tolerance(levels: &[CostLevel], tolerance: f64) -> Result<CostToT
         return Err(NoCost::BadTolerance);
     }
     let levels = usable(levels, 1)?;
-    let outside = levels
-        .iter()
-        .rposition(|level| level.point.error > tolerance);
+    let outside = levels.iter().rposition(|level| level.point.error > tolerance);
     let Some(outside) = outside else {
-        return Ok(CostToTolerance {
-            cost: levels[0].point.cost,
-            basis: CostBasis::AtMost,
-        });
+        return Ok(CostToTolerance { cost: levels[0].point.cost, basis: CostBasis::AtMost });
     };
     let coarse = levels[outside].point;
     let Some(fine) = levels.get(outside + 1).map(|level| level.point) else {
-        return Err(NoCost::NotReached {
-            error: coarse.error,
-        });
+        return Err(NoCost::NotReached { error: coarse.error });
     };
     // An error of exactly zero has no logarithm: then only the level itself is sure.
     let way = log_ratio(coarse.error, tolerance) / log_ratio(coarse.error, fine.error);
-    let way = if fine.error > 0.0 && way.is_finite() {
-        way
-    } else {
-        1.0
-    };
+    let way = if fine.error > 0.0 && way.is_finite() { way } else { 1.0 };
     let cost = coarse.cost * (way * log_ratio(fine.cost, coarse.cost)).exp();
-    Ok(CostToTolerance {
-        cost,
-        basis: CostBasis::Interpolated,
-    })
+    Ok(CostToTolerance { cost, basis: CostBasis::Interpolated })
 }
 
 /// The method that reaches a tolerance at the least cost, by its place in the list.
@@ -219,10 +195,7 @@ pub fn predict_next(
         return Err(NoCost::NotUsable);
     }
     let window = &levels[levels.len().saturating_sub(WINDOW)..];
-    let costs: Vec<_> = window
-        .iter()
-        .map(|level| (level.size, level.point.cost))
-        .collect();
+    let costs: Vec<_> = window.iter().map(|level| (level.size, level.point.cost)).collect();
     let slope = slope_of(&costs).map_err(|_| NoCost::NotUsable)?;
     let finest = window[window.len() - 1];
     let cost = finest.point.cost * ratio.powf(-slope.order);
@@ -230,10 +203,7 @@ pub fn predict_next(
         classification.class,
         Class::Divergent | Class::Oscillatory | Class::NotEvaluable | Class::Exact
     );
-    let floor = classification
-        .floor
-        .as_ref()
-        .map_or(0.0, |floor| floor.value);
+    let floor = classification.floor.as_ref().map_or(0.0, |floor| floor.value);
     let converging = (finest.point.error - floor).max(0.0);
     let error = match classification.order.filter(|_| settled) {
         Some(order) => Some(floor + converging * ratio.powf(-order)),
@@ -251,21 +221,13 @@ pub fn predict_next(
 /// The levels from coarse to fine, when all are usable and of distinct sizes.
 fn usable(levels: &[CostLevel], least: usize) -> Result<Vec<CostLevel>, NoCost> {
     let size = |level: &CostLevel| level.size.is_normal() && level.size > 0.0;
-    if levels.len() < least
-        || !levels
-            .iter()
-            .all(|level| size(level) && level.point.is_usable())
-    {
+    if levels.len() < least || !levels.iter().all(|level| size(level) && level.point.is_usable()) {
         return Err(NoCost::NotUsable);
     }
     let mut levels = levels.to_vec();
     levels.sort_by(|a, b| b.size.total_cmp(&a.size));
     let distinct = levels.windows(2).all(|pair| pair[0].size > pair[1].size);
-    if distinct {
-        Ok(levels)
-    } else {
-        Err(NoCost::NotUsable)
-    }
+    if distinct { Ok(levels) } else { Err(NoCost::NotUsable) }
 }
 
 #[cfg(test)]
@@ -282,12 +244,7 @@ mod tests {
 
     fn levels(cost: fn(f64) -> f64, error: fn(f64) -> f64) -> Vec<CostLevel> {
         let sizes = [0.2, 0.1, 0.05, 0.025, 0.0125];
-        sizes
-            .map(|size| CostLevel {
-                size,
-                point: point(cost(size), error(size)),
-            })
-            .to_vec()
+        sizes.map(|size| CostLevel { size, point: point(cost(size), error(size)) }).to_vec()
     }
 
     #[test]
@@ -301,10 +258,7 @@ mod tests {
             point(4.0, 0.1),
             point(4.0, 0.1),
         ];
-        assert_eq!(
-            front(&points),
-            [true, true, false, false, false, true, true]
-        );
+        assert_eq!(front(&points), [true, true, false, false, false, true, true]);
         assert!(!point(1.0, 1.0).dominates(&point(1.0, 1.0)));
         assert!(!point(f64::NAN, 0.0).dominates(&point(1.0, 1.0)));
     }
@@ -335,10 +289,7 @@ mod tests {
         // h² = 5e-4 at cost 2000; cost goes as 1/h².
         let found = cost_to_tolerance(&second, 5e-4).unwrap();
         assert!((found.cost - 2000.0).abs() < 1e-6 && found.basis == CostBasis::Interpolated);
-        assert_eq!(
-            cost_to_tolerance(&second, 0.1).unwrap().basis,
-            CostBasis::AtMost
-        );
+        assert_eq!(cost_to_tolerance(&second, 0.1).unwrap().basis, CostBasis::AtMost);
         let never = cost_to_tolerance(&first, 1e-3);
         assert_eq!(never, Err(NoCost::NotReached { error: 0.0125 }));
         let both = [first, second];
@@ -346,10 +297,7 @@ mod tests {
         assert_eq!(cheapest(&both, 0.15).unwrap().0, 0);
         assert_eq!(cheapest(&both, 1e-3).unwrap().0, 1);
         assert_eq!(cheapest(&both, 1e-9), None);
-        assert_eq!(
-            cost_to_tolerance(&both[0], f64::NAN),
-            Err(NoCost::BadTolerance)
-        );
+        assert_eq!(cost_to_tolerance(&both[0], f64::NAN), Err(NoCost::BadTolerance));
         assert_eq!(cost_to_tolerance(&[], 1.0), Err(NoCost::NotUsable));
     }
 
@@ -365,14 +313,8 @@ mod tests {
     fn the_next_level_is_predicted_with_and_without_a_floor() {
         let series = |error: fn(f64) -> f64| {
             let levels = levels(|h| 3.0 / h.powi(3), error);
-            let pairs: Vec<_> = levels
-                .iter()
-                .map(|level| (level.size, level.point.error))
-                .collect();
-            let context = Context {
-                formal_order: Some(2.0),
-                ..Context::default()
-            };
+            let pairs: Vec<_> = levels.iter().map(|level| (level.size, level.point.error)).collect();
+            let context = Context { formal_order: Some(2.0), ..Context::default() };
             let class = classify(&ErrorSeries::of(&pairs), &context);
             predict_next(&levels, &class, 2.0).unwrap()
         };

@@ -15,15 +15,11 @@ pub(super) fn least(ranges: &[(f64, f64)], value: impl Fn(&[f64]) -> f64) -> Vec
         let places = if from == to { 1 } else { STARTS };
         let place = |k: u32| from + (to - from) * (f64::from(k) + 0.5) / f64::from(places);
         let extend = |start: &Vec<f64>| {
-            (0..places)
-                .map(|k| [start.as_slice(), &[place(k)]].concat())
-                .collect::<Vec<_>>()
+            (0..places).map(|k| [start.as_slice(), &[place(k)]].concat()).collect::<Vec<_>>()
         };
         starts = starts.iter().flat_map(extend).collect();
     }
-    let first = starts
-        .into_iter()
-        .min_by(|a, b| value(a).total_cmp(&value(b)));
+    let first = starts.into_iter().min_by(|a, b| value(a).total_cmp(&value(b)));
     let mut best = first.unwrap_or_default();
     let mut least = value(&best);
     let mut step = 0.25;
@@ -66,10 +62,7 @@ mod tests {
     fn a_narrow_valley_is_followed_to_its_end() {
         let valley = |x: &[f64]| (x[0] + x[1] - 3.0).powi(2) + 1e-3 * (x[0] - x[1] - 1.0).powi(2);
         let found = least(&[(0.0, 5.0), (0.0, 5.0)], valley);
-        assert!(
-            (found[0] - 2.0).abs() < 1e-5 && (found[1] - 1.0).abs() < 1e-5,
-            "{found:?}"
-        );
+        assert!((found[0] - 2.0).abs() < 1e-5 && (found[1] - 1.0).abs() < 1e-5, "{found:?}");
     }
 
     #[test]

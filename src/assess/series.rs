@@ -88,10 +88,7 @@ impl ErrorSeries {
 
     /// A series without gaps from (size, error) pairs.
     pub fn of(pairs: &[(f64, f64)]) -> Self {
-        let level = |&(size, error): &(f64, f64)| Level {
-            size,
-            error: Some(error),
-        };
+        let level = |&(size, error): &(f64, f64)| Level { size, error: Some(error) };
         Self::new(pairs.iter().map(level).collect())
     }
 
@@ -102,9 +99,7 @@ impl ErrorSeries {
 
     /// The level of this size, within a relative 1e-9.
     pub fn at(&self, size: f64) -> Option<&Level> {
-        self.levels
-            .iter()
-            .find(|level| (level.size - size).abs() <= 1e-9 * size.abs())
+        self.levels.iter().find(|level| (level.size - size).abs() <= 1e-9 * size.abs())
     }
 
     /// Sizes and errors from coarse to fine, when all of them can be worked with.
@@ -114,10 +109,7 @@ impl ErrorSeries {
     /// positive normal number.
     pub fn points(&self) -> Result<Vec<(f64, f64)>, Undefined> {
         self.check_sizes()?;
-        self.levels
-            .iter()
-            .map(|level| Ok((level.size, level.positive_error()?)))
-            .collect()
+        self.levels.iter().map(|level| Ok((level.size, level.positive_error()?))).collect()
     }
 
     /// Sizes that are positive, finite and distinct.
@@ -128,13 +120,8 @@ impl ErrorSeries {
         if let Some(index) = self.levels.iter().position(|level| !is_size(level.size)) {
             return Err(Undefined::BadSize { number: index + 1 });
         }
-        let same = self
-            .levels
-            .windows(2)
-            .find(|pair| pair[0].size <= pair[1].size * (1.0 + 1e-9));
-        same.map_or(Ok(()), |pair| {
-            Err(Undefined::SameSize { size: pair[1].size })
-        })
+        let same = self.levels.windows(2).find(|pair| pair[0].size <= pair[1].size * (1.0 + 1e-9));
+        same.map_or(Ok(()), |pair| Err(Undefined::SameSize { size: pair[1].size }))
     }
 }
 
@@ -184,10 +171,7 @@ mod reading {
     }
 
     #[expect(clippy::ref_option, reason = "the signature that serde calls")]
-    pub(super) fn serialize<S: Serializer>(
-        error: &Option<f64>,
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<S: Serializer>(error: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
         match error {
             None => serializer.serialize_none(),
             Some(value) if value.is_finite() => serializer.serialize_f64(*value),
@@ -195,9 +179,7 @@ mod reading {
         }
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
-        deserializer: D,
-    ) -> Result<Option<f64>, D::Error> {
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
         Ok(match Option::<Written>::deserialize(deserializer)? {
             None => None,
             Some(Written::Number(value)) => Some(value),
@@ -213,10 +195,7 @@ mod tests {
     #[test]
     fn levels_are_put_from_coarse_to_fine() {
         let series = ErrorSeries::of(&[(0.1, 1.0), (0.4, 3.0), (0.2, 2.0)]);
-        assert_eq!(
-            series.points().unwrap(),
-            vec![(0.4, 3.0), (0.2, 2.0), (0.1, 1.0)]
-        );
+        assert_eq!(series.points().unwrap(), vec![(0.4, 3.0), (0.2, 2.0), (0.1, 1.0)]);
         assert_eq!(series.at(0.2).unwrap().error, Some(2.0));
         assert_eq!(series.at(0.3), None);
     }
@@ -225,10 +204,7 @@ mod tests {
     fn the_first_obstacle_is_named() {
         let points = |error| ErrorSeries::of(&[(1.0, 1.0), (0.5, error)]).points();
         assert_eq!(points(f64::NAN), Err(Undefined::NotFinite { size: 0.5 }));
-        assert_eq!(
-            points(f64::INFINITY),
-            Err(Undefined::NotFinite { size: 0.5 })
-        );
+        assert_eq!(points(f64::INFINITY), Err(Undefined::NotFinite { size: 0.5 }));
         assert_eq!(points(-1.0), Err(Undefined::Negative { size: 0.5 }));
         assert_eq!(points(0.0), Err(Undefined::Vanishing { size: 0.5 }));
         assert_eq!(points(1e-310), Err(Undefined::Vanishing { size: 0.5 }));
@@ -238,37 +214,19 @@ mod tests {
         }
         let same = ErrorSeries::of(&[(0.5, 1.0), (0.5, 2.0)]);
         assert_eq!(same.points(), Err(Undefined::SameSize { size: 0.5 }));
-        let gap = ErrorSeries::new(vec![Level {
-            size: 1.0,
-            error: None,
-        }]);
+        let gap = ErrorSeries::new(vec![Level { size: 1.0, error: None }]);
         assert_eq!(gap.points(), Err(Undefined::Missing { size: 1.0 }));
     }
 
     #[test]
     fn a_record_tells_a_missing_error_from_one_that_is_not_finite() {
         let level = |error| Level { size: 1.0, error };
-        let errors = [
-            None,
-            Some(f64::INFINITY),
-            Some(f64::NEG_INFINITY),
-            Some(0.1),
-        ];
+        let errors = [None, Some(f64::INFINITY), Some(f64::NEG_INFINITY), Some(0.1)];
         let series = ErrorSeries::new(errors.map(level).to_vec());
         let json = serde_json::to_string(&series).unwrap();
-        assert_eq!(
-            serde_json::from_str::<ErrorSeries>(&json).unwrap(),
-            series,
-            "{json}"
-        );
+        assert_eq!(serde_json::from_str::<ErrorSeries>(&json).unwrap(), series, "{json}");
         let text = serde_json::to_string(&level(Some(f64::NAN))).unwrap();
         assert_eq!(text, r#"{"size":1.0,"error":"NaN"}"#);
-        assert!(
-            serde_json::from_str::<Level>(&text)
-                .unwrap()
-                .error
-                .unwrap()
-                .is_nan()
-        );
+        assert!(serde_json::from_str::<Level>(&text).unwrap().error.unwrap().is_nan());
     }
 }

@@ -88,10 +88,7 @@ pub fn median(samples: &[f64]) -> Result<f64, UndefinedStatistic> {
 pub fn spread(samples: &[f64]) -> Result<Spread, UndefinedStatistic> {
     let ordered = sorted(samples)?;
     let median = middle(&ordered);
-    let deviations: Vec<_> = ordered
-        .iter()
-        .map(|sample| (sample - median).abs())
-        .collect();
+    let deviations: Vec<_> = ordered.iter().map(|sample| (sample - median).abs()).collect();
     Ok(Spread {
         count: ordered.len(),
         median,
@@ -107,10 +104,7 @@ pub fn spread(samples: &[f64]) -> Result<Spread, UndefinedStatistic> {
 /// [`UndefinedStatistic`] when the lists cannot be paired or hold what is no positive time.
 pub fn paired_ratio(first: &[f64], second: &[f64]) -> Result<PairedRatio, UndefinedStatistic> {
     if first.len() != second.len() {
-        return Err(UndefinedStatistic::Unpaired {
-            first: first.len(),
-            second: second.len(),
-        });
+        return Err(UndefinedStatistic::Unpaired { first: first.len(), second: second.len() });
     }
     for times in [first, second] {
         if let Some(index) = sorted(times).and(Ok(times.iter().position(|time| *time <= 0.0)))? {
@@ -119,21 +113,15 @@ pub fn paired_ratio(first: &[f64], second: &[f64]) -> Result<PairedRatio, Undefi
     }
     let ratios: Vec<_> = first.iter().zip(second).map(|(a, b)| a / b).collect();
     let ordered = sorted(&ratios)?;
-    let interval =
-        median_rank(ordered.len()).map(|rank| (ordered[rank - 1], ordered[ordered.len() - rank]));
-    Ok(PairedRatio {
-        ratios: spread(&ratios)?,
-        interval,
-    })
+    let interval = median_rank(ordered.len()).map(|rank| (ordered[rank - 1], ordered[ordered.len() - rank]));
+    Ok(PairedRatio { ratios: spread(&ratios)?, interval })
 }
 
 /// How far from 1 the ratio of the same code against itself may lie: the far end of the median's
 /// interval, or for fewer than six rounds the furthest ratio seen.
 pub fn noise_floor(against_itself: &PairedRatio) -> f64 {
     let ratios = against_itself.ratios;
-    let (low, high) = against_itself
-        .interval
-        .unwrap_or((ratios.minimum, ratios.maximum));
+    let (low, high) = against_itself.interval.unwrap_or((ratios.minimum, ratios.maximum));
     (1.0 - low).abs().max((high - 1.0).abs())
 }
 
@@ -142,9 +130,7 @@ pub fn noise_floor(against_itself: &PairedRatio) -> f64 {
 pub fn compare(ratio: &PairedRatio, noise_floor: f64) -> Timing {
     match ratio.interval {
         Some((low, _)) if low > 1.0 && ratio.ratios.median > 1.0 + noise_floor => Timing::Slower,
-        Some((_, high)) if high < 1.0 && ratio.ratios.median < 1.0 / (1.0 + noise_floor) => {
-            Timing::Faster
-        }
+        Some((_, high)) if high < 1.0 && ratio.ratios.median < 1.0 / (1.0 + noise_floor) => Timing::Faster,
         _ => Timing::Same,
     }
 }
@@ -165,11 +151,7 @@ fn median_rank(count: usize) -> Option<usize> {
 
 fn middle(ordered: &[f64]) -> f64 {
     let half = ordered.len() / 2;
-    if ordered.len() % 2 == 1 {
-        ordered[half]
-    } else {
-        f64::midpoint(ordered[half - 1], ordered[half])
-    }
+    if ordered.len() % 2 == 1 { ordered[half] } else { f64::midpoint(ordered[half - 1], ordered[half]) }
 }
 
 /// The samples in order; they are at least one, and finite.
@@ -194,26 +176,14 @@ mod tests {
         assert_eq!(median(&[3.0, 1.0, 2.0]), Ok(2.0));
         assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), Ok(2.5));
         let found = spread(&[1.0, 2.0, 3.0, 4.0, 100.0]).unwrap();
-        assert_eq!(
-            (found.median, found.minimum, found.maximum, found.count),
-            (3.0, 1.0, 100.0, 5)
-        );
+        assert_eq!((found.median, found.minimum, found.maximum, found.count), (3.0, 1.0, 100.0, 5));
         assert!((found.deviation - 1.4826).abs() < 1e-12);
     }
 
     #[test]
     fn ranks_are_those_of_the_table() {
         // Ranks of the 95 % interval of the median, from any table of the sign test.
-        for (count, rank) in [
-            (6, 1),
-            (8, 1),
-            (9, 2),
-            (11, 2),
-            (12, 3),
-            (15, 4),
-            (20, 6),
-            (50, 18),
-        ] {
+        for (count, rank) in [(6, 1), (8, 1), (9, 2), (11, 2), (12, 3), (15, 4), (20, 6), (50, 18)] {
             assert_eq!(median_rank(count), Some(rank), "{count}");
         }
         assert_eq!(median_rank(5), None);
@@ -224,12 +194,8 @@ mod tests {
     fn rounds(factor: f64) -> (Vec<f64>, Vec<f64>) {
         let drift = |round: i32| 1.0 + 0.5 * (f64::from(round) * 0.4).sin();
         let jitter = |round: i32| 1.0 + 0.02 * (f64::from(round) * 7.3).sin();
-        let first = (0..20)
-            .map(|round| factor * drift(round) * jitter(round))
-            .collect();
-        let second = (0..20)
-            .map(|round| drift(round) * jitter(round + 100))
-            .collect();
+        let first = (0..20).map(|round| factor * drift(round) * jitter(round)).collect();
+        let second = (0..20).map(|round| drift(round) * jitter(round + 100)).collect();
         (first, second)
     }
 
@@ -253,25 +219,10 @@ mod tests {
     fn what_has_no_value_is_named() {
         use UndefinedStatistic as Undefined;
         assert_eq!(median(&[]), Err(Undefined::Empty));
-        assert_eq!(
-            spread(&[1.0, f64::NAN]),
-            Err(Undefined::NotFinite { number: 2 })
-        );
-        assert_eq!(
-            paired_ratio(&[1.0], &[]),
-            Err(Undefined::Unpaired {
-                first: 1,
-                second: 0
-            })
-        );
+        assert_eq!(spread(&[1.0, f64::NAN]), Err(Undefined::NotFinite { number: 2 }));
+        assert_eq!(paired_ratio(&[1.0], &[]), Err(Undefined::Unpaired { first: 1, second: 0 }));
         assert_eq!(paired_ratio(&[], &[]), Err(Undefined::Empty));
-        assert_eq!(
-            paired_ratio(&[1.0], &[0.0]),
-            Err(Undefined::NotPositive { number: 1 })
-        );
-        assert_eq!(
-            paired_ratio(&[f64::NAN], &[1.0]),
-            Err(Undefined::NotFinite { number: 1 })
-        );
+        assert_eq!(paired_ratio(&[1.0], &[0.0]), Err(Undefined::NotPositive { number: 1 }));
+        assert_eq!(paired_ratio(&[f64::NAN], &[1.0]), Err(Undefined::NotFinite { number: 1 }));
     }
 }

@@ -22,10 +22,16 @@ pub struct StudyCheck {
 
 impl StudyCheck {
     /// Judges records and compares them.
-    pub fn new(study: &Study, records: &[Record], tier: Tier, golden: Result<GoldenFile, GoldenError>) -> Self {
+    pub fn new(
+        study: &Study,
+        records: &[Record],
+        tier: Tier,
+        golden: Result<GoldenFile, GoldenError>,
+    ) -> Self {
         let values = values_of(records);
         let golden = golden.map(|golden| compare(&golden, &values));
-        let changed = golden.as_ref().map_or(values.len(), |all| all.iter().filter(|one| one.found.is_some()).count());
+        let changed =
+            golden.as_ref().map_or(values.len(), |all| all.iter().filter(|one| one.found.is_some()).count());
         Self {
             study: study.name.clone(),
             failed_cases: records.iter().filter_map(failure_sentence).collect(),
@@ -46,7 +52,13 @@ fn failure_sentence(record: &Record) -> Option<(String, String)> {
         Status::Ok => None,
         Status::Failed(failure) => Some((
             record.case.label(),
-            format!("{} at step {}, t = {:.4e} s: {}", failure.kind.name(), failure.step, failure.time, failure.reason),
+            format!(
+                "{} at step {}, t = {:.4e} s: {}",
+                failure.kind.name(),
+                failure.step,
+                failure.time,
+                failure.reason
+            ),
         )),
     }
 }

@@ -99,10 +99,11 @@ impl<'a> Path<'a> {
     /// are no levels of it; a level that should have an error and has none stays, empty.
     pub fn series(&self, measure: &Measure) -> ErrorSeries {
         let asked = |record: &&&Record| record.case.time_factors.contains(&measure.time_factor);
-        let levels = self.records.iter().filter(asked).map(|record| Level {
-            size: level_size(record, self.axis),
-            error: error_of(record, measure),
-        });
+        let levels = self
+            .records
+            .iter()
+            .filter(asked)
+            .map(|record| Level { size: level_size(record, self.axis), error: error_of(record, measure) });
         ErrorSeries::new(levels.collect())
     }
 
@@ -134,18 +135,23 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// What the runs of the path share, in words.
-    pub fn label(&self) -> String {
+    /// What the runs of the path share, in words, the method first.
+    pub fn parts(&self) -> Vec<String> {
         let case = &self.records[0].case;
-        let mut label = case.method.to_string();
+        let mut parts = vec![case.method.to_string()];
         if self.axis != Axis::Cells {
-            label += &format!(", {} cells", case.cells);
+            parts.push(format!("{} cells", case.cells));
         }
         if self.axis != Axis::PointsPerCell {
-            label += &format!(", {} points a cell", case.points_per_cell);
+            parts.push(format!("{} points a cell", case.points_per_cell));
         }
-        let variant = case.variant();
-        if variant.is_empty() { label } else { format!("{label}, {variant}") }
+        parts.extend(Some(case.variant()).filter(|variant| !variant.is_empty()));
+        parts
+    }
+
+    /// The parts in one line.
+    pub fn label(&self) -> String {
+        self.parts().join(", ")
     }
 }
 
@@ -266,7 +272,8 @@ fn selects(expectation: &Expectation, case: &Case) -> bool {
     }
     fits(expectation.method, case.method)
         && (expectation.axis == Axis::Cells || fits(expectation.cells, case.cells))
-        && (expectation.axis == Axis::PointsPerCell || fits(expectation.points_per_cell, case.points_per_cell))
+        && (expectation.axis == Axis::PointsPerCell
+            || fits(expectation.points_per_cell, case.points_per_cell))
         && fits(expectation.drag, case.settings.drag)
         && fits(expectation.mapping_back, case.settings.mapping_back)
 }

@@ -54,9 +54,7 @@ impl TwoTerms {
     /// Size at which both terms are equal; the lower order governs below it.
     pub fn crossover(&self) -> Option<f64> {
         let both = self.low_coefficient > 0.0 && self.high_coefficient > 0.0;
-        both.then(|| {
-            (self.low_coefficient / self.high_coefficient).powf(1.0 / (self.high - self.low))
-        })
+        both.then(|| (self.low_coefficient / self.high_coefficient).powf(1.0 / (self.high - self.low)))
     }
 }
 
@@ -66,11 +64,7 @@ impl TwoTerms {
 /// # Errors
 /// [`Undefined::TooFewLevels`] when there are not more points than free numbers,
 /// [`Undefined::NotDetermined`] when a coefficient leaves the range of a double.
-pub fn fit_two_terms(
-    points: &[(f64, f64)],
-    low: Exponent,
-    high: Exponent,
-) -> Result<TwoTerms, Undefined> {
+pub fn fit_two_terms(points: &[(f64, f64)], low: Exponent, high: Exponent) -> Result<TwoTerms, Undefined> {
     let free = |exponent| usize::from(matches!(exponent, Exponent::Between(..)));
     let needed = 3 + free(low) + free(high);
     let (levels, [reference, ..]) = (points.len(), points) else {
@@ -79,34 +73,24 @@ pub fn fit_two_terms(
     if levels < needed {
         return Err(Undefined::TooFewLevels { levels, needed });
     }
-    let scaled: Vec<_> = points
-        .iter()
-        .map(|(h, e)| (h / reference.0, e / reference.1))
-        .collect();
+    let scaled: Vec<_> = points.iter().map(|(h, e)| (h / reference.0, e / reference.1)).collect();
     let best_high = |low: f64| {
         let high = match high {
             Exponent::Fixed(high) => Exponent::Fixed(high.max(low + GAP)),
-            Exponent::Between(from, to) => {
-                Exponent::Between(from.max(low + GAP), to.max(low + GAP))
-            }
+            Exponent::Between(from, to) => Exponent::Between(from.max(low + GAP), to.max(low + GAP)),
         };
         minimum(high, |high| project(&scaled, low, high).residual)
     };
     let low = minimum(low, |low| project(&scaled, low, best_high(low)).residual);
     let fit = project(&scaled, low, best_high(low));
-    let unscale =
-        |coefficient: f64, exponent: f64| coefficient * reference.1 / reference.0.powf(exponent);
+    let unscale = |coefficient: f64, exponent: f64| coefficient * reference.1 / reference.0.powf(exponent);
     let fit = TwoTerms {
         low_coefficient: unscale(fit.low_coefficient, fit.low),
         high_coefficient: unscale(fit.high_coefficient, fit.high),
         ..fit
     };
     let numbers = [fit.low_coefficient, fit.high_coefficient, fit.residual];
-    if numbers.iter().all(|value| value.is_finite()) {
-        Ok(fit)
-    } else {
-        Err(Undefined::NotDetermined)
-    }
+    if numbers.iter().all(|value| value.is_finite()) { Ok(fit) } else { Err(Undefined::NotDetermined) }
 }
 
 /// Closest the two exponents may come: nearer powers look the same over a few levels.
@@ -114,22 +98,13 @@ pub const GAP: f64 = 0.25;
 
 /// The best coefficients for given exponents.
 fn project(points: &[(f64, f64)], low: f64, high: f64) -> TwoTerms {
-    let columns: Vec<_> = points
-        .iter()
-        .map(|(h, e)| (h.powf(low) / e, h.powf(high) / e))
-        .collect();
+    let columns: Vec<_> = points.iter().map(|(h, e)| (h.powf(low) / e, h.powf(high) / e)).collect();
     let residual = |a: f64, b: f64| {
-        let sum: f64 = columns
-            .iter()
-            .map(|(u, v)| (a * u + b * v - 1.0).powi(2))
-            .sum();
+        let sum: f64 = columns.iter().map(|(u, v)| (a * u + b * v - 1.0).powi(2)).sum();
         (sum / columns.len() as f64).sqrt()
     };
     let alone = |pick: fn(&(f64, f64)) -> f64| {
-        let (sum, square) = columns
-            .iter()
-            .map(pick)
-            .fold((0.0, 0.0), |(s, q), x| (s + x, q + x * x));
+        let (sum, square) = columns.iter().map(pick).fold((0.0, 0.0), |(s, q), x| (s + x, q + x * x));
         sum / square
     };
     let candidates = [
@@ -138,22 +113,12 @@ fn project(points: &[(f64, f64)], low: f64, high: f64) -> TwoTerms {
         Some((0.0, alone(|column| column.1))),
     ];
     // Of the corners of the non-negative quadrant, the one with the least residual.
-    let mut best = TwoTerms {
-        low,
-        high,
-        low_coefficient: 0.0,
-        high_coefficient: 0.0,
-        residual: f64::INFINITY,
-    };
+    let mut best =
+        TwoTerms { low, high, low_coefficient: 0.0, high_coefficient: 0.0, residual: f64::INFINITY };
     for (a, b) in candidates.into_iter().flatten() {
         let residual = residual(a, b);
         if residual < best.residual {
-            best = TwoTerms {
-                low_coefficient: a,
-                high_coefficient: b,
-                residual,
-                ..best
-            };
+            best = TwoTerms { low_coefficient: a, high_coefficient: b, residual, ..best };
         }
     }
     best
@@ -179,21 +144,11 @@ pub(super) fn minimum(exponent: Exponent, value: impl Fn(f64) -> f64) -> f64 {
         Exponent::Between(from, to) => (from, to),
     };
     let place = |step: u32| from + (to - from) * f64::from(step) / f64::from(STEPS);
-    let best =
-        (0..=STEPS)
-            .map(|step| (step, value(place(step))))
-            .fold(
-                (0, f64::INFINITY),
-                |best, new| if new.1 < best.1 { new } else { best },
-            );
-    let (mut left, mut right) = (
-        place(best.0.saturating_sub(1)),
-        place((best.0 + 1).min(STEPS)),
-    );
-    let (mut a, mut b) = (
-        right - SHRINK * (right - left),
-        left + SHRINK * (right - left),
-    );
+    let best = (0..=STEPS)
+        .map(|step| (step, value(place(step))))
+        .fold((0, f64::INFINITY), |best, new| if new.1 < best.1 { new } else { best });
+    let (mut left, mut right) = (place(best.0.saturating_sub(1)), place((best.0 + 1).min(STEPS)));
+    let (mut a, mut b) = (right - SHRINK * (right - left), left + SHRINK * (right - left));
     let (mut at_a, mut at_b) = (value(a), value(b));
     while right - left > 1e-15 * right.abs().max(1.0) && a < b {
         if at_a <= at_b {
@@ -208,15 +163,12 @@ pub(super) fn minimum(exponent: Exponent, value: impl Fn(f64) -> f64) -> f64 {
     }
     let middle = f64::midpoint(left, right);
     // The end of the range itself may be best, and the scan is never worse than what it found.
-    [from, to, place(best.0)]
-        .into_iter()
-        .fold(middle, |best, other| {
-            if value(other) < value(best) {
-                other
-            } else {
-                best
-            }
-        })
+    [from, to, place(best.0)].into_iter().fold(
+        middle,
+        |best, other| {
+            if value(other) < value(best) { other } else { best }
+        },
+    )
 }
 
 #[cfg(test)]
@@ -224,18 +176,12 @@ mod tests {
     use super::*;
 
     fn points(error: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-        [5.0, 10.0, 20.0, 40.0, 80.0, 160.0]
-            .map(|n| (1.0 / n, error(1.0 / n)))
-            .to_vec()
+        [5.0, 10.0, 20.0, 40.0, 80.0, 160.0].map(|n| (1.0 / n, error(1.0 / n))).to_vec()
     }
 
     #[test]
     fn two_known_powers_are_found_again() {
-        for (low, high, a, b) in [
-            (1.0, 2.0, 0.05, 1.0),
-            (2.0, 3.0, 1.0, 8.0),
-            (0.0, 2.0, 2e-4, 1.0),
-        ] {
+        for (low, high, a, b) in [(1.0, 2.0, 0.05, 1.0), (2.0, 3.0, 1.0, 8.0), (0.0, 2.0, 2e-4, 1.0)] {
             let data = points(|h| a * h.powf(low) + b * h.powf(high));
             let fit = fit_two_terms(&data, Exponent::Fixed(low), Exponent::Fixed(high)).unwrap();
             assert!((fit.low_coefficient / a - 1.0).abs() < 1e-12, "{fit:?}");
@@ -249,10 +195,7 @@ mod tests {
         let data = points(|h| 0.05 * h + h * h);
         let range = Exponent::Between(0.4, 6.0);
         let fit = fit_two_terms(&data, range, range).unwrap();
-        assert!(
-            (fit.low - 1.0).abs() < 1e-5 && (fit.high - 2.0).abs() < 1e-5,
-            "{fit:?}"
-        );
+        assert!((fit.low - 1.0).abs() < 1e-5 && (fit.high - 2.0).abs() < 1e-5, "{fit:?}");
         assert!((fit.crossover().unwrap() - 0.05).abs() < 1e-5);
         assert!((fit.low_share(0.05) - 0.5).abs() < 1e-4);
     }
@@ -270,13 +213,7 @@ mod tests {
         let data = points(|h| h);
         let free = Exponent::Between(0.5, 3.0);
         let refused = fit_two_terms(&data[..4], free, free);
-        assert_eq!(
-            refused,
-            Err(Undefined::TooFewLevels {
-                levels: 4,
-                needed: 5
-            })
-        );
+        assert_eq!(refused, Err(Undefined::TooFewLevels { levels: 4, needed: 5 }));
         assert!(fit_two_terms(&[], free, free).is_err());
         assert!(fit_two_terms(&data[..3], Exponent::Fixed(0.0), Exponent::Fixed(2.0)).is_ok());
     }

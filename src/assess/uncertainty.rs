@@ -79,10 +79,7 @@ pub struct GridConvergence {
 /// # Errors
 /// [`Undefined`] for bad or equal sizes, values or a formal order that are no numbers, and an order
 /// beyond 50.
-pub fn three_grids(
-    grids: [(f64, f64); 3],
-    formal_order: Option<f64>,
-) -> Result<ThreeGrids, Undefined> {
+pub fn three_grids(grids: [(f64, f64); 3], formal_order: Option<f64>) -> Result<ThreeGrids, Undefined> {
     let mut grids = grids;
     check(&grids, formal_order)?;
     grids.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -133,13 +130,7 @@ pub fn two_grids(grids: [(f64, f64); 2], assumed_order: f64) -> Result<f64, Unde
     Ok(SAFETY_ASSUMED * (grids[0].1 - grids[1].1).abs() / power_less_one(ratio, assumed_order))
 }
 
-fn estimate(
-    values: [f64; 3],
-    r21: f64,
-    r32: f64,
-    order: f64,
-    formal_order: Option<f64>,
-) -> GridConvergence {
+fn estimate(values: [f64; 3], r21: f64, r32: f64, order: f64, formal_order: Option<f64>) -> GridConvergence {
     let [f1, f2, f3] = values;
     let (order_used, safety_factor) = match formal_order {
         Some(formal) if (order - formal).abs() <= 0.1 * formal => (formal, SAFETY_OBSERVED),
@@ -223,10 +214,7 @@ mod tests {
         // The third column converges in oscillation, and is said to.
         let third = [(1.0, 6.0042), (2.0, 5.9624), (2.0 * 2.143, 6.0909)];
         let found = three_grids(third, None).unwrap();
-        assert_eq!(
-            (found.behaviour, found.estimate),
-            (Behaviour::Oscillatory, None)
-        );
+        assert_eq!((found.behaviour, found.estimate), (Behaviour::Oscillatory, None));
         assert!((found.half_range - 0.06425).abs() < 1e-12);
     }
 
@@ -237,27 +225,15 @@ mod tests {
         };
         // The sequence for which other tools report order 2 and an index of 4 %.
         let diverging = of([1.5, 1.1, 1.0]);
-        assert_eq!(
-            (diverging.behaviour, diverging.estimate),
-            (Behaviour::Divergent, None)
-        );
+        assert_eq!((diverging.behaviour, diverging.estimate), (Behaviour::Divergent, None));
         assert_eq!(of([1.0, 2.0, 3.0]).behaviour, Behaviour::Divergent);
         assert_eq!(of([1.0, 1.1, 0.9]).behaviour, Behaviour::Oscillatory);
-        for equal in [
-            [1.0; 3],
-            [1.0, 1.0, 2.0],
-            [1.0, 2.0, 2.0],
-            [0.0; 3],
-            [1.0, 1.0 + 1e-15, 2.0],
-        ] {
+        for equal in [[1.0; 3], [1.0, 1.0, 2.0], [1.0, 2.0, 2.0], [0.0; 3], [1.0, 1.0 + 1e-15, 2.0]] {
             let found = of(equal);
             assert_eq!((found.behaviour, found.estimate), (Behaviour::Equal, None));
         }
         let json = serde_json::to_string(&of([0.0; 3])).unwrap();
-        assert!(
-            json.contains("\"convergence_ratio\":null") && !json.contains("NaN"),
-            "{json}"
-        );
+        assert!(json.contains("\"convergence_ratio\":null") && !json.contains("NaN"), "{json}");
     }
 
     #[test]

@@ -63,13 +63,8 @@ pub fn judge(
     context: &Context,
     oscillation: Option<f64>,
 ) -> Verdict {
-    let formal_order = context
-        .formal_order
-        .or(expectation.order.map(|band| band.value));
-    let context = Context {
-        formal_order,
-        ..context.clone()
-    };
+    let formal_order = context.formal_order.or(expectation.order.map(|band| band.value));
+    let context = Context { formal_order, ..context.clone() };
     let classification = classify(series, &context);
     let problems = expectation.problems();
     let mut checks = Vec::new();
@@ -81,31 +76,13 @@ pub fn judge(
     }
     let class = expectation.expected_class();
     checks.extend(class.map(|class| class_found(class, &classification)));
-    checks.extend(
-        expectation
-            .order
-            .map(|band| order_found(band, class, &classification)),
-    );
+    checks.extend(expectation.order.map(|band| order_found(band, class, &classification)));
     checks.extend(expectation.at.map(|bound| error_found(bound, series)));
-    checks.extend(
-        expectation
-            .floor
-            .map(|band| floor_found(band, series, formal_order, &classification)),
-    );
-    checks.extend(
-        expectation
-            .oscillation_below
-            .map(|bound| oscillation_found(bound, oscillation)),
-    );
+    checks.extend(expectation.floor.map(|band| floor_found(band, series, formal_order, &classification)));
+    checks.extend(expectation.oscillation_below.map(|bound| oscillation_found(bound, oscillation)));
     let (outcome, reason) = conclude(expectation, &classification, &checks, problems.is_empty());
     let pass = matches!(outcome, Outcome::Passed | Outcome::KnownFailure);
-    Verdict {
-        pass,
-        outcome,
-        reason,
-        classification,
-        checks,
-    }
+    Verdict { pass, outcome, reason, classification, checks }
 }
 
 fn conclude(
@@ -115,47 +92,28 @@ fn conclude(
     sound: bool,
 ) -> (Outcome, String) {
     let failed: Vec<_> = checks.iter().filter(|check| !check.pass).collect();
-    let sentence = |checks: &[&Check]| {
-        checks
-            .iter()
-            .map(|check| check.reason.as_str())
-            .collect::<Vec<_>>()
-            .join("; ")
-    };
+    let sentence =
+        |checks: &[&Check]| checks.iter().map(|check| check.reason.as_str()).collect::<Vec<_>>().join("; ");
     // A known failure pardons a wrong result, not an absent one.
     let absent = !failed.is_empty() && classification.class == Class::NotEvaluable
         || failed.iter().any(|check| check.name == "rows");
     match (&expectation.xfail, failed.is_empty()) {
         (Some(known), false) if sound && !absent => {
             let why = sentence(&failed);
-            (
-                Outcome::KnownFailure,
-                format!("known failure ({}): {why}", known.reason),
-            )
+            (Outcome::KnownFailure, format!("known failure ({}): {why}", known.reason))
         }
         (Some(known), true) if known.strict => (
             Outcome::UnexpectedPass,
-            format!(
-                "passes, though marked as a known failure ({}): remove the mark",
-                known.reason
-            ),
+            format!("passes, though marked as a known failure ({}): remove the mark", known.reason),
         ),
-        (_, true) => (
-            Outcome::Passed,
-            sentence(&checks.iter().collect::<Vec<_>>()),
-        ),
+        (_, true) => (Outcome::Passed, sentence(&checks.iter().collect::<Vec<_>>())),
         (_, false) => (Outcome::Failed, sentence(&failed)),
     }
 }
 
 fn check(name: &str, pass: bool, measured: Option<f64>, reason: String) -> Check {
     let measured = measured.filter(|value| value.is_finite());
-    Check {
-        name: name.to_owned(),
-        pass,
-        measured,
-        reason,
-    }
+    Check { name: name.to_owned(), pass, measured, reason }
 }
 
 /// Every level is there with a finite error; one of zero is allowed where exactness is expected.
@@ -169,15 +127,8 @@ fn rows(series: &ErrorSeries, class: Option<Class>) -> Check {
         .find_map(|level| level.positive_error().err());
     match (obstacle, series.check_sizes()) {
         _ if series.levels().is_empty() => check("rows", false, None, "there are no rows".into()),
-        (Some(obstacle), _) | (None, Err(obstacle)) => {
-            check("rows", false, None, obstacle.to_string())
-        }
-        (None, Ok(())) => check(
-            "rows",
-            true,
-            None,
-            format!("{} levels", series.levels().len()),
-        ),
+        (Some(obstacle), _) | (None, Err(obstacle)) => check("rows", false, None, obstacle.to_string()),
+        (None, Ok(())) => check("rows", true, None, format!("{} levels", series.levels().len())),
     }
 }
 
@@ -186,24 +137,14 @@ fn class_found(wanted: Class, found: &Classification) -> Check {
     let reason = if pass {
         format!("{}: {}", found.class, found.reason)
     } else {
-        let advice = found
-            .advice
-            .as_deref()
-            .map_or_else(String::new, |text| format!(" ({text})"));
-        format!(
-            "{} instead of {wanted}: {}{advice}",
-            found.class, found.reason
-        )
+        let advice = found.advice.as_deref().map_or_else(String::new, |text| format!(" ({text})"));
+        format!("{} instead of {wanted}: {}{advice}", found.class, found.reason)
     };
     check("class", pass, None, reason)
 }
 
 fn order_found(band: Band, class: Option<Class>, found: &Classification) -> Check {
-    let limits = format!(
-        "{} … {}",
-        order(band.value - band.minus),
-        order(band.value + band.plus)
-    );
+    let limits = format!("{} … {}", order(band.value - band.minus), order(band.value + band.plus));
     match found.order {
         Some(measured) if class == Some(found.class) => {
             let pass = band.contains(measured);
@@ -212,10 +153,7 @@ fn order_found(band: Band, class: Option<Class>, found: &Classification) -> Chec
             check("order", pass, Some(measured), reason)
         }
         _ => {
-            let reason = format!(
-                "no order to hold against {limits}: the series is {}",
-                found.class
-            );
+            let reason = format!("no order to hold against {limits}: the series is {}", found.class);
             check("order", false, None, reason)
         }
     }
@@ -224,12 +162,7 @@ fn order_found(band: Band, class: Option<Class>, found: &Classification) -> Chec
 fn error_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
     let level = format!("size {}", short(bound.size));
     let Some(found) = series.at(bound.size) else {
-        return check(
-            "error",
-            false,
-            None,
-            format!("there is no level of {level}"),
-        );
+        return check("error", false, None, format!("there is no level of {level}"));
     };
     match found.positive_error() {
         Err(undefined) => check("error", false, None, undefined.to_string()),
@@ -250,38 +183,22 @@ fn error_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
     }
 }
 
-fn floor_found(
-    band: FloorBand,
-    series: &ErrorSeries,
-    formal: Option<f64>,
-    found: &Classification,
-) -> Check {
+fn floor_found(band: FloorBand, series: &ErrorSeries, formal: Option<f64>, found: &Classification) -> Check {
     let without = [Class::NotEvaluable, Class::Divergent, Class::Oscillatory];
     if without.contains(&found.class) {
         let reason = format!("no floor to judge: the series is {}", found.class);
         return check("floor", false, None, reason);
     }
-    let floor = found
-        .floor
-        .as_ref()
-        .map_or_else(|| hidden_floor(series, formal), |floor| floor.value);
+    let floor = found.floor.as_ref().map_or_else(|| hidden_floor(series, formal), |floor| floor.value);
     let pass = band.contains(floor);
     let inside = if pass { "in" } else { "outside" };
-    let reason = format!(
-        "floor {} {inside} {} … {}",
-        short(floor),
-        short(band.above),
-        short(band.below)
-    );
+    let reason = format!("floor {} {inside} {} … {}", short(floor), short(band.above), short(band.below));
     check("floor", pass, Some(floor), reason)
 }
 
 /// A floor that bends the series without governing it yet, or 0.
 fn hidden_floor(series: &ErrorSeries, formal: Option<f64>) -> f64 {
-    let bent = series
-        .points()
-        .ok()
-        .and_then(|points| explain(&points, formal));
+    let bent = series.points().ok().and_then(|points| explain(&points, formal));
     match (bent, fit_floor(series)) {
         (Some(Bend::Floor(_)), Ok(fit)) => fit.significant_floor(),
         _ => 0.0,
@@ -290,12 +207,7 @@ fn hidden_floor(series: &ErrorSeries, formal: Option<f64>) -> f64 {
 
 fn oscillation_found(bound: f64, oscillation: Option<f64>) -> Check {
     let Some(index) = oscillation.filter(|index| index.is_finite()) else {
-        return check(
-            "oscillation",
-            false,
-            None,
-            "the oscillation was not measured".into(),
-        );
+        return check("oscillation", false, None, "the oscillation was not measured".into());
     };
     let pass = index < bound;
     let relation = if pass { "below" } else { "not below" };

@@ -20,32 +20,18 @@ const ABSURD: f64 = 6.0;
 /// Judges a series that falls steadily.
 pub(super) fn judge_window(case: &Case) -> Classification {
     let [.., coarse, fine] = *case.pairs.as_slice() else {
-        return plain(
-            Class::NotEvaluable,
-            "fewer than two pairs of levels".to_owned(),
-        );
+        return plain(Class::NotEvaluable, "fewer than two pairs of levels".to_owned());
     };
     let found = match case.formal {
         Some(formal) => with_formal(case, formal, coarse, fine),
         None => without_formal(case, coarse, fine),
     };
     let counts = found.class != Class::FloorLimited && found.class != Class::NotEvaluable;
-    if counts {
-        Classification {
-            order: Some(case.order),
-            ..found
-        }
-    } else {
-        found
-    }
+    if counts { Classification { order: Some(case.order), ..found } } else { found }
 }
 
 fn with_formal(case: &Case, formal: f64, coarse: f64, fine: f64) -> Classification {
-    let window = format!(
-        "order {} on the finest window ({})",
-        order(case.order),
-        orders(&[coarse, fine])
-    );
+    let window = format!("order {} on the finest window ({})", order(case.order), orders(&[coarse, fine]));
     let wanted = order(formal);
     let drift = fine - coarse;
     let falls_away = fine < formal - 0.1 && drift < -0.5 * SETTLED;
@@ -65,31 +51,24 @@ fn with_formal(case: &Case, formal: f64, coarse: f64, fine: f64) -> Classificati
         return plain(Class::Asymptotic, format!("{window}, formal {wanted}"));
     }
     if case.order > formal {
-        let dying =
-            matches!(bend(), Some(Bend::Higher(terms)) if terms.low_share(case.finest().0) > 0.1);
+        let dying = matches!(bend(), Some(Bend::Higher(terms)) if terms.low_share(case.finest().0) > 0.1);
         if drift.abs() <= SETTLED && !dying {
             let reason = format!("{window}: steady and above the formal {wanted}");
             return Classification {
-                advice: Some("look whether the scene is too easy, or the samples sit at superconvergent places".into()),
+                advice: Some(
+                    "look whether the scene is too easy, or the samples sit at superconvergent places".into(),
+                ),
                 ..plain(Class::Superconvergent, reason)
             };
         }
-        let why = if drift > 0.0 {
-            "still rising, as when two terms cancel"
-        } else {
-            "still falling"
-        };
+        let why = if drift > 0.0 { "still rising, as when two terms cancel" } else { "still falling" };
         return unsettled(format!("{window}: above the formal {wanted} and {why}"));
     }
     unsettled(format!("{window}: not settled at the formal {wanted}"))
 }
 
 fn without_formal(case: &Case, coarse: f64, fine: f64) -> Classification {
-    let window = format!(
-        "order {} on the finest window ({})",
-        order(case.order),
-        orders(&[coarse, fine])
-    );
+    let window = format!("order {} on the finest window ({})", order(case.order), orders(&[coarse, fine]));
     if case.order > ABSURD {
         let reason = format!("{window}: no method here has an order above {ABSURD}");
         return plain(Class::Superconvergent, reason);
@@ -107,10 +86,7 @@ fn without_formal(case: &Case, coarse: f64, fine: f64) -> Classification {
         }
     }
     if drift.abs() <= SETTLED {
-        return plain(
-            Class::Asymptotic,
-            format!("{window}, no formal order known"),
-        );
+        return plain(Class::Asymptotic, format!("{window}, no formal order known"));
     }
     unsettled(format!("{window}: not settled"))
 }
@@ -125,9 +101,9 @@ fn governed(case: &Case, bend: &Bend, window: &str) -> Option<Classification> {
     }
     let percent = 100.0 * share;
     match bend {
-        Bend::Floor(_) => Some(case.limited(&format!(
-            "{window}, and a floor makes up {percent:.0} % of the finest error"
-        ))),
+        Bend::Floor(_) => {
+            Some(case.limited(&format!("{window}, and a floor makes up {percent:.0} % of the finest error")))
+        }
         Bend::Lower(_) => Some(contaminated(
             format!(
                 "{window}, and a term of order {} makes up {percent:.0} % of the finest error",
@@ -143,18 +119,11 @@ fn governed(case: &Case, bend: &Bend, window: &str) -> Option<Classification> {
 }
 
 fn contaminated(reason: String, note: &str) -> Classification {
-    let advice =
-        format!("{note}: look for a boundary, a recovery, an integrator or a path of lower order");
-    Classification {
-        advice: Some(advice),
-        ..plain(Class::Contaminated, reason)
-    }
+    let advice = format!("{note}: look for a boundary, a recovery, an integrator or a path of lower order");
+    Classification { advice: Some(advice), ..plain(Class::Contaminated, reason) }
 }
 
 fn unsettled(reason: String) -> Classification {
     let advice = "add a finer level, and look again".to_owned();
-    Classification {
-        advice: Some(advice),
-        ..plain(Class::PreAsymptotic, reason)
-    }
+    Classification { advice: Some(advice), ..plain(Class::PreAsymptotic, reason) }
 }

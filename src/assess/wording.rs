@@ -20,20 +20,12 @@ pub fn short(value: f64) -> String {
 /// An order of convergence with two decimals; -0.00 is written 0.00.
 pub fn order(value: f64) -> String {
     let text = format!("{value:.2}");
-    if text == "-0.00" {
-        "0.00".to_owned()
-    } else {
-        text
-    }
+    if text == "-0.00" { "0.00".to_owned() } else { text }
 }
 
 /// Orders in a row, from coarse to fine.
 pub fn orders(values: &[f64]) -> String {
-    values
-        .iter()
-        .map(|value| order(*value))
-        .collect::<Vec<_>>()
-        .join(", ")
+    values.iter().map(|value| order(*value)).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

@@ -30,7 +30,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Err(Ended::usage("a golden value needs a reason: --reason \"why the new values are right\""));
     }
     if std::env::var_os("CI").is_some() {
-        return Err(Ended::usage("golden values are never taken in CI: look at them first, on your own machine"));
+        return Err(Ended::usage(
+            "golden values are never taken in CI: look at them first, on your own machine",
+        ));
     }
     if Provenance::of_this_program().dirty {
         return Err(Ended::usage(

@@ -45,7 +45,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         if records.is_empty() {
             continue;
         }
-        let check = StudyCheck::new(study, &records, Tier::Ci, GoldenFile::read(&arguments.golden, &study.name));
+        let check =
+            StudyCheck::new(study, &records, Tier::Ci, GoldenFile::read(&arguments.golden, &study.name));
         write!(out, "{}", verdicts::text_of(&check)?)?;
         exit = worse(exit, exit_of(&check));
         checks.push(check);
@@ -100,11 +101,9 @@ fn worse(a: Exit, b: Exit) -> Exit {
 }
 
 fn append(path: &Path, text: &str) -> anyhow::Result<()> {
-    let mut file = std::fs::OpenOptions::new()
-        .create(true)
-        .append(true)
-        .open(path)
-        .map_err(|error| Ended::with(Exit::CaseFailed, format!("cannot write {}: {error}", path.display())))?;
+    let mut file = std::fs::OpenOptions::new().create(true).append(true).open(path).map_err(|error| {
+        Ended::with(Exit::CaseFailed, format!("cannot write {}: {error}", path.display()))
+    })?;
     file.write_all(text.as_bytes())?;
     Ok(())
 }

@@ -70,7 +70,11 @@ struct ExactJson<'a> {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let kind: ReferenceKind = arguments.scene.parse().map_err(|_| {
         let names: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
-        Ended::usage(format!("no exact solution is called `{}`; there are {}", arguments.scene, names.join(", ")))
+        Ended::usage(format!(
+            "no exact solution is called `{}`; there are {}",
+            arguments.scene,
+            names.join(", ")
+        ))
     })?;
     let parameters = parameters_of(&arguments.assignments)?;
     let depths = overrides::numbers("--zeta", &arguments.zeta)?;
@@ -101,7 +105,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         Format::Csv => {
             out.write_all(csv_of(&rows)?.as_bytes())?;
             for one in &accuracy {
-                eprintln!("T_v = {}: {} terms, tail below {:.1e}", one.time_factor, one.terms, one.tail_bound);
+                eprintln!(
+                    "T_v = {}: {} terms, tail below {:.1e}",
+                    one.time_factor, one.terms, one.tail_bound
+                );
             }
         }
         Format::Json => {
@@ -127,7 +134,11 @@ fn parameters_of(assignments: &[String]) -> anyhow::Result<ColumnParameters> {
 }
 
 /// Time factors at which degrees of consolidation are reached.
-fn time_factors_of(kind: ReferenceKind, parameters: &ColumnParameters, degrees: &[f64]) -> anyhow::Result<Vec<f64>> {
+fn time_factors_of(
+    kind: ReferenceKind,
+    parameters: &ColumnParameters,
+    degrees: &[f64],
+) -> anyhow::Result<Vec<f64>> {
     let storage = match kind {
         ReferenceKind::Terzaghi => parameters.storage_ratio(),
         ReferenceKind::TerzaghiIncompressible => 1.0,
@@ -143,7 +154,13 @@ fn time_factors_of(kind: ReferenceKind, parameters: &ColumnParameters, degrees: 
 
 fn csv_of(rows: &[Row]) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(["time_factor", "zeta", "pressure_ratio", "settlement_ratio", "degree_of_consolidation"])?;
+    writer.write_record([
+        "time_factor",
+        "zeta",
+        "pressure_ratio",
+        "settlement_ratio",
+        "degree_of_consolidation",
+    ])?;
     for row in rows {
         let numbers = [row.pressure_ratio, row.settlement_ratio, row.degree_of_consolidation];
         let mut fields = vec![row.time_factor.to_string(), row.zeta.to_string()];

@@ -7,14 +7,19 @@ use crate::study::{Study, StudySource};
 /// Turns `KEY=VALUE` into a line of TOML; a value that is no TOML is taken for a word.
 pub fn assignment(typed: &str) -> anyhow::Result<String> {
     let Some((key, value)) = typed.split_once('=') else {
-        return Err(Ended::usage(format!("`--set {typed}` has no value: write KEY=VALUE, like material.porosity=0.45")));
+        return Err(Ended::usage(format!(
+            "`--set {typed}` has no value: write KEY=VALUE, like material.porosity=0.45"
+        )));
     };
     let (key, value) = (key.trim(), value.trim());
     let parts_fit = key.split('.').all(|part| {
-        !part.is_empty() && part.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-')
+        !part.is_empty()
+            && part.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-')
     });
     if !parts_fit {
-        return Err(Ended::usage(format!("`{key}` is no key: write the dotted key of a study file, like column.load")));
+        return Err(Ended::usage(format!(
+            "`{key}` is no key: write the dotted key of a study file, like column.load"
+        )));
     }
     let line = format!("{key} = {value}");
     if !value.is_empty() && toml::from_str::<toml::Table>(&line).is_ok() {

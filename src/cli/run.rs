@@ -111,8 +111,9 @@ pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
     paths
         .iter()
         .map(|path| {
-            let text = std::fs::read_to_string(path)
-                .map_err(|error| Ended::usage(format!("cannot read the study {}: {error}", path.display())))?;
+            let text = std::fs::read_to_string(path).map_err(|error| {
+                Ended::usage(format!("cannot read the study {}: {error}", path.display()))
+            })?;
             Ok(Study::check(&StudySource { name: path.display().to_string(), text })?)
         })
         .collect()
@@ -129,13 +130,14 @@ pub fn load_or_shipped(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
 
 /// Cases at the same time: what was asked for, or one a core.
 pub fn jobs_of(asked: Option<u64>) -> usize {
-    asked.and_then(|jobs| usize::try_from(jobs).ok()).unwrap_or_else(|| {
-        std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get)
-    })
+    asked
+        .and_then(|jobs| usize::try_from(jobs).ok())
+        .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get))
 }
 
 fn shard_of(typed: &str) -> anyhow::Result<Shard> {
-    let parts = typed.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
+    let parts =
+        typed.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
     match parts {
         Some((index, count)) if (1..=count).contains(&index) => Ok(Shard { index, count }),
         _ => Err(Ended::usage(format!("`--shard {typed}` is no share: write i/n with 1 ≤ i ≤ n, like 2/3"))),

@@ -44,6 +44,51 @@ pub enum ExactError {
         /// Initial porosity `n_0`.
         porosity: f64,
     },
+    /// The same for another soil law.
+    #[error(
+        "the load would press out more water than the pores hold: the volume would shrink by \
+         {shrinkage}, which must stay below the porosity {porosity}"
+    )]
+    PoresClose {
+        /// `1 − J` at the end.
+        shrinkage: f64,
+        /// Initial porosity `n_0`.
+        porosity: f64,
+    },
+    /// A name that is no soil law, continuity or water model.
+    #[error("there is no model named `{0}`")]
+    UnknownModel(String),
+    /// A quantity of either sign that is not finite.
+    #[error("the {quantity} must be finite, got {value}")]
+    NotFinite {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// Value that was given.
+        value: f64,
+    },
+    /// A point above or below a layer.
+    #[error("the point at {y} lies outside the layer, whose height is {height}")]
+    OutsideLayer {
+        /// Place over the base, m.
+        y: f64,
+        /// Height of the layer, m.
+        height: f64,
+    },
+    /// A layer so long that its waves cannot be told from a uniform load.
+    #[error("the layer's length is {ratio} times its height: too long to be solved as a wave")]
+    LayerSingular {
+        /// `L/H`.
+        ratio: f64,
+    },
+    /// A numerical reference that does not settle under refinement.
+    #[error(
+        "the large-strain reference did not converge: two resolutions still differ by {difference} \
+         of the load"
+    )]
+    NotConverged {
+        /// Largest difference of the pressure over the load; not finite where no solution was found.
+        difference: f64,
+    },
 }
 
 /// Passes a positive finite `value` on, refuses any other.
@@ -66,9 +111,5 @@ pub(super) fn checked_time_factor(time_factor: f64) -> Result<f64, ExactError> {
 
 /// Passes a relative depth `0 ≤ zeta ≤ 1` on, refuses any other.
 pub(super) fn checked_depth(zeta: f64) -> Result<f64, ExactError> {
-    if (0.0..=1.0).contains(&zeta) {
-        Ok(zeta)
-    } else {
-        Err(ExactError::Depth(zeta))
-    }
+    if (0.0..=1.0).contains(&zeta) { Ok(zeta) } else { Err(ExactError::Depth(zeta)) }
 }

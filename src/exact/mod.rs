@@ -7,8 +7,10 @@
 //! [`reference::Reference`] is the one door for the rest of the crate.
 
 pub mod consolidation;
+pub mod cosine_layer;
 pub mod dynamic_column;
 mod error;
+pub mod large_strain;
 mod parameters;
 mod quadrature;
 pub mod reference;

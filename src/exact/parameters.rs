@@ -124,10 +124,7 @@ impl ColumnParameters {
         // Positive factors may still overflow or underflow together.
         positive("oedometric modulus", self.oedometric_modulus())?;
         positive("coupling modulus", self.coupling_modulus())?;
-        positive(
-            "coefficient of consolidation",
-            self.coefficient_of_consolidation(),
-        )?;
+        positive("coefficient of consolidation", self.coefficient_of_consolidation())?;
         positive("time at a time factor of 1", self.time(1.0))?;
         Ok(())
     }
@@ -155,26 +152,15 @@ mod tests {
         let refused = |change: fn(&mut ColumnParameters)| {
             let mut parameters = ColumnParameters::default();
             change(&mut parameters);
-            parameters
-                .validate()
-                .map_or_else(|error| error.to_string(), |()| String::new())
+            parameters.validate().map_or_else(|error| error.to_string(), |()| String::new())
         };
-        assert_eq!(
-            refused(|c| c.porosity = 1.2),
-            "the porosity must lie between 0 and 1, got 1.2"
-        );
+        assert_eq!(refused(|c| c.porosity = 1.2), "the porosity must lie between 0 and 1, got 1.2");
         assert_eq!(
             refused(|c| c.poissons_ratio = 0.5),
             "Poisson's ratio must lie between -1 and 0.5, got 0.5"
         );
-        assert_eq!(
-            refused(|c| c.height = -1.0),
-            "the height must be positive and finite, got -1"
-        );
-        assert_eq!(
-            refused(|c| c.load = f64::NAN),
-            "the load must be positive and finite, got NaN"
-        );
+        assert_eq!(refused(|c| c.height = -1.0), "the height must be positive and finite, got -1");
+        assert_eq!(refused(|c| c.load = f64::NAN), "the load must be positive and finite, got NaN");
         assert!(!refused(|c| c.water_bulk_modulus = f64::INFINITY).is_empty());
         assert!(!refused(|c| c.youngs_modulus = f64::MAX).is_empty());
         assert!(!refused(|c| c.porosity = f64::NAN).is_empty());

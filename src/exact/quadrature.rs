@@ -18,9 +18,7 @@ pub fn integrate(f: impl Fn(f64) -> f64, from: f64, to: f64, panels: u32) -> f64
             let middle = from + half * f64::from(2 * panel + 1);
             TEN_POINTS
                 .iter()
-                .map(|(place, weight)| {
-                    weight * (f(middle - half * place) + f(middle + half * place))
-                })
+                .map(|(place, weight)| weight * (f(middle - half * place) + f(middle + half * place)))
                 .sum::<f64>()
         })
         .sum();
@@ -37,8 +35,6 @@ mod tests {
             let exact = 1.0 / f64::from(degree + 1);
             assert!((integrate(|x| x.powi(degree), 0.0, 1.0, 1) - exact).abs() < 1e-15);
         }
-        assert!(
-            (integrate(f64::exp, -1.0, 2.0, 3) - (2.0_f64.exp() - (-1.0_f64).exp())).abs() < 1e-14
-        );
+        assert!((integrate(f64::exp, -1.0, 2.0, 3) - (2.0_f64.exp() - (-1.0_f64).exp())).abs() < 1e-14);
     }
 }

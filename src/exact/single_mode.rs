@@ -33,10 +33,7 @@ impl SingleMode {
     /// When the parameters are impossible.
     pub fn compressible(parameters: &ColumnParameters) -> Result<Self, ExactError> {
         parameters.validate()?;
-        Ok(Self {
-            parameters: *parameters,
-            storage_ratio: parameters.storage_ratio(),
-        })
+        Ok(Self { parameters: *parameters, storage_ratio: parameters.storage_ratio() })
     }
 
     /// The mode with incompressible water.
@@ -45,10 +42,7 @@ impl SingleMode {
     /// When the parameters are impossible.
     pub fn incompressible(parameters: &ColumnParameters) -> Result<Self, ExactError> {
         parameters.validate()?;
-        Ok(Self {
-            parameters: *parameters,
-            storage_ratio: 1.0,
-        })
+        Ok(Self { parameters: *parameters, storage_ratio: 1.0 })
     }
 
     /// Exponent `M_0² B T_v` of the decay.
@@ -88,10 +82,7 @@ impl SingleMode {
             / (column.unit_weight_of_water() * column.height)
             * profile;
         let solid = -self.storage_ratio * discharge;
-        Ok(PhaseVelocities {
-            solid,
-            water: solid + discharge / column.porosity,
-        })
+        Ok(PhaseVelocities { solid, water: solid + discharge / column.porosity })
     }
 
     /// Degree of consolidation by settlement, `1 − exp(−M_0² B T_v)`.
@@ -108,9 +99,7 @@ impl SingleMode {
     /// # Errors
     /// When `time_factor` is negative or not finite.
     pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
-        Ok(self.parameters.final_settlement()
-            * FRAC_2_PI
-            * self.degree_of_consolidation(time_factor)?)
+        Ok(self.parameters.final_settlement() * FRAC_2_PI * self.degree_of_consolidation(time_factor)?)
     }
 
     /// One term, no tail.
@@ -119,10 +108,7 @@ impl SingleMode {
     /// When `time_factor` is negative or not finite.
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         checked_time_factor(time_factor)?;
-        Ok(Accuracy {
-            terms: 1,
-            tail_bound: 0.0,
-        })
+        Ok(Accuracy { terms: 1, tail_bound: 0.0 })
     }
 }
 
@@ -162,13 +148,8 @@ mod tests {
         assert!((pressure_rate / storage - 1.0).abs() < 1e-8);
         assert!((pressure_rate / column.oedometric_modulus() / strain_rate - 1.0).abs() < 1e-8);
         assert!((displacement_rate / velocities(zeta).solid - 1.0).abs() < 1e-8);
-        let gradient = slope(
-            |z| mode.fields(time_factor, z).unwrap().pressure,
-            zeta,
-            1e-5,
-        );
-        let darcy =
-            -column.hydraulic_conductivity / column.unit_weight_of_water() * gradient * per_height;
+        let gradient = slope(|z| mode.fields(time_factor, z).unwrap().pressure, zeta, 1e-5);
+        let darcy = -column.hydraulic_conductivity / column.unit_weight_of_water() * gradient * per_height;
         assert!((darcy / discharge(zeta) - 1.0).abs() < 1e-8);
     }
 

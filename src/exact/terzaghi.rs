@@ -43,11 +43,7 @@ impl Terzaghi {
     /// When the parameters are impossible.
     pub fn incompressible(parameters: &ColumnParameters) -> Result<Self, ExactError> {
         parameters.validate()?;
-        Ok(Self {
-            parameters: *parameters,
-            storage_ratio: 1.0,
-            immediate_ratio: 0.0,
-        })
+        Ok(Self { parameters: *parameters, storage_ratio: 1.0, immediate_ratio: 0.0 })
     }
 
     /// Pressure, effective stress and displacement at a relative depth.
@@ -91,10 +87,7 @@ impl Terzaghi {
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         // The images' tail grows with the depth, the modes' does not depend on it.
         let base = isochrone(1.0, self.storage_ratio * time_factor)?;
-        Ok(Accuracy {
-            terms: base.terms,
-            tail_bound: self.storage_ratio * base.tail_bound,
-        })
+        Ok(Accuracy { terms: base.terms, tail_bound: self.storage_ratio * base.tail_bound })
     }
 }
 
@@ -117,15 +110,8 @@ mod tests {
 
     #[test]
     fn end_of_consolidation_is_drained() {
-        let seed = ColumnParameters {
-            load: 2.0e3,
-            height: 3.0,
-            ..ColumnParameters::default()
-        };
-        for column in [
-            Terzaghi::compressible(&seed).unwrap(),
-            Terzaghi::incompressible(&seed).unwrap(),
-        ] {
+        let seed = ColumnParameters { load: 2.0e3, height: 3.0, ..ColumnParameters::default() };
+        for column in [Terzaghi::compressible(&seed).unwrap(), Terzaghi::incompressible(&seed).unwrap()] {
             let end = column.fields(100.0, 0.0).unwrap();
             assert!(end.pressure.abs() < 1e-12);
             assert!((end.effective_stress + 2.0e3).abs() < 1e-9);

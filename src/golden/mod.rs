@@ -93,12 +93,18 @@ impl GoldenFile {
         let unreadable = |path: PathBuf, reason: String| GoldenError::Unreadable { path, reason };
         let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(GoldenError::Missing(path)),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                return Err(GoldenError::Missing(path));
+            }
             Err(error) => return Err(unreadable(path, error.to_string())),
         };
-        let file: Self = serde_json::from_str(&text).map_err(|error| unreadable(path.clone(), error.to_string()))?;
+        let file: Self =
+            serde_json::from_str(&text).map_err(|error| unreadable(path.clone(), error.to_string()))?;
         if file.schema != SCHEMA || file.study != study {
-            return Err(unreadable(path, format!("it is of study `{}` and layout {}", file.study, file.schema)));
+            return Err(unreadable(
+                path,
+                format!("it is of study `{}` and layout {}", file.study, file.schema),
+            ));
         }
         Ok(file)
     }
@@ -135,7 +141,10 @@ pub fn values_of(records: &[Record]) -> BTreeMap<String, f64> {
             values.insert(format!("{label} | {measure}"), row.value);
         }
         for balance in &record.balance {
-            values.insert(format!("{label} | water balance T_v={}", balance.time_factor), balance.water_imbalance);
+            values.insert(
+                format!("{label} | water balance T_v={}", balance.time_factor),
+                balance.water_imbalance,
+            );
         }
     }
     values

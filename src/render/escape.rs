@@ -35,16 +35,11 @@ pub(crate) fn plain_html(text: &str) -> String {
 
 /// Text for one line of GitHub's Markdown.
 pub(crate) fn markdown(text: &str) -> String {
-    let chars: Vec<char> = text
-        .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
+    let chars: Vec<char> = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let mut out = String::with_capacity(text.len());
     for (i, &c) in chars.iter().enumerate() {
-        let inside_word = |j: Option<usize>| {
-            j.and_then(|j| chars.get(j))
-                .is_some_and(|c| c.is_alphanumeric())
-        };
+        let inside_word =
+            |j: Option<usize>| j.and_then(|j| chars.get(j)).is_some_and(|c| c.is_alphanumeric());
         match c {
             '\\' | '`' | '*' | '[' | ']' | '|' | '~' | '$' => out.extend(['\\', c]),
             '_' if !(inside_word(i.checked_sub(1)) && inside_word(Some(i + 1))) => {
@@ -72,13 +67,7 @@ mod tests {
             "&lt;a href=&quot;x&quot;&gt;T<sub>v</sub> &amp; 10<sup>−3</sup>"
         );
         assert_eq!(plain_html("a\u{0}'b"), "a&#39;b");
-        assert_eq!(
-            markdown("a|b *c* <i> T_v _x_"),
-            "a\\|b \\*c\\* &lt;i&gt; T_v \\_x\\_"
-        );
-        assert_eq!(
-            markdown("# not a heading\n- nor a list"),
-            "\\# not a heading - nor a list"
-        );
+        assert_eq!(markdown("a|b *c* <i> T_v _x_"), "a\\|b \\*c\\* &lt;i&gt; T_v \\_x\\_");
+        assert_eq!(markdown("# not a heading\n- nor a list"), "\\# not a heading - nor a list");
     }
 }

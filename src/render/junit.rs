@@ -29,7 +29,10 @@ pub fn report_of(checks: &[StudyCheck]) -> Result<String, SerializeError> {
             suite.add_test_case(case);
         }
         for (label, sentence) in &check.failed_cases {
-            suite.add_test_case(TestCase::new(format!("{}/{label}/run", check.study), status(false, sentence)));
+            suite.add_test_case(TestCase::new(
+                format!("{}/{label}/run", check.study),
+                status(false, sentence),
+            ));
         }
         let (agrees, sentence) = match &check.golden {
             Ok(differences) if differences.is_empty() => (true, String::new()),

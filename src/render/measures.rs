@@ -31,11 +31,8 @@ pub fn errors_table(record: &Record) -> Table {
                     None => Cell::Missing(missing_reason(record)),
                 }
             });
-            let mut row: Vec<Cell> = vec![
-                Cell::Text(reference.name.clone()),
-                quantity.name().into(),
-                sample.name().into(),
-            ];
+            let mut row: Vec<Cell> =
+                vec![Cell::Text(reference.name.clone()), quantity.name().into(), sample.name().into()];
             row.extend(errors);
             rows.push(row);
         }
@@ -70,7 +67,10 @@ fn work_note(record: &Record) -> String {
     let wall: f64 = record.wall.iter().map(|sample| sample.seconds).sum();
     format!(
         "{} steps of at most {:.3e} s ({:.2} of the predicted critical step), {} point updates, {wall:.3} s",
-        record.counters.steps, record.step_sizes.largest, record.groups.step_over_limit, record.counters.point_updates,
+        record.counters.steps,
+        record.step_sizes.largest,
+        record.groups.step_over_limit,
+        record.counters.point_updates,
     )
 }
 

@@ -2,11 +2,7 @@
 
 /// An error: three digits and a power of ten, `5.62e-3`.
 pub fn error(value: f64) -> String {
-    if value == 0.0 {
-        "0".to_owned()
-    } else {
-        finite(value, |v| format!("{v:.2e}"))
-    }
+    if value == 0.0 { "0".to_owned() } else { finite(value, |v| format!("{v:.2e}")) }
 }
 
 /// An order: two decimals.
@@ -56,10 +52,7 @@ pub fn number(value: f64) -> String {
         _ => {
             let text = format!("{v:.3e}");
             let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-            format!(
-                "{}e{exponent}",
-                mantissa.trim_end_matches('0').trim_end_matches('.')
-            )
+            format!("{}e{exponent}", mantissa.trim_end_matches('0').trim_end_matches('.'))
         }
     })
 }
@@ -104,11 +97,7 @@ fn three_digits(v: f64) -> String {
 }
 
 fn unsigned_zero(text: String) -> String {
-    if text == "-0.00" {
-        "0.00".to_owned()
-    } else {
-        text
-    }
+    if text == "-0.00" { "0.00".to_owned() } else { text }
 }
 
 #[cfg(test)]
@@ -117,19 +106,13 @@ mod tests {
 
     #[test]
     fn errors_have_three_digits() {
-        assert_eq!(
-            [5.62e-3, 1.0, 0.0, -2.5e-10].map(error),
-            ["5.62e-3", "1.00e0", "0", "-2.50e-10"]
-        );
+        assert_eq!([5.62e-3, 1.0, 0.0, -2.5e-10].map(error), ["5.62e-3", "1.00e0", "0", "-2.50e-10"]);
     }
 
     #[test]
     fn what_is_not_finite_is_said_in_every_format() {
         for show in [error, order, percent, seconds, number, exact] {
-            assert_eq!(
-                [f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(show),
-                ["NaN", "inf", "-inf"]
-            );
+            assert_eq!([f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(show), ["NaN", "inf", "-inf"]);
         }
     }
 
@@ -142,18 +125,10 @@ mod tests {
         );
         assert_eq!(
             [7.9e-9, 4.5e-6, 0.0123, 59.98, 1200.0, 86_400.0].map(seconds),
-            [
-                "7.90 ns", "4.50 µs", "12.3 ms", "60.0 s", "20.0 min", "24.0 h"
-            ]
+            ["7.90 ns", "4.50 µs", "12.3 ms", "60.0 s", "20.0 min", "24.0 h"]
         );
-        assert_eq!(
-            [0.999_999, 0.000_999_99].map(seconds),
-            ["1.00 s", "1.00 ms"]
-        );
-        assert_eq!(
-            [0, 9999, 10_000, 82_000_000].map(count),
-            ["0", "9999", "10,000", "82,000,000"]
-        );
+        assert_eq!([0.999_999, 0.000_999_99].map(seconds), ["1.00 s", "1.00 ms"]);
+        assert_eq!([0, 9999, 10_000, 82_000_000].map(count), ["0", "9999", "10,000", "82,000,000"]);
         assert_eq!(
             [0.25, 1e6, 2.2e9, 12_345.678, 1e-6].map(number),
             ["0.25", "1e6", "2.2e9", "12350", "1e-6"]

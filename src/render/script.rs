@@ -27,12 +27,8 @@ pub(crate) fn runs(text: &str) -> Vec<Run> {
     while i < chars.len() {
         let c = chars[i];
         if let Some((line, end)) = subscript_at(&chars, i) {
-            chars[i..line]
-                .iter()
-                .for_each(|&c| push(&mut out, Level::Base, c));
-            chars[line + 1..end]
-                .iter()
-                .for_each(|&c| push(&mut out, Level::Sub, c));
+            chars[i..line].iter().for_each(|&c| push(&mut out, Level::Base, c));
+            chars[line + 1..end].iter().for_each(|&c| push(&mut out, Level::Sub, c));
             i = end;
             continue;
         }
@@ -48,18 +44,13 @@ pub(crate) fn runs(text: &str) -> Vec<Run> {
 
 /// Neither control characters nor those of the private use area, which the canvas needs.
 fn is_allowed(c: char) -> bool {
-    !(c.is_control()
-        || ('\u{e000}'..='\u{f8ff}').contains(&c)
-        || matches!(c, '\u{fffe}' | '\u{ffff}'))
+    !(c.is_control() || ('\u{e000}'..='\u{f8ff}').contains(&c) || matches!(c, '\u{fffe}' | '\u{ffff}'))
 }
 
 fn push(out: &mut Vec<Run>, level: Level, c: char) {
     match out.last_mut() {
         Some(run) if run.level == level => run.text.push(c),
-        _ => out.push(Run {
-            level,
-            text: c.to_string(),
-        }),
+        _ => out.push(Run { level, text: c.to_string() }),
     }
 }
 
@@ -67,21 +58,14 @@ fn push(out: &mut Vec<Run>, level: Level, c: char) {
 fn subscript_at(chars: &[char], i: usize) -> Option<(usize, usize)> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     // A difference is a symbol too.
-    let start = if i > 0 && chars[i - 1] == 'Δ' {
-        i - 1
-    } else {
-        i
-    };
+    let start = if i > 0 && chars[i - 1] == 'Δ' { i - 1 } else { i };
     let alone = start == 0 || !is_word(chars[start - 1]);
     let prime = usize::from(chars.get(i + 1) == Some(&'\''));
     let line = i + 1 + prime;
     if !alone || !chars[i].is_alphabetic() || chars.get(line) != Some(&'_') {
         return None;
     }
-    let tail = chars[line + 1..]
-        .iter()
-        .take_while(|&&c| belongs(c))
-        .count();
+    let tail = chars[line + 1..].iter().take_while(|&&c| belongs(c)).count();
     let end = line + 1 + tail;
     (tail > 0 && chars.get(end) != Some(&'_')).then_some((line, end))
 }
@@ -154,9 +138,7 @@ fn advance(c: char) -> f64 {
         'f' | 'r' | 't' | '-' | '(' | ')' | '[' | ']' => 0.41,
         'c' | 's' | 'z' | '_' | '*' => 0.55,
         'm' | 'M' | 'w' | 'W' | '%' | '@' | '—' => 0.98,
-        '=' | '+' | '<' | '>' | '−' | '×' | '≤' | '≥' | '≈' | '∞' | '#' | '~' | '–' => {
-            0.838
-        }
+        '=' | '+' | '<' | '>' | '−' | '×' | '≤' | '≥' | '≈' | '∞' | '#' | '~' | '–' => 0.838,
         'O' | 'Q' | 'G' | 'D' | 'N' | 'H' | 'U' | '&' => 0.787,
         'a'..='z' | '0'..='9' => 0.636,
         'A'..='Z' => 0.7,

@@ -19,15 +19,7 @@ fn orders() -> Table {
             Column::text("verdict"),
         ],
     );
-    for (i, name) in [
-        "MPM",
-        "GIMP",
-        "GIMP-SRI",
-        "GIMP-SRI-patch",
-        "TL-GC-SRI-patch",
-    ]
-    .into_iter()
-    .enumerate()
+    for (i, name) in ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "TL-GC-SRI-patch"].into_iter().enumerate()
     {
         let e = 10f64.powi(-1) / (1.0 + f64::from(u8::try_from(i).unwrap_or(0)));
         let missing = || Cell::Missing("left the stable range at step 812 (t = 3.1e-4 s)".into());
@@ -37,21 +29,9 @@ fn orders() -> Table {
             Cell::Error(e),
             Cell::Error(e / 2.0),
             Cell::Error(e / 4.1),
-            if unstable {
-                missing()
-            } else {
-                Cell::Error(e / 8.3)
-            },
-            if unstable {
-                missing()
-            } else {
-                Cell::Order(1.0 + f64::from(u8::from(i > 2)))
-            },
-            if unstable {
-                missing()
-            } else {
-                Cell::OrderWithin(1.02, 0.04)
-            },
+            if unstable { missing() } else { Cell::Error(e / 8.3) },
+            if unstable { missing() } else { Cell::Order(1.0 + f64::from(u8::from(i > 2))) },
+            if unstable { missing() } else { Cell::OrderWithin(1.02, 0.04) },
             Cell::Count(817_500 << i),
             Cell::Seconds(0.012 * 3f64.powi(i32::from(i > 2))),
             match i {
@@ -61,9 +41,7 @@ fn orders() -> Table {
             },
         ]);
     }
-    table.notes.push(
-        "Norm: sqrt(Σ V (p − p_exact)² / Σ V p_exact²) over the points, V their volume.".into(),
-    );
+    table.notes.push("Norm: sqrt(Σ V (p − p_exact)² / Σ V p_exact²) over the points, V their volume.".into());
     table
 }
 
@@ -107,11 +85,7 @@ fn page() -> Page {
         });
     }
     let row: Vec<Figure> = field.into_iter().chain(twin).collect();
-    let blocks = [
-        Some(Block::Figures(row)),
-        map.map(Block::Figure),
-        nothing.map(Block::Figure),
-    ];
+    let blocks = [Some(Block::Figures(row)), map.map(Block::Figure), nothing.map(Block::Figure)];
     sections.push(Section {
         heading: "Fields and maps".into(),
         id: "maps".into(),
@@ -131,8 +105,7 @@ fn the_showcase_is_written() {
     let folder = std::env::temp_dir().join("oedometer-gallery/page");
     let write = |name: &str, text: &str| {
         let path = folder.join(name);
-        std::fs::create_dir_all(path.parent().unwrap_or(&folder))
-            .and_then(|()| std::fs::write(path, text))
+        std::fs::create_dir_all(path.parent().unwrap_or(&folder)).and_then(|()| std::fs::write(path, text))
     };
     let page = page();
     let html = render_html(&page).unwrap_or_else(|e| panic!("{e}"));

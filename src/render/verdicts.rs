@@ -60,7 +60,8 @@ fn tables_of(check: &StudyCheck) -> Vec<Table> {
         tables.push(judgements_table("expectations not met", &unmet));
     }
     if !check.failed_cases.is_empty() {
-        let rows = check.failed_cases.iter().map(|(case, why)| vec![Cell::Code(case.clone()), why.as_str().into()]);
+        let rows =
+            check.failed_cases.iter().map(|(case, why)| vec![Cell::Code(case.clone()), why.as_str().into()]);
         tables.push(Table {
             title: "failed cases".to_owned(),
             columns: vec![Column::text("case"), Column::text("how")],
@@ -110,7 +111,9 @@ pub fn judgements_table(title: &str, judgements: &[&Judgement]) -> Table {
 }
 
 fn differences_table(differences: &[Difference]) -> Table {
-    let value = |value: Option<f64>| value.map_or(Cell::Missing("no value".to_owned()), |v| number::exact(v).as_str().into());
+    let value = |value: Option<f64>| {
+        value.map_or(Cell::Missing("no value".to_owned()), |v| number::exact(v).as_str().into())
+    };
     let rows = differences.iter().take(MOST_DIFFERENCES).map(|one| {
         let change = match (one.golden, one.found) {
             (Some(golden), Some(found)) => Cell::Error(found - golden),

@@ -72,9 +72,7 @@ impl SceneKind {
     /// Why a reference is not the scene's own, where it is a second one.
     pub fn model_difference(self, reference: ReferenceKind) -> Option<&'static str> {
         match (self, reference) {
-            (Self::Terzaghi, ReferenceKind::TerzaghiIncompressible) => Some(
-                "the water's storage: this reference has incompressible water, the solver's has the bulk modulus K_w",
-            ),
+            (Self::Terzaghi, ReferenceKind::TerzaghiIncompressible) => Some("the water's storage"),
             _ => None,
         }
     }

@@ -4,8 +4,8 @@ use super::case::{Case, IntegratorKind};
 use super::diagnostic::{Diagnostic, StudyError, one_of};
 use super::expectation::{Axis, Expectation, Measure};
 use super::file::{
-    ColumnTable, ExpectTable, IntegratorTable, LevelTable, MaterialTable, MethodEntry, MethodTable, OutputTable,
-    StudyFile, StudySource, SweepTable, TimeStepTable,
+    ColumnTable, ExpectTable, IntegratorTable, LevelTable, MaterialTable, MethodEntry, MethodTable,
+    OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
 };
 use super::sweep::{AXES, Sweep};
 use crate::assess::class::Class;
@@ -135,7 +135,11 @@ impl Checker<'_> {
         let references = self.references(&file.output, scene);
         if file.sweep.is_empty() {
             let end = self.source.text.len();
-            self.complain(end..end, "the study has no [[sweep]] block", "add one with at least `method` and `cells`");
+            self.complain(
+                end..end,
+                "the study has no [[sweep]] block",
+                "add one with at least `method` and `cells`",
+            );
         }
         let mut planned: Vec<PlannedCase> = Vec::new();
         for block in &file.sweep {
@@ -171,7 +175,8 @@ impl Checker<'_> {
         }
         let expectations =
             file.expect.iter().filter_map(|entry| self.expectation(entry, scene, &references)).collect();
-        let timing_repeats = self.count(file.timing.repeats.as_ref(), "timing.repeats", 0..=1000).unwrap_or(0);
+        let timing_repeats =
+            self.count(file.timing.repeats.as_ref(), "timing.repeats", 0..=1000).unwrap_or(0);
         Some(Study {
             name: self.stem(),
             title: file.title.get_ref().clone(),
@@ -312,7 +317,11 @@ impl Checker<'_> {
     fn flip(&mut self, typed: &Spanned<f64>) -> f64 {
         let flip = *typed.get_ref();
         if !(0.0..=1.0).contains(&flip) {
-            self.complain(typed.span(), format!("a FLIP share of {flip}"), "it lies between 0 (PIC) and 1 (FLIP)");
+            self.complain(
+                typed.span(),
+                format!("a FLIP share of {flip}"),
+                "it lies between 0 (PIC) and 1 (FLIP)",
+            );
         }
         flip
     }
@@ -343,7 +352,11 @@ impl Checker<'_> {
         let own = scene.references();
         let Some(list) = &table.references else { return own.to_vec() };
         let names: Vec<&str> = own.iter().map(|kind| kind.name()).collect();
-        list.get_ref().iter().filter_map(|typed| self.word(typed, "reference", &names)).map(|i| own[i]).collect()
+        list.get_ref()
+            .iter()
+            .filter_map(|typed| self.word(typed, "reference", &names))
+            .map(|i| own[i])
+            .collect()
     }
 
     fn tier(&mut self, table: &SweepTable) -> Tier {
@@ -352,26 +365,47 @@ impl Checker<'_> {
         index.map_or(Tier::default(), |index| Tier::ALL[index])
     }
 
-    fn sweep(&mut self, table: &SweepTable, span: Range<usize>, settings: &ExplicitSettings) -> Option<Sweep> {
+    fn sweep(
+        &mut self,
+        table: &SweepTable,
+        span: Range<usize>,
+        settings: &ExplicitSettings,
+    ) -> Option<Sweep> {
         let before = self.diagnostics.len();
         if table.method.is_none() {
-            self.complain(span.start..span.start + 1, "the sweep names no method", "add `method = [\"GC-SRI-patch\"]`");
+            self.complain(
+                span.start..span.start + 1,
+                "the sweep names no method",
+                "add `method = [\"GC-SRI-patch\"]`",
+            );
         }
         if table.cells.is_none() {
-            self.complain(span.start..span.start + 1, "the sweep names no cells", "add `cells = [5, 10, 20]`");
+            self.complain(
+                span.start..span.start + 1,
+                "the sweep names no cells",
+                "add `cells = [5, 10, 20]`",
+            );
         }
         let sweep = Sweep {
             method: self.list(table.method.as_ref(), "method", &[], Self::method),
-            integrator: self.list(table.integrator.as_ref(), "integrator", &[IntegratorKind::Explicit], |c, word| {
-                let names = IntegratorKind::ALL.map(IntegratorKind::name);
-                c.word(word, "integrator", &names).map(|index| IntegratorKind::ALL[index])
-            }),
+            integrator: self.list(
+                table.integrator.as_ref(),
+                "integrator",
+                &[IntegratorKind::Explicit],
+                |c, word| {
+                    let names = IntegratorKind::ALL.map(IntegratorKind::name);
+                    c.word(word, "integrator", &names).map(|index| IntegratorKind::ALL[index])
+                },
+            ),
             cells: self.list(table.cells.as_ref(), "cells", &[], |c, typed| {
                 c.count(Some(typed), "cells", 1..=MOST_CELLS)
             }),
-            points_per_cell: self.list(table.points_per_cell.as_ref(), "points_per_cell", &[2], |c, typed| {
-                c.count(Some(typed), "points_per_cell", 1..=MOST_POINTS)
-            }),
+            points_per_cell: self.list(
+                table.points_per_cell.as_ref(),
+                "points_per_cell",
+                &[2],
+                |c, typed| c.count(Some(typed), "points_per_cell", 1..=MOST_POINTS),
+            ),
             time_step: self.list(
                 table.time_step.as_ref(),
                 "time_step",
@@ -410,7 +444,11 @@ impl Checker<'_> {
     ) -> Vec<C> {
         let Some(list) = typed else { return default.to_vec() };
         if list.get_ref().is_empty() {
-            self.complain(list.span(), format!("`{name}` is empty"), "give at least one value, or leave the key out");
+            self.complain(
+                list.span(),
+                format!("`{name}` is empty"),
+                "give at least one value, or leave the key out",
+            );
         }
         list.get_ref().iter().filter_map(|one| check(self, one)).collect()
     }
@@ -422,7 +460,11 @@ impl Checker<'_> {
                 if method.is_none() {
                     let names = Method::names();
                     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-                    self.complain(typed.span(), format!("no method is called `{name}`"), one_of(name, &names));
+                    self.complain(
+                        typed.span(),
+                        format!("no method is called `{name}`"),
+                        one_of(name, &names),
+                    );
                 }
                 method
             }
@@ -481,7 +523,11 @@ impl Checker<'_> {
         if value.get_ref().is_finite() && *value.get_ref() > 0.0 {
             return Some(*rule);
         }
-        self.complain(value.span(), format!("a time step of {}", value.get_ref()), "it must be positive and finite");
+        self.complain(
+            value.span(),
+            format!("a time step of {}", value.get_ref()),
+            "it must be positive and finite",
+        );
         None
     }
 
@@ -493,7 +539,8 @@ impl Checker<'_> {
     ) -> Option<Expectation> {
         let table = entry.get_ref();
         let before = self.diagnostics.len();
-        let quantity = self.choice(table.quantity.as_ref(), "quantity", &Quantity::ALL.map(Quantity::name), 0)?;
+        let quantity =
+            self.choice(table.quantity.as_ref(), "quantity", &Quantity::ALL.map(Quantity::name), 0)?;
         let quantity = Quantity::ALL[quantity];
         let default_sample = if quantity == Quantity::Settlement { Sample::Surface } else { Sample::Points };
         let samples = Sample::ALL.map(Sample::name);
@@ -564,9 +611,9 @@ impl Checker<'_> {
     fn error_bound(&mut self, level: &Spanned<LevelTable>, axis: Axis, height: f64) -> Option<ErrorBound> {
         let table = level.get_ref();
         let size = match axis {
-            Axis::Cells => {
-                self.count(table.cells.as_ref(), "at.cells", 1..=MOST_CELLS).map(|cells| height / cells as f64)
-            }
+            Axis::Cells => self
+                .count(table.cells.as_ref(), "at.cells", 1..=MOST_CELLS)
+                .map(|cells| height / cells as f64),
             Axis::PointsPerCell => self
                 .count(table.points_per_cell.as_ref(), "at.points_per_cell", 1..=MOST_POINTS)
                 .map(|points| 1.0 / points as f64),
@@ -605,7 +652,12 @@ impl Checker<'_> {
         index
     }
 
-    fn count(&mut self, typed: Option<&Spanned<i64>>, name: &str, range: RangeInclusive<i64>) -> Option<usize> {
+    fn count(
+        &mut self,
+        typed: Option<&Spanned<i64>>,
+        name: &str,
+        range: RangeInclusive<i64>,
+    ) -> Option<usize> {
         let typed = typed?;
         let count = *typed.get_ref();
         if !range.contains(&count) {
@@ -633,14 +685,23 @@ impl Checker<'_> {
         value
     }
 
-    fn between(&mut self, typed: Option<&Spanned<f64>>, name: &str, least: f64, most: f64, default: f64) -> f64 {
+    fn between(
+        &mut self,
+        typed: Option<&Spanned<f64>>,
+        name: &str,
+        least: f64,
+        most: f64,
+        default: f64,
+    ) -> f64 {
         let Some(typed) = typed else { return default };
         let value = *typed.get_ref();
         if !(value > least && value < most) {
             self.complain(
                 typed.span(),
                 format!("`{name}` is {value}"),
-                format!("it must lie between {least} and {most}, both excluded; the seed column has {default}"),
+                format!(
+                    "it must lie between {least} and {most}, both excluded; the seed column has {default}"
+                ),
             );
         }
         value

@@ -86,7 +86,8 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     candidates
         .into_iter()
         .map(|candidate| {
-            let alike = strsim::normalized_damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase());
+            let alike =
+                strsim::normalized_damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase());
             (alike, candidate)
         })
         .filter(|(alike, _)| *alike >= CLOSE)

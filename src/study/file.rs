@@ -220,12 +220,12 @@ fn explained(error: &toml::de::Error) -> Diagnostic {
     let message = error.message().trim().replace('\n', "; ");
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let help = match quoted.split_first() {
-        Some((word, candidates)) if message.starts_with("unknown field") => Some(
-            match nearest(word, candidates.iter().copied()) {
+        Some((word, candidates)) if message.starts_with("unknown field") => {
+            Some(match nearest(word, candidates.iter().copied()) {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("the keys here are {}", candidates.join(", ")),
-            },
-        ),
+            })
+        }
         _ if message.starts_with("missing field") => {
             Some("a study needs at least `title`, `scene` and one [[sweep]] block".to_owned())
         }

@@ -15,6 +15,7 @@ pub use diagnostic::{Diagnostic, StudyError};
 pub use expectation::{Axis, Expectation, Measure};
 pub use file::StudySource;
 pub use runner::{
-    Progress, RunError, RunOptions, RunReport, Shard, TimingReport, estimated_updates, run_case, run_study, time_study,
+    Progress, RunError, RunOptions, RunReport, Shard, TimingReport, estimated_updates, run_case, run_study,
+    time_study,
 };
 pub use shipped::shipped_studies;

@@ -132,7 +132,8 @@ pub fn run_study(
         resumed: cases.len() - missing.len(),
         work: missing.iter().map(|index| estimated_updates(cases[*index])).sum(),
     });
-    let results: Vec<Mutex<Option<Result<Record, RunError>>>> = cases.iter().map(|_| Mutex::new(None)).collect();
+    let results: Vec<Mutex<Option<Result<Record, RunError>>>> =
+        cases.iter().map(|_| Mutex::new(None)).collect();
     let next = AtomicUsize::new(0);
     let jobs = options.jobs.clamp(1, missing.len().max(1));
     std::thread::scope(|scope| {
@@ -157,7 +158,10 @@ pub fn run_study(
     }
     report.errors.extend(report.records.iter().filter_map(|record| {
         // Written already; written once more only where that failed.
-        store.filter(|store| !store.has(&record.hash)).and_then(|store| store.write(record).err()).map(RunError::Store)
+        store
+            .filter(|store| !store.has(&record.hash))
+            .and_then(|store| store.write(record).err())
+            .map(RunError::Store)
     }));
     report
 }
@@ -198,9 +202,13 @@ fn run_and_keep(
         label: case.label(),
         failure: match &record.status {
             Status::Ok => None,
-            Status::Failed(failure) => {
-                Some(format!("{} at step {}, t = {:.4e} s: {}", failure.kind.name(), failure.step, failure.time, failure.reason))
-            }
+            Status::Failed(failure) => Some(format!(
+                "{} at step {}, t = {:.4e} s: {}",
+                failure.kind.name(),
+                failure.step,
+                failure.time,
+                failure.reason
+            )),
         },
     });
     Ok(record)
@@ -217,8 +225,14 @@ pub fn run_case(
     alone: bool,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
-    let problem =
-        column_problem(case.scene, &case.column, &case.material, case.method, case.cells, case.points_per_cell)?;
+    let problem = column_problem(
+        case.scene,
+        &case.column,
+        &case.material,
+        case.method,
+        case.cells,
+        case.points_per_cell,
+    )?;
     let schedule = schedule_of(case, kernel);
     let start = Instant::now();
     let outcome = run(problem, &schedule, observe);

@@ -26,21 +26,8 @@ fn sum_images(term: impl Fn(f64) -> f64, bound: impl Fn(f64) -> f64) -> SeriesVa
     while bound(terms as f64) > ABSOLUTE_TAIL {
         terms += 1;
     }
-    let value = (0..terms)
-        .rev()
-        .map(|m| {
-            if m % 2 == 0 {
-                term(m as f64)
-            } else {
-                -term(m as f64)
-            }
-        })
-        .sum();
-    SeriesValue {
-        value,
-        terms,
-        tail_bound: bound(terms as f64),
-    }
+    let value = (0..terms).rev().map(|m| if m % 2 == 0 { term(m as f64) } else { -term(m as f64) }).sum();
+    SeriesValue { value, terms, tail_bound: bound(terms as f64) }
 }
 
 /// `W(ζ, T)` for `T > 0`, as `erf(ζ/2√T)` less the images, so that it vanishes with `ζ` exactly:
@@ -57,11 +44,7 @@ pub fn isochrone(zeta: f64, time_factor: f64) -> SeriesValue {
         },
         |m| libm::erfc((2.0 * m + 2.0 - zeta) / width),
     );
-    SeriesValue {
-        value: libm::erf(zeta / width) - images.value,
-        terms: images.terms + 1,
-        ..images
-    }
+    SeriesValue { value: libm::erf(zeta / width) - images.value, terms: images.terms + 1, ..images }
 }
 
 /// `∫_ζ^1 (1 − W) dζ` for `T ≥ 0`; `U(T)` at `ζ = 0`:
@@ -76,17 +59,10 @@ pub fn consolidated_below(zeta: f64, time_factor: f64) -> SeriesValue {
     let width = 2.0 * time_factor.sqrt();
     // Scaled by the width only at the end: early sums are as accurate relative to their size.
     let images = sum_images(
-        |m| {
-            integral_of_erfc((2.0 * m + zeta) / width)
-                - integral_of_erfc((2.0 * m + 2.0 - zeta) / width)
-        },
+        |m| integral_of_erfc((2.0 * m + zeta) / width) - integral_of_erfc((2.0 * m + 2.0 - zeta) / width),
         |m| integral_of_erfc((2.0 * m + zeta) / width),
     );
-    SeriesValue {
-        value: width * images.value,
-        tail_bound: width * images.tail_bound,
-        ..images
-    }
+    SeriesValue { value: width * images.value, tail_bound: width * images.tail_bound, ..images }
 }
 
 /// `dU/dT = [1 + 2 Σ_{m≥1} (−1)^m exp(−m²/T)]/√(πT)` for `T > 0`.

@@ -38,11 +38,7 @@ pub struct SeriesValue {
 impl SeriesValue {
     /// A value that needs no sum.
     fn closed_form(value: f64) -> Self {
-        Self {
-            value,
-            terms: 0,
-            tail_bound: 0.0,
-        }
+        Self { value, terms: 0, tail_bound: 0.0 }
     }
 }
 
@@ -69,10 +65,7 @@ pub fn isochrone_integral(zeta: f64, time_factor: f64) -> Result<SeriesValue, Ex
     let (zeta, time_factor) = (checked_depth(zeta)?, checked_time_factor(time_factor)?);
     Ok(if time_factor < SWITCH {
         let consolidated = images::consolidated_below(zeta, time_factor);
-        SeriesValue {
-            value: 1.0 - zeta - consolidated.value,
-            ..consolidated
-        }
+        SeriesValue { value: 1.0 - zeta - consolidated.value, ..consolidated }
     } else {
         series::isochrone_integral(zeta, time_factor)
     })
@@ -90,10 +83,7 @@ pub fn consolidated_below(zeta: f64, time_factor: f64) -> Result<SeriesValue, Ex
         images::consolidated_below(zeta, time_factor)
     } else {
         let integral = series::isochrone_integral(zeta, time_factor);
-        SeriesValue {
-            value: 1.0 - zeta - integral.value,
-            ..integral
-        }
+        SeriesValue { value: 1.0 - zeta - integral.value, ..integral }
     })
 }
 

@@ -40,20 +40,12 @@ fn sum_modes(
             amplitude(mode, m) * libm::exp(-m * m * time_factor)
         })
         .sum();
-    SeriesValue {
-        value,
-        terms,
-        tail_bound: tail(terms),
-    }
+    SeriesValue { value, terms, tail_bound: tail(terms) }
 }
 
 /// `W(ζ, T)` for `T > 0`.
 pub fn isochrone(zeta: f64, time_factor: f64) -> SeriesValue {
-    sum_modes(
-        time_factor,
-        |m| 2.0 / m,
-        |_, m| 2.0 / m * libm::sin(m * zeta),
-    )
+    sum_modes(time_factor, |m| 2.0 / m, |_, m| 2.0 / m * libm::sin(m * zeta))
 }
 
 /// `I(ζ, T) = ∫_ζ^1 W dζ` for `T > 0`; `1 − U(T)` at `ζ = 0`, to full relative accuracy.

@@ -31,10 +31,7 @@ fn functions_have_their_fourteen_digits() {
             degree_of_consolidation(time_factor).unwrap().value - u,
         ];
         for (worst, error) in worst.iter_mut().zip(errors) {
-            assert!(
-                error.abs() <= TOLERANCE,
-                "{error:e} at zeta {zeta}, T {time_factor}"
-            );
+            assert!(error.abs() <= TOLERANCE, "{error:e} at zeta {zeta}, T {time_factor}");
             *worst = worst.max(error.abs());
         }
         count += 1;
@@ -50,15 +47,9 @@ fn small_values_keep_their_relative_digits() {
         assert!((degree / u - 1.0).abs() < 2e-15, "U at {time_factor}");
         if time_factor > SWITCH && zeta > 0.0 && zeta < 1.0 {
             let value = isochrone(zeta, time_factor).unwrap().value;
-            assert!(
-                (value / w - 1.0).abs() < 3e-14,
-                "W at {zeta}, {time_factor}"
-            );
+            assert!((value / w - 1.0).abs() < 3e-14, "W at {zeta}, {time_factor}");
             let value = isochrone_integral(zeta, time_factor).unwrap().value;
-            assert!(
-                (value / integral - 1.0).abs() < 3e-14,
-                "I at {zeta}, {time_factor}"
-            );
+            assert!((value / integral - 1.0).abs() < 3e-14, "I at {zeta}, {time_factor}");
         }
     }
 }
@@ -70,8 +61,8 @@ fn both_forms_agree_on_both_sides_of_the_switch() {
         let time_factor = SWITCH * 5.0_f64.powf(f64::from(k) / 30.0 - 1.0);
         for i in 0..=40 {
             let zeta = f64::from(i) / 40.0;
-            let difference = images::isochrone(zeta, time_factor).value
-                - series::isochrone(zeta, time_factor).value;
+            let difference =
+                images::isochrone(zeta, time_factor).value - series::isochrone(zeta, time_factor).value;
             assert!(difference.abs() < 2e-15, "W {difference:e}");
             let difference = 1.0
                 - zeta
@@ -79,8 +70,7 @@ fn both_forms_agree_on_both_sides_of_the_switch() {
                 - series::isochrone_integral(zeta, time_factor).value;
             assert!(difference.abs() < 2e-15, "I {difference:e}");
         }
-        let ratio =
-            images::consolidation_rate(time_factor) / series::consolidation_rate(time_factor);
+        let ratio = images::consolidation_rate(time_factor) / series::consolidation_rate(time_factor);
         // The images cancel beyond T = 1/2, where only the modes are used.
         assert!((ratio - 1.0).abs() < 1e-13, "dU/dT {ratio}");
     }

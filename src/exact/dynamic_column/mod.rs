@@ -3,6 +3,7 @@
 mod modes;
 mod quartic;
 mod steady;
+mod summation;
 
 use std::borrow::Cow;
 
@@ -11,13 +12,8 @@ use super::error::{ExactError, checked_depth, checked_time_factor, positive};
 use super::parameters::ColumnParameters;
 use super::reference::{Accuracy, FieldValues};
 use super::single_mode::PhaseVelocities;
-use modes::{Amplitude, Drive, InitialState, Mode};
 use steady::{Steady, steady};
-
-/// More modes are not summed: beyond, a wave front is still sharp and the sum's tail says so.
-const MOST_MODES: usize = 4096;
-/// Modes below this share of the load are left out.
-const RELATIVE_TAIL: f64 = 1e-18;
+use summation::Snapshot;
 
 /// How the column is set in motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,15 +49,6 @@ pub struct DynamicColumn {
     prepared: Vec<Snapshot>,
 }
 
-/// Modal coefficients of the departure at one time.
-#[derive(Clone, Debug)]
-struct Snapshot {
-    time_factor: f64,
-    amplitudes: Vec<Amplitude>,
-    /// Bound on the omitted modes' pressure and stress, Pa.
-    tail: f64,
-}
-
 /// Both phases' fields at one depth and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DynamicFields {
@@ -87,115 +74,12 @@ impl DynamicColumn {
         if let Start::Ramp { duration } = start {
             positive("duration of the ramp", duration)?;
         }
-        let mut column = Self {
-            parameters: *parameters,
-            start,
-            prepared: Vec::new(),
-        };
+        let mut column = Self { parameters: *parameters, start, prepared: Vec::new() };
         column.prepared = time_factors
             .iter()
             .map(|&time_factor| Ok(column.snapshot(checked_time_factor(time_factor)?)))
             .collect::<Result<_, ExactError>>()?;
         Ok(column)
-    }
-
-    /// Wave number `M_j/H`, 1/m.
-    fn wave_number(&self, mode: usize) -> f64 {
-        eigenvalue(mode) / self.parameters.height
-    }
-
-    /// Drive of a mode under the unit ramp or the step: the load's force on `sin(M_j y/H)`.
-    fn drive(&self, mode: usize) -> Drive {
-        // −q m² b, with y = Σ b_j sin(m_j y).
-        let sign = if mode.is_multiple_of(2) { -2.0 } else { 2.0 };
-        let force = sign * self.parameters.load / self.parameters.height;
-        match self.start {
-            Start::Step => Drive::Step { force },
-            Start::Ramp { duration } => Drive::Ramp {
-                rate: force / duration,
-            },
-            Start::Mode => Drive::Release(self.released()),
-        }
-    }
-
-    /// Coefficients of the slowest mode at the start of [`Start::Mode`].
-    fn released(&self) -> InitialState {
-        let column = &self.parameters;
-        let wave_number = self.wave_number(0);
-        let solid = column.load / (column.oedometric_modulus() * wave_number);
-        let mixture = -column.load / (column.coupling_modulus() * wave_number);
-        let discharge = wave_number * column.hydraulic_conductivity * column.load
-            / column.unit_weight_of_water();
-        let solid_velocity = -column.storage_ratio() * discharge;
-        InitialState {
-            displacement: [
-                solid,
-                (mixture - (1.0 - column.porosity) * solid) / column.porosity,
-            ],
-            velocity: [solid_velocity, solid_velocity + discharge / column.porosity],
-        }
-    }
-
-    /// Coefficients of one mode at a time in s.
-    fn amplitude(&self, mode: usize, time: f64) -> Amplitude {
-        let oscillator = Mode::new(&self.parameters, self.wave_number(mode));
-        let drive = self.drive(mode);
-        let mut amplitude = oscillator.amplitude(drive, time);
-        if let Start::Ramp { duration } = self.start
-            && time > duration
-        {
-            let earlier = oscillator.amplitude(drive, time - duration);
-            amplitude.solid -= earlier.solid;
-            amplitude.mixture -= earlier.mixture;
-            amplitude.solid_rate -= earlier.solid_rate;
-            amplitude.mixture_rate -= earlier.mixture_rate;
-            amplitude.envelope += earlier.envelope;
-        }
-        amplitude
-    }
-
-    /// Sums as many modes as matter at a time factor.
-    fn snapshot(&self, time_factor: f64) -> Snapshot {
-        let time = self.parameters.time(time_factor);
-        let mut snapshot = Snapshot {
-            time_factor,
-            amplitudes: Vec::new(),
-            tail: 0.0,
-        };
-        if self.start == Start::Mode {
-            snapshot.amplitudes.push(self.amplitude(0, time));
-            return snapshot;
-        }
-        if time_factor == 0.0 {
-            return snapshot;
-        }
-        let negligible = RELATIVE_TAIL * self.parameters.load;
-        let mut last = self.amplitude(0, time);
-        snapshot.amplitudes.push(last);
-        for mode in 1..MOST_MODES {
-            let amplitude = self.amplitude(mode, time);
-            snapshot.amplitudes.push(amplitude);
-            // Higher modes decay faster: the tail is below the geometric series of the last ratio.
-            let slowest = mode as f64 / (mode as f64 + 1.0);
-            let ratio = (amplitude.envelope / last.envelope.max(f64::MIN_POSITIVE)).min(slowest);
-            snapshot.tail = amplitude.envelope * ratio / (1.0 - ratio);
-            last = amplitude;
-            if snapshot.tail <= negligible {
-                break;
-            }
-        }
-        snapshot.tail += self.sharp_front(snapshot.amplitudes.len(), time);
-        snapshot
-    }
-
-    /// What very high modes may add, Pa: their attenuation no longer grows with the frequency.
-    fn sharp_front(&self, modes: usize, time: f64) -> f64 {
-        let far = 1_000_000;
-        let front = self.amplitude(far, time).envelope * far as f64;
-        match self.start {
-            Start::Ramp { .. } => front * far as f64 / modes as f64,
-            Start::Step | Start::Mode => front,
-        }
     }
 
     /// The modes at a time factor: the prepared ones, or summed afresh.
@@ -215,12 +99,7 @@ impl DynamicColumn {
         let column = &self.parameters;
         let snapshot = self.modes_at(time_factor);
         let mut state = if time_factor > 0.0 {
-            steady(
-                column,
-                self.start,
-                column.time(time_factor),
-                column.height * (1.0 - zeta),
-            )
+            steady(column, self.start, column.time(time_factor), column.height * (1.0 - zeta))
         } else {
             Steady::default()
         };
@@ -250,9 +129,7 @@ impl DynamicColumn {
     /// Fields of both phases from those of the solid and the mixture.
     fn assemble(&self, state: &Steady) -> DynamicFields {
         let column = &self.parameters;
-        let water = |mixture: f64, solid: f64| {
-            (mixture - (1.0 - column.porosity) * solid) / column.porosity
-        };
+        let water = |mixture: f64, solid: f64| (mixture - (1.0 - column.porosity) * solid) / column.porosity;
         DynamicFields {
             solid: FieldValues {
                 pressure: state.pressure,
@@ -304,10 +181,7 @@ impl DynamicColumn {
     /// When `time_factor` is negative or not finite.
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let snapshot = self.modes_at(checked_time_factor(time_factor)?);
-        Ok(Accuracy {
-            terms: snapshot.amplitudes.len(),
-            tail_bound: snapshot.tail / self.parameters.load,
-        })
+        Ok(Accuracy { terms: snapshot.amplitudes.len(), tail_bound: snapshot.tail / self.parameters.load })
     }
 }
 

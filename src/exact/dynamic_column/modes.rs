@@ -76,8 +76,7 @@ impl Mode {
         let porosity = column.porosity;
         let solid_mass = (1.0 - porosity) * column.grain_density;
         let water_mass = porosity * column.water_density;
-        let drag =
-            porosity * porosity * column.unit_weight_of_water() / column.hydraulic_conductivity;
+        let drag = porosity * porosity * column.unit_weight_of_water() / column.hydraulic_conductivity;
         let (modulus, coupling) = (column.oedometric_modulus(), column.coupling_modulus());
         let squared = wave_number * wave_number;
         let (skeleton, water) = (squared * modulus, squared * coupling);
@@ -131,8 +130,7 @@ impl Mode {
                         + s * d * momentum
                         + (solid * n - water * (1.0 - n)) * (coupling * n))
                         / mass,
-                    (s * s
-                        * (solid * ((1.0 - n) * self.water_mass) + water * (n * self.solid_mass))
+                    (s * s * (solid * ((1.0 - n) * self.water_mass) + water * (n * self.solid_mass))
                         + s * d * momentum
                         + water * (n * skeleton))
                         / mass,
@@ -150,10 +148,8 @@ impl Mode {
                 continue;
             }
             let s = self.roots[k];
-            let others: Complex<f64> = (0..4)
-                .filter(|&other| other != k)
-                .map(|other| s - self.roots[other])
-                .product();
+            let others: Complex<f64> =
+                (0..4).filter(|&other| other != k).map(|other| s - self.roots[other]).product();
             self.add(&mut amplitude, drive, time, s, others.inv());
         }
         if let Some((a, b)) = cluster {
@@ -163,18 +159,9 @@ impl Mode {
     }
 
     /// Adds `weight · N(s) exp(s t)` and what belongs to it.
-    fn add(
-        &self,
-        amplitude: &mut Amplitude,
-        drive: Drive,
-        time: f64,
-        s: Complex<f64>,
-        weight: Complex<f64>,
-    ) {
+    fn add(&self, amplitude: &mut Amplitude, drive: Drive, time: f64, s: Complex<f64>, weight: Complex<f64>) {
         let factor = weight * (s * time).exp();
-        let [solid, mixture] = self
-            .numerators(s, drive)
-            .map(|numerator| numerator * factor);
+        let [solid, mixture] = self.numerators(s, drive).map(|numerator| numerator * factor);
         amplitude.solid += solid.re;
         amplitude.mixture += mixture.re;
         amplitude.solid_rate += (solid * s).re;
@@ -214,119 +201,10 @@ impl Mode {
             let arm = Complex::from_polar(radius, angle);
             let s = centre + arm;
             let (value, _) = quartic::evaluate(&self.characteristic, s);
-            self.add(
-                amplitude,
-                drive,
-                time,
-                s,
-                arm / value / CONTOUR_POINTS as f64,
-            );
+            self.add(amplitude, drive, time, s, arm / value / CONTOUR_POINTS as f64);
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use nalgebra::{Matrix4, Vector4};
-    use proptest::prelude::*;
-
-    /// `exp(A t) x` of the mode's first-order system, by scaling and squaring.
-    fn by_matrix_exponential(mode: &Mode, start: InitialState, time: f64) -> Vector4<f64> {
-        let n = mode.porosity;
-        let squared = mode.wave_number * mode.wave_number;
-        let (ms, mw, d) = (mode.solid_mass, mode.water_mass, mode.drag);
-        let kss = squared * (mode.modulus + mode.coupling * (1.0 - n) * (1.0 - n));
-        let ksw = squared * mode.coupling * n * (1.0 - n);
-        let kww = squared * mode.coupling * n * n;
-        #[rustfmt::skip]
-        let system = Matrix4::new(
-            0.0, 0.0, 1.0, 0.0,
-            0.0, 0.0, 0.0, 1.0,
-            -kss / ms, -ksw / ms, -d / ms, d / ms,
-            -ksw / mw, -kww / mw, d / mw, -d / mw,
-        );
-        let [u, w] = start.displacement;
-        let [v, vw] = start.velocity;
-        (system * time).exp() * Vector4::new(u, w, v, vw)
-    }
-
-    proptest! {
-        #[test]
-        fn free_motion_is_the_matrix_exponential(
-            exponent in -3.0..0.0_f64,
-            stiffness in 1.0..1e3_f64,
-            porosity in 0.1..0.9_f64,
-            periods in 0.0..3.0_f64,
-            u in -1.0..1.0_f64, w in -1.0..1.0_f64, v in -1.0..1.0_f64, vw in -1.0..1.0_f64,
-        ) {
-            // Around the passage from over- to underdamped slow waves.
-            let column = ColumnParameters {
-                porosity,
-                water_bulk_modulus: stiffness * 1e6,
-                hydraulic_conductivity: 10.0_f64.powf(exponent),
-                ..ColumnParameters::default()
-            };
-            let mode = Mode::new(&column, 1.5);
-            let frequency = mode.roots.iter().map(|s| s.im).fold(1.0, f64::max);
-            let start = InitialState {
-                displacement: [u, w],
-                velocity: [v * frequency, vw * frequency],
-            };
-            let time = periods / frequency;
-            let expected = by_matrix_exponential(&mode, start, time);
-            let found = mode.amplitude(Drive::Release(start), time);
-            let mixture = (1.0 - porosity) * expected[0] + porosity * expected[1];
-            prop_assert!((found.solid - expected[0]).abs() < 1e-10);
-            prop_assert!((found.mixture - mixture).abs() < 1e-10);
-            prop_assert!((found.solid_rate - expected[2]).abs() < 1e-10 * frequency);
-        }
-    }
-
-    #[test]
-    fn confluent_roots_are_no_exception() {
-        // Bisect the conductivity onto the double root of the slow waves.
-        let mode = |k: f64| {
-            let column = ColumnParameters {
-                hydraulic_conductivity: k,
-                ..ColumnParameters::default()
-            };
-            Mode::new(&column, 1.5)
-        };
-        let waves = |k: f64| {
-            mode(k)
-                .roots
-                .iter()
-                .filter(|s| s.im > 1e-6 * s.norm())
-                .count()
-        };
-        let (mut over, mut under) = (1e-4, 1.0);
-        assert_eq!((waves(over), waves(under)), (1, 2));
-        while under / over > 1.0 + 1e-15 {
-            let middle = (over * under).sqrt();
-            if middle <= over || middle >= under {
-                break;
-            }
-            if waves(middle) == 1 {
-                over = middle;
-            } else {
-                under = middle;
-            }
-        }
-        let start = InitialState {
-            displacement: [1.0, -0.5],
-            velocity: [10.0, 3.0],
-        };
-        for k in [over, over * (1.0 + 1e-9), over * 1.001, over * 1.01] {
-            let critical = mode(k);
-            assert!(k > over * 1.0001 || critical.cluster().is_some());
-            for time in [1e-4, 1e-3, 1e-2] {
-                let expected = by_matrix_exponential(&critical, start, time);
-                let found = critical.amplitude(Drive::Release(start), time);
-                assert!((found.solid - expected[0]).abs() < 1e-9, "{k} {time}");
-                let mixture = 0.7 * expected[0] + 0.3 * expected[1];
-                assert!((found.mixture - mixture).abs() < 1e-9, "{k} {time}");
-            }
-        }
-    }
-}
+mod tests;

@@ -25,12 +25,7 @@ fn starts(coefficients: &[f64; 5]) -> [Complex<f64>; 4] {
     let mut from = 0;
     while from < 4 {
         let slope = |to: usize| (height[to] - height[from]) / (to - from) as f64;
-        let to = (from + 1..=4).fold(
-            from + 1,
-            |best, to| {
-                if slope(to) >= slope(best) { to } else { best }
-            },
-        );
+        let to = (from + 1..=4).fold(from + 1, |best, to| if slope(to) >= slope(best) { to } else { best });
         let radius = (-slope(to)).exp();
         for k in from..to {
             // Off the axes, or conjugate roots would be approached from a line of symmetry.
@@ -98,10 +93,7 @@ mod tests {
     #[test]
     fn double_roots_have_half_the_digits() {
         let found = roots(&product([[1.0, 2.0], [100.0, 1.0]]));
-        let near = found
-            .iter()
-            .filter(|s| (*s + Complex::new(1.0, 0.0)).norm() < 1e-7)
-            .count();
+        let near = found.iter().filter(|s| (*s + Complex::new(1.0, 0.0)).norm() < 1e-7).count();
         assert_eq!(near, 2);
     }
 

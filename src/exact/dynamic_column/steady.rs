@@ -37,10 +37,8 @@ pub fn steady(column: &ColumnParameters, start: Start, time: f64, y: f64) -> Ste
                 pressure,
             }
         }
-        Start::Step | Start::Ramp { .. } => Steady {
-            solid: strain * y,
-            solid_strain: strain,
-            ..Steady::default()
-        },
+        Start::Step | Start::Ramp { .. } => {
+            Steady { solid: strain * y, solid_strain: strain, ..Steady::default() }
+        }
     }
 }

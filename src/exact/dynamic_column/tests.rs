@@ -6,16 +6,13 @@ use super::*;
 
 /// time factor, height, `u_solid/q`, `u_water/q`, p/q of the seed column.
 fn published() -> impl Iterator<Item = [f64; 5]> {
-    include_str!("../data/dynamic_column.csv")
-        .lines()
-        .skip(1)
-        .map(|line| {
-            let mut row = [0.0; 5];
-            for (value, cell) in row.iter_mut().zip(line.split(',')) {
-                *value = cell.parse().unwrap();
-            }
-            row
-        })
+    include_str!("../data/dynamic_column.csv").lines().skip(1).map(|line| {
+        let mut row = [0.0; 5];
+        for (value, cell) in row.iter_mut().zip(line.split(',')) {
+            *value = cell.parse().unwrap();
+        }
+        row
+    })
 }
 
 #[test]
@@ -74,10 +71,7 @@ fn seed_column_departs_from_terzaghi_as_measured() {
 fn sluggish_columns_become_terzaghis() {
     // k from 1e-6 down: inertia leaves the picture, overdamped slow roots and fast drag roots stay.
     for (hydraulic_conductivity, allowed) in [(1e-6, 1e-9), (1e-8, 1e-13), (1e-10, 5e-15)] {
-        let column = ColumnParameters {
-            hydraulic_conductivity,
-            ..ColumnParameters::default()
-        };
+        let column = ColumnParameters { hydraulic_conductivity, ..ColumnParameters::default() };
         let dynamic = DynamicColumn::new(&column, Start::Step, &[0.05, 0.5]).unwrap();
         let storage = Terzaghi::compressible(&column).unwrap();
         // Before T_v ≈ 0.03 undrained waves still run: their attenuation is as slow as the drainage.
@@ -97,10 +91,7 @@ fn sluggish_columns_become_terzaghis() {
 #[test]
 fn waves_run_in_permeable_columns() {
     // k = 1e-2 at T_v = 0.05: fronts are still sharp, and the reference says so.
-    let column = ColumnParameters {
-        hydraulic_conductivity: 1e-2,
-        ..ColumnParameters::default()
-    };
+    let column = ColumnParameters { hydraulic_conductivity: 1e-2, ..ColumnParameters::default() };
     let dynamic = DynamicColumn::new(&column, Start::Step, &[0.05, 5.0]).unwrap();
     assert!(dynamic.accuracy(0.05).unwrap().tail_bound > 1e-6);
     assert!(dynamic.accuracy(5.0).unwrap().tail_bound < 1e-16);
@@ -143,14 +134,8 @@ fn velocities_are_the_displacements_rates() {
         let slope = |f: fn(&DynamicFields) -> f64| (f(&after) - f(&before)) / (2.0 * step);
         let solid = slope(|f| f.solid.displacement);
         let water = slope(|f| f.water_displacement);
-        assert!(
-            (solid / now.velocities.solid - 1.0).abs() < 1e-5,
-            "{start:?}"
-        );
-        assert!(
-            (water / now.velocities.water - 1.0).abs() < 1e-5,
-            "{start:?}"
-        );
+        assert!((solid / now.velocities.solid - 1.0).abs() < 1e-5, "{start:?}");
+        assert!((water / now.velocities.water - 1.0).abs() < 1e-5, "{start:?}");
     }
 }
 
@@ -178,11 +163,7 @@ fn ramp_is_the_mean_of_steps() {
         let fields = ramp.fields(seed.time_factor(time), zeta).unwrap();
         let pressure = mean(time, zeta, |f| f.pressure);
         let displacement = mean(time, zeta, |f| f.displacement);
-        assert!(
-            (fields.pressure - pressure).abs() < 1e-3,
-            "{} {pressure} at {time}",
-            fields.pressure
-        );
+        assert!((fields.pressure - pressure).abs() < 1e-3, "{} {pressure} at {time}", fields.pressure);
         assert!((fields.displacement / displacement - 1.0).abs() < 1e-3);
     }
     // After the waves have died the mean needs no small times and is exact.
@@ -206,11 +187,7 @@ fn ramp_is_continuous_at_its_end() {
 
 #[test]
 fn released_mode_starts_like_the_single_mode() {
-    let seed = ColumnParameters {
-        height: 2.0,
-        load: 50.0,
-        ..ColumnParameters::default()
-    };
+    let seed = ColumnParameters { height: 2.0, load: 50.0, ..ColumnParameters::default() };
     let dynamic = DynamicColumn::new(&seed, Start::Mode, &[]).unwrap();
     let mode = SingleMode::compressible(&seed).unwrap();
     for zeta in [0.0, 0.3, 1.0] {
@@ -218,11 +195,7 @@ fn released_mode_starts_like_the_single_mode() {
         let b = mode.fields(0.0, zeta).unwrap();
         assert!((a.solid.pressure - b.pressure).abs() < 1e-9);
         assert!((a.solid.effective_stress - b.effective_stress).abs() < 1e-9);
-        assert!(
-            a.solid.displacement.abs() < 1e-10 * seed.final_settlement(),
-            "{:e}",
-            a.solid.displacement
-        );
+        assert!(a.solid.displacement.abs() < 1e-10 * seed.final_settlement(), "{:e}", a.solid.displacement);
         let velocities = mode.velocities(0.0, zeta).unwrap();
         let scale = mode.velocities(0.0, 0.0).unwrap().water;
         assert!((a.velocities.solid - velocities.solid).abs() < 1e-9 * scale);
@@ -240,10 +213,7 @@ fn critically_damped_modes_are_no_exception() {
     let mut last: Option<f64> = None;
     for i in 0..=400 {
         let hydraulic_conductivity = 10.0_f64.powf(-2.2 + 1.2 * f64::from(i) / 400.0);
-        let column = ColumnParameters {
-            hydraulic_conductivity,
-            ..ColumnParameters::default()
-        };
+        let column = ColumnParameters { hydraulic_conductivity, ..ColumnParameters::default() };
         let mode = DynamicColumn::new(&column, Start::Mode, &[]).unwrap();
         let time_factor = column.time_factor(2.0e-3);
         let pressure = mode.fields(time_factor, 0.7).unwrap().pressure;

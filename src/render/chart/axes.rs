@@ -4,13 +4,7 @@ use super::clip::Frame;
 use super::layout::{Edge, LABEL, Layout, NOTE, SMALL, TITLE};
 use super::palette::{FRAME, MAJOR, MINOR, QUIET, TEXT};
 
-const PLAIN: Type = Type {
-    size: SMALL,
-    ink: TEXT,
-    bold: false,
-    hold: Hold::Start,
-    upright: false,
-};
+const PLAIN: Type = Type { size: SMALL, ink: TEXT, bold: false, hold: Hold::Start, upright: false };
 const LINE: f64 = 1.3;
 
 /// Thin lines behind the data.
@@ -45,30 +39,12 @@ pub(super) fn draw_axes(canvas: &mut Canvas, layout: &Layout) {
             let length = if t.label.is_some() { 5.0 } else { 3.0 };
             b.line(&[(x, plot.bottom), (x, plot.bottom + length)], FRAME, 1.0)?;
             if let Some(label) = &t.label {
-                b.text(
-                    label,
-                    (x, plot.bottom + 18.0),
-                    Type {
-                        hold: Hold::Middle,
-                        ..PLAIN
-                    },
-                )?;
+                b.text(label, (x, plot.bottom + 18.0), Type { hold: Hold::Middle, ..PLAIN })?;
             }
         }
         for (i, words) in layout.x.words.iter().enumerate() {
-            let at = (
-                f64::midpoint(plot.left, plot.right),
-                plot.bottom + 36.0 + i as f64 * LABEL * LINE,
-            );
-            b.text(
-                words,
-                at,
-                Type {
-                    size: LABEL,
-                    hold: Hold::Middle,
-                    ..PLAIN
-                },
-            )?;
+            let at = (f64::midpoint(plot.left, plot.right), plot.bottom + 36.0 + i as f64 * LABEL * LINE);
+            b.text(words, at, Type { size: LABEL, hold: Hold::Middle, ..PLAIN })?;
         }
         for t in &layout.y.ticks {
             let Ok(y) = layout.y.ruler.px(t.value) else {
@@ -77,56 +53,23 @@ pub(super) fn draw_axes(canvas: &mut Canvas, layout: &Layout) {
             let length = if t.label.is_some() { 5.0 } else { 3.0 };
             b.line(&[(plot.left - length, y), (plot.left, y)], FRAME, 1.0)?;
             if let Some(label) = &t.label {
-                b.text(
-                    label,
-                    (plot.left - 8.0, y + 4.2),
-                    Type {
-                        hold: Hold::End,
-                        ..PLAIN
-                    },
-                )?;
+                b.text(label, (plot.left - 8.0, y + 4.2), Type { hold: Hold::End, ..PLAIN })?;
             }
         }
         upright(b, &layout.y, layout.left + 11.0, &plot)?;
         let mut y = layout.left + TITLE * 0.85;
         for line in &layout.title {
-            b.text(
-                line,
-                (layout.left, y),
-                Type {
-                    size: TITLE,
-                    bold: true,
-                    ..PLAIN
-                },
-            )?;
+            b.text(line, (layout.left, y), Type { size: TITLE, bold: true, ..PLAIN })?;
             y += TITLE * LINE;
         }
         y -= TITLE - SMALL;
         for line in &layout.subtitle {
-            b.text(
-                line,
-                (layout.left, y),
-                Type {
-                    ink: QUIET,
-                    ..PLAIN
-                },
-            )?;
+            b.text(line, (layout.left, y), Type { ink: QUIET, ..PLAIN })?;
             y += SMALL * LINE;
         }
         for (i, line) in layout.notes.iter().enumerate() {
-            let at = (
-                layout.left,
-                layout.notes_top + NOTE + i as f64 * NOTE * LINE,
-            );
-            b.text(
-                line,
-                at,
-                Type {
-                    size: NOTE,
-                    ink: QUIET,
-                    ..PLAIN
-                },
-            )?;
+            let at = (layout.left, layout.notes_top + NOTE + i as f64 * NOTE * LINE);
+            b.text(line, at, Type { size: NOTE, ink: QUIET, ..PLAIN })?;
         }
         Ok(())
     });
@@ -139,16 +82,9 @@ pub(super) fn draw_bar(canvas: &mut Canvas, layout: &Layout, colour: impl Fn(f64
     canvas.group(&[("shape-rendering", "crispEdges")], |b| {
         let steps = 120;
         for i in 0..steps {
-            let (low, high) = (
-                f64::from(i) / f64::from(steps),
-                f64::from(i + 1) / f64::from(steps),
-            );
+            let (low, high) = (f64::from(i) / f64::from(steps), f64::from(i + 1) / f64::from(steps));
             let y = |share: f64| frame.bottom - share * frame.height();
-            b.rect(
-                (frame.left, y(high)),
-                (frame.right, y(low)),
-                colour(f64::midpoint(low, high)),
-            )?;
+            b.rect((frame.left, y(high)), (frame.right, y(low)), colour(f64::midpoint(low, high)))?;
         }
         Ok(())
     });
@@ -167,37 +103,15 @@ pub(super) fn draw_bar(canvas: &mut Canvas, layout: &Layout, colour: impl Fn(f64
     });
 }
 
-fn upright(
-    b: &super::canvas::Brush<'_, '_>,
-    edge: &Edge,
-    x: f64,
-    frame: &Frame,
-) -> Result<(), String> {
-    let look = Type {
-        size: LABEL,
-        hold: Hold::Middle,
-        upright: true,
-        ..PLAIN
-    };
+fn upright(b: &super::canvas::Brush<'_, '_>, edge: &Edge, x: f64, frame: &Frame) -> Result<(), String> {
+    let look = Type { size: LABEL, hold: Hold::Middle, upright: true, ..PLAIN };
     edge.words.iter().enumerate().try_for_each(|(i, words)| {
-        b.text(
-            words,
-            (
-                x + i as f64 * LABEL * LINE,
-                f64::midpoint(frame.top, frame.bottom),
-            ),
-            look,
-        )
+        b.text(words, (x + i as f64 * LABEL * LINE, f64::midpoint(frame.top, frame.bottom)), look)
     })
 }
 
 fn outline(canvas: &mut Canvas, f: &Frame) {
-    let corners = [
-        (f.left, f.top),
-        (f.right, f.top),
-        (f.right, f.bottom),
-        (f.left, f.bottom),
-        (f.left, f.top),
-    ];
+    let corners =
+        [(f.left, f.top), (f.right, f.top), (f.right, f.bottom), (f.left, f.bottom), (f.left, f.top)];
     canvas.group(&[], |b| b.line(&corners, FRAME, 1.0));
 }

@@ -8,8 +8,7 @@ use crate::render::RenderError;
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
 use plotters::prelude::{
-    Circle, DrawingArea, IntoDrawingArea, IntoFont, PathElement, Polygon, RGBAColor, Rectangle,
-    Text,
+    Circle, DrawingArea, IntoDrawingArea, IntoFont, PathElement, Polygon, RGBAColor, Rectangle, Text,
 };
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, FontTransform, ShapeStyle, TextStyle};
@@ -17,8 +16,7 @@ use std::fmt::Write as _;
 
 /// Drawing units a pixel.
 const UNIT: f64 = 10.0;
-const FONTS: &str =
-    "'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
+const FONTS: &str = "'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 
 /// A colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,11 +35,7 @@ impl From<Rgb> for Ink {
 impl Ink {
     fn style(self, width: f64, filled: bool) -> ShapeStyle {
         let Self(Rgb(r, g, b), opacity) = self;
-        ShapeStyle {
-            color: RGBAColor(r, g, b, opacity),
-            filled,
-            stroke_width: units(width).unsigned_abs(),
-        }
+        ShapeStyle { color: RGBAColor(r, g, b, opacity), filled, stroke_width: units(width).unsigned_abs() }
     }
 }
 
@@ -83,19 +77,11 @@ pub(super) struct Canvas {
 impl Canvas {
     pub fn new(width: f64, height: f64) -> Self {
         let size = (units(width).unsigned_abs(), units(height).unsigned_abs());
-        Self {
-            size,
-            body: String::new(),
-            failure: None,
-        }
+        Self { size, body: String::new(), failure: None }
     }
 
     /// Draws a group with attributes of its own. The first failure is kept for [`Canvas::finish`].
-    pub fn group(
-        &mut self,
-        attributes: &[(&str, &str)],
-        draw: impl FnOnce(&Brush<'_, '_>) -> Drawn,
-    ) {
+    pub fn group(&mut self, attributes: &[(&str, &str)], draw: impl FnOnce(&Brush<'_, '_>) -> Drawn) {
         let mut text = String::new();
         let drawn = {
             let sheet = SVGBackend::with_string(&mut text, self.size).into_drawing_area();
@@ -125,10 +111,7 @@ impl Canvas {
     /// The finished SVG, named for those who cannot see it.
     pub fn finish(self, title: &str, description: &str) -> Result<String, RenderError> {
         if let Some(reason) = self.failure {
-            return Err(RenderError::Draw {
-                title: title.to_owned(),
-                reason,
-            });
+            return Err(RenderError::Draw { title: title.to_owned(), reason });
         }
         let (w, h) = self.size;
         let (title, description) = (escape(&clean(title)), escape(&clean(description)));
@@ -146,24 +129,17 @@ impl Canvas {
 impl Brush<'_, '_> {
     pub fn line(&self, points: &[Px], ink: impl Into<Ink>, width: f64) -> Drawn {
         self.0
-            .draw(&PathElement::new(
-                spots(points),
-                ink.into().style(width, false),
-            ))
+            .draw(&PathElement::new(spots(points), ink.into().style(width, false)))
             .map_err(|e| e.to_string())
     }
 
     pub fn polygon(&self, points: &[Px], ink: impl Into<Ink>) -> Drawn {
-        self.0
-            .draw(&Polygon::new(spots(points), ink.into().style(0.0, true)))
-            .map_err(|e| e.to_string())
+        self.0.draw(&Polygon::new(spots(points), ink.into().style(0.0, true))).map_err(|e| e.to_string())
     }
 
     pub fn rect(&self, corner: Px, opposite: Px, ink: impl Into<Ink>) -> Drawn {
         let corners = [spot(corner), spot(opposite)];
-        self.0
-            .draw(&Rectangle::new(corners, ink.into().style(0.0, true)))
-            .map_err(|e| e.to_string())
+        self.0.draw(&Rectangle::new(corners, ink.into().style(0.0, true))).map_err(|e| e.to_string())
     }
 
     pub fn disc(&self, centre: Px, radius: f64, ink: impl Into<Ink>) -> Drawn {
@@ -175,49 +151,29 @@ impl Brush<'_, '_> {
     }
 
     fn circle(&self, centre: Px, radius: f64, style: ShapeStyle) -> Drawn {
-        self.0
-            .draw(&Circle::new(spot(centre), units(radius), style))
-            .map_err(|e| e.to_string())
+        self.0.draw(&Circle::new(spot(centre), units(radius), style)).map_err(|e| e.to_string())
     }
 
     /// Text whose base line runs through `at`.
     pub fn text(&self, text: &str, at: Px, look: Type) -> Drawn {
         let Rgb(r, g, b) = look.ink;
-        let weight = if look.bold {
-            FontStyle::Bold
-        } else {
-            FontStyle::Normal
-        };
-        let turn = if look.upright {
-            FontTransform::Rotate270
-        } else {
-            FontTransform::None
-        };
+        let weight = if look.bold { FontStyle::Bold } else { FontStyle::Normal };
+        let turn = if look.upright { FontTransform::Rotate270 } else { FontTransform::None };
         let hold = match look.hold {
             Hold::Start => HPos::Left,
             Hold::Middle => HPos::Center,
             Hold::End => HPos::Right,
         };
         // The library divides by 1.24 what it is given.
-        let font = ("sans-serif", look.size * UNIT * 1.24)
-            .into_font()
-            .style(weight)
-            .transform(turn);
+        let font = ("sans-serif", look.size * UNIT * 1.24).into_font().style(weight).transform(turn);
         let ink = RGBAColor(r, g, b, 1.0);
-        let style = TextStyle::from(font)
-            .color(&ink)
-            .pos(Pos::new(hold, VPos::Bottom));
-        self.0
-            .draw(&Text::new(marked(text), spot(at), style))
-            .map_err(|e| e.to_string())
+        let style = TextStyle::from(font).color(&ink).pos(Pos::new(hold, VPos::Bottom));
+        self.0.draw(&Text::new(marked(text), spot(at), style)).map_err(|e| e.to_string())
     }
 }
 
 /// Pixels in drawing units. Whatever is drawn has been clipped to the canvas before.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "the cast saturates, and pixels are small"
-)]
+#[expect(clippy::cast_possible_truncation, reason = "the cast saturates, and pixels are small")]
 fn units(pixels: f64) -> i32 {
     (pixels * UNIT).round() as i32
 }
@@ -235,29 +191,19 @@ fn spots(points: &[Px]) -> Vec<(i32, i32)> {
 
 /// The text as spelled, without what no document may hold.
 fn clean(text: &str) -> String {
-    text.chars()
-        .filter(|c| !c.is_control() && !('\u{e000}'..='\u{f8ff}').contains(c))
-        .collect()
+    text.chars().filter(|c| !c.is_control() && !('\u{e000}'..='\u{f8ff}').contains(c)).collect()
 }
 
 fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const PLAIN: Type = Type {
-        size: 12.0,
-        ink: Rgb(0, 0, 0),
-        bold: false,
-        hold: Hold::Start,
-        upright: false,
-    };
+    const PLAIN: Type =
+        Type { size: 12.0, ink: Rgb(0, 0, 0), bold: false, hold: Hold::Start, upright: false };
 
     fn text(words: &str) -> String {
         let mut canvas = Canvas::new(100.0, 50.0);
@@ -268,14 +214,8 @@ mod tests {
     #[test]
     fn text_is_escaped_and_scripts_become_spans() {
         let svg = text("<b> T_v & 10⁻³ s");
-        assert!(
-            svg.contains("&lt;b&gt; T<tspan dy=\"0.28em\" font-size=\"0.72em\">v</tspan>"),
-            "{svg}"
-        );
-        assert!(
-            svg.contains("<tspan dy=\"-0.202em\">\u{a0}&amp; 10</tspan>"),
-            "{svg}"
-        );
+        assert!(svg.contains("&lt;b&gt; T<tspan dy=\"0.28em\" font-size=\"0.72em\">v</tspan>"), "{svg}");
+        assert!(svg.contains("<tspan dy=\"-0.202em\">\u{a0}&amp; 10</tspan>"), "{svg}");
         assert!(svg.contains(r#"font-size="120""#), "{svg}");
         assert!(svg.contains("<title>a &lt;title&gt;</title>"), "{svg}");
     }

@@ -32,20 +32,12 @@ impl Frame {
 
     /// The same frame, `by` wider on every side.
     pub fn grown(&self, by: f64) -> Self {
-        Self {
-            left: self.left - by,
-            top: self.top - by,
-            right: self.right + by,
-            bottom: self.bottom + by,
-        }
+        Self { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
     }
 
     /// The nearest place inside.
     pub fn nearest(&self, (x, y): Px) -> Px {
-        (
-            x.clamp(self.left, self.right),
-            y.clamp(self.top, self.bottom),
-        )
+        (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
     }
 }
 
@@ -75,12 +67,8 @@ pub(super) fn pieces(points: &[Option<Px>], frame: &Frame) -> Vec<Vec<Px>> {
 fn segment(a: Px, b: Px, frame: &Frame) -> Option<(Px, Px, bool)> {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-    let sides = [
-        (-dx, a.0 - frame.left),
-        (dx, frame.right - a.0),
-        (-dy, a.1 - frame.top),
-        (dy, frame.bottom - a.1),
-    ];
+    let sides =
+        [(-dx, a.0 - frame.left), (dx, frame.right - a.0), (-dy, a.1 - frame.top), (dy, frame.bottom - a.1)];
     for (outwards, distance) in sides {
         if outwards == 0.0 {
             if distance < 0.0 {
@@ -104,40 +92,21 @@ fn segment(a: Px, b: Px, frame: &Frame) -> Option<(Px, Px, bool)> {
 mod tests {
     use super::*;
 
-    const FRAME: Frame = Frame {
-        left: 0.0,
-        top: 0.0,
-        right: 10.0,
-        bottom: 10.0,
-    };
+    const FRAME: Frame = Frame { left: 0.0, top: 0.0, right: 10.0, bottom: 10.0 };
 
     #[test]
     fn a_curve_that_leaves_and_returns_is_in_two_pieces() {
-        let curve = [
-            Some((5.0, 5.0)),
-            Some((5.0, 15.0)),
-            Some((8.0, 15.0)),
-            Some((8.0, 5.0)),
-            Some((9.0, 5.0)),
-        ];
+        let curve =
+            [Some((5.0, 5.0)), Some((5.0, 15.0)), Some((8.0, 15.0)), Some((8.0, 5.0)), Some((9.0, 5.0))];
         assert_eq!(
             pieces(&curve, &FRAME),
-            vec![
-                vec![(5.0, 5.0), (5.0, 10.0)],
-                vec![(8.0, 10.0), (8.0, 5.0), (9.0, 5.0)]
-            ]
+            vec![vec![(5.0, 5.0), (5.0, 10.0)], vec![(8.0, 10.0), (8.0, 5.0), (9.0, 5.0)]]
         );
     }
 
     #[test]
     fn a_missing_point_breaks_the_curve() {
-        let curve = [
-            Some((1.0, 1.0)),
-            Some((2.0, 2.0)),
-            None,
-            Some((3.0, 3.0)),
-            Some((4.0, 4.0)),
-        ];
+        let curve = [Some((1.0, 1.0)), Some((2.0, 2.0)), None, Some((3.0, 3.0)), Some((4.0, 4.0))];
         assert_eq!(pieces(&curve, &FRAME).len(), 2);
         assert!(pieces(&[Some((1.0, 1.0)), None], &FRAME).is_empty());
     }
@@ -147,10 +116,7 @@ mod tests {
         for far in [16.0, 1e9, 1e150] {
             let curve = [Some((-far, 5.0)), Some((far, 5.0))];
             let pieces = pieces(&curve, &FRAME);
-            assert!(
-                pieces.iter().flatten().all(|&p| FRAME.holds(p)),
-                "{pieces:?}"
-            );
+            assert!(pieces.iter().flatten().all(|&p| FRAME.holds(p)), "{pieces:?}");
         }
         let curve = [Some((-16.0, 5.0)), Some((16.0, 5.0))];
         assert_eq!(pieces(&curve, &FRAME), vec![vec![(0.0, 5.0), (10.0, 5.0)]]);

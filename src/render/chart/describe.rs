@@ -73,11 +73,7 @@ pub struct Size {
 
 impl Default for Size {
     fn default() -> Self {
-        Self {
-            width: 760.0,
-            plot_height: 360.0,
-            equal_units: false,
-        }
+        Self { width: 760.0, plot_height: 360.0, equal_units: false }
     }
 }
 
@@ -99,21 +95,12 @@ pub struct Axis {
 impl Axis {
     /// A linear axis that shows all of the data.
     pub fn linear(label: impl Into<String>) -> Self {
-        Self {
-            label: label.into(),
-            scale: Scale::Linear,
-            range: Range::Auto,
-            inverted: false,
-            ticks: None,
-        }
+        Self { label: label.into(), scale: Scale::Linear, range: Range::Auto, inverted: false, ticks: None }
     }
 
     /// A logarithmic axis that shows all of the positive data.
     pub fn log10(label: impl Into<String>) -> Self {
-        Self {
-            scale: Scale::Log10,
-            ..Self::linear(label)
-        }
+        Self { scale: Scale::Log10, ..Self::linear(label) }
     }
 
     /// The same axis, the other way round.
@@ -198,10 +185,7 @@ impl Series {
 
     /// The curve that the others are held against.
     pub fn theory(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self {
-            style: Style::Theory,
-            ..Self::new(name, points)
-        }
+        Self { style: Style::Theory, ..Self::new(name, points) }
     }
 
     /// The same series in another style.

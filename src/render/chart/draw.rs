@@ -16,11 +16,7 @@ use crate::render::RenderError;
 /// above all where no line tells of it.
 fn radius(place: usize, joined: bool) -> f64 {
     let step = place.min(3) as f64;
-    if joined {
-        4.6 - 0.25 * step
-    } else {
-        5.4 - 0.85 * step
-    }
+    if joined { 4.6 - 0.25 * step } else { 5.4 - 0.85 * step }
 }
 
 impl Chart {
@@ -42,32 +38,22 @@ impl Chart {
         let places = place(self, &layout.x.ruler, &layout.y.ruler, &layout.plot).points;
 
         let mut canvas = Canvas::new(layout.width, layout.height);
-        canvas.group(&[], |b| {
-            b.rect((0.0, 0.0), (layout.width, layout.height), WHITE)
-        });
+        canvas.group(&[], |b| b.rect((0.0, 0.0), (layout.width, layout.height), WHITE));
         self.draw_data(&mut canvas, &layout, &looks, &places);
         draw_axes(&mut canvas, &layout);
         self.draw_front(&mut canvas, &layout, &looks, &places);
         match layout.side {
             Side::None => {}
             Side::Right => legend.draw_column(&mut canvas, layout.legend),
-            Side::Below => legend.draw_rows(
-                &mut canvas,
-                layout.legend,
-                layout.width - layout.plot.left - layout.left,
-            ),
+            Side::Below => {
+                legend.draw_rows(&mut canvas, layout.legend, layout.width - layout.plot.left - layout.left)
+            }
         }
         canvas.finish(&self.title, &self.description())
     }
 
     /// Field, grid, bands and lines.
-    fn draw_data(
-        &self,
-        canvas: &mut Canvas,
-        layout: &Layout,
-        looks: &[Look],
-        places: &[Vec<Option<Px>>],
-    ) {
+    fn draw_data(&self, canvas: &mut Canvas, layout: &Layout, looks: &[Look], places: &[Vec<Option<Px>>]) {
         if let Some(field) = self.field.as_ref().filter(|f| f.shape().is_some()) {
             let span = field.span();
             self.draw_cells(canvas, layout);
@@ -91,12 +77,7 @@ impl Chart {
                         stroke(
                             canvas,
                             &pieces,
-                            Look {
-                                colour: WHITE,
-                                dash: None,
-                                width: look.width + 20,
-                                ..*look
-                            },
+                            Look { colour: WHITE, dash: None, width: look.width + 20, ..*look },
                         );
                     }
                     stroke(canvas, &pieces, *look);
@@ -106,13 +87,7 @@ impl Chart {
     }
 
     /// Everything above the frame: bars, markers, rings, words.
-    fn draw_front(
-        &self,
-        canvas: &mut Canvas,
-        layout: &Layout,
-        looks: &[Look],
-        places: &[Vec<Option<Px>>],
-    ) {
+    fn draw_front(&self, canvas: &mut Canvas, layout: &Layout, looks: &[Look], places: &[Vec<Option<Px>>]) {
         let inside = layout.plot.grown(0.5);
         let mut space = Space::within(layout.plot.grown(-2.0));
         let mut kinds: Vec<Look> = Vec::new();
@@ -122,13 +97,7 @@ impl Chart {
                     space.add_line(&piece, i);
                 }
             }
-            let shown = || {
-                places
-                    .iter()
-                    .flatten()
-                    .copied()
-                    .filter(|&p| inside.holds(p))
-            };
+            let shown = || places.iter().flatten().copied().filter(|&p| inside.holds(p));
             draw_bars(canvas, series, *look, layout);
             if let Some(slot) = look.marker {
                 let place = kinds.iter().position(|k| k == look).unwrap_or_else(|| {
@@ -136,53 +105,29 @@ impl Chart {
                     kinds.len() - 1
                 });
                 let size = radius(place, look.line);
-                canvas.group(&[], |b| {
-                    shown().try_for_each(|p| marker(b, p, slot, size, look.colour))
-                });
+                canvas.group(&[], |b| shown().try_for_each(|p| marker(b, p, slot, size, look.colour)));
                 shown().for_each(|p| space.add_marker(p, i));
             }
         }
         for (series, places) in self.series.iter().zip(places) {
-            let ringed = series
-                .ringed
-                .iter()
-                .filter_map(|&i| *places.get(i)?)
-                .filter(|&p| inside.holds(p));
+            let ringed = series.ringed.iter().filter_map(|&i| *places.get(i)?).filter(|&p| inside.holds(p));
             let ringed: Vec<Px> = ringed.collect();
-            canvas.group(&[], |b| {
-                ringed.iter().try_for_each(|&p| b.ring(p, 7.6, DARK, 1.3))
-            });
+            canvas.group(&[], |b| ringed.iter().try_for_each(|&p| b.ring(p, 7.6, DARK, 1.3)));
         }
         if places.iter().flatten().flatten().next().is_none()
             && self.field.as_ref().is_none_or(|f| f.shape().is_none())
             && self.bands.iter().all(|b| b.points.is_empty())
         {
-            let look = Type {
-                size: 22.0,
-                ink: QUIET,
-                bold: false,
-                hold: Hold::Middle,
-                upright: false,
-            };
+            let look = Type { size: 22.0, ink: QUIET, bold: false, hold: Hold::Middle, upright: false };
             let f = layout.plot;
-            let centre = (
-                f64::midpoint(f.left, f.right),
-                f64::midpoint(f.top, f.bottom) + 7.0,
-            );
+            let centre = (f64::midpoint(f.left, f.right), f64::midpoint(f.top, f.bottom) + 7.0);
             canvas.group(&[], |b| b.text("no data", centre, look));
         }
         draw_triangles(canvas, &mut space, self, layout, places);
         draw_rules(canvas, &mut space, self, layout);
         for (i, ((series, look), places)) in self.series.iter().zip(looks).zip(places).enumerate() {
             if let Some(tag) = &series.tag {
-                draw_tag(
-                    canvas,
-                    &mut space,
-                    tag,
-                    &lines(series, places, &layout.plot),
-                    *look,
-                    i,
-                );
+                draw_tag(canvas, &mut space, tag, &lines(series, places, &layout.plot), *look, i);
             }
         }
         draw_annotations(canvas, &mut space, self, layout);
@@ -190,23 +135,11 @@ impl Chart {
 
     /// What the figure shows, for those who cannot see it.
     fn description(&self) -> String {
-        let mut names: Vec<&str> = self
-            .series
-            .iter()
-            .map(|s| s.name.as_str())
-            .filter(|n| !n.is_empty())
-            .collect();
+        let mut names: Vec<&str> =
+            self.series.iter().map(|s| s.name.as_str()).filter(|n| !n.is_empty()).collect();
         names.dedup();
-        let field = self
-            .field
-            .as_ref()
-            .map(|f| format!("{} in colour. ", f.label))
-            .unwrap_or_default();
-        let what = if names.is_empty() {
-            String::new()
-        } else {
-            format!(": {}", names.join(", "))
-        };
+        let field = self.field.as_ref().map(|f| format!("{} in colour. ", f.label)).unwrap_or_default();
+        let what = if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) };
         format!("{field}{} against {}{what}.", self.y.label, self.x.label)
     }
 }
@@ -230,21 +163,15 @@ fn lines(series: &Series, places: &[Option<Px>], plot: &Frame) -> Vec<Vec<Px>> {
 fn draw_bars(canvas: &mut Canvas, series: &Series, look: Look, layout: &Layout) {
     canvas.group(&[], |b| {
         for (&(at, _), &(low, high)) in series.points.iter().zip(&series.bars) {
-            let (Ok(x), Ok(low), Ok(high)) = (
-                layout.x.ruler.px(at),
-                layout.y.ruler.px(low),
-                layout.y.ruler.px(high),
-            ) else {
+            let (Ok(x), Ok(low), Ok(high)) =
+                (layout.x.ruler.px(at), layout.y.ruler.px(low), layout.y.ruler.px(high))
+            else {
                 continue;
             };
             for piece in pieces(&[Some((x, low)), Some((x, high))], &layout.plot) {
                 b.line(&piece, look.colour, 1.2)?;
                 for end in piece {
-                    b.line(
-                        &[(end.0 - 3.5, end.1), (end.0 + 3.5, end.1)],
-                        look.colour,
-                        1.2,
-                    )?;
+                    b.line(&[(end.0 - 3.5, end.1), (end.0 + 3.5, end.1)], look.colour, 1.2)?;
                 }
             }
         }

@@ -74,11 +74,7 @@ impl Field {
         match (self.colours, self.range, self.scale) {
             (Colours::Diverging(middle), Range::Auto, Scale::Linear) if middle.is_finite() => {
                 let reach = (span.high - middle).abs().max((middle - span.low).abs());
-                Span {
-                    low: middle - reach,
-                    high: middle + reach,
-                    ..span
-                }
+                Span { low: middle - reach, high: middle + reach, ..span }
             }
             _ => span,
         }
@@ -94,11 +90,7 @@ impl Field {
             Colours::Sequential => mix(&SEQUENTIAL, share),
             Colours::Diverging(middle) => {
                 let centre = span.share(middle);
-                let centre = if centre.is_finite() {
-                    centre.clamp(0.0, 1.0)
-                } else {
-                    0.5
-                };
+                let centre = if centre.is_finite() { centre.clamp(0.0, 1.0) } else { 0.5 };
                 let side = if share >= centre {
                     0.5 + 0.5 * (share - centre) / (1.0 - centre).max(1e-12)
                 } else {
@@ -111,10 +103,7 @@ impl Field {
 
     /// Cells without a colour of their own.
     pub(super) fn missing(&self) -> usize {
-        self.values
-            .iter()
-            .filter(|&&v| drawable(v, self.scale).is_err())
-            .count()
+        self.values.iter().filter(|&&v| drawable(v, self.scale).is_err()).count()
     }
 }
 
@@ -123,18 +112,10 @@ fn mix(colours: &[Rgb; 9], share: f64) -> Rgb {
     let place = (share * 240.0).round() / 30.0;
     let below = place.floor().min(7.0);
     let t = place - below;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "0 to 7"
-    )]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 7")]
     let i = below as usize;
     let (Rgb(r0, g0, b0), Rgb(r1, g1, b1)) = (colours[i], colours[i + 1]);
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "0 to 255"
-    )]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
     let part = |a: u8, b: u8| (f64::from(a) + t * (f64::from(b) - f64::from(a))).round() as u8;
     Rgb(part(r0, r1), part(g0, g1), part(b0, b1))
 }
@@ -157,10 +138,7 @@ mod tests {
 
     #[test]
     fn a_field_of_the_wrong_shape_has_none() {
-        assert_eq!(
-            field(vec![1.0, 2.0], Colours::Sequential).shape(),
-            Some((2, 1))
-        );
+        assert_eq!(field(vec![1.0, 2.0], Colours::Sequential).shape(), Some((2, 1)));
         assert_eq!(field(vec![1.0], Colours::Sequential).shape(), None);
     }
 

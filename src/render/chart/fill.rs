@@ -14,17 +14,10 @@ impl Chart {
                 .filter_map(|&(at, low, high)| {
                     let x = layout.x.ruler.px(at).ok()?;
                     let (low, high) = (layout.y.ruler.px(low).ok()?, layout.y.ruler.px(high).ok()?);
-                    Some((
-                        layout.plot.nearest((x, low)),
-                        layout.plot.nearest((x, high)),
-                    ))
+                    Some((layout.plot.nearest((x, low)), layout.plot.nearest((x, high))))
                 })
                 .collect();
-            let outline: Vec<Px> = ends
-                .iter()
-                .map(|e| e.0)
-                .chain(ends.iter().rev().map(|e| e.1))
-                .collect();
+            let outline: Vec<Px> = ends.iter().map(|e| e.0).chain(ends.iter().rev().map(|e| e.1)).collect();
             if outline.len() > 2 {
                 canvas.group(&[], |b| b.polygon(&outline, Ink(colour(band.colour), 0.22)));
             }
@@ -39,23 +32,16 @@ impl Chart {
         let span = field.span();
         let px = |ruler: &Ruler, edges: &[f64]| -> Vec<Option<f64>> {
             let (low, high) = (ruler.from.min(ruler.to), ruler.from.max(ruler.to));
-            edges
-                .iter()
-                .map(|&e| ruler.px(e).ok().map(|p| p.clamp(low, high)))
-                .collect()
+            edges.iter().map(|&e| ruler.px(e).ok().map(|p| p.clamp(low, high))).collect()
         };
-        let (xs, ys) = (
-            px(&layout.x.ruler, &field.x_edges),
-            px(&layout.y.ruler, &field.y_edges),
-        );
+        let (xs, ys) = (px(&layout.x.ruler, &field.x_edges), px(&layout.y.ruler, &field.y_edges));
         canvas.group(&[("shape-rendering", "crispEdges")], |b| {
             for row in 0..rows {
                 let mut column = 0;
                 while column < columns {
                     let ink = field.colour(&span, field.values[row * columns + column]);
                     let start = column;
-                    while column < columns
-                        && field.colour(&span, field.values[row * columns + column]) == ink
+                    while column < columns && field.colour(&span, field.values[row * columns + column]) == ink
                     {
                         column += 1;
                     }

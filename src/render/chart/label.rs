@@ -31,10 +31,7 @@ pub(super) fn decimals(digit: f64) -> usize {
     usize::try_from(whole(-digit)).unwrap_or(0).min(15)
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "the cast saturates, and exponents are small"
-)]
+#[expect(clippy::cast_possible_truncation, reason = "the cast saturates, and exponents are small")]
 pub(super) fn whole(x: f64) -> i32 {
     x.round() as i32
 }

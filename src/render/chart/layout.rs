@@ -72,25 +72,16 @@ fn spans(chart: &Chart) -> (Span, Span) {
     }
     // A field fills its axes.
     let margin = if chart.field.is_some() { 0.0 } else { 0.04 };
-    let span = |axis: &Axis, values: Vec<f64>| {
-        Span::over(axis.scale, axis.range, values.into_iter(), margin)
-    };
+    let span = |axis: &Axis, values: Vec<f64>| Span::over(axis.scale, axis.range, values.into_iter(), margin);
     (span(&chart.x, xs), span(&chart.y, ys))
 }
 
 /// Width and plot height, within reason.
 fn outer(chart: &Chart) -> (f64, f64) {
     let within = |v: f64, low: f64, other: f64| {
-        if v.is_finite() {
-            v.clamp(low, 4000.0)
-        } else {
-            other
-        }
+        if v.is_finite() { v.clamp(low, 4000.0) } else { other }
     };
-    (
-        within(chart.size.width, 240.0, 760.0),
-        within(chart.size.plot_height, 80.0, 360.0),
-    )
+    (within(chart.size.width, 240.0, 760.0), within(chart.size.plot_height, 80.0, 360.0))
 }
 
 /// Lays the figure out. `notes` stand below it.
@@ -115,52 +106,31 @@ pub(super) fn lay_out(chart: &Chart, legend: &Legend, notes: &[String]) -> Layou
         _ => PAD + 14.0,
     };
     let (plot_width, plot_height) = shape(chart, (xs, ys), (wide - left - right).max(60.0), tall);
-    let plot = Frame {
-        left,
-        top,
-        right: left + plot_width,
-        bottom: top + plot_height,
-    };
+    let plot = Frame { left, top, right: left + plot_width, bottom: top + plot_height };
 
     let x_words = wrap(&chart.x.label, plot_width.max(160.0) / LABEL);
     let x = edge(&chart.x, xs, (plot.left, plot.right), true, x_words);
     let below = plot.bottom + 24.0 + x.words.len() as f64 * LABEL * LINE;
     let (legend_at, after) = match side {
         Side::None => ((0.0, 0.0), below),
-        Side::Right => (
-            (plot.right + 18.0, top - 4.0),
-            below.max(top - 4.0 + legend.column_height()),
-        ),
-        Side::Below => (
-            (left, below + 8.0),
-            below + 8.0 + legend.rows_height(wide - left - PAD),
-        ),
+        Side::Right => ((plot.right + 18.0, top - 4.0), below.max(top - 4.0 + legend.column_height())),
+        Side::Below => ((left, below + 8.0), below + 8.0 + legend.rows_height(wide - left - PAD)),
     };
     let notes: Vec<String> = notes.iter().flat_map(|n| wrap(n, inner / NOTE)).collect();
     let notes_top = after + if notes.is_empty() { 0.0 } else { 6.0 };
     let height = notes_top + notes.len() as f64 * NOTE * LINE + PAD * 0.8;
     let bar = bar_edge(chart, top, plot_height, tall).map(|edge| {
-        let frame = Frame {
-            left: plot.right + 18.0,
-            right: plot.right + 34.0,
-            ..plot
-        };
+        let frame = Frame { left: plot.right + 18.0, right: plot.right + 34.0, ..plot };
         Bar { frame, edge }
     });
     let y = y_edge(plot_height);
     // A slender body leaves room that nobody needs.
     let lines = [(TITLE * 1.05, &title), (SMALL, &subtitle), (NOTE, &notes)];
-    let words = lines
-        .into_iter()
-        .flat_map(|(font, lines)| lines.iter().map(move |l| font * width(l)));
+    let words = lines.into_iter().flat_map(|(font, lines)| lines.iter().map(move |l| font * width(l)));
     let needed = words.fold(plot.right + right - PAD, |most, w| most.max(PAD + w)) + PAD;
     let slender = chart.size.equal_units && side != Side::Below;
     Layout {
-        width: if slender {
-            needed.min(wide).ceil()
-        } else {
-            wide
-        },
+        width: if slender { needed.min(wide).ceil() } else { wide },
         height: height.ceil(),
         plot,
         x,
@@ -188,17 +158,8 @@ fn side(legend: &Legend, wide: f64, tall: f64, has_bar: bool) -> Side {
 
 fn bar_edge(chart: &Chart, top: f64, height: f64, tall: f64) -> Option<Edge> {
     let field = chart.field.as_ref().filter(|f| f.shape().is_some())?;
-    let axis = Axis {
-        scale: field.scale,
-        ..Axis::linear("")
-    };
-    Some(edge(
-        &axis,
-        field.span(),
-        (top + height, top),
-        false,
-        wrap(&field.label, tall / LABEL),
-    ))
+    let axis = Axis { scale: field.scale, ..Axis::linear("") };
+    Some(edge(&axis, field.span(), (top + height, top), false, wrap(&field.label, tall / LABEL)))
 }
 
 /// Room for the labels and the words of an upright axis.
@@ -215,37 +176,12 @@ fn shape(chart: &Chart, (xs, ys): (Span, Span), room: f64, tall: f64) -> (f64, f
     }
     let (dx, dy) = (xs.high - xs.low, ys.high - ys.low);
     let unit = (room / dx).min(tall / dy);
-    if unit.is_finite() && unit > 0.0 {
-        ((unit * dx).max(30.0), (unit * dy).max(30.0))
-    } else {
-        (room, tall)
-    }
+    if unit.is_finite() && unit > 0.0 { ((unit * dx).max(30.0), (unit * dy).max(30.0)) } else { (room, tall) }
 }
 
-fn edge(
-    axis: &Axis,
-    span: Span,
-    (low, high): (f64, f64),
-    beside: bool,
-    words: Vec<String>,
-) -> Edge {
-    let (from, to) = if axis.inverted {
-        (high, low)
-    } else {
-        (low, high)
-    };
+fn edge(axis: &Axis, span: Span, (low, high): (f64, f64), beside: bool, words: Vec<String>) -> Edge {
+    let (from, to) = if axis.inverted { (high, low) } else { (low, high) };
     let ruler = Ruler { span, from, to };
-    let ticks = ticks(
-        &ruler,
-        axis.ticks.as_deref(),
-        Room {
-            font: SMALL,
-            beside,
-        },
-    );
-    Edge {
-        ruler,
-        ticks,
-        words,
-    }
+    let ticks = ticks(&ruler, axis.ticks.as_deref(), Room { font: SMALL, beside });
+    Edge { ruler, ticks, words }
 }

@@ -32,13 +32,10 @@ pub(super) fn looks(chart: &Chart) -> Vec<Look> {
         .map(|series| {
             let theory = series.style == Style::Theory;
             let seen = if theory { &mut theories } else { &mut names };
-            let place = seen
-                .iter()
-                .position(|n| *n == series.name && !n.is_empty())
-                .unwrap_or_else(|| {
-                    seen.push(&series.name);
-                    seen.len() - 1
-                });
+            let place = seen.iter().position(|n| *n == series.name && !n.is_empty()).unwrap_or_else(|| {
+                seen.push(&series.name);
+                seen.len() - 1
+            });
             let slot = series.colour.unwrap_or(place);
             Look {
                 colour: if theory { DARK } else { colour(slot) },
@@ -76,11 +73,7 @@ impl Legend {
         };
         for ((series, look), &count) in chart.series.iter().zip(looks).zip(drawn) {
             let empty = count == 0 && !series.name.is_empty();
-            let text = if empty {
-                format!("{} (no data)", series.name)
-            } else {
-                series.name.clone()
-            };
+            let text = if empty { format!("{} (no data)", series.name) } else { series.name.clone() };
             enter(Sample::Series(*look), text);
         }
         for band in &chart.bands {
@@ -89,10 +82,7 @@ impl Legend {
         if let Some(text) = &chart.ring {
             enter(Sample::Ring, text.clone());
         }
-        let entries = seen
-            .into_iter()
-            .map(|(s, text)| (s, wrap(&text, 22.0)))
-            .collect();
+        let entries = seen.into_iter().map(|(s, text)| (s, wrap(&text, 22.0))).collect();
         Self { entries }
     }
 
@@ -106,17 +96,11 @@ impl Legend {
 
     /// Width of the legend as one column.
     pub fn column_width(&self) -> f64 {
-        self.entries
-            .iter()
-            .map(|(_, lines)| Self::entry_width(lines))
-            .fold(0.0, f64::max)
+        self.entries.iter().map(|(_, lines)| Self::entry_width(lines)).fold(0.0, f64::max)
     }
 
     pub fn column_height(&self) -> f64 {
-        self.entries
-            .iter()
-            .map(|(_, lines)| entry_height(lines))
-            .sum()
+        self.entries.iter().map(|(_, lines)| entry_height(lines)).sum()
     }
 
     /// Places of the entries within `room` pixels, in columns if there is room for two, and the
@@ -127,11 +111,7 @@ impl Legend {
         let (mut x, mut y, mut tall) = (0.0, 0.0, 0.0_f64);
         let mut places = Vec::new();
         for (_, lines) in &self.entries {
-            let wide = if even {
-                column
-            } else {
-                Self::entry_width(lines)
-            };
+            let wide = if even { column } else { Self::entry_width(lines) };
             if x > 0.0 && x + wide > room {
                 (x, y, tall) = (0.0, y + tall, 0.0);
             }
@@ -180,34 +160,16 @@ fn draw_entry(canvas: &mut Canvas, sample: Sample, lines: &[String], at: Px) {
         }
         Sample::Band(colour) => canvas.group(&[], |b| {
             let ink = super::canvas::Ink(colour, 0.22);
-            b.rect(
-                (at.0 + 2.0, middle - 6.0),
-                (at.0 + SAMPLE - 2.0, middle + 6.0),
-                ink,
-            )
+            b.rect((at.0 + 2.0, middle - 6.0), (at.0 + SAMPLE - 2.0, middle + 6.0), ink)
         }),
         Sample::Ring => canvas.group(&[], |b| b.ring(centre, 7.0, DARK, 1.3)),
     }
-    let look = Type {
-        size: FONT,
-        ink: TEXT,
-        bold: false,
-        hold: Hold::Start,
-        upright: false,
-    };
+    let look = Type { size: FONT, ink: TEXT, bold: false, hold: Hold::Start, upright: false };
     let quiet = Type { ink: QUIET, ..look };
     canvas.group(&[], |b| {
         for (i, line) in lines.iter().enumerate() {
-            let look = if line.ends_with("(no data)") {
-                quiet
-            } else {
-                look
-            };
-            b.text(
-                line,
-                (at.0 + SAMPLE + GAP, middle + 4.2 + 14.0 * i as f64),
-                look,
-            )?;
+            let look = if line.ends_with("(no data)") { quiet } else { look };
+            b.text(line, (at.0 + SAMPLE + GAP, middle + 4.2 + 14.0 * i as f64), look)?;
         }
         Ok(())
     });
@@ -218,9 +180,7 @@ pub(super) fn stroke(canvas: &mut Canvas, pieces: &[Vec<Px>], look: Look) {
     let mut attributes = vec![("stroke-linejoin", "round")];
     attributes.extend(look.dash.map(|d| ("stroke-dasharray", d)));
     canvas.group(&attributes, |b| {
-        pieces.iter().try_for_each(|piece| {
-            b.line(&thinned(piece), look.colour, f64::from(look.width) / 10.0)
-        })
+        pieces.iter().try_for_each(|piece| b.line(&thinned(piece), look.colour, f64::from(look.width) / 10.0))
     });
 }
 
@@ -228,9 +188,7 @@ pub(super) fn stroke(canvas: &mut Canvas, pieces: &[Vec<Px>], look: Look) {
 fn thinned(piece: &[Px]) -> Vec<Px> {
     let mut out: Vec<Px> = Vec::new();
     for (i, &p) in piece.iter().enumerate() {
-        let near = out
-            .last()
-            .is_some_and(|q| (p.0 - q.0).hypot(p.1 - q.1) < 0.4);
+        let near = out.last().is_some_and(|q| (p.0 - q.0).hypot(p.1 - q.1) < 0.4);
         if !near || i + 1 == piece.len() {
             out.push(p);
         }
@@ -256,9 +214,7 @@ mod tests {
         assert_eq!(looks[1], looks[4]);
         assert_eq!(looks[0], looks[3]);
         assert_ne!(looks[1], looks[2]);
-        assert!(
-            looks[0].colour == DARK && looks[5].colour == DARK && looks[0].dash != looks[5].dash
-        );
+        assert!(looks[0].colour == DARK && looks[5].colour == DARK && looks[0].dash != looks[5].dash);
         assert_eq!(Legend::of(&chart, &looks, &[1; 6]).entries.len(), 4);
     }
 

@@ -14,13 +14,10 @@ pub(super) struct Placed {
 pub(super) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &Frame) -> Placed {
     let mut lost: Vec<(Reason, usize, Vec<&str>)> = Vec::new();
     let mut lose = |reason: Reason, name| {
-        let i = lost
-            .iter()
-            .position(|(r, ..)| *r == reason)
-            .unwrap_or_else(|| {
-                lost.push((reason, 0, Vec::new()));
-                lost.len() - 1
-            });
+        let i = lost.iter().position(|(r, ..)| *r == reason).unwrap_or_else(|| {
+            lost.push((reason, 0, Vec::new()));
+            lost.len() - 1
+        });
         lost[i].1 += 1;
         if !lost[i].2.contains(&name) {
             lost[i].2.push(name);
@@ -49,19 +46,12 @@ pub(super) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &Frame) -> Place
     }
     lost.sort_by_key(|(reason, ..)| *reason);
     let mut notes = sentence(&lost).into_iter().collect::<Vec<_>>();
-    notes.extend(
-        chart
-            .field
-            .as_ref()
-            .and_then(|field| match (field.shape(), field.missing()) {
-                (None, _) => {
-                    Some("The field's edges and values do not belong together.".to_owned())
-                }
-                (_, 0) => None,
-                (_, 1) => Some("1 cell without a value is grey.".to_owned()),
-                (_, n) => Some(format!("{n} cells without a value are grey.")),
-            }),
-    );
+    notes.extend(chart.field.as_ref().and_then(|field| match (field.shape(), field.missing()) {
+        (None, _) => Some("The field's edges and values do not belong together.".to_owned()),
+        (_, 0) => None,
+        (_, 1) => Some("1 cell without a value is grey.".to_owned()),
+        (_, n) => Some(format!("{n} cells without a value are grey.")),
+    }));
     Placed { points, notes }
 }
 

@@ -27,7 +27,6 @@ pub(in crate::render) mod gallery;
 mod tests;
 
 pub use describe::{
-    Annotation, Axis, Band, Chart, Direction, Place, Range, Rule, Scale, Series, Size,
-    SlopeTriangle, Style,
+    Annotation, Axis, Band, Chart, Direction, Place, Range, Rule, Scale, Series, Size, SlopeTriangle, Style,
 };
 pub use field::{Colours, Field};

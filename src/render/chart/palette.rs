@@ -89,18 +89,10 @@ pub(super) fn marker(
 ) -> Result<(), String> {
     let shape = outline(slot % 7);
     let hollow = (slot / 7) % 2 == 1;
-    let scaled = |r: f64| -> Vec<Px> {
-        shape
-            .iter()
-            .map(|(x, y)| (at.0 + r * x, at.1 + r * y))
-            .collect()
-    };
+    let scaled = |r: f64| -> Vec<Px> { shape.iter().map(|(x, y)| (at.0 + r * x, at.1 + r * y)).collect() };
     // A thin white edge keeps neighbours apart.
-    let layers: [(f64, Ink); 3] = [
-        (radius + 0.7, Ink(WHITE, 0.9)),
-        (radius, ink.into()),
-        (radius * 0.55, WHITE.into()),
-    ];
+    let layers: [(f64, Ink); 3] =
+        [(radius + 0.7, Ink(WHITE, 0.9)), (radius, ink.into()), (radius * 0.55, WHITE.into())];
     for (r, ink) in layers.into_iter().take(if hollow { 3 } else { 2 }) {
         if shape.is_empty() {
             brush.disc(at, r, ink)?;

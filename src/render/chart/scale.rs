@@ -53,23 +53,16 @@ impl Span {
         {
             return Self { kind, low, high };
         }
-        let ends = values.filter_map(|v| drawable(v, kind).ok()).fold(
-            None,
-            |ends: Option<(f64, f64)>, v| {
-                Some(ends.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
-            },
-        );
+        let ends = values.filter_map(|v| drawable(v, kind).ok()).fold(None, |ends: Option<(f64, f64)>, v| {
+            Some(ends.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
+        });
         let (low, high) = match (ends, kind) {
             (None, Kind::Linear) => (0.0, 1.0),
             (None, Kind::Log10) => (0.1, 10.0),
             (Some((low, high)), Kind::Linear) => widen(low, high, margin),
             (Some((low, high)), Kind::Log10) => {
                 let (a, b) = (low.log10(), high.log10());
-                let room = (margin * (b - a)).max(if b - a < 0.3 && margin > 0.0 {
-                    0.15
-                } else {
-                    0.0
-                });
+                let room = (margin * (b - a)).max(if b - a < 0.3 && margin > 0.0 { 0.15 } else { 0.0 });
                 let room = if a == b { room.max(0.15) } else { room };
                 (10f64.powf(a - room), 10f64.powf(b + room))
             }
@@ -99,11 +92,7 @@ fn widen(low: f64, high: f64, margin: f64) -> (f64, f64) {
     };
     (
         if round(low) { low } else { low - margin * span },
-        if round(high) {
-            high
-        } else {
-            high + margin * span
-        },
+        if round(high) { high } else { high + margin * span },
     )
 }
 
@@ -183,16 +172,8 @@ mod tests {
 
     #[test]
     fn values_map_linearly_or_by_their_logarithm() {
-        let span = Span {
-            kind: Kind::Log10,
-            low: 1e-3,
-            high: 1e1,
-        };
-        let ruler = Ruler {
-            span,
-            from: 400.0,
-            to: 0.0,
-        };
+        let span = Span { kind: Kind::Log10, low: 1e-3, high: 1e1 };
+        let ruler = Ruler { span, from: 400.0, to: 0.0 };
         assert!((ruler.px(1e-1).unwrap_or(0.0) - 200.0).abs() < 1e-9);
         assert_eq!(ruler.px(-1.0), Err(Reason::NotPositive));
         assert!(!ruler.holds(ruler.px(1e2).unwrap_or(0.0)));

@@ -18,10 +18,7 @@ pub(super) struct Offer {
 
 impl Space {
     pub fn within(frame: Frame) -> Self {
-        Self {
-            frame: Some(frame),
-            obstacles: Vec::new(),
-        }
+        Self { frame: Some(frame), obstacles: Vec::new() }
     }
 
     /// A marker of the series `owner`.
@@ -46,18 +43,13 @@ impl Space {
     pub fn best(&self, offers: &[Offer], owner: Option<usize>) -> Option<usize> {
         let cost = |offer: &Offer| {
             let outside = self.frame.is_some_and(|f| {
-                let corners = [
-                    (offer.room.left, offer.room.top),
-                    (offer.room.right, offer.room.bottom),
-                ];
+                let corners = [(offer.room.left, offer.room.top), (offer.room.right, offer.room.bottom)];
                 !corners.iter().all(|&c| f.holds(c))
             });
             let met: f64 = self
                 .obstacles
                 .iter()
-                .filter(|(room, weight, o)| {
-                    !(owner == Some(*o) && *weight < 2.0) && room.meets(&offer.room)
-                })
+                .filter(|(room, weight, o)| !(owner == Some(*o) && *weight < 2.0) && room.meets(&offer.room))
                 .map(|(_, weight, _)| weight)
                 .sum();
             met + offer.penalty + if outside { 1e4 } else { 0.0 }
@@ -98,17 +90,9 @@ mod tests {
 
     #[test]
     fn the_emptier_place_wins_and_the_frame_is_kept() {
-        let mut space = Space::within(Frame {
-            left: 0.0,
-            top: 0.0,
-            right: 100.0,
-            bottom: 100.0,
-        });
+        let mut space = Space::within(Frame { left: 0.0, top: 0.0, right: 100.0, bottom: 100.0 });
         space.add_line(&[(0.0, 50.0), (100.0, 50.0)], 0);
-        let offer = |x, y| Offer {
-            room: around((x, y), 10.0, 5.0),
-            penalty: 0.0,
-        };
+        let offer = |x, y| Offer { room: around((x, y), 10.0, 5.0), penalty: 0.0 };
         let offers = [offer(50.0, 50.0), offer(50.0, 20.0), offer(99.0, 20.0)];
         assert_eq!(space.best(&offers, None), Some(1));
         assert_eq!(space.best(&offers, Some(0)), Some(0));

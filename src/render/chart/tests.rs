@@ -23,33 +23,15 @@ fn figures_are_named_scalable_and_self_contained() {
     for (name, chart) in gallery() {
         let text = svg(&chart);
         assert!(text.starts_with("<svg xmlns="), "{name}");
-        for wanted in [
-            "viewBox=\"0 0 ",
-            "role=\"img\"",
-            "aria-label=\"",
-            "<title>",
-            "<desc>",
-        ] {
+        for wanted in ["viewBox=\"0 0 ", "role=\"img\"", "aria-label=\"", "<title>", "<desc>"] {
             assert!(text.contains(wanted), "{name}: {wanted}");
         }
         for unwanted in ["href", "url(", "<script", "NaN", "inf", " id=\""] {
             assert!(!text.contains(unwanted), "{name}: {unwanted}");
         }
-        assert_eq!(
-            text.matches("<g").count(),
-            text.matches("</g>").count(),
-            "{name}"
-        );
-        assert_eq!(
-            text.matches("<text").count(),
-            text.matches("</text>").count(),
-            "{name}"
-        );
-        assert_eq!(
-            text.matches("<tspan").count(),
-            text.matches("</tspan>").count(),
-            "{name}"
-        );
+        assert_eq!(text.matches("<g").count(), text.matches("</g>").count(), "{name}");
+        assert_eq!(text.matches("<text").count(), text.matches("</text>").count(), "{name}");
+        assert_eq!(text.matches("<tspan").count(), text.matches("</tspan>").count(), "{name}");
     }
 }
 
@@ -57,9 +39,7 @@ fn figures_are_named_scalable_and_self_contained() {
 fn what_is_not_drawn_is_counted() {
     let text = svg(&convergence());
     assert!(
-        text.contains(
-            "2 values not drawn: 1 not finite (MPM); 1 not positive on a logarithmic axis (MPM)."
-        ),
+        text.contains("2 values not drawn: 1 not finite (MPM); 1 not positive on a logarithmic axis (MPM)."),
         "{text}"
     );
     let text = svg(&nothing());
@@ -71,62 +51,31 @@ fn what_is_not_drawn_is_counted() {
 #[test]
 fn points_outside_fixed_axes_are_counted_and_lines_cut() {
     let series = Series::new("a", vec![(0.0, 0.0), (1.0, 1e300), (0.5, 1e9)]);
-    let chart =
-        Chart::new("t", Axis::linear("x"), Axis::linear("y").between(0.0, 1.0)).with(series);
+    let chart = Chart::new("t", Axis::linear("x"), Axis::linear("y").between(0.0, 1.0)).with(series);
     let text = svg(&chart);
-    assert!(
-        text.contains("1 beyond 10^±150 (a); 1 outside the axes (a)"),
-        "{text}"
-    );
+    assert!(text.contains("1 beyond 10^±150 (a); 1 outside the axes (a)"), "{text}");
 }
 
 #[test]
 fn hostile_descriptions_still_make_a_figure() {
     let mut chart = convergence();
     chart.title = "a < b & \"c\" \u{0} \u{e000}".into();
-    chart.size = Size {
-        width: f64::NAN,
-        plot_height: -5.0,
-        equal_units: true,
-    };
+    chart.size = Size { width: f64::NAN, plot_height: -5.0, equal_units: true };
     chart.x.ticks = Some(vec![f64::NAN, -1.0, 0.05]);
-    chart.triangles.push(SlopeTriangle {
-        slope: f64::NAN,
-        place: Place::At(0.1, 0.1),
-    });
-    chart.triangles.push(SlopeTriangle {
-        slope: 0.0,
-        place: Place::At(-0.1, f64::NAN),
-    });
-    chart.rules.push(Rule {
-        axis: Direction::X,
-        at: -1.0,
-        label: "x".into(),
-    });
-    chart.annotations.push(Annotation {
-        at: (f64::NAN, 1.0),
-        text: "?".into(),
-    });
+    chart.triangles.push(SlopeTriangle { slope: f64::NAN, place: Place::At(0.1, 0.1) });
+    chart.triangles.push(SlopeTriangle { slope: 0.0, place: Place::At(-0.1, f64::NAN) });
+    chart.rules.push(Rule { axis: Direction::X, at: -1.0, label: "x".into() });
+    chart.annotations.push(Annotation { at: (f64::NAN, 1.0), text: "?".into() });
     chart.series[0].ringed = vec![999];
     chart.series[0].bars = vec![(f64::NAN, 0.0); 9];
-    chart
-        .series
-        .push(Series::new("one", vec![(0.1, 0.1)]).tag("only"));
+    chart.series.push(Series::new("one", vec![(0.1, 0.1)]).tag("only"));
     chart.series.push(Series::new("", Vec::new()).tag("none"));
-    chart.bands.push(Band {
-        name: String::new(),
-        points: vec![(f64::NAN, 0.0, -1.0)],
-        colour: 99,
-    });
+    chart.bands.push(Band { name: String::new(), points: vec![(f64::NAN, 0.0, -1.0)], colour: 99 });
     let text = svg(&chart);
     assert!(text.contains("a &lt; b &amp; &quot;c&quot;"), "{text}");
     let mut field = pressure_field();
     for values in [Vec::new(), vec![f64::NAN; 24 * 24], vec![1.0; 24 * 24]] {
-        field
-            .field
-            .as_mut()
-            .unwrap_or_else(|| panic!("no field"))
-            .values = values;
+        field.field.as_mut().unwrap_or_else(|| panic!("no field")).values = values;
         assert!(svg(&field).ends_with("</svg>\n"));
     }
 }
@@ -138,9 +87,7 @@ fn attribute(tag: &str, name: &str) -> Option<String> {
 }
 
 fn number(tag: &str, name: &str) -> f64 {
-    attribute(tag, name)
-        .and_then(|v| v.parse().ok())
-        .unwrap_or_else(|| panic!("{name} in {tag}"))
+    attribute(tag, name).and_then(|v| v.parse().ok()).unwrap_or_else(|| panic!("{name} in {tag}"))
 }
 
 fn without_tags(text: &str) -> String {
@@ -161,15 +108,11 @@ fn without_tags(text: &str) -> String {
 fn no_text_is_clipped() {
     for (name, chart) in gallery() {
         let text = svg(&chart);
-        let (wide, high) = (
-            10.0 * number(&text, "width"),
-            10.0 * number(&text, "height"),
-        );
+        let (wide, high) = (10.0 * number(&text, "width"), 10.0 * number(&text, "height"));
         let mut seen = 0;
         for line in text.lines().filter(|l| l.contains("<text ")) {
             let (tag, words) = line.split_once('>').unwrap_or_else(|| panic!("{line}"));
-            let length =
-                number(tag, "font-size") * crate::render::script::width(&without_tags(words));
+            let length = number(tag, "font-size") * crate::render::script::width(&without_tags(words));
             let share = match attribute(tag, "text-anchor").as_deref() {
                 Some("middle") => 0.5,
                 Some("end") => 1.0,
@@ -177,10 +120,7 @@ fn no_text_is_clipped() {
             };
             let (x, y) = (number(tag, "x"), number(tag, "y"));
             if tag.contains("rotate(270") {
-                assert!(
-                    y - length / 2.0 > 0.0 && y + length / 2.0 < high,
-                    "{name}: {line}"
-                );
+                assert!(y - length / 2.0 > 0.0 && y + length / 2.0 < high, "{name}: {line}");
             } else {
                 // The estimate of a bold title is tight, and the widths are upper bounds.
                 assert!(x - share * length > -10.0, "{name}: {line}");
@@ -199,15 +139,9 @@ fn theory_lies_above_other_lines_and_beneath_markers() {
         .with(Series::theory("exact", vec![(0.0, 0.0), (1.0, 1.0)]))
         .with(Series::new("a", vec![(0.0, 0.1), (1.0, 0.9)]));
     let text = svg(&chart);
-    let line = |colour: &str| {
-        text.find(&format!("<polyline fill=\"none\" stroke=\"{colour}\""))
-            .unwrap_or(0)
-    };
+    let line = |colour: &str| text.find(&format!("<polyline fill=\"none\" stroke=\"{colour}\"")).unwrap_or(0);
     let marker = text.find("<circle").unwrap_or(0);
-    assert!(
-        0 < line("#0072B2") && line("#0072B2") < line("#1A1A1A") && line("#1A1A1A") < marker,
-        "{text}"
-    );
+    assert!(0 < line("#0072B2") && line("#0072B2") < line("#1A1A1A") && line("#1A1A1A") < marker, "{text}");
 }
 
 #[test]
@@ -216,15 +150,10 @@ fn depth_runs_downwards() {
         let points = vec![(0.0, 0.0), (1.0, 1.0)];
         let series = Series::new("a", points).style(Style::Markers);
         let text = svg(&Chart::new("t", Axis::linear("x"), axis).with(series));
-        let discs = text
-            .lines()
-            .filter(|l| l.starts_with("<circle") && l.contains("#0072B2"));
+        let discs = text.lines().filter(|l| l.starts_with("<circle") && l.contains("#0072B2"));
         discs.map(|l| number(l, "cy")).collect::<Vec<_>>()
     };
-    let (up, down) = (
-        rows(Axis::linear("y")),
-        rows(Axis::linear("depth").inverted()),
-    );
+    let (up, down) = (rows(Axis::linear("y")), rows(Axis::linear("depth").inverted()));
     assert!(up[0] > up[1], "{up:?}");
     assert!(down[0] < down[1], "{down:?}");
 }
@@ -238,9 +167,7 @@ fn the_first_row_of_a_field_is_the_lowest() {
     }
     let text = svg(&chart);
     let cell = |colour: &str| {
-        let line = text
-            .lines()
-            .find(|l| l.starts_with("<rect") && l.contains(colour));
+        let line = text.lines().find(|l| l.starts_with("<rect") && l.contains(colour));
         number(line.unwrap_or_else(|| panic!("{colour}")), "y")
     };
     assert!(cell("#440154") > cell("#FDE725"));

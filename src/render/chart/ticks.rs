@@ -30,34 +30,20 @@ pub(super) fn ticks(ruler: &Ruler, wanted: Option<&[f64]>, room: Room) -> Vec<Ti
 }
 
 fn given(span: &Span, values: &[f64]) -> Vec<Tick> {
-    let usable: Vec<f64> = values
-        .iter()
-        .copied()
-        .filter(|&v| drawable(v, span.kind).is_ok())
-        .collect();
-    let plain = usable
-        .iter()
-        .all(|v| *v == 0.0 || (1e-4..1e5).contains(&v.abs()));
+    let usable: Vec<f64> = values.iter().copied().filter(|&v| drawable(v, span.kind).is_ok()).collect();
+    let plain = usable.iter().all(|v| *v == 0.0 || (1e-4..1e5).contains(&v.abs()));
     usable
         .iter()
         .map(|&value| Tick {
             value,
-            label: Some(if plain {
-                minus(format!("{value}"))
-            } else {
-                power(value, None)
-            }),
+            label: Some(if plain { minus(format!("{value}")) } else { power(value, None) }),
         })
         .collect()
 }
 
 fn automatic(ruler: &Ruler, room: Room) -> Vec<Tick> {
     let span = ruler.span;
-    let apart = if room.beside {
-        4.8 * room.font
-    } else {
-        3.4 * room.font
-    };
+    let apart = if room.beside { 4.8 * room.font } else { 3.4 * room.font };
     let most = (ruler.length() / apart).clamp(2.0, 12.0);
     match span.kind {
         Kind::Linear => even(&span, most),
@@ -70,10 +56,8 @@ fn automatic(ruler: &Ruler, room: Room) -> Vec<Tick> {
 fn even(span: &Span, most: f64) -> Vec<Tick> {
     let rough = (span.high - span.low) / most;
     let base = rough.log10().floor();
-    let mantissa = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|m| m * 10f64.powf(base) >= rough * 0.999)
-        .unwrap_or(10.0);
+    let mantissa =
+        [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * 10f64.powf(base) >= rough * 0.999).unwrap_or(10.0);
     let step = mantissa * 10f64.powf(base);
     let first = (span.low / step - 1e-9).ceil();
     let count = ((span.high / step + 1e-9).floor() - first).clamp(0.0, 40.0);
@@ -84,21 +68,14 @@ fn even(span: &Span, most: f64) -> Vec<Tick> {
     while i <= count {
         let whole = (first + i) * mantissa;
         // Dividing by a whole power of ten keeps 0.3 from being 0.30000000000000004.
-        let value = if base < 0.0 {
-            whole / 10f64.powf(-base)
-        } else {
-            whole * 10f64.powf(base)
-        };
+        let value = if base < 0.0 { whole / 10f64.powf(-base) } else { whole * 10f64.powf(base) };
         let label = if largest >= 1e5 || step < 0.999e-4 {
             power(value, Some(digits))
         } else {
             let decimals = decimals(digits);
             minus(format!("{value:.decimals$}"))
         };
-        out.push(Tick {
-            value,
-            label: Some(label),
-        });
+        out.push(Tick { value, label: Some(label) });
         i += 1.0;
     }
     out
@@ -130,28 +107,19 @@ fn decades(span: &Span, most: f64) -> Vec<Tick> {
             }
             let value = value_of(m, n);
             let named = (m == 1 && n.rem_euclid(stride) == 0) || between.contains(&m);
-            out.push(Tick {
-                value,
-                label: named.then(|| label(m, n)),
-            });
+            out.push(Tick { value, label: named.then(|| label(m, n)) });
         }
     }
     out
 }
 
 fn value_of(m: i32, n: i32) -> f64 {
-    if n < 0 {
-        f64::from(m) / 10f64.powi(-n)
-    } else {
-        f64::from(m) * 10f64.powi(n)
-    }
+    if n < 0 { f64::from(m) / 10f64.powi(-n) } else { f64::from(m) * 10f64.powi(n) }
 }
 
 /// Drops the labels that would touch a neighbour; powers of ten hold their place first.
 fn thin(ticks: &mut [Tick], ruler: &Ruler, room: Room) {
-    let mut order: Vec<usize> = (0..ticks.len())
-        .filter(|&i| ticks[i].label.is_some())
-        .collect();
+    let mut order: Vec<usize> = (0..ticks.len()).filter(|&i| ticks[i].label.is_some()).collect();
     if ruler.span.kind == Kind::Log10 {
         order.sort_by_key(|&i| !is_power(ticks[i].value));
     }
@@ -161,15 +129,8 @@ fn thin(ticks: &mut [Tick], ruler: &Ruler, room: Room) {
             continue;
         };
         let text = ticks[i].label.as_deref().unwrap_or_default();
-        let half = if room.beside {
-            0.5 * room.font * width(text) + 4.0
-        } else {
-            0.62 * room.font
-        };
-        if taken
-            .iter()
-            .any(|(from, to)| px - half < *to && px + half > *from)
-        {
+        let half = if room.beside { 0.5 * room.font * width(text) + 4.0 } else { 0.62 * room.font };
+        if taken.iter().any(|(from, to)| px - half < *to && px + half > *from) {
             ticks[i].label = None;
         } else {
             taken.push((px - half, px + half));
@@ -187,27 +148,14 @@ mod tests {
     use super::*;
 
     fn labels(kind: Kind, low: f64, high: f64, length: f64, beside: bool) -> Vec<String> {
-        let ruler = Ruler {
-            span: Span { kind, low, high },
-            from: 0.0,
-            to: length,
-        };
-        ticks(&ruler, None, Room { font: 12.0, beside })
-            .into_iter()
-            .filter_map(|t| t.label)
-            .collect()
+        let ruler = Ruler { span: Span { kind, low, high }, from: 0.0, to: length };
+        ticks(&ruler, None, Room { font: 12.0, beside }).into_iter().filter_map(|t| t.label).collect()
     }
 
     #[test]
     fn linear_ticks_are_round_numbers() {
-        assert_eq!(
-            labels(Kind::Linear, 0.0, 1.0, 500.0, true),
-            ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
-        );
-        assert_eq!(
-            labels(Kind::Linear, -0.3, 0.2, 250.0, true),
-            ["−0.2", "0.0", "0.2"]
-        );
+        assert_eq!(labels(Kind::Linear, 0.0, 1.0, 500.0, true), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(labels(Kind::Linear, -0.3, 0.2, 250.0, true), ["−0.2", "0.0", "0.2"]);
         assert_eq!(
             labels(Kind::Linear, 0.0, 2e6, 300.0, true),
             ["0", "5·10⁵", "1.0·10⁶", "1.5·10⁶", "2.0·10⁶"]
@@ -216,16 +164,8 @@ mod tests {
 
     #[test]
     fn log_ticks_are_powers_or_plain_numbers() {
-        assert_eq!(
-            labels(Kind::Log10, 1e-6, 1e-1, 300.0, false)
-                .first()
-                .map(String::as_str),
-            Some("10⁻⁶")
-        );
-        assert_eq!(
-            labels(Kind::Log10, 0.02, 0.25, 400.0, true),
-            ["0.02", "0.05", "0.1", "0.2"]
-        );
+        assert_eq!(labels(Kind::Log10, 1e-6, 1e-1, 300.0, false).first().map(String::as_str), Some("10⁻⁶"));
+        assert_eq!(labels(Kind::Log10, 0.02, 0.25, 400.0, true), ["0.02", "0.05", "0.1", "0.2"]);
         let wide = labels(Kind::Log10, 1e-30, 1e30, 300.0, false);
         assert!(wide.len() >= 4 && wide.len() <= 13, "{wide:?}");
         let narrow = labels(Kind::Log10, 0.11, 0.13, 400.0, true);
@@ -235,32 +175,13 @@ mod tests {
     #[test]
     fn labels_never_overlap() {
         for kind in [Kind::Linear, Kind::Log10] {
-            for (low, high) in [
-                (1e-9, 1.0),
-                (0.1, 0.2),
-                (1.0, 1e12),
-                (1e7, 1.000_01e7),
-                (3e-5, 4e-5),
-            ] {
+            for (low, high) in [(1e-9, 1.0), (0.1, 0.2), (1.0, 1e12), (1e7, 1.000_01e7), (3e-5, 4e-5)] {
                 for length in [60.0, 200.0, 700.0] {
-                    let ruler = Ruler {
-                        span: Span { kind, low, high },
-                        from: 0.0,
-                        to: length,
-                    };
-                    let shown: Vec<(f64, f64)> = ticks(
-                        &ruler,
-                        None,
-                        Room {
-                            font: 12.0,
-                            beside: true,
-                        },
-                    )
-                    .iter()
-                    .filter_map(|t| {
-                        Some((ruler.px(t.value).ok()?, 6.0 * width(t.label.as_deref()?)))
-                    })
-                    .collect();
+                    let ruler = Ruler { span: Span { kind, low, high }, from: 0.0, to: length };
+                    let shown: Vec<(f64, f64)> = ticks(&ruler, None, Room { font: 12.0, beside: true })
+                        .iter()
+                        .filter_map(|t| Some((ruler.px(t.value).ok()?, 6.0 * width(t.label.as_deref()?))))
+                        .collect();
                     for pair in shown.windows(2) {
                         assert!(
                             pair[0].0 + pair[0].1 < pair[1].0 - pair[1].1,
@@ -274,27 +195,12 @@ mod tests {
 
     #[test]
     fn given_ticks_are_taken_as_they_are() {
-        let ruler = Ruler {
-            span: Span {
-                kind: Kind::Log10,
-                low: 0.02,
-                high: 0.3,
-            },
-            from: 0.0,
-            to: 500.0,
-        };
-        let room = Room {
-            font: 12.0,
-            beside: true,
-        };
-        let labels: Vec<_> = ticks(
-            &ruler,
-            Some(&[0.2, 0.1, 0.05, 0.025, 5.0, f64::NAN, -1.0]),
-            room,
-        )
-        .into_iter()
-        .filter_map(|t| t.label)
-        .collect();
+        let ruler = Ruler { span: Span { kind: Kind::Log10, low: 0.02, high: 0.3 }, from: 0.0, to: 500.0 };
+        let room = Room { font: 12.0, beside: true };
+        let labels: Vec<_> = ticks(&ruler, Some(&[0.2, 0.1, 0.05, 0.025, 5.0, f64::NAN, -1.0]), room)
+            .into_iter()
+            .filter_map(|t| t.label)
+            .collect();
         assert_eq!(labels, ["0.2", "0.1", "0.05", "0.025"]);
     }
 }

@@ -45,24 +45,13 @@ pub(super) fn draw_triangles(
                 .iter()
                 .zip(places)
                 .filter(|(s, _)| s.name == *name)
-                .flat_map(|(_, p)| {
-                    p.windows(2)
-                        .filter_map(|w| Some((w[0]?, w[1]?)))
-                        .collect::<Vec<_>>()
-                })
-                .flat_map(|(a, b)| {
-                    [0.25, 0.5, 0.75].map(|t| (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1)))
-                })
+                .flat_map(|(_, p)| p.windows(2).filter_map(|w| Some((w[0]?, w[1]?))).collect::<Vec<_>>())
+                .flat_map(|(a, b)| [0.25, 0.5, 0.75].map(|t| (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1))))
                 .flat_map(|at| beside(at, wanted.slope, layout, &[16.0, 26.0, 40.0]))
                 .collect(),
         };
-        let rooms: Vec<Offer> = offers
-            .iter()
-            .map(|(t, penalty)| Offer {
-                room: reach(t),
-                penalty: *penalty,
-            })
-            .collect();
+        let rooms: Vec<Offer> =
+            offers.iter().map(|(t, penalty)| Offer { room: reach(t), penalty: *penalty }).collect();
         if let Some(i) = space.best(&rooms, None) {
             space.take(rooms[i].room);
             draw_triangle(canvas, &offers[i].0, &label);
@@ -73,11 +62,7 @@ pub(super) fn draw_triangles(
 fn draw_triangle(canvas: &mut Canvas, t: &Triangle, label: &str) {
     canvas.group(&[("stroke-linejoin", "round")], |b| {
         b.polygon(&t.corners, Ink(QUIET, 0.10))?;
-        b.line(
-            &[t.corners[0], t.corners[1], t.corners[2], t.corners[0]],
-            QUIET,
-            1.1,
-        )
+        b.line(&[t.corners[0], t.corners[1], t.corners[2], t.corners[0]], QUIET, 1.1)
     });
     write(canvas, label, t.rise, DARK);
     write(canvas, "1", t.run, DARK);
@@ -85,12 +70,7 @@ fn draw_triangle(canvas: &mut Canvas, t: &Triangle, label: &str) {
 
 fn reach(t: &Triangle) -> Frame {
     let points = t.corners.iter().chain([&t.rise, &t.run]);
-    let start = Frame {
-        left: f64::MAX,
-        top: f64::MAX,
-        right: f64::MIN,
-        bottom: f64::MIN,
-    };
+    let start = Frame { left: f64::MAX, top: f64::MAX, right: f64::MIN, bottom: f64::MIN };
     points
         .fold(start, |f, &(x, y)| Frame {
             left: f.left.min(x),
@@ -120,11 +100,7 @@ fn beside(at: Px, slope: f64, layout: &Layout, distances: &[f64]) -> Vec<(Triang
             let a = (middle.0 - run / 2.0, middle.1 - rise / 2.0);
             let c = (middle.0 + run / 2.0, middle.1 + rise / 2.0);
             // The right angle lies on the far side of the slanted side.
-            let corner = if below == (a.1 > c.1) {
-                (c.0, a.1)
-            } else {
-                (a.0, c.1)
-            };
+            let corner = if below == (a.1 > c.1) { (c.0, a.1) } else { (a.0, c.1) };
             let horizontal_y = corner.1;
             let out_y = if horizontal_y > middle.1 { 9.0 } else { -9.0 };
             let out_x = if corner.0 > middle.0 { 9.0 } else { -9.0 };
@@ -150,8 +126,7 @@ mod tests {
     fn the_slanted_side_has_the_slope_it_is_named_after() {
         let points = vec![(1e-3, 1e-5), (1e-1, 3e-2)];
         for (axis, sign) in [(Axis::log10("h"), 1.0), (Axis::log10("h").inverted(), -1.0)] {
-            let chart =
-                Chart::new("", axis, Axis::log10("e")).with(Series::new("a", points.clone()));
+            let chart = Chart::new("", axis, Axis::log10("e")).with(Series::new("a", points.clone()));
             let layout = lay_out(&chart, &Legend::of(&chart, &[], &[]), &[]);
             let decades = |r: &Ruler, from: f64, to: f64| {
                 (to - from) / (r.to - r.from) * (r.span.high / r.span.low).log10()
@@ -163,10 +138,7 @@ mod tests {
                     let y = decades(&layout.y.ruler, a.1, c.1);
                     assert!((y / x - slope).abs() < 1e-9, "{slope} {x} {y}");
                     assert!(x * sign > 0.0);
-                    let legs = (
-                        corner.0 == a.0 || corner.0 == c.0,
-                        corner.1 == a.1 || corner.1 == c.1,
-                    );
+                    let legs = (corner.0 == a.0 || corner.0 == c.0, corner.1 == a.1 || corner.1 == c.1);
                     assert_eq!(legs, (true, true));
                     // The slanted side is the one that faces the curve.
                     let away = (t.rise.0 - 400.0).hypot(t.rise.1 - 200.0);

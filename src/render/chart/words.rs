@@ -10,36 +10,18 @@ use super::space::{Offer, Space, around, trail};
 use crate::render::script::width;
 
 const FONT: f64 = 11.0;
-const HALO: [(&str, &str); 4] = [
-    ("paint-order", "stroke"),
-    ("stroke", "#FFFFFF"),
-    ("stroke-width", "36"),
-    ("stroke-linejoin", "round"),
-];
+const HALO: [(&str, &str); 4] =
+    [("paint-order", "stroke"), ("stroke", "#FFFFFF"), ("stroke-width", "36"), ("stroke-linejoin", "round")];
 
 pub(super) fn write(canvas: &mut Canvas, text: &str, centre: Px, ink: Rgb) {
-    let look = Type {
-        size: FONT,
-        ink,
-        bold: false,
-        hold: Hold::Middle,
-        upright: false,
-    };
-    canvas.group(&HALO, |b| {
-        b.text(text, (centre.0, centre.1 + 0.36 * FONT), look)
-    });
+    let look = Type { size: FONT, ink, bold: false, hold: Hold::Middle, upright: false };
+    canvas.group(&HALO, |b| b.text(text, (centre.0, centre.1 + 0.36 * FONT), look));
 }
 
 /// Blanks what is beneath, but for a trace.
 fn blank(canvas: &mut Canvas, room: Frame) {
     let (corner, opposite) = ((room.left, room.top), (room.right, room.bottom));
-    canvas.group(&[], |b| {
-        b.rect(
-            corner,
-            opposite,
-            super::canvas::Ink(super::palette::WHITE, 0.9),
-        )
-    });
+    canvas.group(&[], |b| b.rect(corner, opposite, super::canvas::Ink(super::palette::WHITE, 0.9)));
 }
 
 fn half(text: &str) -> (f64, f64) {
@@ -56,13 +38,8 @@ fn write_best(
     owner: Option<usize>,
 ) {
     let (w, h) = half(text);
-    let rooms: Vec<Offer> = offers
-        .iter()
-        .map(|&(at, penalty)| Offer {
-            room: around(at, w, h),
-            penalty,
-        })
-        .collect();
+    let rooms: Vec<Offer> =
+        offers.iter().map(|&(at, penalty)| Offer { room: around(at, w, h), penalty }).collect();
     if let Some(i) = space.best(&rooms, owner) {
         space.take(rooms[i].room);
         if owner.is_some() {
@@ -86,19 +63,13 @@ pub(super) fn draw_tag(
     let mut offers = Vec::new();
     for (i, &(x, y)) in places.iter().enumerate() {
         let from_middle = ((i as f64 + 0.5) / places.len() as f64 - 0.5).abs();
-        let shifts = [
-            (0.0, 0.0),
-            (w + 7.0, 0.0),
-            (-w - 7.0, 0.0),
-            (0.0, -h - 6.0),
-            (0.0, h + 6.0),
-        ];
-        offers.extend(shifts.iter().enumerate().map(|(k, (dx, dy))| {
-            (
-                (x + dx, y + dy),
-                2.0 * from_middle + if k == 0 { 0.0 } else { 1.5 },
-            )
-        }));
+        let shifts = [(0.0, 0.0), (w + 7.0, 0.0), (-w - 7.0, 0.0), (0.0, -h - 6.0), (0.0, h + 6.0)];
+        offers.extend(
+            shifts
+                .iter()
+                .enumerate()
+                .map(|(k, (dx, dy))| ((x + dx, y + dy), 2.0 * from_middle + if k == 0 { 0.0 } else { 1.5 })),
+        );
     }
     write_best(canvas, space, &offers, text, look.colour, Some(owner));
 }
@@ -114,14 +85,9 @@ pub(super) fn draw_rules(canvas: &mut Canvas, space: &mut Space, chart: &Chart, 
         let Some(px) = ruler.px(rule.at).ok().filter(|&px| ruler.holds(px)) else {
             continue;
         };
-        let ends = if upright {
-            [(px, plot.top), (px, plot.bottom)]
-        } else {
-            [(plot.left, px), (plot.right, px)]
-        };
-        canvas.group(&[("stroke-dasharray", "50 30")], |b| {
-            b.line(&ends, QUIET, 1.0)
-        });
+        let ends =
+            if upright { [(px, plot.top), (px, plot.bottom)] } else { [(plot.left, px), (plot.right, px)] };
+        canvas.group(&[("stroke-dasharray", "50 30")], |b| b.line(&ends, QUIET, 1.0));
         if rule.label.is_empty() {
             continue;
         }
@@ -132,10 +98,7 @@ pub(super) fn draw_rules(canvas: &mut Canvas, space: &mut Space, chart: &Chart, 
                 let penalty = 0.2 * (1.0 - t);
                 if upright {
                     let y = plot.bottom - 12.0 - t * (plot.height() - 24.0);
-                    [
-                        ((px + w + 4.0, y), penalty),
-                        ((px - w - 4.0, y), penalty + 0.1),
-                    ]
+                    [((px + w + 4.0, y), penalty), ((px - w - 4.0, y), penalty + 0.1)]
                 } else {
                     let x = plot.left + w + 4.0 + t * (plot.width() - 2.0 * w - 8.0);
                     [((x, px - 10.0), penalty), ((x, px + 10.0), penalty + 0.1)]
@@ -147,12 +110,7 @@ pub(super) fn draw_rules(canvas: &mut Canvas, space: &mut Space, chart: &Chart, 
 }
 
 /// Words at points.
-pub(super) fn draw_annotations(
-    canvas: &mut Canvas,
-    space: &mut Space,
-    chart: &Chart,
-    layout: &Layout,
-) {
+pub(super) fn draw_annotations(canvas: &mut Canvas, space: &mut Space, chart: &Chart, layout: &Layout) {
     for note in &chart.annotations {
         let (Ok(x), Ok(y)) = (layout.x.ruler.px(note.at.0), layout.y.ruler.px(note.at.1)) else {
             continue;

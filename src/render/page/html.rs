@@ -10,10 +10,8 @@ const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 
 pub(super) fn write(page: &Page) -> Result<String, RenderError> {
-    let fail = |e: minijinja::Error| RenderError::Template {
-        title: page.title.clone(),
-        reason: e.to_string(),
-    };
+    let fail =
+        |e: minijinja::Error| RenderError::Template { title: page.title.clone(), reason: e.to_string() };
     let mut sections = Vec::new();
     let mut number = 0;
     for section in &page.sections {
@@ -31,14 +29,9 @@ pub(super) fn write(page: &Page) -> Result<String, RenderError> {
     }
     let mut environment = Environment::new();
     let mut syntax = SyntaxConfig::builder();
-    syntax
-        .trim_blocks(true)
-        .lstrip_blocks(true)
-        .keep_trailing_newline(true);
+    syntax.trim_blocks(true).lstrip_blocks(true).keep_trailing_newline(true);
     environment.set_syntax(syntax.build().map_err(fail)?);
-    environment
-        .add_template("page.html", TEMPLATE)
-        .map_err(fail)?;
+    environment.add_template("page.html", TEMPLATE).map_err(fail)?;
     let template = environment.get_template("page.html").map_err(fail)?;
     template
         .render(context! {
@@ -96,22 +89,14 @@ fn write_block(block: &Block, out: &mut String, number: &mut usize) -> Result<()
             );
         }
         Block::Details { summary, blocks } => {
-            let _ = writeln!(
-                out,
-                "<details>\n<summary>{}</summary>",
-                escape::html(summary)
-            );
+            let _ = writeln!(out, "<details>\n<summary>{}</summary>", escape::html(summary));
             for block in blocks {
                 write_block(block, out, number)?;
             }
             out.push_str("</details>\n");
         }
         Block::Code(text) => {
-            let _ = writeln!(
-                out,
-                "<pre><code>{}</code></pre>",
-                escape::plain_html(text.trim_end())
-            );
+            let _ = writeln!(out, "<pre><code>{}</code></pre>", escape::plain_html(text.trim_end()));
         }
     }
     Ok(())
@@ -122,11 +107,7 @@ fn write_figure(figure: &Figure, out: &mut String, number: &mut usize) -> Result
     let svg = figure.svg()?;
     // No screen makes a figure larger than it was meant to be.
     let own = natural_width(&svg).map_or(String::new(), |w| format!(" style=\"--own: {w}px\""));
-    let caption = paragraphs(&figure.caption)
-        .iter()
-        .map(|p| to_html(p))
-        .collect::<Vec<_>>()
-        .join("<br>");
+    let caption = paragraphs(&figure.caption).iter().map(|p| to_html(p)).collect::<Vec<_>>().join("<br>");
     let _ = write!(
         out,
         "<figure id=\"figure-{}\">\n<div class=\"card\"{own}>{svg}</div>\n\
@@ -140,10 +121,5 @@ fn write_figure(figure: &Figure, out: &mut String, number: &mut usize) -> Result
 fn natural_width(svg: &str) -> Option<f64> {
     let (head, _) = svg.split_once('>')?;
     let (_, after) = head.split_once(" width=\"")?;
-    after
-        .split_once('"')?
-        .0
-        .parse()
-        .ok()
-        .filter(|w: &f64| w.is_finite())
+    after.split_once('"')?.0.parse().ok().filter(|w: &f64| w.is_finite())
 }

@@ -15,10 +15,7 @@ pub(super) fn write(page: &Page) -> Result<String, RenderError> {
     }
     for section in &page.sections {
         // An anchor of our own: those made from headings change with every word.
-        let mark = section
-            .mood
-            .map(|m| format!(" {}", m.mark()))
-            .unwrap_or_default();
+        let mark = section.mood.map(|m| format!(" {}", m.mark())).unwrap_or_default();
         out.push(format!("<a id=\"{}\"></a>", section.id));
         out.push(format!("## {}{mark}", escape::markdown(&section.heading)));
         for block in &section.blocks {
@@ -35,11 +32,9 @@ pub(super) fn write(page: &Page) -> Result<String, RenderError> {
 
 fn write_block(block: &Block) -> Result<String, RenderError> {
     Ok(match block {
-        Block::Paragraph(text) => paragraphs(text)
-            .iter()
-            .map(|p| to_markdown(p))
-            .collect::<Vec<_>>()
-            .join("\n\n"),
+        Block::Paragraph(text) => {
+            paragraphs(text).iter().map(|p| to_markdown(p)).collect::<Vec<_>>().join("\n\n")
+        }
         Block::Heading(text) => format!("### {}", escape::markdown(text)),
         Block::List(points) => {
             let point = |p: &String| format!("- {}", to_markdown(&paragraphs(p).join(" ")));
@@ -47,33 +42,19 @@ fn write_block(block: &Block) -> Result<String, RenderError> {
         }
         Block::Table(table) => table.to_markdown()?.trim_end().to_owned(),
         Block::Figure(figure) => write_figure(figure),
-        Block::Figures(figures) => figures
-            .iter()
-            .map(write_figure)
-            .collect::<Vec<_>>()
-            .join("\n\n"),
+        Block::Figures(figures) => figures.iter().map(write_figure).collect::<Vec<_>>().join("\n\n"),
         Block::Callout(mood, text) => {
             let kind = match mood {
                 Mood::Pass => "TIP",
                 Mood::Fail => "CAUTION",
                 Mood::Note => "NOTE",
             };
-            let lines = paragraphs(text)
-                .iter()
-                .map(|p| format!("> {}", to_markdown(p)))
-                .collect::<Vec<_>>();
+            let lines = paragraphs(text).iter().map(|p| format!("> {}", to_markdown(p))).collect::<Vec<_>>();
             format!("> [!{kind}]\n{}", lines.join("\n>\n"))
         }
         Block::Details { summary, blocks } => {
-            let inside = blocks
-                .iter()
-                .map(write_block)
-                .collect::<Result<Vec<_>, _>>()?
-                .join("\n\n");
-            format!(
-                "<details>\n<summary>{}</summary>\n\n{inside}\n\n</details>",
-                escape::html(summary)
-            )
+            let inside = blocks.iter().map(write_block).collect::<Result<Vec<_>, _>>()?.join("\n\n");
+            format!("<details>\n<summary>{}</summary>\n\n{inside}\n\n</details>", escape::html(summary))
         }
         Block::Code(text) => {
             let fence = "`".repeat(longest_quotes(text).max(2) + 1);
@@ -83,20 +64,9 @@ fn write_block(block: &Block) -> Result<String, RenderError> {
 }
 
 fn write_figure(figure: &Figure) -> String {
-    let image = format!(
-        "![{}](figures/{}.svg)",
-        escape::markdown(figure.title()),
-        figure.name
-    );
-    let caption: Vec<String> = paragraphs(&figure.caption)
-        .iter()
-        .map(|p| to_markdown(p))
-        .collect();
-    if caption.is_empty() {
-        image
-    } else {
-        format!("{image}\n\n{}", caption.join("\n\n"))
-    }
+    let image = format!("![{}](figures/{}.svg)", escape::markdown(figure.title()), figure.name);
+    let caption: Vec<String> = paragraphs(&figure.caption).iter().map(|p| to_markdown(p)).collect();
+    if caption.is_empty() { image } else { format!("{image}\n\n{}", caption.join("\n\n")) }
 }
 
 /// The longest row of back quotes, which the fence has to outdo.

@@ -91,11 +91,7 @@ pub enum Picture {
 impl Figure {
     /// A figure of a chart.
     pub fn new(name: impl Into<String>, chart: Chart, caption: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            picture: Picture::Chart(Box::new(chart)),
-            caption: caption.into(),
-        }
+        Self { name: name.into(), picture: Picture::Chart(Box::new(chart)), caption: caption.into() }
     }
 
     fn svg(&self) -> Result<String, RenderError> {
@@ -137,10 +133,7 @@ pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
 /// If a name is unusable or used twice, or a figure cannot be drawn.
 pub fn figures(page: &Page) -> Result<Vec<(String, String)>, RenderError> {
     check(page)?;
-    all_figures(page)
-        .into_iter()
-        .map(|figure| Ok((format!("{}.svg", figure.name), figure.svg()?)))
-        .collect()
+    all_figures(page).into_iter().map(|figure| Ok((format!("{}.svg", figure.name), figure.svg()?))).collect()
 }
 
 fn all_figures(page: &Page) -> Vec<&Figure> {
@@ -155,9 +148,7 @@ fn all_figures(page: &Page) -> Vec<&Figure> {
         }
     }
     let mut out = Vec::new();
-    page.sections
-        .iter()
-        .for_each(|s| collect(&s.blocks, &mut out));
+    page.sections.iter().for_each(|s| collect(&s.blocks, &mut out));
     out
 }
 
@@ -167,18 +158,12 @@ fn check(page: &Page) -> Result<(), RenderError> {
     let names: Vec<&str> = all_figures(page).iter().map(|f| f.name.as_str()).collect();
     for list in [&ids, &names] {
         for (i, &name) in list.iter().enumerate() {
-            let usable =
-                |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-_.".contains(c);
+            let usable = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-_.".contains(c);
             if name.is_empty() || name.starts_with('.') || !name.chars().all(usable) {
-                return Err(RenderError::Name {
-                    name: name.to_owned(),
-                });
+                return Err(RenderError::Name { name: name.to_owned() });
             }
             if list[..i].contains(&name) {
-                return Err(RenderError::Duplicate {
-                    title: page.title.clone(),
-                    name: name.to_owned(),
-                });
+                return Err(RenderError::Duplicate { title: page.title.clone(), name: name.to_owned() });
             }
         }
     }

@@ -3,22 +3,13 @@ use crate::render::chart::{Axis, Series};
 use crate::render::table::{Cell, Column};
 
 fn chart() -> Chart {
-    Chart::new(
-        "Error <of> p",
-        Axis::log10("h (m)"),
-        Axis::log10("error (–)"),
-    )
-    .with(Series::new("GIMP", vec![(0.1, 1e-2), (0.05, 5e-3)]))
+    Chart::new("Error <of> p", Axis::log10("h (m)"), Axis::log10("error (–)"))
+        .with(Series::new("GIMP", vec![(0.1, 1e-2), (0.05, 5e-3)]))
 }
 
 fn page() -> Page {
-    let mut table = Table::new(
-        "Orders",
-        vec![Column::text("method"), Column::number("order")],
-    );
-    table
-        .rows
-        .push(vec![Cell::Code("GIMP".into()), Cell::Order(1.0)]);
+    let mut table = Table::new("Orders", vec![Column::text("method"), Column::number("order")]);
+    table.rows.push(vec![Cell::Code("GIMP".into()), Cell::Order(1.0)]);
     let hostile = "<script>alert(1)</script> & \"quotes\"";
     Page {
         title: format!("Report {hostile}"),
@@ -55,12 +46,7 @@ fn page() -> Page {
                     Block::Callout(Mood::Note, "One.\n\nTwo.".into()),
                 ],
             },
-            Section {
-                heading: "End".into(),
-                id: "end".into(),
-                mood: Some(Mood::Fail),
-                blocks: vec![],
-            },
+            Section { heading: "End".into(), id: "end".into(), mood: Some(Mood::Fail), blocks: vec![] },
         ],
         footer: "Made by `oedometer`.".into(),
     }
@@ -85,19 +71,12 @@ fn html_is_self_contained_and_escaped() {
     }
     let outside = html.lines().filter(|l| l.contains("http"));
     for line in outside {
-        assert!(
-            line.contains("xmlns=\"http://www.w3.org/2000/svg\""),
-            "{line}"
-        );
+        assert!(line.contains("xmlns=\"http://www.w3.org/2000/svg\""), "{line}");
     }
     assert_eq!(html.matches("&lt;script&gt;").count(), 8, "{html}");
-    for wanted in [
-        "<title>Report &lt;script",
-        "<section id=\"mesh\">",
-        "href=\"#time\"",
-        "Figure 3.",
-        "T<sub>v</sub>",
-    ] {
+    for wanted in
+        ["<title>Report &lt;script", "<section id=\"mesh\">", "href=\"#time\"", "Figure 3.", "T<sub>v</sub>"]
+    {
         assert!(html.contains(wanted), "{wanted}");
     }
 }
@@ -105,17 +84,11 @@ fn html_is_self_contained_and_escaped() {
 #[test]
 fn elements_are_closed() {
     let html = written(render_html(&page()));
-    for name in [
-        "section", "div", "figure", "table", "details", "aside", "ul", "pre", "p", "svg", "nav",
-        "main",
-    ] {
-        let opened =
-            html.matches(&format!("<{name}>")).count() + html.matches(&format!("<{name} ")).count();
-        assert_eq!(
-            opened,
-            html.matches(&format!("</{name}>")).count(),
-            "{name}"
-        );
+    for name in
+        ["section", "div", "figure", "table", "details", "aside", "ul", "pre", "p", "svg", "nav", "main"]
+    {
+        let opened = html.matches(&format!("<{name}>")).count() + html.matches(&format!("<{name} ")).count();
+        assert_eq!(opened, html.matches(&format!("</{name}>")).count(), "{name}");
     }
 }
 
@@ -137,11 +110,7 @@ fn a_figure_is_never_shown_larger_than_it_is() {
     let mut page = page();
     let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"216\" height=\"9\"></svg>";
     let picture = Picture::Svg(svg.into());
-    let figure = Figure {
-        name: "slim".into(),
-        picture,
-        caption: String::new(),
-    };
+    let figure = Figure { name: "slim".into(), picture, caption: String::new() };
     page.sections[2].blocks.push(Block::Figure(figure));
     let html = written(render_html(&page));
     assert!(html.contains("style=\"--own: 216px\""), "{html}");
@@ -153,29 +122,16 @@ fn names_must_be_safe_and_differ() {
     for bad in ["", "../x", ".hidden", "A", "a b", "a/b", "ä"] {
         let mut page = page();
         page.sections[0].id = bad.into();
-        assert!(
-            matches!(render_html(&page), Err(RenderError::Name { .. })),
-            "{bad}"
-        );
+        assert!(matches!(render_html(&page), Err(RenderError::Name { .. })), "{bad}");
         let mut page = self::page();
-        page.sections[2]
-            .blocks
-            .push(Block::Figure(Figure::new(bad, chart(), "")));
-        assert!(
-            matches!(figures(&page), Err(RenderError::Name { .. })),
-            "{bad}"
-        );
+        page.sections[2].blocks.push(Block::Figure(Figure::new(bad, chart(), "")));
+        assert!(matches!(figures(&page), Err(RenderError::Name { .. })), "{bad}");
     }
     let mut page = page();
     page.sections[1].id = "mesh".into();
-    assert!(matches!(
-        render_markdown(&page),
-        Err(RenderError::Duplicate { .. })
-    ));
+    assert!(matches!(render_markdown(&page), Err(RenderError::Duplicate { .. })));
     let mut page = self::page();
-    page.sections[2]
-        .blocks
-        .push(Block::Figure(Figure::new("left", chart(), "")));
+    page.sections[2].blocks.push(Block::Figure(Figure::new("left", chart(), "")));
     assert!(matches!(figures(&page), Err(RenderError::Duplicate { .. })));
 }
 
@@ -184,18 +140,11 @@ fn a_ragged_table_anywhere_is_refused() {
     let mut page = page();
     let mut table = Table::new("t", vec![Column::text("a")]);
     table.rows.push(Vec::new());
-    page.sections[2].blocks.push(Block::Details {
-        summary: String::new(),
-        blocks: vec![Block::Table(table)],
-    });
-    assert!(matches!(
-        render_html(&page),
-        Err(RenderError::Ragged { .. })
-    ));
-    assert!(matches!(
-        render_markdown(&page),
-        Err(RenderError::Ragged { .. })
-    ));
+    page.sections[2]
+        .blocks
+        .push(Block::Details { summary: String::new(), blocks: vec![Block::Table(table)] });
+    assert!(matches!(render_html(&page), Err(RenderError::Ragged { .. })));
+    assert!(matches!(render_markdown(&page), Err(RenderError::Ragged { .. })));
 }
 
 #[test]

@@ -32,7 +32,10 @@ pub fn block(results: &StudyResults<'_>) -> Block {
         ],
         vec!["mass of solids, drift".into(), Cell::Error(balance(|one| one.solid_mass_drift))],
         vec!["water balance, over the outflow".into(), Cell::Error(balance(|one| one.water_imbalance))],
-        vec!["sum of internal forces, relative".into(), Cell::Error(balance(|one| one.internal_force_imbalance))],
+        vec![
+            "sum of internal forces, relative".into(),
+            Cell::Error(balance(|one| one.internal_force_imbalance)),
+        ],
         vec!["equilibrium (σ' − p + q)/q, rms".into(), Cell::Error(balance(|one| one.equilibrium_residual))],
     ];
     if let Some(record) = results.records.first() {
@@ -51,5 +54,8 @@ pub fn block(results: &StudyResults<'_>) -> Block {
                 .to_owned(),
         ],
     };
-    Block::Details { summary: "Start checks, balances and dimensionless groups".to_owned(), blocks: vec![Block::Table(table)] }
+    Block::Details {
+        summary: "Start checks, balances and dimensionless groups".to_owned(),
+        blocks: vec![Block::Table(table)],
+    }
 }

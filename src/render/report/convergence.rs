@@ -4,7 +4,9 @@ use super::{StudyResults, labels};
 use crate::assess::orders::WINDOW;
 use crate::assess::summary::{Path, SeriesSummary, first_norm, paths};
 use crate::record::{Quantity, Sample};
-use crate::render::chart::{Axis as ChartAxis, Chart, Direction, Place, Rule, Series, SlopeTriangle, Style};
+use crate::render::chart::{
+    Axis as ChartAxis, Chart, Direction, Place, Rule, Series, Size, SlopeTriangle, Style,
+};
 use crate::render::page::{Block, Figure, slug};
 use crate::render::table::{Cell, Column, Table};
 use crate::study::{Axis, Measure, step_label};
@@ -16,6 +18,9 @@ const PANELS: [(Quantity, Sample); 4] = [
     (Quantity::EffectiveStress, Sample::Points),
     (Quantity::Settlement, Sample::Surface),
 ];
+
+/// Width of a figure that has a neighbour.
+const PANEL_WIDTH: f64 = 560.0;
 
 /// Figures and tables of a study along an axis; none where nothing was refined on it.
 pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
@@ -31,11 +36,16 @@ pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
     let figures = PANELS.map(|(quantity, sample)| figure(results, &all, axis, quantity, sample, own, shown));
     blocks.push(Block::Figures(figures.into_iter().flatten().collect()));
     if let (true, Some(other)) = (floors_of_model(results), references.get(1)) {
-        blocks.extend(figure(results, &all, axis, Quantity::Pressure, Sample::Points, other, shown).map(Block::Figure));
+        blocks.extend(
+            figure(results, &all, axis, Quantity::Pressure, Sample::Points, other, shown).map(Block::Figure),
+        );
     }
     blocks.push(Block::Table(orders_table(&all, axis, own, shown)));
-    let mut more: Vec<Block> =
-        times.iter().filter(|time| **time != shown).map(|time| Block::Table(orders_table(&all, axis, own, *time))).collect();
+    let mut more: Vec<Block> = times
+        .iter()
+        .filter(|time| **time != shown)
+        .map(|time| Block::Table(orders_table(&all, axis, own, *time)))
+        .collect();
     for other in references.iter().skip(1) {
         more.push(Block::Table(orders_table(&all, axis, other, shown)));
     }
@@ -60,7 +70,10 @@ fn floors_of_model(results: &StudyResults<'_>) -> bool {
 
 fn common_times(all: &[Path<'_>]) -> Vec<f64> {
     let first = all[0].records[0].case.time_factors.clone();
-    first.into_iter().filter(|time| all.iter().all(|path| path.records[0].case.time_factors.contains(time))).collect()
+    first
+        .into_iter()
+        .filter(|time| all.iter().all(|path| path.records[0].case.time_factors.contains(time)))
+        .collect()
 }
 
 fn heading(axis: Axis) -> &'static str {
@@ -80,8 +93,13 @@ fn figure(
     reference: &str,
     time_factor: f64,
 ) -> Option<Figure> {
-    let measure =
-        Measure { quantity, sample, norm: first_norm(quantity), reference: reference.to_owned(), time_factor };
+    let measure = Measure {
+        quantity,
+        sample,
+        norm: first_norm(quantity),
+        reference: reference.to_owned(),
+        time_factor,
+    };
     let summaries: Vec<SeriesSummary<'_>> = all.iter().map(|path| path.summary(&measure)).collect();
     if summaries.iter().all(|summary| summary.series.levels().iter().all(|level| level.error.is_none())) {
         return None;
@@ -93,31 +111,41 @@ fn figure(
         ChartAxis::log10(labels::axis(axis)).with_ticks(ticks),
         ChartAxis::log10(labels::error_axis(&measure)),
     );
-    chart.subtitle = Some(format!("T_v = {time_factor}, against `{reference}`").replace('`', ""));
-    for summary in &summaries {
-        let points = summary.series.levels().iter().filter_map(|level| Some((level.size, level.error?))).collect();
-        chart.series.push(Series::new(summary.path.label(), points).style(Style::LineAndMarkers));
+    let labels = labels::path_labels(all);
+    let shared = if labels.shared.is_empty() { String::new() } else { format!("; {}", labels.shared) };
+    chart.subtitle = Some(format!("T_v = {time_factor}, against {reference}{shared}"));
+    chart.size = Size { width: PANEL_WIDTH, ..Size::default() };
+    for (summary, label) in summaries.iter().zip(&labels.each) {
+        let points =
+            summary.series.levels().iter().filter_map(|level| Some((level.size, level.error?))).collect();
+        chart.series.push(Series::new(label.clone(), points).style(Style::LineAndMarkers));
     }
     if axis == Axis::Cells {
-        add_triangles(&mut chart, &summaries);
+        add_triangles(&mut chart, &summaries, &labels.each);
     }
     let floor = summaries.iter().find_map(|summary| summary.classification.floor.clone());
     if let Some(floor) = floor.filter(|_| axis == Axis::Cells) {
         chart.rules.push(Rule { axis: Direction::Y, at: floor.value, label: "floor".to_owned() });
     }
-    let name = slug(&format!("{}-{}-{}-{}-{reference}", results.study.name, axis.name(), quantity.name(), sample.name()));
+    let name = slug(&format!(
+        "{}-{}-{}-{}-{reference}",
+        results.study.name,
+        axis.name(),
+        quantity.name(),
+        sample.name()
+    ));
     let caption = captions(&summaries);
     Some(Figure::new(name, chart, caption))
 }
 
 /// One triangle for each order that a series comes near.
-fn add_triangles(chart: &mut Chart, summaries: &[SeriesSummary<'_>]) {
+fn add_triangles(chart: &mut Chart, summaries: &[SeriesSummary<'_>], labels: &[String]) {
     for slope in [1.0, 2.0] {
-        let near = summaries.iter().find(|summary| {
+        let near = summaries.iter().zip(labels).find(|(summary, _)| {
             summary.finest.as_ref().is_ok_and(|finest| (finest.order - slope).abs() < 0.3)
         });
-        if let Some(summary) = near {
-            chart.triangles.push(SlopeTriangle { slope, place: Place::Beside(summary.path.label()) });
+        if let Some((_, label)) = near {
+            chart.triangles.push(SlopeTriangle { slope, place: Place::Beside(label.clone()) });
         }
     }
 }
@@ -128,7 +156,9 @@ fn captions(summaries: &[SeriesSummary<'_>]) -> String {
     for summary in summaries {
         let class = summary.classification.class.name().to_owned();
         let order = match (&summary.classification.order, summary.path.axis) {
-            (Some(order), Axis::Cells) => format!("{} (order {order:.2})", summary.path.records[0].case.method),
+            (Some(order), Axis::Cells) => {
+                format!("{} (order {order:.2})", summary.path.records[0].case.method)
+            }
             _ => summary.path.records[0].case.method.to_string(),
         };
         match said.iter_mut().find(|(known, _)| *known == class) {
@@ -136,13 +166,15 @@ fn captions(summaries: &[SeriesSummary<'_>]) -> String {
             None => said.push((class, vec![order])),
         }
     }
-    let parts: Vec<String> = said.iter().map(|(class, labels)| format!("*{class}*: {}", labels.join(", "))).collect();
+    let parts: Vec<String> =
+        said.iter().map(|(class, labels)| format!("*{class}*: {}", labels.join(", "))).collect();
     parts.join("; ") + "."
 }
 
 /// Errors at every level with pairwise orders, fit, finest window and class.
 fn orders_table(all: &[Path<'_>], axis: Axis, reference: &str, time_factor: f64) -> Table {
     let levels = level_names(all, axis);
+    let labels = labels::path_labels(all);
     let mut columns = vec![Column::text("method"), Column::text("error of")];
     columns.extend(levels.iter().map(|level| Column::number(level.clone())));
     if axis == Axis::Cells {
@@ -152,27 +184,45 @@ fn orders_table(all: &[Path<'_>], axis: Axis, reference: &str, time_factor: f64)
     let mut rows = Vec::new();
     let mut notes = Vec::new();
     for (quantity, sample) in PANELS {
-        let measure =
-            Measure { quantity, sample, norm: first_norm(quantity), reference: reference.to_owned(), time_factor };
-        for path in all {
+        let measure = Measure {
+            quantity,
+            sample,
+            norm: first_norm(quantity),
+            reference: reference.to_owned(),
+            time_factor,
+        };
+        for (path, label) in all.iter().zip(&labels.each) {
             let summary = path.summary(&measure);
-            if let (Some(floor), Some(advice)) = (&summary.classification.floor, &summary.classification.advice) {
+            if let (Some(floor), Some(advice)) =
+                (&summary.classification.floor, &summary.classification.advice)
+            {
                 notes.push(format!(
-                    "{}, {}: floor {:.1e}; {advice}",
-                    path.label(),
+                    "{label}, {}: floor {:.1e}; {advice}",
                     labels::measure(&measure),
                     floor.value
                 ));
             }
-            rows.push(orders_row(&summary, &measure, levels.len(), axis));
+            rows.push(orders_row(&summary, label, &measure, levels.len(), axis));
         }
     }
-    notes.push(format!("{} over the volume; settlement |s/s_exact − 1|", first_norm(Quantity::Pressure).formula()));
+    notes.push(format!(
+        "{} over the volume; settlement |s/s_exact − 1|",
+        first_norm(Quantity::Pressure).formula()
+    ));
+    if !labels.shared.is_empty() {
+        notes.insert(0, format!("all with {}", labels.shared));
+    }
     Table { title: format!("T_v = {time_factor}, against {reference}"), columns, rows, notes }
 }
 
-fn orders_row(summary: &SeriesSummary<'_>, measure: &Measure, levels: usize, axis: Axis) -> Vec<Cell> {
-    let mut row = vec![Cell::Code(summary.path.label()), labels::measure(measure).as_str().into()];
+fn orders_row(
+    summary: &SeriesSummary<'_>,
+    label: &str,
+    measure: &Measure,
+    levels: usize,
+    axis: Axis,
+) -> Vec<Cell> {
+    let mut row = vec![Cell::Code(label.to_owned()), labels::measure(measure).as_str().into()];
     let errors = summary.series.levels().iter().map(|level| match level.error {
         Some(error) => Cell::Error(error),
         None => Cell::Missing("no error was measured".to_owned()),
@@ -187,7 +237,9 @@ fn orders_row(summary: &SeriesSummary<'_>, measure: &Measure, levels: usize, axi
             .collect();
         row.push(pairs.join(", ").as_str().into());
         row.push(match &summary.slope {
-            Ok(fit) => fit.half_width.map_or(Cell::Order(fit.order), |half| Cell::OrderWithin(fit.order, half)),
+            Ok(fit) => {
+                fit.half_width.map_or(Cell::Order(fit.order), |half| Cell::OrderWithin(fit.order, half))
+            }
             Err(undefined) => Cell::Missing(undefined.to_string()),
         });
         row.push(match &summary.finest {
@@ -206,7 +258,7 @@ fn level_names(all: &[Path<'_>], axis: Axis) -> Vec<String> {
         path.records
             .iter()
             .map(|record| match axis {
-                Axis::Cells => format!("{} cells", record.case.cells),
+                Axis::Cells => record.case.cells.to_string(),
                 Axis::TimeStep => step_label(&record.case.time_step).replace("seconds=", "Δt = ") + " s",
                 Axis::PointsPerCell => format!("m = {}", record.case.points_per_cell),
             })

@@ -1,9 +1,11 @@
 //! The first screen: what each method converges to and how fast, in one table.
 
 use super::{StudyResults, labels};
+use crate::assess::class::Class;
 use crate::assess::orders::WINDOW;
 use crate::assess::summary::{Path, first_norm, paths};
 use crate::record::{Quantity, Sample};
+use crate::render::number;
 use crate::render::page::{Block, Section};
 use crate::render::table::{Cell, Column, Mood, Table};
 use crate::study::{Axis, Measure};
@@ -14,7 +16,8 @@ const QUOTED_CELLS: usize = 10;
 /// What a reader should know first.
 pub fn lead(results: &[StudyResults<'_>]) -> String {
     let judged: usize = results.iter().map(|one| one.judgements.len()).sum();
-    let met = results.iter().flat_map(|one| &one.judgements).filter(|judgement| judgement.verdict.pass).count();
+    let met =
+        results.iter().flat_map(|one| &one.judgements).filter(|judgement| judgement.verdict.pass).count();
     let runs: usize = results.iter().map(|one| one.records.len()).sum();
     format!(
         "{} studies, {runs} runs, {met} of {judged} expectations met. Every error is held against an exact solution \
@@ -24,26 +27,31 @@ pub fn lead(results: &[StudyResults<'_>]) -> String {
     )
 }
 
-/// One row a method and measure: class, order, error on ten cells, and the floor where there is
-/// one.
+/// What is quoted of every path.
+const QUOTED: [(Quantity, Sample); 4] = [
+    (Quantity::Pressure, Sample::Points),
+    (Quantity::Pressure, Sample::Centres),
+    (Quantity::EffectiveStress, Sample::Points),
+    (Quantity::Settlement, Sample::Surface),
+];
+
+/// One row a path: order and error on ten cells of each measure, and the floors there are.
 pub fn section(results: &[StudyResults<'_>]) -> Section {
-    let columns = vec![
-        Column::text("study"),
-        Column::text("method"),
-        Column::text("error of"),
-        Column::text("against"),
-        Column::number("order, finest 3"),
-        Column::number("error on 10 cells"),
-        Column::text("class"),
-    ];
+    let mut columns = vec![Column::text("study"), Column::text("method"), Column::text("against")];
+    columns.extend(QUOTED.map(|(quantity, sample)| {
+        Column::text(format!("{} {}", labels::quantity(quantity), labels::sample(sample)))
+    }));
     let mut rows = Vec::new();
     let mut floors = Vec::new();
     for one in results {
-        for path in paths(one.records, Axis::Cells).iter().filter(|path| path.records.len() >= WINDOW) {
+        let mut all = paths(one.records, Axis::Cells);
+        all.retain(|path| path.records.len() >= WINDOW);
+        let labels = labels::path_labels(&all);
+        for (path, label) in all.iter().zip(&labels.each) {
             let times = &path.records[0].case.time_factors;
             let Some(time_factor) = times.get((times.len() - 1) / 2) else { continue };
-            for (index, reference) in one.study.references.iter().enumerate() {
-                for (quantity, sample) in quoted(index) {
+            for reference in &one.study.references {
+                let cells = QUOTED.map(|(quantity, sample)| {
                     let measure = Measure {
                         quantity,
                         sample,
@@ -51,24 +59,43 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
                         reference: reference.name().to_owned(),
                         time_factor: *time_factor,
                     };
-                    rows.push(row(one, path, &measure, &mut floors));
+                    quote(path, &measure, &mut floors)
+                });
+                // Against another theory than its own a run is quoted where that is the question.
+                if *reference == one.study.references[0] || asks_for(one, reference.name()) {
+                    let mut row: Vec<Cell> = vec![
+                        one.study.name.as_str().into(),
+                        Cell::Code(label.clone()),
+                        reference.name().into(),
+                    ];
+                    row.extend(cells);
+                    rows.push(row);
                 }
             }
         }
     }
     let table = Table {
-        title: "What converges to what".to_owned(),
+        title: "What converges to what: order on the finest three meshes, error on ten cells".to_owned(),
         columns,
         rows,
-        notes: vec!["the middle output time of each study; relative L_2 norm over the volume".to_owned()],
+        notes: vec![
+            "at the middle output time of each study; relative L_2 norm over the volume; a class stands where it \
+             allows no order"
+                .to_owned(),
+        ],
     };
-    let unmet = results.iter().flat_map(|one| &one.judgements).filter(|judgement| !judgement.verdict.pass).count();
+    let unmet =
+        results.iter().flat_map(|one| &one.judgements).filter(|judgement| !judgement.verdict.pass).count();
     let mut blocks = Vec::new();
     if unmet > 0 {
-        blocks.push(Block::Callout(Mood::Fail, format!("{unmet} expectations are not met: see their studies.")));
+        blocks.push(Block::Callout(
+            Mood::Fail,
+            format!("{unmet} expectations are not met: see their studies."),
+        ));
     }
     blocks.push(Block::Table(table));
     if !floors.is_empty() {
+        blocks.push(Block::Heading("Floors".to_owned()));
         blocks.push(Block::List(floors));
     }
     Section {
@@ -79,38 +106,43 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
     }
 }
 
-/// What is quoted against the scene's own reference, and against others.
-fn quoted(reference: usize) -> Vec<(Quantity, Sample)> {
-    let all = [
-        (Quantity::Pressure, Sample::Points),
-        (Quantity::Pressure, Sample::Centres),
-        (Quantity::EffectiveStress, Sample::Points),
-        (Quantity::Settlement, Sample::Surface),
-    ];
-    all[..if reference == 0 { all.len() } else { 1 }].to_vec()
+/// Whether an expectation of the study is about a reference.
+fn asks_for(results: &StudyResults<'_>, reference: &str) -> bool {
+    results.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
 }
 
-fn row(results: &StudyResults<'_>, path: &Path<'_>, measure: &Measure, floors: &mut Vec<String>) -> Vec<Cell> {
+/// Order and error of one series in a few characters; its floor, where there is one, is told at
+/// length.
+fn quote(path: &Path<'_>, measure: &Measure, floors: &mut Vec<String>) -> Cell {
     let summary = path.summary(measure);
-    if let Some(floor) = &summary.classification.floor {
+    let class = &summary.classification;
+    let is_pressure = (measure.quantity, measure.sample) == (Quantity::Pressure, Sample::Points);
+    if let Some(floor) = class.floor.as_ref().filter(|_| is_pressure) {
         floors.push(format!(
             "**{}**, {} against `{}`: {}. {}",
             path.label(),
             labels::measure(measure),
             measure.reference,
-            summary.classification.reason,
-            summary.classification.advice.clone().unwrap_or_else(|| format!("The floor is {:.2e}.", floor.value)),
+            class.reason,
+            capitalised(class.advice.as_deref())
+                .unwrap_or_else(|| format!("The floor is {:.2e}.", floor.value)),
         ));
     }
     let on_ten = path.records.iter().position(|record| record.case.cells == QUOTED_CELLS);
     let error = on_ten.and_then(|index| summary.series.levels().get(index)?.error);
-    vec![
-        results.study.name.as_str().into(),
-        Cell::Code(path.label()),
-        labels::measure(measure).as_str().into(),
-        measure.reference.as_str().into(),
-        summary.classification.order.map_or(Cell::Missing("the class allows no order".to_owned()), Cell::Order),
-        error.map_or(Cell::Missing("not run on ten cells".to_owned()), Cell::Error),
-        summary.classification.class.name().into(),
-    ]
+    let error =
+        error.map_or(String::new(), |error| format!(", {}", number::error(error).replace('-', "\u{2011}")));
+    let head = match (class.order, class.class) {
+        (Some(order), Class::Asymptotic | Class::Superconvergent) => number::order(order),
+        (Some(order), other) => format!("{} ({other})", number::order(order)),
+        (None, other) => other.name().to_owned(),
+    };
+    Cell::Text(head + &error)
+}
+
+/// Advice as a sentence of its own.
+fn capitalised(advice: Option<&str>) -> Option<String> {
+    let mut letters = advice?.chars();
+    let first = letters.next()?;
+    Some(format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }

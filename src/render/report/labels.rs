@@ -1,5 +1,6 @@
 //! Words for quantities, samples and axes, the same in every figure and table.
 
+use crate::assess::summary::Path;
 use crate::record::{Quantity, Sample};
 use crate::study::{Axis, Measure};
 
@@ -43,4 +44,27 @@ pub fn error_axis(measure: &Measure) -> String {
         Quantity::Settlement => "relative error of settlement (–)".to_owned(),
         other => format!("relative L_2 error, {} (–)", quantity(other)),
     }
+}
+
+/// Labels of paths that share a figure or a table: what tells them apart, and, once for all, what
+/// does not.
+pub struct PathLabels {
+    /// One label a path.
+    pub each: Vec<String>,
+    /// What all paths share.
+    pub shared: String,
+}
+
+/// Splits the labels of paths into what differs and what is shared; the method is always named.
+pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
+    let parts: Vec<Vec<String>> = paths.iter().map(Path::parts).collect();
+    let is_shared = |part: &String| parts.iter().all(|other| other.contains(part));
+    let each = parts.iter().map(|own| {
+        let differing = own.iter().enumerate().filter(|(place, part)| *place == 0 || !is_shared(part));
+        differing.map(|(_, part)| part.as_str()).collect::<Vec<_>>().join(", ")
+    });
+    let shared = parts
+        .first()
+        .map_or(Vec::new(), |own| own[1..].iter().filter(|part| is_shared(part)).cloned().collect());
+    PathLabels { each: each.collect(), shared: shared.join(", ") }
 }

@@ -2,7 +2,8 @@
 
 use super::StudyResults;
 use crate::assess::curves::{
-    computed_consolidation, computed_isochrone, constant_recovery_error, theory_consolidation, theory_isochrone,
+    computed_consolidation, computed_isochrone, constant_recovery_error, theory_consolidation,
+    theory_isochrone,
 };
 use crate::assess::norms::Norm;
 use crate::exact::ExactError;
@@ -35,7 +36,9 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
 /// The first sound run of each method on the paper's mesh.
 fn shown_records(records: &[Record]) -> Vec<&Record> {
     let mut shown: Vec<&Record> = Vec::new();
-    for record in records.iter().filter(|record| record.case.cells == SHOWN_CELLS && record.status == Status::Ok) {
+    for record in
+        records.iter().filter(|record| record.case.cells == SHOWN_CELLS && record.status == Status::Ok)
+    {
         if shown.iter().all(|other| other.case.method != record.case.method) {
             shown.push(record);
         }
@@ -58,7 +61,9 @@ fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, Exa
     );
     chart.size = Size { width: 560.0, ..Size::default() };
     for (slot, time_factor) in record.case.time_factors.iter().enumerate() {
-        chart.series.push(Series::theory(own.name(), theory_isochrone(&record.case, own, *time_factor)?).slot(0));
+        chart
+            .series
+            .push(Series::theory(own.name(), theory_isochrone(&record.case, own, *time_factor)?).slot(0));
         chart.series.push(
             Series::new(format!("T_v = {time_factor}"), computed_isochrone(record, *time_factor))
                 .style(Style::Markers)
@@ -66,7 +71,10 @@ fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, Exa
         );
     }
     let name = slug(&format!("{}-isochrones-{}", results.study.name, record.case.method));
-    let caption = format!("Markers: material points of {} on {} cells. Lines: theory.", record.case.method, record.case.cells);
+    let caption = format!(
+        "Markers: material points of {} on {} cells. Lines: theory.",
+        record.case.method, record.case.cells
+    );
     Ok(Figure::new(name, chart, caption))
 }
 
@@ -90,9 +98,10 @@ fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Figure
         );
     }
     let name = slug(&format!("{}-consolidation", results.study.name));
-    let caption = "Settlement over its final value, downward as engineers draw it. The methods differ in their \
+    let caption =
+        "Settlement over its final value, downward as engineers draw it. The methods differ in their \
                    stresses, hardly in their settlement."
-        .to_owned();
+            .to_owned();
     Ok(Figure::new(name, chart, caption))
 }
 
@@ -100,13 +109,13 @@ fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Figure
 /// the numbers.
 fn sampling_note(shown: &[&Record]) -> Option<String> {
     let record = shown.iter().find(|record| {
-        record.case.method.pressure == PressureIntegration::Sri && record.case.method.recovery == Recovery::Constant
+        record.case.method.pressure == PressureIntegration::Sri
+            && record.case.method.recovery == Recovery::Constant
     })?;
     let own = record.references.first()?.name.as_str();
     let time_factor = *record.case.time_factors.iter().rfind(|factor| **factor <= 0.2)?;
-    let error = |sample| {
-        record.error(Quantity::Pressure, sample, Norm::L2, own, time_factor).map(|row| row.value)
-    };
+    let error =
+        |sample| record.error(Quantity::Pressure, sample, Norm::L2, own, time_factor).map(|row| row.value);
     Some(format!(
         "**Where one samples decides the order.** {} gives every point of a cell the value of its centre. That value \
          is right to second order at the centre (error {:.2e} at T_v = {time_factor}), but a point beside it misses \

@@ -14,7 +14,10 @@ pub fn of_study(results: &StudyResults<'_>) -> Result<Section, ExactError> {
     if !results.judgements.is_empty() {
         let met = results.judgements.iter().filter(|judgement| judgement.verdict.pass).count();
         let mood = if results.passes() { Mood::Pass } else { Mood::Fail };
-        blocks.push(Block::Callout(mood, format!("{met} of {} expectations are met.", results.judgements.len())));
+        blocks.push(Block::Callout(
+            mood,
+            format!("{met} of {} expectations are met.", results.judgements.len()),
+        ));
     }
     blocks.extend(profiles::blocks(results)?);
     for axis in Axis::ALL {

@@ -20,10 +20,16 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
             ChartAxis::log10("point updates (points × steps)"),
             ChartAxis::log10(labels::error_axis(&measure)),
         );
-        chart.subtitle = Some(format!("{}, T_v = {}", labels::measure(&measure), measure.time_factor));
-        for path in &along_mesh {
-            let points = path.records.iter().filter_map(|record| Some((record.counters.point_updates as f64, error(record, &measure)?)));
-            chart.series.push(Series::new(path.label(), points.collect()));
+        let labels = labels::path_labels(&along_mesh);
+        let shared = if labels.shared.is_empty() { String::new() } else { format!("; {}", labels.shared) };
+        chart.subtitle =
+            Some(format!("{}, T_v = {}{shared}", labels::measure(&measure), measure.time_factor));
+        for (path, label) in along_mesh.iter().zip(&labels.each) {
+            let points = path
+                .records
+                .iter()
+                .filter_map(|record| Some((record.counters.point_updates as f64, error(record, &measure)?)));
+            chart.series.push(Series::new(label.clone(), points.collect()));
         }
         let caption = "Work to the last output, counted and not timed: every step visits every point once, or does \
                        the same by one banded map of the grid. Order p in h costs e ~ W^(−p/2): a mesh twice as fine \
@@ -33,8 +39,11 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
         blocks.push(Block::Heading("Error against work".to_owned()));
         blocks.push(Block::Figure(figure));
     }
-    let timed: Vec<&Record> =
-        results.records.iter().filter(|record| !record.wall_alone().is_empty() && record.status == Status::Ok).collect();
+    let timed: Vec<&Record> = results
+        .records
+        .iter()
+        .filter(|record| !record.wall_alone().is_empty() && record.status == Status::Ok)
+        .collect();
     if timed.len() > 1 && results.study.timing_repeats > 0 {
         blocks.push(Block::Table(timing_table(&timed, &measure)));
     }
@@ -77,7 +86,11 @@ fn timing_table(timed: &[&Record], measure: &Measure) -> Table {
         ]
     });
     Table {
-        title: format!("Cost, with the error of the {} at T_v = {}", labels::measure(measure), measure.time_factor),
+        title: format!(
+            "Cost, with the error of the {} at T_v = {}",
+            labels::measure(measure),
+            measure.time_factor
+        ),
         columns: vec![
             Column::text("case"),
             Column::number("error"),
@@ -89,7 +102,8 @@ fn timing_table(timed: &[&Record], measure: &Measure) -> Table {
         ],
         rows: rows.collect(),
         notes: vec![
-            "wall times only of runs that had the machine to themselves, taken in rounds over all cases".to_owned(),
+            "wall times only of runs that had the machine to themselves, taken in rounds over all cases"
+                .to_owned(),
         ],
     }
 }

@@ -3,17 +3,9 @@ use super::{Cell, Table};
 use crate::render::{RenderError, number};
 
 pub(super) fn write(table: &Table) -> Result<String, RenderError> {
-    let fail = |reason: String| RenderError::Csv {
-        title: table.title.clone(),
-        reason,
-    };
+    let fail = |reason: String| RenderError::Csv { title: table.title.clone(), reason };
     let wide: Vec<bool> = (0..table.columns.len())
-        .map(|i| {
-            table
-                .rows
-                .iter()
-                .any(|row| matches!(row[i], Cell::OrderWithin(..)))
-        })
+        .map(|i| table.rows.iter().any(|row| matches!(row[i], Cell::OrderWithin(..))))
         .collect();
     let mut writer = ::csv::Writer::from_writer(Vec::new());
     let mut header = Vec::new();
@@ -23,9 +15,7 @@ pub(super) fn write(table: &Table) -> Result<String, RenderError> {
             header.push(format!("{} ±", column.heading()));
         }
     }
-    writer
-        .write_record(&header)
-        .map_err(|e| fail(e.to_string()))?;
+    writer.write_record(&header).map_err(|e| fail(e.to_string()))?;
     for row in &table.rows {
         let mut fields = Vec::new();
         for (cell, &wide) in row.iter().zip(&wide) {
@@ -35,9 +25,7 @@ pub(super) fn write(table: &Table) -> Result<String, RenderError> {
                 fields.push(half);
             }
         }
-        writer
-            .write_record(&fields)
-            .map_err(|e| fail(e.to_string()))?;
+        writer.write_record(&fields).map_err(|e| fail(e.to_string()))?;
     }
     let bytes = writer.into_inner().map_err(|e| fail(e.to_string()))?;
     String::from_utf8(bytes).map_err(|e| fail(e.to_string()))

@@ -11,11 +11,7 @@ pub(super) fn write(table: &Table) -> String {
     }
     out.push_str("<thead>\n<tr>");
     for column in &table.columns {
-        let unit = column
-            .unit
-            .as_ref()
-            .map(|u| format!(" <small>{}</small>", html(u)))
-            .unwrap_or_default();
+        let unit = column.unit.as_ref().map(|u| format!(" <small>{}</small>", html(u))).unwrap_or_default();
         let _ = write!(
             out,
             "<th scope=\"col\" class=\"{}\">{}{unit}</th>",
@@ -27,20 +23,12 @@ pub(super) fn write(table: &Table) -> String {
     for row in &table.rows {
         out.push_str("<tr>");
         for (cell, column) in row.iter().zip(&table.columns) {
-            let _ = write!(
-                out,
-                "<td class=\"{}\">{}</td>",
-                class(column.align),
-                show(cell, &footnotes)
-            );
+            let _ = write!(out, "<td class=\"{}\">{}</td>", class(column.align), show(cell, &footnotes));
         }
         out.push_str("</tr>\n");
     }
     out.push_str("</tbody>\n</table>\n</div>\n");
-    let marks = footnotes
-        .iter()
-        .enumerate()
-        .map(|(i, f)| format!("<sup>{}</sup> {}", mark(i), html(f)));
+    let marks = footnotes.iter().enumerate().map(|(i, f)| format!("<sup>{}</sup> {}", mark(i), html(f)));
     for note in marks.chain(table.notes.iter().map(|n| html(n))) {
         let _ = writeln!(out, "<p class=\"small\">{note}</p>");
     }
@@ -60,19 +48,11 @@ fn show(cell: &Cell, footnotes: &[&str]) -> String {
         (Cell::Code(name), _) => format!("<code>{}</code>", plain_html(name)),
         (Cell::Text(text), _) => html(text),
         (Cell::Verdict(mood, text), _) => {
-            format!(
-                "<span class=\"{}\">{} {}</span>",
-                mood.class(),
-                mood.mark(),
-                html(text)
-            )
+            format!("<span class=\"{}\">{} {}</span>", mood.class(), mood.mark(), html(text))
         }
         (Cell::Missing(reason), (text, mark)) => {
             let mark = mark.map(|m| format!("<sup>{m}</sup>")).unwrap_or_default();
-            format!(
-                "<span class=\"missing\" title=\"{}\">{text}{mark}</span>",
-                plain_html(reason)
-            )
+            format!("<span class=\"missing\" title=\"{}\">{text}{mark}</span>", plain_html(reason))
         }
         // The hyphen of a negative number, not the one in its exponent.
         (_, (text, _)) => match text.strip_prefix('-') {

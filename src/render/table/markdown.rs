@@ -9,11 +9,7 @@ pub(super) fn write(table: &Table) -> String {
     if !table.title.is_empty() {
         let _ = write!(out, "**{}**\n\n", escape::markdown(&table.title));
     }
-    let heads: Vec<String> = table
-        .columns
-        .iter()
-        .map(|c| escape::markdown(&c.heading()))
-        .collect();
+    let heads: Vec<String> = table.columns.iter().map(|c| escape::markdown(&c.heading())).collect();
     let rules: Vec<&str> = table
         .columns
         .iter()
@@ -25,18 +21,12 @@ pub(super) fn write(table: &Table) -> String {
         .collect();
     let row = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     out.push_str(&row(&heads));
-    out.push_str(&row(&rules
-        .iter()
-        .map(|&r| r.to_owned())
-        .collect::<Vec<_>>()));
+    out.push_str(&row(&rules.iter().map(|&r| r.to_owned()).collect::<Vec<_>>()));
     for cells in &table.rows {
         let cells: Vec<String> = cells.iter().map(|cell| show(cell, &footnotes)).collect();
         out.push_str(&row(&cells));
     }
-    let marks = footnotes
-        .iter()
-        .enumerate()
-        .map(|(i, f)| (Some(mark(i)), *f));
+    let marks = footnotes.iter().enumerate().map(|(i, f)| (Some(mark(i)), *f));
     for (mark, note) in marks.chain(table.notes.iter().map(|n| (None, n.as_str()))) {
         let mark = mark.map(|m| format!("<sup>{m}</sup> ")).unwrap_or_default();
         let _ = writeln!(out, "\n{mark}{}", escape::markdown(note));
@@ -57,14 +47,7 @@ fn show(cell: &Cell, footnotes: &[&str]) -> String {
 
 /// A name in back quotes, as many as it takes; a table's bars are escaped even there.
 fn code(name: &str) -> String {
-    let name: String = name
-        .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
+    let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let name = name.replace('|', "\\|");
-    if name.contains('`') {
-        format!("`` {name} ``")
-    } else {
-        format!("`{name}`")
-    }
+    if name.contains('`') { format!("`` {name} ``") } else { format!("`{name}`") }
 }

@@ -47,19 +47,12 @@ pub enum Align {
 impl Column {
     /// A column of words.
     pub fn text(header: impl Into<String>) -> Self {
-        Self {
-            header: header.into(),
-            unit: None,
-            align: Align::Left,
-        }
+        Self { header: header.into(), unit: None, align: Align::Left }
     }
 
     /// A column of numbers without a unit.
     pub fn number(header: impl Into<String>) -> Self {
-        Self {
-            align: Align::Right,
-            ..Self::text(header)
-        }
+        Self { align: Align::Right, ..Self::text(header) }
     }
 
     /// The same column with a unit.
@@ -164,11 +157,7 @@ impl Cell {
 impl Table {
     /// A table without rows.
     pub fn new(title: impl Into<String>, columns: Vec<Column>) -> Self {
-        Self {
-            title: title.into(),
-            columns,
-            ..Self::default()
-        }
+        Self { title: title.into(), columns, ..Self::default() }
     }
 
     /// For a terminal.

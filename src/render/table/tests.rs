@@ -78,20 +78,9 @@ fn as_csv() {
 fn a_ragged_row_is_refused_by_every_writer() {
     let mut table = sample();
     table.rows[1].pop();
-    for write in [
-        Table::to_text,
-        Table::to_markdown,
-        Table::to_html,
-        Table::to_csv,
-    ] {
-        let told = write(&table)
-            .err()
-            .map(|e| e.to_string())
-            .unwrap_or_default();
-        assert_eq!(
-            told,
-            "table `Pore pressure, T_v = 0.1`: row 2 has 7 cells for 8 columns"
-        );
+    for write in [Table::to_text, Table::to_markdown, Table::to_html, Table::to_csv] {
+        let told = write(&table).err().map(|e| e.to_string()).unwrap_or_default();
+        assert_eq!(told, "table `Pore pressure, T_v = 0.1`: row 2 has 7 cells for 8 columns");
     }
 }
 
@@ -107,8 +96,5 @@ fn a_terminal_is_never_steered() {
     let mut table = Table::new("\u{1b}[31m", vec![Column::text("a\n")]);
     table.rows.push(vec!["\u{1b}]0;x\u{7}\r\n".into()]);
     let text = written(table.to_text());
-    assert!(
-        text.chars().all(|c| c == '\n' || !c.is_control()),
-        "{text:?}"
-    );
+    assert!(text.chars().all(|c| c == '\n' || !c.is_control()), "{text:?}");
 }

@@ -33,10 +33,7 @@ pub(super) fn write(table: &Table) -> String {
         out.push_str(row.trim_end());
         out.push('\n');
     }
-    let marks = footnotes
-        .iter()
-        .enumerate()
-        .map(|(i, f)| format!("[{}] {}", mark(i), line(f)));
+    let marks = footnotes.iter().enumerate().map(|(i, f)| format!("[{}] {}", mark(i), line(f)));
     let notes: Vec<String> = marks.chain(table.notes.iter().map(|n| line(n))).collect();
     if !notes.is_empty() {
         out.push('\n');
@@ -48,7 +45,5 @@ pub(super) fn write(table: &Table) -> String {
 
 /// One line, without what could steer a terminal.
 fn line(text: &str) -> String {
-    text.chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect()
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

@@ -1,0 +1,92 @@
+//! Single modes against the matrix exponential.
+
+use super::*;
+use nalgebra::{Matrix4, Vector4};
+use proptest::prelude::*;
+
+/// `exp(A t) x` of the mode's first-order system, by scaling and squaring.
+fn by_matrix_exponential(mode: &Mode, start: InitialState, time: f64) -> Vector4<f64> {
+    let n = mode.porosity;
+    let squared = mode.wave_number * mode.wave_number;
+    let (ms, mw, d) = (mode.solid_mass, mode.water_mass, mode.drag);
+    let kss = squared * (mode.modulus + mode.coupling * (1.0 - n) * (1.0 - n));
+    let ksw = squared * mode.coupling * n * (1.0 - n);
+    let kww = squared * mode.coupling * n * n;
+    #[rustfmt::skip]
+    let system = Matrix4::new(
+        0.0, 0.0, 1.0, 0.0,
+        0.0, 0.0, 0.0, 1.0,
+        -kss / ms, -ksw / ms, -d / ms, d / ms,
+        -ksw / mw, -kww / mw, d / mw, -d / mw,
+    );
+    let [u, w] = start.displacement;
+    let [v, vw] = start.velocity;
+    (system * time).exp() * Vector4::new(u, w, v, vw)
+}
+
+proptest! {
+    #[test]
+    fn free_motion_is_the_matrix_exponential(
+        exponent in -3.0..0.0_f64,
+        stiffness in 1.0..1e3_f64,
+        porosity in 0.1..0.9_f64,
+        periods in 0.0..3.0_f64,
+        u in -1.0..1.0_f64, w in -1.0..1.0_f64, v in -1.0..1.0_f64, vw in -1.0..1.0_f64,
+    ) {
+        // Around the passage from over- to underdamped slow waves.
+        let column = ColumnParameters {
+            porosity,
+            water_bulk_modulus: stiffness * 1e6,
+            hydraulic_conductivity: 10.0_f64.powf(exponent),
+            ..ColumnParameters::default()
+        };
+        let mode = Mode::new(&column, 1.5);
+        let frequency = mode.roots.iter().map(|s| s.im).fold(1.0, f64::max);
+        let start = InitialState {
+            displacement: [u, w],
+            velocity: [v * frequency, vw * frequency],
+        };
+        let time = periods / frequency;
+        let expected = by_matrix_exponential(&mode, start, time);
+        let found = mode.amplitude(Drive::Release(start), time);
+        let mixture = (1.0 - porosity) * expected[0] + porosity * expected[1];
+        prop_assert!((found.solid - expected[0]).abs() < 1e-10);
+        prop_assert!((found.mixture - mixture).abs() < 1e-10);
+        prop_assert!((found.solid_rate - expected[2]).abs() < 1e-10 * frequency);
+    }
+}
+
+#[test]
+fn confluent_roots_are_no_exception() {
+    // Bisect the conductivity onto the double root of the slow waves.
+    let mode = |k: f64| {
+        let column = ColumnParameters { hydraulic_conductivity: k, ..ColumnParameters::default() };
+        Mode::new(&column, 1.5)
+    };
+    let waves = |k: f64| mode(k).roots.iter().filter(|s| s.im > 1e-6 * s.norm()).count();
+    let (mut over, mut under) = (1e-4, 1.0);
+    assert_eq!((waves(over), waves(under)), (1, 2));
+    while under / over > 1.0 + 1e-15 {
+        let middle = (over * under).sqrt();
+        if middle <= over || middle >= under {
+            break;
+        }
+        if waves(middle) == 1 {
+            over = middle;
+        } else {
+            under = middle;
+        }
+    }
+    let start = InitialState { displacement: [1.0, -0.5], velocity: [10.0, 3.0] };
+    for k in [over, over * (1.0 + 1e-9), over * 1.001, over * 1.01] {
+        let critical = mode(k);
+        assert!(k > over * 1.0001 || critical.cluster().is_some());
+        for time in [1e-4, 1e-3, 1e-2] {
+            let expected = by_matrix_exponential(&critical, start, time);
+            let found = critical.amplitude(Drive::Release(start), time);
+            assert!((found.solid - expected[0]).abs() < 1e-9, "{k} {time}");
+            let mixture = 0.7 * expected[0] + 0.3 * expected[1];
+            assert!((found.mixture - mixture).abs() < 1e-9, "{k} {time}");
+        }
+    }
+}

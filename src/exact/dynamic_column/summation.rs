@@ -1,0 +1,106 @@
+//! How many modes are summed, and what the others may add.
+
+use super::super::consolidation::eigenvalue;
+use super::modes::{Amplitude, Drive, InitialState, Mode};
+use super::{DynamicColumn, Start};
+
+/// More modes are not summed: beyond, a wave front is still sharp and the sum's tail says so.
+const MOST_MODES: usize = 4096;
+/// Modes below this share of the load are left out.
+const RELATIVE_TAIL: f64 = 1e-18;
+
+/// Modal coefficients of the departure at one time.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    pub time_factor: f64,
+    pub amplitudes: Vec<Amplitude>,
+    /// Bound on the omitted modes' pressure and stress, Pa.
+    pub tail: f64,
+}
+
+impl DynamicColumn {
+    /// Wave number `M_j/H`, 1/m.
+    pub(super) fn wave_number(&self, mode: usize) -> f64 {
+        eigenvalue(mode) / self.parameters.height
+    }
+
+    /// Drive of a mode under the unit ramp or the step: the load's force on `sin(M_j y/H)`.
+    fn drive(&self, mode: usize) -> Drive {
+        // −q m² b, with y = Σ b_j sin(m_j y).
+        let sign = if mode.is_multiple_of(2) { -2.0 } else { 2.0 };
+        let force = sign * self.parameters.load / self.parameters.height;
+        match self.start {
+            Start::Step => Drive::Step { force },
+            Start::Ramp { duration } => Drive::Ramp { rate: force / duration },
+            Start::Mode => Drive::Release(self.released()),
+        }
+    }
+
+    /// Coefficients of the slowest mode at the start of [`Start::Mode`].
+    pub(super) fn released(&self) -> InitialState {
+        let column = &self.parameters;
+        let wave_number = self.wave_number(0);
+        let solid = column.load / (column.oedometric_modulus() * wave_number);
+        let mixture = -column.load / (column.coupling_modulus() * wave_number);
+        let discharge =
+            wave_number * column.hydraulic_conductivity * column.load / column.unit_weight_of_water();
+        let solid_velocity = -column.storage_ratio() * discharge;
+        InitialState {
+            displacement: [solid, (mixture - (1.0 - column.porosity) * solid) / column.porosity],
+            velocity: [solid_velocity, solid_velocity + discharge / column.porosity],
+        }
+    }
+
+    /// Coefficients of one mode at a time in s.
+    fn amplitude(&self, mode: usize, time: f64) -> Amplitude {
+        let oscillator = Mode::new(&self.parameters, self.wave_number(mode));
+        let drive = self.drive(mode);
+        let mut amplitude = oscillator.amplitude(drive, time);
+        if let Start::Ramp { duration } = self.start
+            && time > duration
+        {
+            let earlier = oscillator.amplitude(drive, time - duration);
+            amplitude.solid -= earlier.solid;
+            amplitude.mixture -= earlier.mixture;
+            amplitude.solid_rate -= earlier.solid_rate;
+            amplitude.mixture_rate -= earlier.mixture_rate;
+            amplitude.envelope += earlier.envelope;
+        }
+        amplitude
+    }
+
+    /// Sums as many modes as matter at a time factor.
+    pub(super) fn snapshot(&self, time_factor: f64) -> Snapshot {
+        let time = self.parameters.time(time_factor);
+        let mut snapshot = Snapshot { time_factor, amplitudes: Vec::new(), tail: 0.0 };
+        if self.start == Start::Mode {
+            snapshot.amplitudes.push(self.amplitude(0, time));
+            return snapshot;
+        }
+        if time_factor == 0.0 {
+            return snapshot;
+        }
+        let negligible = RELATIVE_TAIL * self.parameters.load;
+        for mode in 0..MOST_MODES {
+            let amplitude = self.amplitude(mode, time);
+            snapshot.amplitudes.push(amplitude);
+            // Even where only the waves' 1/M is left of the decay, the tail is about this.
+            snapshot.tail = amplitude.envelope * (mode as f64 + 1.0);
+            if snapshot.tail <= negligible {
+                break;
+            }
+        }
+        snapshot.tail += self.sharp_front(snapshot.amplitudes.len(), time);
+        snapshot
+    }
+
+    /// What very high modes may add, Pa: their attenuation no longer grows with the frequency.
+    fn sharp_front(&self, modes: usize, time: f64) -> f64 {
+        let far = 1_000_000;
+        let front = self.amplitude(far, time).envelope * far as f64;
+        match self.start {
+            Start::Ramp { .. } => front * far as f64 / modes as f64,
+            Start::Step | Start::Mode => front,
+        }
+    }
+}

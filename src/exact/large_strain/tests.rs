@@ -1,0 +1,221 @@
+//! The large-strain reference against closed forms and its own balances.
+
+use super::super::terzaghi::Terzaghi;
+use super::super::xie_leo::XieLeo;
+use super::*;
+
+const TIMES: [f64; 8] = [1e-6, 0.001, 0.01, 0.05, 0.2, 0.5, 1.0, 3.0];
+
+fn column(load: f64) -> ColumnParameters {
+    ColumnParameters { load, height: 2.0, ..ColumnParameters::default() }
+}
+
+fn model(law: SoilLaw, continuity: Continuity, water: Water) -> LargeStrainModel {
+    LargeStrainModel { law, continuity, water }
+}
+
+const INCOMPRESSIBLE: LargeStrainModel = LargeStrainModel {
+    law: SoilLaw::LogLinear,
+    continuity: Continuity::Conservative,
+    water: Water::Incompressible,
+};
+
+#[test]
+fn incompressible_limit_is_xie_leo() {
+    for load in [1.0, 1e3, 2e5, 4e5] {
+        let column = column(load);
+        let general = LargeStrain::new(&column, INCOMPRESSIBLE, &TIMES).unwrap();
+        let closed = XieLeo::new(&column).unwrap();
+        let mut worst = [0.0_f64; 2];
+        for time_factor in TIMES {
+            for i in 0..=50 {
+                let zeta = f64::from(i * i) / 2500.0;
+                let a = general.fields(time_factor, zeta).unwrap();
+                let b = closed.fields(time_factor, zeta).unwrap();
+                worst[0] = worst[0].max((a.pressure - b.pressure).abs() / load);
+                let end = closed.final_strain() * column.height;
+                worst[1] = worst[1].max((a.displacement - b.displacement).abs() / end);
+            }
+        }
+        let accuracy = general.accuracy(0.5).unwrap();
+        assert!(worst[0] < 2e-11 && worst[1] < 2e-11, "{worst:?}");
+        // The stated accuracy is the coarser resolution's.
+        assert!(worst[0] < accuracy.tail_bound && accuracy.tail_bound < 1e-9);
+    }
+}
+
+#[test]
+fn linear_law_is_terzaghi_with_storage() {
+    for water_bulk_modulus in [2.2e9, 1.0e6] {
+        let column = ColumnParameters { water_bulk_modulus, ..column(3.0e3) };
+        let linear = model(SoilLaw::Linear, Continuity::ConstantPorosityGradient, Water::Compressible);
+        let general = LargeStrain::new(&column, linear, &TIMES).unwrap();
+        let closed = Terzaghi::compressible(&column).unwrap();
+        for time_factor in [0.0].into_iter().chain(TIMES) {
+            for zeta in [0.0, 0.01, 0.3, 0.77, 1.0] {
+                let a = general.fields(time_factor, zeta).unwrap();
+                let b = closed.fields(time_factor, zeta).unwrap();
+                assert!((a.pressure - b.pressure).abs() < 1e-10 * column.load);
+                let end = column.final_settlement();
+                assert!((a.displacement - b.displacement).abs() < 1e-10 * end);
+            }
+            let degree = general.degree_of_consolidation(time_factor).unwrap();
+            let expected = closed.degree_of_consolidation(time_factor).unwrap();
+            assert!((degree - expected).abs() < 1e-10);
+        }
+    }
+}
+
+#[test]
+fn governing_equations_hold() {
+    // Finite differences of the published fields, put into the equations as they are printed.
+    let column = ColumnParameters { water_bulk_modulus: 1.0e7, ..column(2.0e5) };
+    let (time_factor, zeta) = (0.15, 0.3);
+    let (dt, dz) = (1e-4, 1e-3);
+    let times = [time_factor - dt, time_factor, time_factor + dt];
+    for &law in &SoilLaw::ALL[1..] {
+        for &continuity in Continuity::ALL {
+            let general =
+                LargeStrain::new(&column, model(law, continuity, Water::Compressible), &times).unwrap();
+            let volume = |t: f64, z: f64| general.volume_ratio(t, z).unwrap();
+            let pressure = |t: f64, z: f64| general.fields(t, z).unwrap().pressure;
+            let solids = 1.0 - column.porosity;
+            let porosity = |z: f64| 1.0 - solids / volume(time_factor, z);
+            let discharge = |z: f64| {
+                // ∂/∂Y = −(1/H) ∂/∂ζ.
+                let gradient = -(pressure(time_factor, z + dz) - pressure(time_factor, z - dz))
+                    / (2.0 * dz * column.height);
+                let ratio = volume(time_factor, z);
+                let conductivity = column.hydraulic_conductivity * ratio * ratio;
+                -conductivity / (column.unit_weight_of_water() * ratio) * gradient
+            };
+            let along = |f: &dyn Fn(f64) -> f64| -(f(zeta + dz) - f(zeta - dz)) / (2.0 * dz * column.height);
+            let outflow = match continuity {
+                Continuity::Conservative => along(&discharge),
+                Continuity::ConstantPorosityGradient => {
+                    porosity(zeta) * along(&|z| discharge(z) / porosity(z))
+                }
+            };
+            let rate = |f: &dyn Fn(f64, f64) -> f64| {
+                (f(times[2], zeta) - f(times[0], zeta)) / column.time(times[2] - times[0])
+            };
+            let ratio = volume(time_factor, zeta);
+            let stored = rate(&volume) + porosity(zeta) * ratio / column.water_bulk_modulus * rate(&pressure);
+            let misfit = (stored + outflow) / outflow;
+            assert!(misfit.abs() < 2e-5, "{misfit:e} for {law} {continuity}");
+            // The stress that the law gives at this volume is the published one.
+            let modulus = column.oedometric_modulus();
+            let stress = match law {
+                SoilLaw::LogLinear => modulus * ratio.ln(),
+                SoilLaw::PorosityDependent => modulus * (1.0 - 1.0 / ratio),
+                SoilLaw::Linear | SoilLaw::Engineering => modulus * (ratio - 1.0),
+            };
+            let published = general.fields(time_factor, zeta).unwrap().effective_stress;
+            assert!((stress / published - 1.0).abs() < 1e-12);
+            let total = pressure(time_factor, zeta) - column.load;
+            assert!((total - published).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn front_is_handed_over_smoothly() {
+    let column = column(2.0e5);
+    for &continuity in Continuity::ALL {
+        let steep = model(SoilLaw::PorosityDependent, continuity, Water::Compressible);
+        let general = LargeStrain::new(&column, steep, &[0.05]).unwrap();
+        let end = general.front.valid_until();
+        for zeta in [0.001, 0.02, 0.1, 0.4, 1.0] {
+            let before = general.fields(end, zeta).unwrap();
+            let after = general.fields(end * (1.0 + 1e-14), zeta).unwrap();
+            assert!((before.pressure - after.pressure).abs() < 1e-9 * column.load);
+            assert!((before.displacement - after.displacement).abs() < 1e-10);
+        }
+    }
+}
+
+#[test]
+fn unprepared_times_are_marched_to() {
+    let column = column(2.0e5);
+    let prepared = LargeStrain::new(&column, INCOMPRESSIBLE, &[0.3, 0.05]).unwrap();
+    let closed = XieLeo::new(&column).unwrap();
+    for time_factor in [0.0, 0.02, 0.05, 0.11, 0.3, 0.7, 60.0] {
+        let difference = prepared.settlement(time_factor).unwrap() - closed.settlement(time_factor).unwrap();
+        assert!(difference.abs() < 1e-11, "{difference:e} at {time_factor}");
+    }
+}
+
+/// Relative L2 difference of two pressure profiles.
+fn distance(time_factor: f64, a: &LargeStrain, b: &XieLeo) -> f64 {
+    let (mut squares, mut norm) = (0.0, 0.0);
+    for i in 0..400 {
+        let zeta = (f64::from(i) + 0.5) / 400.0;
+        let exact = b.fields(time_factor, zeta).unwrap().pressure;
+        squares += (a.fields(time_factor, zeta).unwrap().pressure - exact).powi(2);
+        norm += exact * exact;
+    }
+    (squares / norm).sqrt()
+}
+
+#[test]
+fn traps_are_as_far_off_as_measured() {
+    let column = ColumnParameters { load: 2.0e5, ..ColumnParameters::default() };
+    let times = [0.05, 0.2, 0.5, 1.0];
+    let closed = XieLeo::new(&column).unwrap();
+    let figures = |law, continuity| {
+        let general = LargeStrain::new(&column, model(law, continuity, Water::Compressible), &times).unwrap();
+        times.map(|time_factor| {
+            let settlement =
+                general.settlement(time_factor).unwrap() / closed.settlement(time_factor).unwrap() - 1.0;
+            (distance(time_factor, &general, &closed), settlement)
+        })
+    };
+    // Relative L2 in pressure and error of settlement against Xie & Leo, at the times above.
+    let expected = [
+        (
+            SoilLaw::LogLinear,
+            Continuity::Conservative,
+            [1.46e-4, 9.9e-5, 8.4e-6, 1.24e-4],
+            [4.5e-4, 1.02e-4, 2.7e-6, -9.3e-6],
+        ),
+        (
+            SoilLaw::LogLinear,
+            Continuity::ConstantPorosityGradient,
+            [0.046, 0.097, 0.181, 0.238],
+            [0.114, 0.105, 0.0587, 0.0178],
+        ),
+        (
+            SoilLaw::PorosityDependent,
+            Continuity::Conservative,
+            [0.0079, 0.0203, 0.0838, 0.230],
+            [-0.0228, -0.0235, -0.0313, -0.0502],
+        ),
+        (
+            SoilLaw::PorosityDependent,
+            Continuity::ConstantPorosityGradient,
+            [0.0508, 0.111, 0.245, 0.407],
+            [0.0774, 0.0679, 0.0152, -0.0387],
+        ),
+    ];
+    for (law, continuity, pressures, settlements) in expected {
+        let found = figures(law, continuity);
+        for (i, (pressure, settlement)) in found.into_iter().enumerate() {
+            let near = |value: f64, printed: f64| (value - printed).abs() < 0.03 * printed.abs();
+            assert!(near(pressure, pressures[i]), "{law} {continuity} {found:?}");
+            assert!(near(settlement, settlements[i]), "{law} {continuity} {found:?}");
+        }
+    }
+}
+
+#[test]
+fn loads_near_the_limit_still_converge() {
+    for &law in SoilLaw::ALL {
+        for &continuity in Continuity::ALL {
+            let column = column(3.2e5);
+            let general = LargeStrain::new(&column, model(law, continuity, Water::Compressible), &TIMES);
+            assert!(general.is_ok_and(|g| g.accuracy(0.1).is_ok_and(|a| a.tail_bound < 1e-8)));
+        }
+    }
+    let closing = LargeStrain::new(&column(4.4e5), LargeStrainModel::default(), &[]);
+    assert!(closing.is_err());
+}
