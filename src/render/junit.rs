@@ -1,11 +1,11 @@
-//! JUnit, in the Jenkins dialect: one suite a study, one case an expectation and one for its
+//! `JUnit`, in the Jenkins dialect: one suite a study, one case an expectation and one for its
 //! golden values.
 
 use crate::assess::study_check::StudyCheck;
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::collections::BTreeMap;
 
-/// Checks as a JUnit document.
+/// Checks as a `JUnit` document.
 ///
 /// # Errors
 /// If the document cannot be written.

@@ -251,6 +251,7 @@ impl AssembledColumn {
     }
 
     /// Removes loads and initial stresses, so that a step is linear and not affine.
+    #[must_use]
     pub fn without_loads(mut self) -> Self {
         for row in &mut self.rows {
             row.mixture_force = 0.0;
