@@ -5,7 +5,7 @@
 
 use oedometer::assess::study_check::StudyCheck;
 use oedometer::golden::{GoldenFile, values_of};
-use oedometer::record::{Record, WallSample};
+use oedometer::record::{Provenance, Record, WallSample};
 use oedometer::render::measures;
 use oedometer::render::page::{Block, Page, figures, render_html, render_markdown};
 use oedometer::render::report::{StudyResults, page_of};
@@ -46,10 +46,14 @@ fn small_study() -> (Study, Vec<Record>) {
     for record in &mut records {
         // What changes from day to day does not belong in a snapshot.
         record.wall = vec![WallSample { seconds: 0.5, alone: true }];
-        record.provenance.sources = "SOURCES".to_owned();
-        record.provenance.compiler = "COMPILER".to_owned();
-        record.provenance.target = "TARGET".to_owned();
-        record.provenance.profile = "PROFILE".to_owned();
+        record.provenance = Provenance {
+            version: "VERSION".to_owned(),
+            sources: "SOURCES".to_owned(),
+            compiler: "COMPILER".to_owned(),
+            target: "TARGET".to_owned(),
+            profile: "PROFILE".to_owned(),
+            ..record.provenance.clone()
+        };
     }
     (study, records)
 }
