@@ -50,6 +50,16 @@ fn only_the_expected_class_passes() {
 }
 
 #[test]
+fn no_order_is_measured_in_another_class() {
+    // Its finest-window order, 1.21, would lie in this band.
+    let order = Some(Band { value: 2.0, minus: 1.0, plus: 0.5 });
+    let expectation = Expectation { order, ..Expectation::default() };
+    let found = verdict(&expectation, &series(|h| h * h + 0.05 * h));
+    let order = found.checks.iter().find(|check| check.name == "order").unwrap();
+    assert!(!order.pass && order.measured.is_none(), "{order:?}");
+}
+
+#[test]
 fn nonsense_never_passes_an_order() {
     for bad in [f64::NAN, f64::INFINITY, 0.0, 1e-310, -1.0] {
         for place in 0..6 {
@@ -103,6 +113,7 @@ fn a_floor_is_held_between_its_bounds() {
     assert!(!verdict(&floor(1e-5, 2e-5), &series(|h| h * h)).pass);
     // A higher-order term bends the series like a floor, and is none.
     assert!(verdict(&floor(0.0, 1e-7), &series(|h| h * h + 8.0 * h.powi(3))).pass);
+    assert!(verdict(&floor(0.0, 1e-7), &series(|h| h * h + 80.0 * h.powi(3))).pass);
     assert!(!verdict(&floor(0.0, 2e-5), &series(|h| 1.0 / h)).pass);
     // A floor of 10 % of the finest error is seen before it governs.
     assert!(!verdict(&floor(0.0, 3e-6), &series(|h| h * h + 4e-6)).pass);
@@ -139,7 +150,10 @@ fn an_expectation_of_nonsense_never_passes() {
         order: Some(Band { value, minus, plus }),
         ..Expectation::default()
     };
-    let at = |size, below| Expectation { at: Some(ErrorBound { size, below }), ..Expectation::default() };
+    let at = |size, below| Expectation {
+        at: Some(ErrorBound { size, below, above: 0.0 }),
+        ..Expectation::default()
+    };
     let unexplained =
         Expectation { xfail: Some(KnownFailure { strict: true, reason: " ".to_owned() }), ..second_order() };
     let expectations = [

@@ -22,6 +22,9 @@ const POOR: f64 = 0.05;
 /// Lowest exponent told apart from a floor.
 const LEAST_ORDER: f64 = 0.3;
 
+/// A second term with less of the finest error than this is none.
+const LEAST_SHARE: f64 = 0.01;
+
 impl Bend {
     /// The fit, whatever it says.
     pub(super) fn terms(&self) -> &TwoTerms {
@@ -55,8 +58,15 @@ fn about_formal(points: &[(f64, f64)], formal: f64) -> Option<Bend> {
         has_lower.then(|| fit(lower_low, Fixed(formal)).map(Bend::Lower)).flatten(),
         fit(Fixed(formal), higher).map(Bend::Higher),
     ];
+    // With a second term of nothing all three are the same single power, and round-off would
+    // choose among them.
+    let finest = points.last()?.0;
+    let real = |bend: &Bend| match bend {
+        Bend::Floor(terms) | Bend::Lower(terms) => terms.low_share(finest) > LEAST_SHARE,
+        Bend::Higher(_) => true,
+    };
     let residual = |bend: &Bend| bend.terms().residual;
-    candidates.into_iter().flatten().min_by(|a, b| residual(a).total_cmp(&residual(b)))
+    candidates.into_iter().flatten().filter(real).min_by(|a, b| residual(a).total_cmp(&residual(b)))
 }
 
 /// Without a formal order the higher power counts as sought where it was seen first: it governs
@@ -108,6 +118,16 @@ mod tests {
         assert!(matches!(bend(|h| h * h + 2e-3), Some(Bend::Floor(_))));
         assert!(matches!(bend(|h| h * h + 0.05 * h), Some(Bend::Lower(_))));
         assert!(matches!(bend(|h| h * h + 8.0 * h.powi(3)), Some(Bend::Higher(_))));
+    }
+
+    #[test]
+    fn what_nothing_fits_is_not_explained() {
+        let mut data = points(|h| h * h, 6);
+        for (point, factor) in data.iter_mut().zip([1.0, 0.3, 2.0, 0.5, 1.0, 2.0]) {
+            point.1 *= factor;
+        }
+        assert_eq!(explain(&data, Some(2.0)), None);
+        assert_eq!(explain(&data, None), None);
     }
 
     #[test]

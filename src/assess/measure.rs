@@ -129,6 +129,9 @@ fn snapshot_errors(
 }
 
 /// The exact fields at the Lagrangian places of the samples.
+///
+/// # Errors
+/// When the reference refuses the time factor.
 pub fn exact_samples(
     case: &Case,
     reference: &Reference,

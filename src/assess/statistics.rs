@@ -210,6 +210,12 @@ mod tests {
         assert_eq!(compare(&ratio(1.0), noise), Timing::Same);
         assert_eq!(compare(&ratio(1.1), noise), Timing::Slower);
         assert_eq!(compare(&ratio(0.9), noise), Timing::Faster);
+        assert_eq!(compare(&ratio(1.1), 0.2), Timing::Same);
+        assert_eq!(compare(&ratio(0.9), 0.2), Timing::Same);
+        let (mut first, second) = rounds(1.0);
+        first.iter_mut().step_by(2).for_each(|time| *time *= 1.5);
+        let torn = paired_ratio(&first, &second).unwrap();
+        assert!(torn.ratios.median > 1.1 && compare(&torn, 0.05) == Timing::Same, "{torn:?}");
         let few = paired_ratio(&[2.0; 3], &[1.0; 3]).unwrap();
         assert_eq!((few.interval, compare(&few, 0.0)), (None, Timing::Same));
         assert_eq!(noise_floor(&few), 1.0);

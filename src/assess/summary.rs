@@ -268,7 +268,7 @@ fn strict(demand: &Demand) -> Demand {
 }
 
 fn selects(expectation: &Expectation, case: &Case) -> bool {
-    fn fits<T: PartialEq>(asked: Option<T>, has: T) -> bool {
+    fn fits<T: PartialEq + Copy>(asked: Option<T>, has: T) -> bool {
         asked.is_none_or(|asked| asked == has)
     }
     fits(expectation.method, case.method)

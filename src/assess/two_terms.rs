@@ -76,7 +76,7 @@ pub fn fit_two_terms(points: &[(f64, f64)], low: Exponent, high: Exponent) -> Re
     let scaled: Vec<_> = points.iter().map(|(h, e)| (h / reference.0, e / reference.1)).collect();
     let best_high = |low: f64| {
         let high = match high {
-            Exponent::Fixed(high) => Exponent::Fixed(high.max(low + GAP)),
+            Exponent::Fixed(high) => Exponent::Fixed(high),
             Exponent::Between(from, to) => Exponent::Between(from.max(low + GAP), to.max(low + GAP)),
         };
         minimum(high, |high| project(&scaled, low, high).residual)
@@ -198,6 +198,14 @@ mod tests {
         assert!((fit.low - 1.0).abs() < 1e-5 && (fit.high - 2.0).abs() < 1e-5, "{fit:?}");
         assert!((fit.crossover().unwrap() - 0.05).abs() < 1e-5);
         assert!((fit.low_share(0.05) - 0.5).abs() < 1e-4);
+    }
+
+    #[test]
+    fn the_exponents_keep_their_distance() {
+        let data = points(|h| h.powi(2) * (1.0 + 0.05 * (70.0 * h).sin()));
+        let fit = fit_two_terms(&data, Exponent::Between(1.5, 6.0), Exponent::Between(0.5, 2.0));
+        let fit = fit.unwrap();
+        assert!(fit.high >= fit.low + GAP - 1e-12, "{fit:?}");
     }
 
     #[test]

@@ -24,7 +24,7 @@ enum Format {
 pub struct Arguments {
     /// Exact solution: terzaghi (compressible water), terzaghi-incompressible, single-mode, …
     scene: String,
-    /// Time factors T_v = c_v t/H², comma-separated
+    /// Time factors `T_v` = `c_v` t/H², comma-separated
     #[arg(long, default_value = "0.05,0.1,0.2,0.5,1.0", value_name = "LIST", allow_hyphen_values = true)]
     time_factor: String,
     /// Time factors at which these degrees of consolidation (by settlement) are reached, instead

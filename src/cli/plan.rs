@@ -19,16 +19,18 @@ pub struct Arguments {
 
 /// Prints one line a case as CSV.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    // Every file is judged before anything is printed.
+    let studies = load_or_shipped(&arguments.studies)?;
     let mut writer = csv::Writer::from_writer(std::io::stdout().lock());
     writer.write_record(["study", "case", "estimated_point_updates", "label"])?;
     let mut exit = Exit::NothingSelected;
-    for study in load_or_shipped(&arguments.studies)? {
+    for study in studies {
         for case in study.cases(arguments.tier.into()) {
             exit = Exit::Pass;
             let updates = estimated_updates(case).to_string();
             writer.write_record([study.name.as_str(), &case.hash(), &updates, &case.label()])?;
         }
     }
-    writer.into_inner().map_err(|error| error.into_error())?.flush()?;
+    writer.into_inner().map_err(csv::IntoInnerError::into_error)?.flush()?;
     Ok(exit)
 }

@@ -43,7 +43,7 @@ pub fn tidy_csv(study: &str, records: &[Record]) -> Result<String, csv::Error> {
             writer.write_record(fields(study, record, None))?;
         }
     }
-    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 

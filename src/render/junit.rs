@@ -1,11 +1,11 @@
-//! JUnit, in the Jenkins dialect: one suite a study, one case an expectation and one for its
+//! `JUnit`, in the Jenkins dialect: one suite a study, one case an expectation and one for its
 //! golden values.
 
 use crate::assess::study_check::StudyCheck;
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::collections::BTreeMap;
 
-/// Checks as a JUnit document.
+/// Checks as a `JUnit` document.
 ///
 /// # Errors
 /// If the document cannot be written.
@@ -23,7 +23,7 @@ pub fn report_of(checks: &[StudyCheck]) -> Result<String, SerializeError> {
             let mut case = TestCase::new(name, status(judgement.verdict.pass, &judgement.verdict.reason));
             for measured in &judgement.verdict.checks {
                 if let Some(value) = measured.measured {
-                    case.add_property(Property::new(measured.name.clone(), format!("{value:e}")));
+                    case.add_property(Property::new(measured.name.clone(), format!("{value:.6e}")));
                 }
             }
             suite.add_test_case(case);

@@ -92,27 +92,27 @@ fn start_undrained(points: &mut Points<1>, soil: &Material, load: f64) -> f64 {
     strain
 }
 
-/// Newton's steps to the undrained volume ratio; three are enough at any load that a soil bears.
-const MOST_NEWTON_STEPS: usize = 30;
+/// Corrections of the undrained strain; a few are enough where the water is stiffer than the soil.
+const MOST_CORRECTIONS: usize = 60;
 
 /// The undrained equilibrium at finite strain, `p(J) − σ'(J) = q`: returns the displacement
 /// gradient `J − 1`.
 fn start_undrained_finite(points: &mut Points<1>, soil: &Material, load: f64) -> f64 {
     let modulus = soil.oedometric_modulus();
     let carried =
-        |ratio: f64| soil.undrained_pressure_at(ratio) - modulus * soil.law.uniaxial_stress_ratio(ratio);
-    let mut ratio = 1.0;
-    for _ in 0..MOST_NEWTON_STEPS {
+        |strain: f64| soil.undrained_pressure_at(strain) - modulus * soil.law.uniaxial_stress_ratio(strain);
+    let mut strain = 0.0;
+    for _ in 0..MOST_CORRECTIONS {
         // The tangent of the unstrained state: the undrained strain is tiny, and it converges fast.
-        let change = (carried(ratio) - load) / (modulus + soil.coupling_modulus());
-        ratio += change;
-        if change.abs() < 1e-16 {
+        let change = (carried(strain) - load) / (modulus + soil.coupling_modulus());
+        strain += change;
+        if change.abs() < f64::EPSILON * strain.abs() {
             break;
         }
     }
-    points.effective_stress.fill([[modulus * soil.law.uniaxial_stress_ratio(ratio)]]);
-    points.pressure.fill(soil.undrained_pressure_at(ratio));
-    ratio - 1.0
+    points.effective_stress.fill([[modulus * soil.law.uniaxial_stress_ratio(strain)]]);
+    points.pressure.fill(soil.undrained_pressure_at(strain));
+    strain
 }
 
 fn start_single_mode(points: &mut Points<1>, column: &Column, soil: &Material) -> Result<(), ExactError> {

@@ -14,6 +14,18 @@ pub const GHOST_LAYERS: usize = 2;
 /// Points closer to a cell face than this share of a cell belong to the upper cell.
 const FACE_TOLERANCE: f64 = 1e-10;
 
+/// `base^exponent`, for the nodes or cells of a block.
+#[inline]
+pub const fn power(base: usize, exponent: usize) -> usize {
+    let mut product = 1;
+    let mut factor = 0;
+    while factor < exponent {
+        product *= base;
+        factor += 1;
+    }
+    product
+}
+
 /// A regular grid of square cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid<const D: usize> {

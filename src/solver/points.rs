@@ -72,6 +72,7 @@ impl<const D: usize> Points<D> {
     }
 
     /// The points of a list of indices, in its order.
+    #[must_use]
     pub fn select(&self, keep: &[usize]) -> Self {
         fn pick<T: Copy>(field: &[T], keep: &[usize]) -> Vec<T> {
             keep.iter().map(|point| field[*point]).collect()

@@ -5,7 +5,7 @@
 //! beyond `2π/3`, a negative stiffness that no step survives.
 
 use super::cells::Cells;
-use super::grid::{Grid, Vector};
+use super::grid::{Grid, Vector, power};
 
 /// Cells along one direction of a patch.
 const BLOCK: usize = 3;
@@ -28,7 +28,7 @@ impl<const D: usize> PatchRows<D> {
     }
 
     const fn width() -> usize {
-        BLOCK.pow(D as u32)
+        power(BLOCK, D)
     }
 
     /// Fits the rows to the points' places and to the occupied cells.

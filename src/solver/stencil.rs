@@ -1,6 +1,6 @@
 //! Sparse operators between points and nodes: one small tensor-product block of nodes a point.
 
-use super::grid::{Grid, Vector};
+use super::grid::{Grid, Vector, power};
 use super::shape::Row;
 
 /// Weights and gradients of every point over a block of `W` nodes in each direction.
@@ -51,7 +51,7 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     ) {
         let weights = &self.weights[point];
         let gradients = &self.gradients[point];
-        for flat in 0..W.pow(D as u32) {
+        for flat in 0..power(W, D) {
             let mut rest = flat;
             let mut node = self.first[point];
             let mut weight = 1.0;

@@ -259,7 +259,7 @@ impl Checker<'_> {
             gravity: self.positive(table.gravity.as_ref(), "material.gravity", "m/s²", seed.gravity),
             continuity: continuity.unwrap_or(seed.continuity),
         };
-        self.permeability_unit(table, &soil);
+        self.units_of_thought(table);
         soil
     }
 
@@ -303,34 +303,31 @@ impl Checker<'_> {
         }
     }
 
-    /// A conductivity like 1e-11 m/s is legal; one above 10 m/s, or an "intrinsic" one, is a unit
-    /// of thought.
-    fn permeability_unit(&mut self, table: &MaterialTable, soil: &Material) {
-        if let Some(typed) = &table.hydraulic_conductivity {
-            if soil.hydraulic_conductivity > 10.0 {
-                self.complain(
-                    typed.span(),
-                    format!("a hydraulic conductivity of {} m/s is no soil's", soil.hydraulic_conductivity),
-                    "give metres a second: gravel has 1e-2, clay 1e-10",
-                );
-            }
-        }
-        if let Some(typed) = &table.youngs_modulus {
-            if soil.youngs_modulus < 1e2 {
-                self.complain(
-                    typed.span(),
-                    format!("a Young's modulus of {} Pa is no soil's", soil.youngs_modulus),
-                    "give pascals, not kPa or MPa: 1000 kPa is 1.0e6",
-                );
-            }
-        }
-        if let Some(typed) = &table.water_bulk_modulus {
-            if soil.water_bulk_modulus < 1e3 {
-                self.complain(
-                    typed.span(),
-                    format!("a bulk modulus of {} Pa is no liquid's", soil.water_bulk_modulus),
-                    "give pascals: water has 2.2e9",
-                );
+    /// Values that are legal numbers and no soil's: a unit of thought.
+    fn units_of_thought(&mut self, table: &MaterialTable) {
+        let rows = [
+            (
+                &table.hydraulic_conductivity,
+                10.0..f64::INFINITY,
+                "a hydraulic conductivity of {} m/s is no soil's",
+                "give metres a second: gravel has 1e-2, clay 1e-10",
+            ),
+            (
+                &table.youngs_modulus,
+                f64::MIN_POSITIVE..1e2,
+                "a Young's modulus of {} Pa is no soil's",
+                "give pascals, not kPa or MPa: 1000 kPa is 1.0e6",
+            ),
+            (
+                &table.water_bulk_modulus,
+                f64::MIN_POSITIVE..1e3,
+                "a bulk modulus of {} Pa is no liquid's",
+                "give pascals: water has 2.2e9",
+            ),
+        ];
+        for (typed, strange, message, help) in rows {
+            if let Some(typed) = typed.as_ref().filter(|typed| strange.contains(typed.get_ref())) {
+                self.complain(typed.span(), message.replace("{}", &typed.get_ref().to_string()), help);
             }
         }
     }
@@ -537,9 +534,10 @@ impl Checker<'_> {
     }
 
     fn method_of_choices(&mut self, table: &MethodTable, span: Range<usize>) -> Option<Method> {
-        let mut pick = |word: &Option<Spanned<String>>, name: &str, choices: &[&str]| match word {
-            Some(word) => self.word(word, name, choices),
-            None => {
+        let mut pick = |word: &Option<Spanned<String>>, name: &str, choices: &[&str]| {
+            if let Some(word) = word {
+                self.word(word, name, choices)
+            } else {
                 self.complain(
                     span.clone(),
                     format!("the method names no `{name}`"),
@@ -630,7 +628,7 @@ impl Checker<'_> {
             Some(typed) => Some(self.method(typed)?),
             None => None,
         };
-        let Some(height) = self.column_height else { return None };
+        let height = self.column_height?;
         let demand = Demand {
             order: table.order.as_ref().map(|order| Band {
                 value: *order.get_ref().value.get_ref(),

@@ -96,7 +96,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 }
 
 /// Help for a word that is none of the candidates.
-pub fn one_of<'a>(word: &str, candidates: &[&'a str]) -> String {
+pub fn one_of(word: &str, candidates: &[&str]) -> String {
     match nearest(word, candidates.iter().copied()) {
         Some(near) => format!("did you mean `{near}`? It can be {}", listed(candidates)),
         None => format!("it can be {}", listed(candidates)),

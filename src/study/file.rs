@@ -209,6 +209,9 @@ impl<'de> Deserialize<'de> for MethodEntry {
 
 impl StudySource {
     /// Reads TOML into tables, refusing unknown keys and wrong types at their place.
+    ///
+    /// # Errors
+    /// What the parser refuses, with the nearest key.
     pub fn parse(&self) -> Result<StudyFile, StudyError> {
         toml::from_str(&self.text).map_err(|error| self.error(vec![explained(&error)]))
     }

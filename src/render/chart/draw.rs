@@ -46,7 +46,7 @@ impl Chart {
             Side::None => {}
             Side::Right => legend.draw_column(&mut canvas, layout.legend),
             Side::Below => {
-                legend.draw_rows(&mut canvas, layout.legend, layout.width - layout.plot.left - layout.left)
+                legend.draw_rows(&mut canvas, layout.legend, layout.width - layout.plot.left - layout.left);
             }
         }
         canvas.finish(&self.title, &self.description())

@@ -1,0 +1,160 @@
+//! Kernels: one step by method, operators built anew, and the exact series.
+//!
+//! `cargo bench --bench kernels` ends with a table of nanoseconds per point and step, the unit in
+//! which the bar is set: at most 20 for `GC-SRI-patch` in one dimension with frozen weights.
+
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+use oedometer::exact::consolidation;
+use oedometer::scene::{Column, SceneKind, column_problem};
+use oedometer::solver::assembled::AssembledColumn;
+use oedometer::solver::body::{Body, Gimp, Hat, Problem, ShapeFunction};
+use oedometer::solver::explicit::ExplicitSettings;
+use oedometer::solver::material::Material;
+use oedometer::solver::method::{Basis, Configuration, Method};
+use oedometer::solver::run::predicted_critical_step;
+use std::time::Instant;
+
+const METHODS: [&str; 5] = ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"];
+const CELLS: [usize; 2] = [10, 80];
+const POINTS_PER_CELL: usize = 2;
+/// Steps an iteration: long enough that the clock costs nothing.
+const STEPS: usize = 256;
+/// Rounds of the table; its figure is their median.
+const ROUNDS: usize = 31;
+
+/// A way to take a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kernel {
+    PointWise,
+    Assembled,
+    Moving,
+}
+
+fn main() {
+    divan::main();
+    if std::env::args().all(|argument| argument != "--test" && argument != "--list") {
+        print_table();
+    }
+}
+
+#[divan::bench(args = METHODS, consts = CELLS)]
+fn point_wise_step<const C: usize>(bencher: Bencher, method: &str) {
+    bench_steps(bencher, method, C, Kernel::PointWise);
+}
+
+#[divan::bench(args = METHODS, consts = CELLS)]
+fn assembled_step<const C: usize>(bencher: Bencher, method: &str) {
+    bench_steps(bencher, method, C, Kernel::Assembled);
+}
+
+#[divan::bench(args = METHODS, consts = CELLS)]
+fn moving_step<const C: usize>(bencher: Bencher, method: &str) {
+    bench_steps(bencher, method, C, Kernel::Moving);
+}
+
+#[divan::bench(args = METHODS, consts = CELLS)]
+fn build_operators<const C: usize>(bencher: Bencher, method: &str) {
+    let problem = problem(method, C, Configuration::Updated);
+    let bencher = bencher.counter(ItemsCount::new(problem.points.len()));
+    match problem.method.basis {
+        Basis::Hat => {
+            let mut body = Body::<1, 2, Hat>::new(problem);
+            bencher.bench_local(|| body.build_operators());
+        }
+        Basis::Ugimp | Basis::Cpgimp => {
+            let mut body = Body::<1, 3, Gimp>::new(problem);
+            bencher.bench_local(|| body.build_operators());
+        }
+    }
+}
+
+/// Time factors on both sides of the switch between the image and the series form.
+#[divan::bench(args = [1e-6, 0.01, 0.1, 1.0])]
+fn exact_isochrone(bencher: Bencher, time_factor: f64) {
+    bencher.bench(|| consolidation::isochrone(black_box(0.37), black_box(time_factor)));
+}
+
+#[divan::bench(args = [1e-6, 0.01, 0.1, 1.0])]
+fn exact_degree_of_consolidation(bencher: Bencher, time_factor: f64) {
+    bencher.bench(|| consolidation::degree_of_consolidation(black_box(time_factor)));
+}
+
+/// The seed column, from its undrained start.
+fn problem(method: &str, cells: usize, configuration: Configuration) -> Problem<1> {
+    let method =
+        Method { configuration: Some(configuration), ..Method::named(method).expect("a known method") };
+    let (column, soil) = (Column::default(), Material::default());
+    column_problem(SceneKind::Terzaghi, &column, &soil, method, cells, POINTS_PER_CELL)
+        .expect("the seed column")
+}
+
+/// A closure that takes `STEPS` steps.
+fn stepper(method: &str, cells: usize, kernel: Kernel) -> Box<dyn FnMut()> {
+    let configuration = if kernel == Kernel::Moving { Configuration::Updated } else { Configuration::Frozen };
+    let problem = problem(method, cells, configuration);
+    let settings = ExplicitSettings::default();
+    let dt = 0.5 * predicted_critical_step(&problem, &settings);
+    match problem.method.basis {
+        Basis::Hat => steps_of(Body::<1, 2, Hat>::new(problem), kernel, dt, settings),
+        Basis::Ugimp | Basis::Cpgimp => steps_of(Body::<1, 3, Gimp>::new(problem), kernel, dt, settings),
+    }
+}
+
+fn steps_of<const W: usize, S: ShapeFunction<W> + 'static>(
+    mut body: Body<1, W, S>,
+    kernel: Kernel,
+    dt: f64,
+    settings: ExplicitSettings,
+) -> Box<dyn FnMut()> {
+    if kernel == Kernel::Assembled {
+        let mut column = AssembledColumn::new(&body).expect("one dimension");
+        column.set_step(dt, &settings);
+        Box::new(move || {
+            for _ in 0..STEPS {
+                column.step(black_box(dt), &settings);
+            }
+        })
+    } else {
+        Box::new(move || {
+            for _ in 0..STEPS {
+                body.explicit_step(black_box(dt), &settings);
+            }
+        })
+    }
+}
+
+fn bench_steps(bencher: Bencher, method: &str, cells: usize, kernel: Kernel) {
+    let mut steps = stepper(method, cells, kernel);
+    bencher.counter(ItemsCount::new(cells * POINTS_PER_CELL * STEPS)).bench_local(&mut steps);
+}
+
+/// Median of nanoseconds per point and step, every kernel and method.
+fn print_table() {
+    println!("\nns per point and step, {POINTS_PER_CELL} points a cell, median of {ROUNDS} rounds");
+    println!("{:<16}{:>6}{:>12}{:>12}{:>12}", "method", "cells", "point-wise", "assembled", "moving");
+    for method in METHODS {
+        for cells in CELLS {
+            let [point_wise, assembled, moving] = medians(method, cells);
+            println!("{method:<16}{cells:>6}{point_wise:>12.1}{assembled:>12.1}{moving:>12.1}");
+        }
+    }
+}
+
+/// The kernels take turns, so that what drifts on the machine meets each alike.
+fn medians(method: &str, cells: usize) -> [f64; 3] {
+    let kernels = [Kernel::PointWise, Kernel::Assembled, Kernel::Moving];
+    let mut steppers = kernels.map(|kernel| stepper(method, cells, kernel));
+    let mut samples = [const { Vec::new() }; 3];
+    for _ in 0..ROUNDS {
+        for (steps, samples) in steppers.iter_mut().zip(&mut samples) {
+            let start = Instant::now();
+            steps();
+            samples.push(start.elapsed().as_secs_f64());
+        }
+    }
+    samples.map(|mut samples| {
+        samples.sort_by(f64::total_cmp);
+        1e9 * samples[ROUNDS / 2] / (STEPS * cells * POINTS_PER_CELL) as f64
+    })
+}
