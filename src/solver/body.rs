@@ -113,7 +113,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
             cells: Cells::new(&grid, count),
             stiffness: material.stiffness(),
-            surface: LoadedSurface::of(&points, load),
+            surface: LoadedSurface::of(&points, load)
+                .stretching(configuration.moves_points() && !method.domains_follow()),
             basis: Stencils::with_points(count),
             composite: Stencils::with_points(composite_rows),
             patch: PatchRows::with_points(patch_rows),
@@ -228,6 +229,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// the surface there.
     pub fn build_operators(&mut self) {
         self.cells.locate(&self.grid, &self.points, self.material.porosity);
+        if self.method.strain == StrainGradient::Cmpm {
+            self.cells.find_reached(&self.grid, &self.points);
+        }
         let per_cell = self.grid.inverse_cell_size();
         for point in 0..self.points.len() {
             let (position, half) = (&self.points.position[point], &self.points.half_length[point]);
@@ -239,8 +243,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 let home = self.grid.flat_cell(&cell);
                 let rows = std::array::from_fn(|d| {
                     let stride = self.grid.cell_stride()[d];
-                    let lower = self.cells.is_occupied(home - stride);
-                    let upper = self.cells.is_occupied(home + stride);
+                    let lower = self.cells.is_reached(home - stride);
+                    let upper = self.cells.is_reached(home + stride);
                     shape::composite(place[d], cell[d], lower, upper)
                 });
                 self.composite.set(&self.grid, point, &rows);

@@ -3,6 +3,9 @@
 use super::grid::{Grid, Tensor, Vector};
 use super::points::Points;
 
+/// Share of a cell that a domain must reach into it to count.
+const LEAST_REACH: f64 = 1e-6;
+
 /// What a cell knows of its points, flat index = cell.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cells<const D: usize> {
@@ -12,6 +15,8 @@ pub struct Cells<const D: usize> {
     first_node: Vec<usize>,
     /// Points in each cell.
     point_count: Vec<u32>,
+    /// Whether a point's domain reaches into each cell.
+    reached: Vec<bool>,
     /// Current volume of each cell's points, m^D.
     volume: Vec<f64>,
     /// Volume-weighted mean porosity of each occupied cell's points.
@@ -39,6 +44,7 @@ impl<const D: usize> Cells<D> {
             of_point: vec![0; points],
             first_node,
             point_count: vec![0; count],
+            reached: vec![false; count],
             volume: vec![0.0; count],
             porosity: vec![0.0; count],
             inverse_deformation: vec![[[0.0; D]; D]; count],
@@ -74,6 +80,30 @@ impl<const D: usize> Cells<D> {
                 self.porosity[cell] /= self.volume[cell];
             }
         }
+    }
+
+    /// Finds the cells that the points' domains reach into: a cell may have lost its last point and
+    /// still carry the edge of the material.
+    pub fn find_reached(&mut self, grid: &Grid<D>, points: &Points<D>) {
+        self.reached.fill(false);
+        let inset = LEAST_REACH * grid.cell_size;
+        for point in 0..points.len() {
+            self.reached[self.of_point[point]] = true;
+            for direction in 0..D {
+                let reach = points.half_length[point][direction] - inset;
+                for side in [-reach, reach] {
+                    let mut place = points.position[point];
+                    place[direction] += side;
+                    self.reached[grid.flat_cell(&grid.cell_of(&place))] = true;
+                }
+            }
+        }
+    }
+
+    /// Whether a cell holds a point, or the edge of one's domain.
+    #[inline]
+    pub fn is_reached(&self, cell: usize) -> bool {
+        self.reached[cell]
     }
 
     /// Means of the inverse deformation gradients over each cell's points.
