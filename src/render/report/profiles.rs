@@ -15,6 +15,9 @@ use crate::solver::method::{PressureIntegration, Recovery};
 /// Cells of the runs whose profiles are drawn: the paper's column.
 const SHOWN_CELLS: usize = 10;
 
+/// Points a cell of those runs.
+const SHOWN_POINTS: usize = 2;
+
 /// Profiles of a study's runs on the paper's mesh, one run a method; none for studies that refine
 /// but one method.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
