@@ -16,12 +16,12 @@ use std::path::{Path, PathBuf};
 /// Version of the file's layout.
 const SCHEMA: u32 = 1;
 /// Allowed relative change.
-const RELATIVE_TOLERANCE: f64 = 1e-7;
+const RELATIVE_TOLERANCE: f64 = 1e-8;
 /// Allowed absolute change of an error: round-off of a run of a million steps.
 const ABSOLUTE_TOLERANCE: f64 = 1e-12;
 /// Where the tolerances come from.
 const BASIS: &str = "round-off: the point-wise and the assembled kernel, which differ in every rounding, agree to \
-                     better than a tenth of it (solver::run::tests, `solve --point-wise`)";
+                     better than a tenth of it over a million steps (solver::run::tests, `solve --point-wise`)";
 
 /// Golden values of a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

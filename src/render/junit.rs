@@ -23,7 +23,7 @@ pub fn report_of(checks: &[StudyCheck]) -> Result<String, SerializeError> {
             let mut case = TestCase::new(name, status(judgement.verdict.pass, &judgement.verdict.reason));
             for measured in &judgement.verdict.checks {
                 if let Some(value) = measured.measured {
-                    case.add_property(Property::new(measured.name.clone(), format!("{value:e}")));
+                    case.add_property(Property::new(measured.name.clone(), format!("{value:.6e}")));
                 }
             }
             suite.add_test_case(case);

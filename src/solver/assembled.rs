@@ -27,6 +27,8 @@ type BandRow = [f64; BAND];
 #[derive(Clone, Debug)]
 pub struct AssembledColumn {
     rows: Vec<NodeRow>,
+    /// From the first to the last node that is free: all others stand still.
+    moving: std::ops::Range<usize>,
     /// Nodes that span the loaded surface, with the weights there.
     surface: Vec<(usize, f64)>,
     state: State,
@@ -94,7 +96,10 @@ impl AssembledColumn {
         }
         assemble_bands(body, &mut rows);
         let surface = body.surface.weights(&body.grid, &body.points);
-        let mut column = Self { rows, surface, state: State::zero(count) };
+        let is_free = |row: &NodeRow| row.free > 0.0;
+        let first = rows.iter().position(is_free).unwrap_or(0);
+        let end = rows.iter().rposition(is_free).map_or(first, |last| last + 1);
+        let mut column = Self { rows, moving: first..end, surface, state: State::zero(count) };
         column.read(body);
         Some(column)
     }
@@ -135,7 +140,8 @@ impl AssembledColumn {
         self.forces_and_trial_velocities(dt);
         let (flip, pic) = (settings.flip, 1.0 - settings.flip);
         let state = &mut self.state;
-        for (node, row) in self.rows.iter().enumerate() {
+        for node in self.moving.clone() {
+            let row = &self.rows[node];
             let at = node + REACH;
             let solid_rate = band(&row.projection, &state.solid_acceleration, node);
             let water_rate = band(&row.projection, &state.water_acceleration, node);
@@ -160,7 +166,8 @@ impl AssembledColumn {
 
     fn forces_and_trial_velocities(&mut self, dt: f64) {
         let state = &mut self.state;
-        for (node, row) in self.rows.iter().enumerate() {
+        for node in self.moving.clone() {
+            let row = &self.rows[node];
             let at = node + REACH;
             let pressure = band(&row.pressure_stiffness, &state.flux_displacement, node);
             let skeleton = band(&row.skeleton_stiffness, &state.strain_displacement, node);

@@ -1,0 +1,140 @@
+//! Tables and pages of a small study, from its records, as text and as Markdown.
+//!
+//! Snapshots hold the wording and the layout; what the numbers must be is for expectations and
+//! golden values to judge.
+
+use oedometer::assess::study_check::StudyCheck;
+use oedometer::golden::{GoldenFile, values_of};
+use oedometer::record::{Provenance, Record, WallSample};
+use oedometer::render::measures;
+use oedometer::render::page::{Block, Page, figures, render_html, render_markdown};
+use oedometer::render::report::{StudyResults, page_of};
+use oedometer::render::table::Table;
+use oedometer::render::{junit, verdicts};
+use oedometer::study::{RunOptions, Study, StudySource, Tier, run_study};
+
+const STUDY: &str = r#"
+title = "A small study"
+summary = "Coarse meshes to an early time: quick to run."
+scene = "terzaghi"
+integrator.drag = "implicit"
+
+[output]
+time_factors = [0.1, 0.2]
+
+[[sweep]]
+method = ["GIMP-SRI", "GC-SRI-patch"]
+cells = [4, 8, 16]
+
+[[expect]]
+method = "GC-SRI-patch"
+time_factor = 0.2
+order = { value = 2.0, minus = 0.2, plus = 0.3 }
+at = { cells = 8, below = 1.0e-2 }
+
+[[expect]]
+method = "GIMP-SRI"
+time_factor = 0.2
+order = { value = 2.0 }
+"#;
+
+fn small_study() -> (Study, Vec<Record>) {
+    let source = StudySource { name: "small.toml".to_owned(), text: STUDY.to_owned() };
+    let study = Study::check(&source).expect("a sound study");
+    let options = RunOptions { jobs: 1, tier: Tier::Full, shard: None, resume: false };
+    let mut records = run_study(&study, &options, None, &|_| {}).records;
+    for record in &mut records {
+        // What changes from day to day does not belong in a snapshot.
+        record.wall = vec![WallSample { seconds: 0.5, alone: true }];
+        record.provenance = Provenance {
+            version: "VERSION".to_owned(),
+            sources: "SOURCES".to_owned(),
+            compiler: "COMPILER".to_owned(),
+            target: "TARGET".to_owned(),
+            profile: "PROFILE".to_owned(),
+            ..record.provenance.clone()
+        };
+    }
+    (study, records)
+}
+
+fn page_of_small() -> Page {
+    let (study, records) = small_study();
+    page_of(&[StudyResults::new(&study, &records, Tier::Full)]).expect("a page")
+}
+
+fn tables(blocks: &[Block]) -> Vec<&Table> {
+    blocks
+        .iter()
+        .flat_map(|block| match block {
+            Block::Table(table) => vec![table],
+            Block::Details { blocks, .. } => tables(blocks),
+            _ => Vec::new(),
+        })
+        .collect()
+}
+
+fn assert_snapshot(name: &str, text: &str) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("../golden/snapshots");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.bind(|| insta::assert_snapshot!(name, text));
+}
+
+#[test]
+fn every_table_of_the_report_reads_as_it_did() {
+    let page = page_of_small();
+    let all = page.sections.iter().flat_map(|section| tables(&section.blocks));
+    let text: Vec<String> = all.map(|table| table.to_text().expect("a table")).collect();
+    assert_snapshot("report_tables_text", &text.join("\n\n"));
+}
+
+#[test]
+fn the_markdown_page_reads_as_it_did() {
+    assert_snapshot("report_markdown", &render_markdown(&page_of_small()).expect("a page"));
+}
+
+#[test]
+fn html_and_markdown_come_from_the_same_page_with_all_figures() {
+    let page = page_of_small();
+    let html = render_html(&page).expect("a page");
+    let drawn = figures(&page).expect("figures");
+    assert!(drawn.len() >= 5, "{} figures", drawn.len());
+    assert_eq!(html.matches("<svg").count(), drawn.len(), "every figure is in the page itself");
+    assert!(!html.contains("http://") || !html.contains("<link"), "nothing is fetched from elsewhere");
+    let markdown = render_markdown(&page).expect("a page");
+    for (name, svg) in drawn {
+        assert!(markdown.contains(&format!("figures/{name}")), "{name}");
+        assert!(!svg.contains("NaN"), "{name}");
+    }
+}
+
+#[test]
+fn the_table_of_one_case_reads_as_it_did() {
+    let (_, records) = small_study();
+    assert_snapshot("solve_table", &measures::table_of(&records[4]).expect("a table"));
+}
+
+#[test]
+fn a_check_tells_what_is_not_met_and_what_moved() {
+    let (study, records) = small_study();
+    let mut golden = GoldenFile::of(&study.name, &records, "as measured");
+    let untouched = StudyCheck::new(&study, &records, Tier::Full, Ok(golden.clone()));
+    assert!(untouched.differences().is_empty() && untouched.agreeing == values_of(&records).len());
+    let name =
+        golden.values.keys().find(|name| name.contains("pressure points l2")).expect("a pressure").clone();
+    if let Some(value) = golden.values.get_mut(&name) {
+        *value *= 1.0 - 10.0 * golden.relative_tolerance;
+    }
+    let moved = StudyCheck::new(&study, &records, Tier::Full, Ok(golden));
+    let names: Vec<&str> = moved.differences().iter().map(|one| one.name.as_str()).collect();
+    assert_eq!(names, [name.as_str()], "ten times the tolerance in one place, and nothing else");
+    let text = verdicts::text_of(&moved).expect("a text");
+    assert!(text.contains("1 of 2 expectations met") && text.contains("moved"), "{text}");
+    assert_snapshot("check_unmet", &verdicts::text_of(&untouched).expect("a text"));
+    assert_snapshot(
+        "check_markdown",
+        &verdicts::markdown_of(std::slice::from_ref(&untouched)).expect("a text"),
+    );
+    assert_snapshot("check_junit", &junit::report_of(&[untouched]).expect("a document"));
+}
