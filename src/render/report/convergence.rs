@@ -204,9 +204,8 @@ fn orders_table(all: &[Path<'_>], axis: Axis, reference: &str, time_factor: f64)
         };
         for (path, label) in all.iter().zip(&labels.each) {
             let summary = path.summary(&measure);
-            if let (Some(floor), Some(advice)) =
-                (&summary.classification.floor, &summary.classification.advice)
-            {
+            let told = summary.classification.floor.as_ref().filter(|_| axis != Axis::PointsPerCell);
+            if let (Some(floor), Some(advice)) = (told, &summary.classification.advice) {
                 notes.push(format!(
                     "{label}, {}: floor {:.1e}; {advice}",
                     labels::measure(&measure),
