@@ -131,8 +131,18 @@ impl<'a> Path<'a> {
             formal_order: (self.axis == Axis::Cells).then(|| formal_order(case, measure)).flatten(),
             round_off: Some(ROUND_OFF),
             reference_accuracy: used.map(|used| used.tail_bound),
-            limiters: model_limiter(finest, measure).into_iter().collect(),
+            limiters: model_limiter(finest, measure).into_iter().chain(self.mesh_limiter()).collect(),
         }
+    }
+
+    /// Along any other axis than its own the mesh is what is left of the error.
+    fn mesh_limiter(&self) -> Option<Limiter> {
+        (self.axis != Axis::Cells).then(|| Limiter {
+            kind: LimiterKind::Mesh,
+            name: "the mesh".to_owned(),
+            magnitude: None,
+            order: Some(2.0),
+        })
     }
 
     /// What the runs of the path share, in words, the method first.

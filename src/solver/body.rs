@@ -288,33 +288,33 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let nodes = &mut self.nodes;
         nodes.solid_velocity.fill([0.0; D]);
         nodes.water_velocity.fill([0.0; D]);
-        let solid_fraction = 1.0 - self.material.porosity;
-        for point in 0..self.points.len() {
-            // Densities cancel: grains weigh with (1 − n) V = (1 − n_0) V_0, water with n V.
-            let solid = self.points.initial_volume[point] * solid_fraction;
-            let water =
-                self.points.initial_volume[point] * (self.points.volume_ratio[point] - solid_fraction);
-            let (solid_velocity, water_velocity) =
-                (&self.points.solid_velocity[point], &self.points.water_velocity[point]);
+        let soil = &self.material;
+        let solid_fraction = 1.0 - soil.porosity;
+        // Slices of one length: the bounds of all are checked here and not at every point.
+        let count = self.points.len();
+        let (initial_volume, volume_ratio) =
+            (&self.points.initial_volume[..count], &self.points.volume_ratio[..count]);
+        let (solid_velocity, water_velocity) =
+            (&self.points.solid_velocity[..count], &self.points.water_velocity[..count]);
+        for point in 0..count {
+            // Grains weigh with (1 − n) V = (1 − n_0) V_0, water with n V.
+            let solid_mass = initial_volume[point] * solid_fraction * soil.grain_density;
+            let water_mass =
+                initial_volume[point] * (volume_ratio[point] - solid_fraction) * soil.water_density;
+            let solid_momentum = solid_velocity[point].map(|velocity| solid_mass * velocity);
+            let water_momentum = water_velocity[point].map(|velocity| water_mass * velocity);
             self.basis.visit(self.grid.node_stride(), point, |node, weight, _| {
                 for d in 0..D {
-                    nodes.solid_velocity[node][d] += weight * solid * solid_velocity[d];
-                    nodes.water_velocity[node][d] += weight * water * water_velocity[d];
+                    nodes.solid_velocity[node][d] += weight * solid_momentum[d];
+                    nodes.water_velocity[node][d] += weight * water_momentum[d];
                 }
             });
         }
-        let (grain_density, water_density) = (self.material.grain_density, self.material.water_density);
         for node in 0..nodes.len() {
-            if nodes.is_active(node) {
-                let (solid, water) =
-                    (grain_density / nodes.solid_mass[node], water_density / nodes.water_mass[node]);
-                for d in 0..D {
-                    nodes.solid_velocity[node][d] *= nodes.free[node][d] * solid;
-                    nodes.water_velocity[node][d] *= nodes.free[node][d] * water;
-                }
-            } else {
-                nodes.solid_velocity[node] = [0.0; D];
-                nodes.water_velocity[node] = [0.0; D];
+            for d in 0..D {
+                let free = nodes.free[node][d];
+                nodes.solid_velocity[node][d] *= free * nodes.per_solid_mass[node];
+                nodes.water_velocity[node][d] *= free * nodes.per_water_mass[node];
             }
         }
     }
@@ -338,11 +338,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             }
             let (total, water) = (self.pulled_back(point, total), self.pulled_back(point, water));
             let nodes = &mut self.nodes;
-            self.basis.visit(self.grid.node_stride(), point, |node, _, gradient| {
-                for d in 0..D {
-                    for e in 0..D {
-                        nodes.mixture_force[node][d] -= total[d][e] * gradient[e];
-                        nodes.water_force[node][d] += water[d][e] * gradient[e];
+            self.basis.visit_runs(self.grid.node_stride(), point, |first, _, gradients| {
+                let mixture_force = &mut nodes.mixture_force[first..first + W];
+                let water_force = &mut nodes.water_force[first..first + W];
+                for (k, gradient) in gradients.iter().enumerate() {
+                    for d in 0..D {
+                        for e in 0..D {
+                            mixture_force[k][d] -= total[d][e] * gradient[e];
+                            water_force[k][d] += water[d][e] * gradient[e];
+                        }
                     }
                 }
             });

@@ -69,7 +69,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 nodes.water_acceleration[node] = [0.0; D];
                 continue;
             }
-            let per_solid_mass = 1.0 / nodes.solid_mass[node];
+            let per_solid_mass = nodes.per_solid_mass[node];
             let (water_inertia, drag_coefficient) = (water_density * nodes.volume[node], nodes.drag[node]);
             let water_share = nodes.water_mass[node] * per_solid_mass;
             // The drag at the new velocities adds Δt D (a_w − a_s) with a_s from (2).
@@ -107,16 +107,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let moving = self.configuration.moves_points();
         let pic = 1.0 - flip;
         for point in 0..self.points.len() {
-            let (mut solid, mut solid_rate) = ([0.0; D], [0.0; D]);
-            let (mut water, mut water_rate) = ([0.0; D], [0.0; D]);
-            self.basis.visit(self.grid.node_stride(), point, |node, weight, _| {
-                for d in 0..D {
-                    solid[d] += weight * nodes.solid_velocity[node][d];
-                    water[d] += weight * nodes.water_velocity[node][d];
-                    solid_rate[d] += weight * nodes.solid_acceleration[node][d];
-                    water_rate[d] += weight * nodes.water_acceleration[node][d];
-                }
-            });
+            let at_point = |field: &[Vector<D>]| self.basis.value(self.grid.node_stride(), point, field);
+            let (solid, water) = (at_point(&nodes.solid_velocity), at_point(&nodes.water_velocity));
+            let solid_rate = at_point(&nodes.solid_acceleration);
+            let water_rate = at_point(&nodes.water_acceleration);
             for d in 0..D {
                 let points = &mut self.points;
                 points.solid_velocity[point][d] =

@@ -238,9 +238,9 @@ mod tests {
             while high - low > 1e-15 {
                 let middle = 0.5 * (low + high);
                 if law.uniaxial_stress_ratio(middle - 1.0) < -1.0 / 6.0 {
-                    low = middle
+                    low = middle;
                 } else {
-                    high = middle
+                    high = middle;
                 }
             }
             1.0 - low

@@ -13,6 +13,10 @@ pub struct Nodes<const D: usize> {
     pub solid_mass: Vec<f64>,
     /// Mass of the pore water `n ρ_w V`, kg.
     pub water_mass: Vec<f64>,
+    /// One over the mass of the grains, zero where nothing is, 1/kg.
+    pub per_solid_mass: Vec<f64>,
+    /// One over the mass of the pore water, zero where nothing is, 1/kg.
+    pub per_water_mass: Vec<f64>,
     /// Volume of the mixture, m^D.
     pub volume: Vec<f64>,
     /// Porosity `Σ w V n / Σ w V`; the pore volume while it is summed.
@@ -83,6 +87,8 @@ impl<const D: usize> Nodes<D> {
         Self {
             solid_mass: scalars.clone(),
             water_mass: scalars.clone(),
+            per_solid_mass: scalars.clone(),
+            per_water_mass: scalars.clone(),
             volume: scalars.clone(),
             porosity: scalars.clone(),
             drag: scalars,
@@ -120,15 +126,19 @@ impl<const D: usize> Nodes<D> {
         }
     }
 
-    /// Finishes what was summed: porosities, and which components are free. Nodes without mass
+    /// Finishes what was summed: porosities, reciprocals, and which components are free. Nodes without mass
     /// are silenced: their stale accelerations would otherwise reach the points.
     pub fn finish_masses(&mut self) {
         for node in 0..self.len() {
             if self.is_active(node) {
                 self.porosity[node] /= self.volume[node];
+                self.per_solid_mass[node] = 1.0 / self.solid_mass[node];
+                self.per_water_mass[node] = 1.0 / self.water_mass[node];
                 self.free[node] = self.supports[node];
             } else {
                 self.porosity[node] = 0.0;
+                self.per_solid_mass[node] = 0.0;
+                self.per_water_mass[node] = 0.0;
                 self.free[node] = [0.0; D];
             }
         }

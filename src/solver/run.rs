@@ -16,8 +16,9 @@ use serde::{Deserialize, Serialize};
 const WATCH_INTERVAL: u64 = 64;
 /// Velocities beyond this multiple of their scale have left.
 const BLOW_UP: f64 = 1e3;
-/// Steps after which moving points are given a new step size.
-const STEP_RENEWAL: u64 = 4096;
+/// Steps after which deforming points are given a new step size: the pores at the drained end
+/// close within a thousand.
+const STEP_RENEWAL: u64 = 256;
 /// Cells of the column on which the critical step is computed where the run has more.
 const STABILITY_CELLS: usize = 12;
 

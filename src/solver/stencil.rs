@@ -40,6 +40,46 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         self.first[point] = first;
     }
 
+    /// Visits a point's block run by run: `W` neighbouring nodes along the first direction, with
+    /// the first of them, their weights and their gradients (1/m).
+    ///
+    /// A run is one slice of a nodal field, so that its bounds are checked once.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn visit_runs(
+        &self,
+        stride: &[usize; D],
+        point: usize,
+        mut run_visitor: impl FnMut(usize, &[f64; W], &[Vector<D>; W]),
+    ) {
+        let weights = &self.weights[point];
+        let gradients = &self.gradients[point];
+        for run in 0..power(W, D - 1) {
+            let mut rest = run;
+            let mut node = self.first[point];
+            // Shares of the other directions in the weight and in each component of the gradient.
+            let mut across = 1.0;
+            let mut across_gradient = [1.0; D];
+            for direction in 1..D {
+                let k = rest % W;
+                rest /= W;
+                node += k * stride[direction];
+                across *= weights[direction][k];
+                for component in 0..D {
+                    across_gradient[component] *=
+                        if component == direction { gradients[direction][k] } else { weights[direction][k] };
+                }
+            }
+            let run_weights = weights[0].map(|weight| across * weight);
+            let run_gradients: [Vector<D>; W] = std::array::from_fn(|k| {
+                std::array::from_fn(|component| {
+                    across_gradient[component] * if component == 0 { gradients[0][k] } else { weights[0][k] }
+                })
+            });
+            run_visitor(node, &run_weights, &run_gradients);
+        }
+    }
+
     /// Visits the nodes of a point's block with weight and gradient (1/m).
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
@@ -49,34 +89,22 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         point: usize,
         mut node_visitor: impl FnMut(usize, f64, &Vector<D>),
     ) {
-        let weights = &self.weights[point];
-        let gradients = &self.gradients[point];
-        for flat in 0..power(W, D) {
-            let mut rest = flat;
-            let mut node = self.first[point];
-            let mut weight = 1.0;
-            let mut gradient = [1.0; D];
-            for direction in 0..D {
-                let k = rest % W;
-                rest /= W;
-                node += k * stride[direction];
-                weight *= weights[direction][k];
-                for component in 0..D {
-                    gradient[component] *=
-                        if component == direction { gradients[direction][k] } else { weights[direction][k] };
-                }
+        self.visit_runs(stride, point, |first, weights, gradients| {
+            for k in 0..W {
+                node_visitor(first + k, weights[k], &gradients[k]);
             }
-            node_visitor(node, weight, &gradient);
-        }
+        });
     }
 
     /// Sum of a nodal vector field with the weights: its value at the point.
     #[inline]
     pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
         let mut value = [0.0; D];
-        self.visit(stride, point, |node, weight, _| {
-            for component in 0..D {
-                value[component] += weight * field[node][component];
+        self.visit_runs(stride, point, |first, weights, _| {
+            for (node, weight) in field[first..first + W].iter().zip(weights) {
+                for component in 0..D {
+                    value[component] += weight * node[component];
+                }
             }
         });
         value
@@ -86,10 +114,12 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     #[inline]
     pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> [[f64; D]; D] {
         let mut gradient = [[0.0; D]; D];
-        self.visit(stride, point, |node, _, node_gradient| {
-            for component in 0..D {
-                for direction in 0..D {
-                    gradient[component][direction] += field[node][component] * node_gradient[direction];
+        self.visit_runs(stride, point, |first, _, gradients| {
+            for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
+                for component in 0..D {
+                    for direction in 0..D {
+                        gradient[component][direction] += node[component] * node_gradient[direction];
+                    }
                 }
             }
         });
@@ -100,9 +130,11 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     #[inline]
     pub fn divergence(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> f64 {
         let mut divergence = 0.0;
-        self.visit(stride, point, |node, _, node_gradient| {
-            for direction in 0..D {
-                divergence += field[node][direction] * node_gradient[direction];
+        self.visit_runs(stride, point, |first, _, gradients| {
+            for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
+                for direction in 0..D {
+                    divergence += node[direction] * node_gradient[direction];
+                }
             }
         });
         divergence

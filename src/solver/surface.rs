@@ -31,6 +31,7 @@ impl LoadedSurface {
     }
 
     /// The surface of points whose domains keep their length: the material's edge still follows.
+    #[must_use]
     pub fn stretching(self, stretches: bool) -> Self {
         Self { stretches, ..self }
     }

@@ -3,6 +3,7 @@
 use super::{StudyResults, labels};
 use crate::assess::orders::WINDOW;
 use crate::assess::summary::{Path, SeriesSummary, first_norm, paths};
+use crate::exact::ReferenceKind;
 use crate::record::{Quantity, Sample};
 use crate::render::chart::{
     Axis as ChartAxis, Chart, Direction, Place, Rule, Series, Size, SlopeTriangle, Style,
@@ -125,7 +126,13 @@ fn figure(
     }
     let floor = summaries.iter().find_map(|summary| summary.classification.floor.clone());
     if let Some(floor) = floor.filter(|_| axis == Axis::Cells) {
-        chart.rules.push(Rule { axis: Direction::Y, at: floor.value, label: "floor".to_owned() });
+        let kind: Option<ReferenceKind> = reference.parse().ok();
+        let cause = kind
+            .and_then(|kind| {
+                results.study.scene.model_difference(kind, &summaries[0].path.records[0].case.material)
+            })
+            .unwrap_or("of unknown cause");
+        chart.rules.push(Rule { axis: Direction::Y, at: floor.value, label: format!("floor: {cause}") });
     }
     let name = slug(&format!(
         "{}-{}-{}-{}-{reference}",
@@ -134,7 +141,12 @@ fn figure(
         quantity.name(),
         sample.name()
     ));
-    let caption = captions(&summaries);
+    let caption = match axis {
+        Axis::Cells | Axis::TimeStep => captions(&summaries),
+        Axis::PointsPerCell => {
+            "More points refine the quadrature, not the mesh: the error tends to the mesh's own.".to_owned()
+        }
+    };
     Some(Figure::new(name, chart, caption))
 }
 
@@ -180,7 +192,9 @@ fn orders_table(all: &[Path<'_>], axis: Axis, reference: &str, time_factor: f64)
     if axis == Axis::Cells {
         columns.extend(["pair orders", "fit, 95 %", "finest 3"].map(Column::number));
     }
-    columns.push(Column::text("class"));
+    if axis != Axis::PointsPerCell {
+        columns.push(Column::text("class"));
+    }
     let mut rows = Vec::new();
     let mut notes = Vec::new();
     for (quantity, sample) in PANELS {
@@ -193,9 +207,8 @@ fn orders_table(all: &[Path<'_>], axis: Axis, reference: &str, time_factor: f64)
         };
         for (path, label) in all.iter().zip(&labels.each) {
             let summary = path.summary(&measure);
-            if let (Some(floor), Some(advice)) =
-                (&summary.classification.floor, &summary.classification.advice)
-            {
+            let told = summary.classification.floor.as_ref().filter(|_| axis != Axis::PointsPerCell);
+            if let (Some(floor), Some(advice)) = (told, &summary.classification.advice) {
                 notes.push(format!(
                     "{label}, {}: floor {:.1e}; {advice}",
                     labels::measure(&measure),
@@ -247,7 +260,9 @@ fn orders_row(
             Err(undefined) => Cell::Missing(undefined.to_string()),
         });
     }
-    row.push(summary.classification.class.name().into());
+    if axis != Axis::PointsPerCell {
+        row.push(summary.classification.class.name().into());
+    }
     row
 }
 

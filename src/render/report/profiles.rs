@@ -15,6 +15,9 @@ use crate::solver::method::{PressureIntegration, Recovery};
 /// Cells of the runs whose profiles are drawn: the paper's column.
 const SHOWN_CELLS: usize = 10;
 
+/// Points a cell of those runs.
+const SHOWN_POINTS: usize = 2;
+
 /// Profiles of a study's runs on the paper's mesh, one run a method; none for studies that refine
 /// but one method.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
@@ -35,10 +38,12 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
 
 /// The first sound run of each method on the paper's mesh.
 fn shown_records(records: &[Record]) -> Vec<&Record> {
+    let is_shown = |record: &&Record| {
+        let case = &record.case;
+        case.cells == SHOWN_CELLS && case.points_per_cell == SHOWN_POINTS && record.status == Status::Ok
+    };
     let mut shown: Vec<&Record> = Vec::new();
-    for record in
-        records.iter().filter(|record| record.case.cells == SHOWN_CELLS && record.status == Status::Ok)
-    {
+    for record in records.iter().filter(is_shown) {
         if shown.iter().all(|other| other.case.method != record.case.method) {
             shown.push(record);
         }
