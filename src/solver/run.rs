@@ -265,7 +265,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         };
         if velocity > BLOW_UP * self.velocity_scale {
             let reason = format!(
-                "a nodal velocity of {velocity:.3e} m/s, {BLOW_UP:.0} times beyond its scale of {:.3e} m/s; the step \
+                "a nodal velocity of {velocity:.3e} m/s is more than {BLOW_UP:.0} times its scale of {:.3e} m/s; the step \
                  of {:.4e} s is {:.3} of the predicted critical one",
                 self.velocity_scale,
                 self.steps.largest,

@@ -209,7 +209,7 @@ impl StudySource {
     /// # Errors
     /// What the parser refuses, with the nearest key.
     pub fn parse(&self) -> Result<StudyFile, StudyError> {
-        toml::from_str(&self.text).map_err(|error| self.error(vec![explained(&error)]))
+        toml::from_str(&self.text).map_err(|error| self.error(vec![explained(&error, &self.text)]))
     }
 
     /// An error of this study.
@@ -219,7 +219,7 @@ impl StudySource {
 }
 
 /// A parser's error with the nearest key, where the key is unknown.
-fn explained(error: &toml::de::Error) -> Diagnostic {
+fn explained(error: &toml::de::Error, text: &str) -> Diagnostic {
     let message = error.message().trim().replace('\n', "; ");
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let help = match quoted.split_first() {
@@ -229,6 +229,7 @@ fn explained(error: &toml::de::Error) -> Diagnostic {
                 None => format!("the keys here are {}", candidates.join(", ")),
             })
         }
+        _ if is_bare_word(error, text) => Some("words are written in quotes, like \"terzaghi\"".to_owned()),
         _ if message.starts_with("missing field") => {
             Some("a study needs at least `title`, `scene` and one [[sweep]] block".to_owned())
         }
@@ -239,4 +240,11 @@ fn explained(error: &toml::de::Error) -> Diagnostic {
         _ => message,
     };
     Diagnostic { message, span: error.span(), help }
+}
+
+/// Whether the parser stumbled over a word where a value should be.
+fn is_bare_word(error: &toml::de::Error, text: &str) -> bool {
+    let found = error.span().and_then(|span| text.get(span.start..)).unwrap_or_default();
+    let before = error.span().and_then(|span| text.get(..span.start)).unwrap_or_default();
+    found.starts_with(char::is_alphabetic) && before.trim_end_matches([' ', '\t']).ends_with(['=', '[', ','])
 }

@@ -10,6 +10,7 @@ pub fn shipped_studies() -> Vec<StudySource> {
         ("studies/terzaghi-points.toml", include_str!("../../studies/terzaghi-points.toml")),
         ("studies/terzaghi-time-step.toml", include_str!("../../studies/terzaghi-time-step.toml")),
         ("studies/terzaghi-methods.toml", include_str!("../../studies/terzaghi-methods.toml")),
+        ("studies/terzaghi-moving.toml", include_str!("../../studies/terzaghi-moving.toml")),
         ("studies/single-mode.toml", include_str!("../../studies/single-mode.toml")),
     ];
     SHIPPED
