@@ -21,9 +21,11 @@ const FIELD_NORMS: [Norm; 3] = [Norm::L1, Norm::L2, Norm::Linf];
 /// When a reference refuses the case's parameters.
 pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) -> Result<Record, ExactError> {
     let parameters = column_parameters(&case.column, &case.material);
+    let mut prepared = case.time_factors.clone();
+    prepared.push(LONG_AFTER);
     let references: Vec<Reference> = references
         .iter()
-        .map(|kind| Reference::new(*kind, &parameters, &case.time_factors))
+        .map(|kind| Reference::new(SceneKind::reference_for(*kind, &case.material), &parameters, &prepared))
         .collect::<Result<_, _>>()?;
     let mut errors = Vec::new();
     for (time_factor, snapshot) in case.time_factors.iter().zip(&outcome.snapshots) {
@@ -169,7 +171,7 @@ fn start_checks(case: &Case, references: &[Reference], start: &Snapshot) -> Resu
             SceneKind::Terzaghi => {
                 load / (1.0 + soil.porosity * soil.oedometric_modulus() / soil.water_bulk_modulus)
             }
-            SceneKind::SingleMode => match references.first() {
+            SceneKind::SingleMode | SceneKind::XieLeo => match references.first() {
                 Some(own) => own.fields(0.0, 1.0 - height / case.column.height)?.pressure,
                 None => *pressure,
             },

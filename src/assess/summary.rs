@@ -11,7 +11,7 @@ use super::series::{ErrorSeries, Level, Undefined};
 use super::verdict::{Verdict, judge};
 use crate::exact::{Reference, ReferenceKind};
 use crate::record::{Quantity, Record, Sample};
-use crate::scene::column_parameters;
+use crate::scene::{SceneKind, column_parameters};
 use crate::solver::method::{PressureIntegration, Recovery, StrainGradient};
 use crate::study::{Axis, Case, Expectation, Measure, Study, Tier};
 
@@ -194,10 +194,11 @@ fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
 fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
     let case = &finest.case;
     let kind: ReferenceKind = measure.reference.parse().ok()?;
-    let difference = case.scene.model_difference(kind)?;
+    let difference = case.scene.model_difference(kind, &case.material)?;
     let parameters = column_parameters(&case.column, &case.material);
     let times = [measure.time_factor];
-    let own = Reference::new(case.scene.references()[0], &parameters, &times).ok()?;
+    let own = SceneKind::reference_for(case.scene.references()[0], &case.material);
+    let own = Reference::new(own, &parameters, &times).ok()?;
     let other = Reference::new(kind, &parameters, &times).ok()?;
     let magnitude = if measure.quantity == Quantity::Settlement {
         let settlement = |reference: &Reference| reference.settlement(measure.time_factor).ok();
@@ -284,6 +285,8 @@ fn selects(expectation: &Expectation, case: &Case) -> bool {
         && (expectation.axis == Axis::Cells || fits(expectation.cells, case.cells))
         && (expectation.axis == Axis::PointsPerCell
             || fits(expectation.points_per_cell, case.points_per_cell))
+        && fits(expectation.law, case.material.law)
+        && fits(expectation.continuity, case.material.continuity)
         && fits(expectation.drag, case.settings.drag)
         && fits(expectation.mapping_back, case.settings.mapping_back)
 }

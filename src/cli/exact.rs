@@ -3,7 +3,7 @@
 use super::exit::{Ended, Exit};
 use super::overrides;
 use crate::exact::{ColumnParameters, Reference, ReferenceKind, consolidation};
-use crate::scene::column_parameters;
+use crate::scene::{SceneKind, column_parameters};
 use clap::ValueEnum;
 use std::io::Write;
 
@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             names.join(", ")
         ))
     })?;
-    let parameters = parameters_of(&arguments.assignments)?;
+    let (parameters, kind) = parameters_of(kind, &arguments.assignments)?;
     let depths = overrides::numbers("--zeta", &arguments.zeta)?;
     let time_factors = match &arguments.degree {
         Some(degrees) => time_factors_of(kind, &parameters, &overrides::numbers("--degree", degrees)?)?,
@@ -119,9 +119,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     Ok(Exit::Pass)
 }
 
-/// The column of the seed with the assignments, judged as a study's.
-fn parameters_of(assignments: &[String]) -> anyhow::Result<ColumnParameters> {
-    let mut lines = vec!["title = \"exact\"".to_owned(), "scene = \"terzaghi\"".to_owned()];
+/// The column of the seed with the assignments, judged as a study's, and the reference with the
+/// equations that they choose.
+fn parameters_of(
+    kind: ReferenceKind,
+    assignments: &[String],
+) -> anyhow::Result<(ColumnParameters, ReferenceKind)> {
+    let scene = match kind {
+        ReferenceKind::XieLeo | ReferenceKind::LargeStrain(_) => SceneKind::XieLeo,
+        _ => SceneKind::Terzaghi,
+    };
+    let mut lines = vec!["title = \"exact\"".to_owned(), format!("scene = \"{}\"", scene.name())];
     for typed in assignments {
         lines.push(overrides::assignment(typed)?);
     }
@@ -130,7 +138,8 @@ fn parameters_of(assignments: &[String]) -> anyhow::Result<ColumnParameters> {
     let Some(planned) = study.planned.first() else {
         return Err(Ended::usage("the assignments leave no column"));
     };
-    Ok(column_parameters(&planned.case.column, &planned.case.material))
+    let soil = &planned.case.material;
+    Ok((column_parameters(&planned.case.column, soil), SceneKind::reference_for(kind, soil)))
 }
 
 /// Time factors at which degrees of consolidation are reached.
@@ -141,7 +150,8 @@ fn time_factors_of(
 ) -> anyhow::Result<Vec<f64>> {
     let storage = match kind {
         ReferenceKind::Terzaghi => parameters.storage_ratio(),
-        ReferenceKind::TerzaghiIncompressible => 1.0,
+        // Xie & Leo's degree by settlement is Terzaghi's.
+        ReferenceKind::TerzaghiIncompressible | ReferenceKind::XieLeo => 1.0,
         _ => return Err(Ended::usage(format!("`{kind}` has no time factor for a degree in closed form"))),
     };
     // By settlement: degree = 1 − B + B U(B T_v); the first 1 − B is there at once.

@@ -6,7 +6,9 @@ mod column;
 
 pub use column::{Column, column_parameters, column_problem};
 
+use crate::exact::large_strain::{self, LargeStrainModel, SoilLaw, Water};
 use crate::exact::reference::ReferenceKind;
+use crate::solver::material::{Continuity, Law, Material};
 use crate::solver::method::Configuration;
 use serde::{Deserialize, Serialize};
 
@@ -19,17 +21,28 @@ pub enum SceneKind {
     Terzaghi,
     /// The slowest mode of an unloaded column: smooth in space and time.
     SingleMode,
+    /// A column loaded at once and drained at its top, at large strain, from the undrained
+    /// equilibrium.
+    XieLeo,
 }
+
+/// The large-strain reference of the default law; see [`SceneKind::reference_for`].
+const LARGE_STRAIN: ReferenceKind = ReferenceKind::LargeStrain(LargeStrainModel {
+    law: SoilLaw::LogLinear,
+    continuity: large_strain::Continuity::Conservative,
+    water: Water::Compressible,
+});
 
 impl SceneKind {
     /// Every scene.
-    pub const ALL: [Self; 2] = [Self::Terzaghi, Self::SingleMode];
+    pub const ALL: [Self; 3] = [Self::Terzaghi, Self::SingleMode, Self::XieLeo];
 
     /// Name in study files and at the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Terzaghi => "terzaghi",
             Self::SingleMode => "single-mode",
+            Self::XieLeo => "xie-leo",
         }
     }
 
@@ -43,6 +56,7 @@ impl SceneKind {
         match self {
             Self::Terzaghi => "column under a sudden load, drained at its top, small strain",
             Self::SingleMode => "slowest consolidation mode, no load: smooth, for formal orders",
+            Self::XieLeo => "column under a sudden load, drained at its top, large strain",
         }
     }
 
@@ -51,28 +65,83 @@ impl SceneKind {
         match self {
             Self::Terzaghi => &[ReferenceKind::Terzaghi, ReferenceKind::TerzaghiIncompressible],
             Self::SingleMode => &[ReferenceKind::SingleMode],
+            Self::XieLeo => &[LARGE_STRAIN, ReferenceKind::XieLeo],
         }
+    }
+
+    /// A reference as it holds for a soil: the large-strain one takes the soil's own law and
+    /// continuity, and is of the equations that the solver solves.
+    pub fn reference_for(kind: ReferenceKind, soil: &Material) -> ReferenceKind {
+        match kind {
+            ReferenceKind::LargeStrain(model) => ReferenceKind::LargeStrain(LargeStrainModel {
+                law: match soil.law {
+                    Law::Linear => SoilLaw::Linear,
+                    Law::LogLinear => SoilLaw::LogLinear,
+                    Law::PorosityDependent => SoilLaw::PorosityDependent,
+                    Law::Engineering => SoilLaw::Engineering,
+                },
+                continuity: match soil.continuity {
+                    Continuity::Conservative => large_strain::Continuity::Conservative,
+                    Continuity::ConstantPorosityGradient => {
+                        large_strain::Continuity::ConstantPorosityGradient
+                    }
+                },
+                ..model
+            }),
+            other => other,
+        }
+    }
+
+    /// Law of the soil where a study names none.
+    pub fn default_law(self) -> Law {
+        match self {
+            Self::Terzaghi | Self::SingleMode => Law::Linear,
+            Self::XieLeo => Law::LogLinear,
+        }
+    }
+
+    /// Why the scene cannot take a law, where it cannot.
+    pub fn refuses_law(self, law: Law) -> Option<&'static str> {
+        (self == Self::XieLeo && law == Law::Linear)
+            .then_some("the law `linear` is of small strain: its conductivity ignores that the pores close")
+    }
+
+    /// Why the scene cannot take a configuration, where it cannot.
+    pub fn refuses_configuration(self, configuration: Configuration) -> Option<&'static str> {
+        (self == Self::XieLeo && configuration == Configuration::Frozen)
+            .then_some("nothing moves in a `frozen` configuration, and this scene is about large strain")
     }
 
     /// Configuration of the weights where the method leaves it open: small strain moves nothing.
     pub fn configuration(self) -> Configuration {
         match self {
             Self::Terzaghi | Self::SingleMode => Configuration::Frozen,
+            Self::XieLeo => Configuration::Updated,
         }
     }
 
     /// Whether a load acts, so that `σ' − p = −q` at rest.
     pub fn is_loaded(self) -> bool {
         match self {
-            Self::Terzaghi => true,
+            Self::Terzaghi | Self::XieLeo => true,
             Self::SingleMode => false,
         }
     }
 
     /// Why a reference is not the scene's own, where it is a second one.
-    pub fn model_difference(self, reference: ReferenceKind) -> Option<&'static str> {
+    pub fn model_difference(self, reference: ReferenceKind, soil: &Material) -> Option<&'static str> {
         match (self, reference) {
             (Self::Terzaghi, ReferenceKind::TerzaghiIncompressible) => Some("the water's storage"),
+            (Self::XieLeo, ReferenceKind::XieLeo) => {
+                Some(match (soil.continuity, soil.law == Law::PorosityDependent) {
+                    (Continuity::Conservative, false) => "the water's storage",
+                    (Continuity::Conservative, true) => "the modulus in the rate form",
+                    (Continuity::ConstantPorosityGradient, false) => "the dropped porosity gradient",
+                    (Continuity::ConstantPorosityGradient, true) => {
+                        "the dropped porosity gradient and the modulus in the rate form"
+                    }
+                })
+            }
             _ => None,
         }
     }

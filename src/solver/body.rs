@@ -74,7 +74,7 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     /// Nodal fields.
     pub nodes: Nodes<D>,
     /// Cell fields.
-    pub cells: Cells,
+    pub cells: Cells<D>,
     /// Soil.
     pub material: Material,
     /// Stiffness of the skeleton.
@@ -113,7 +113,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
             cells: Cells::new(&grid, count),
             stiffness: material.stiffness(),
-            surface: LoadedSurface::of(&points, load),
+            surface: LoadedSurface::of(&points, load)
+                .stretching(configuration.moves_points() && !method.domains_follow()),
             basis: Stencils::with_points(count),
             composite: Stencils::with_points(composite_rows),
             patch: PatchRows::with_points(patch_rows),
@@ -132,8 +133,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         body
     }
 
-    /// Displaces points and nodes by a uniform gradient; where points move, they take their
-    /// places, volumes and domains with them.
+    /// Displaces points and nodes by a uniform gradient; where strains are finite, the points take
+    /// their volumes with them, and where they move, their places and domains.
     fn displace(&mut self, gradient: &Tensor<D>) {
         let moved = |place: &Vector<D>| -> Vector<D> {
             std::array::from_fn(|d| (0..D).map(|e| gradient[d][e] * place[e]).sum())
@@ -141,30 +142,96 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         for node in 0..self.nodes.len() {
             self.nodes.displacement[node] = moved(&self.grid.node_position(node));
         }
-        let moving = self.is_moving();
+        let configuration = self.configuration;
+        let follow = self.method.domains_follow();
         let points = &mut self.points;
         for point in 0..points.len() {
             points.displacement[point] = moved(&points.initial_position[point]);
-            if moving {
-                for d in 0..D {
-                    points.position[point][d] += points.displacement[point][d];
-                    points.half_length[point][d] *= 1.0 + gradient[d][d];
+            for d in 0..D {
+                if configuration.deforms() {
                     points.volume_ratio[point] *= 1.0 + gradient[d][d];
+                    points.inverse_deformation[point][d][d] /= 1.0 + gradient[d][d];
+                }
+                if configuration.moves_points() {
+                    points.position[point][d] += points.displacement[point][d];
+                    if follow {
+                        points.half_length[point][d] *= 1.0 + gradient[d][d];
+                    }
                 }
             }
         }
     }
 
-    /// Whether points move and operators are built anew each step.
+    /// Whether gradients on the initial configuration are to be pushed forward.
     #[inline]
-    pub fn is_moving(&self) -> bool {
-        self.configuration == Configuration::Updated
+    fn is_total(&self) -> bool {
+        self.configuration == Configuration::Total
+    }
+
+    /// Brings operators and masses up to the points' places and volumes: all of them where points
+    /// move, what follows the volumes where weights stay on the initial configuration.
+    pub fn follow_points(&mut self) {
+        match self.configuration {
+            Configuration::Updated => {
+                self.build_operators();
+                self.map_masses();
+            }
+            Configuration::Total => {
+                self.cells.sum_volumes(&self.points, self.material.porosity);
+                self.cells.average_deformation(&self.points);
+                self.map_masses();
+            }
+            Configuration::Frozen => {}
+        }
+    }
+
+    /// A gradient on the initial configuration on the present one, `∇₀v F⁻¹`.
+    #[inline]
+    pub fn pushed_forward(&self, point: usize, gradient: Tensor<D>) -> Tensor<D> {
+        if !self.is_total() {
+            return gradient;
+        }
+        let inverse = &self.points.inverse_deformation[point];
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| gradient[i][k] * inverse[k][j]).sum()))
+    }
+
+    /// A stress that meets gradients on the initial configuration, `σ F⁻ᵀ`.
+    #[inline]
+    fn pulled_back(&self, point: usize, stress: Tensor<D>) -> Tensor<D> {
+        if !self.is_total() {
+            return stress;
+        }
+        let inverse = &self.points.inverse_deformation[point];
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| stress[i][k] * inverse[j][k]).sum()))
+    }
+
+    /// Divergence of a nodal field at a point, on the present configuration.
+    #[inline]
+    pub fn divergence_at_point(&self, point: usize, field: &[Vector<D>]) -> f64 {
+        if !self.is_total() {
+            return self.basis.divergence(self.grid.node_stride(), point, field);
+        }
+        let gradient = self.pushed_forward(point, self.basis.gradient(self.grid.node_stride(), point, field));
+        (0..D).map(|d| gradient[d][d]).sum()
+    }
+
+    /// Divergence of a nodal field at a cell's centre, on the present configuration.
+    #[inline]
+    pub fn divergence_at_centre(&self, cell: usize, field: &[Vector<D>]) -> f64 {
+        if self.is_total() {
+            self.cells.deformed_centre_divergence(&self.grid, cell, field)
+        } else {
+            self.cells.centre_divergence(&self.grid, cell, field)
+        }
     }
 
     /// Builds every operator of the method on the points' present places, and puts the load on
     /// the surface there.
     pub fn build_operators(&mut self) {
         self.cells.locate(&self.grid, &self.points, self.material.porosity);
+        if self.method.strain == StrainGradient::Cmpm {
+            self.cells.find_reached(&self.grid, &self.points);
+        }
         let per_cell = self.grid.inverse_cell_size();
         for point in 0..self.points.len() {
             let (position, half) = (&self.points.position[point], &self.points.half_length[point]);
@@ -176,8 +243,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 let home = self.grid.flat_cell(&cell);
                 let rows = std::array::from_fn(|d| {
                     let stride = self.grid.cell_stride()[d];
-                    let lower = self.cells.is_occupied(home - stride);
-                    let upper = self.cells.is_occupied(home + stride);
+                    let lower = self.cells.is_reached(home - stride);
+                    let upper = self.cells.is_reached(home + stride);
                     shape::composite(place[d], cell[d], lower, upper)
                 });
                 self.composite.set(&self.grid, point, &rows);
@@ -185,6 +252,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
         if self.method.uses_patch() {
             self.patch.build(&self.grid, &self.cells, &self.points.position);
+        }
+        if self.is_total() {
+            self.cells.average_deformation(&self.points);
         }
         self.surface.apply(&self.grid, &self.points, &mut self.nodes);
     }
@@ -252,19 +322,22 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Forces on the mixture and on the water from the points' stresses (weak form, drained
     /// surface natural).
     pub fn map_forces(&mut self) {
-        let nodes = &mut self.nodes;
-        nodes.mixture_force.copy_from_slice(&nodes.external_force);
-        nodes.water_force.fill([0.0; D]);
+        self.nodes.mixture_force.copy_from_slice(&self.nodes.external_force);
+        self.nodes.water_force.fill([0.0; D]);
         for point in 0..self.points.len() {
             let volume = self.points.volume(point);
             let pressure = volume * self.points.pressure[point];
             let mut total = self.points.effective_stress[point];
+            let mut water = [[0.0; D]; D];
             for d in 0..D {
                 for e in 0..D {
                     total[d][e] *= volume;
                 }
                 total[d][d] -= pressure;
+                water[d][d] = pressure;
             }
+            let (total, water) = (self.pulled_back(point, total), self.pulled_back(point, water));
+            let nodes = &mut self.nodes;
             self.basis.visit_runs(self.grid.node_stride(), point, |first, _, gradients| {
                 let mixture_force = &mut nodes.mixture_force[first..first + W];
                 let water_force = &mut nodes.water_force[first..first + W];
@@ -272,8 +345,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                     for d in 0..D {
                         for e in 0..D {
                             mixture_force[k][d] -= total[d][e] * gradient[e];
+                            water_force[k][d] += water[d][e] * gradient[e];
                         }
-                        water_force[k][d] += pressure * gradient[d];
                     }
                 }
             });

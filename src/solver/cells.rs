@@ -1,28 +1,36 @@
 //! Cell centres: occupancy, porosity and the divergence of selective reduced integration.
 
-use super::grid::{Grid, Vector};
+use super::grid::{Grid, Tensor, Vector};
 use super::points::Points;
+
+/// Share of a cell that a domain must reach into it to count.
+const LEAST_REACH: f64 = 1e-6;
 
 /// What a cell knows of its points, flat index = cell.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Cells {
+pub struct Cells<const D: usize> {
     /// Cell of each point.
     pub of_point: Vec<usize>,
     /// Lowest node of each cell.
     first_node: Vec<usize>,
     /// Points in each cell.
     point_count: Vec<u32>,
+    /// Whether a point's domain reaches into each cell.
+    reached: Vec<bool>,
     /// Current volume of each cell's points, m^D.
     volume: Vec<f64>,
     /// Volume-weighted mean porosity of each occupied cell's points.
     pub porosity: Vec<f64>,
+    /// Volume-weighted mean of the inverse deformation gradients of each occupied cell's points,
+    /// where weights stay on the initial configuration.
+    inverse_deformation: Vec<Tensor<D>>,
     /// Increment of the pore pressure over the step, Pa.
     pub pressure_increment: Vec<f64>,
 }
 
-impl Cells {
+impl<const D: usize> Cells<D> {
     /// Room for the cells of a grid and for `points` points.
-    pub fn new<const D: usize>(grid: &Grid<D>, points: usize) -> Self {
+    pub fn new(grid: &Grid<D>, points: usize) -> Self {
         let count = grid.cell_count();
         let mut first_node = vec![0; count];
         for (cell, node) in first_node.iter_mut().enumerate() {
@@ -36,22 +44,32 @@ impl Cells {
             of_point: vec![0; points],
             first_node,
             point_count: vec![0; count],
+            reached: vec![false; count],
             volume: vec![0.0; count],
             porosity: vec![0.0; count],
+            inverse_deformation: vec![[[0.0; D]; D]; count],
             pressure_increment: vec![0.0; count],
         }
     }
 
     /// Finds the cell of every point and sums volumes over each cell's points.
-    pub fn locate<const D: usize>(&mut self, grid: &Grid<D>, points: &Points<D>, initial_porosity: f64) {
+    pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, initial_porosity: f64) {
         self.point_count.fill(0);
-        self.volume.fill(0.0);
-        self.porosity.fill(0.0);
         self.pressure_increment.fill(0.0);
         for point in 0..points.len() {
             let cell = grid.flat_cell(&grid.cell_of(&points.position[point]));
             self.of_point[point] = cell;
             self.point_count[cell] += 1;
+        }
+        self.sum_volumes(points, initial_porosity);
+    }
+
+    /// Sums volumes over each cell's points.
+    pub fn sum_volumes(&mut self, points: &Points<D>, initial_porosity: f64) {
+        self.volume.fill(0.0);
+        self.porosity.fill(0.0);
+        for point in 0..points.len() {
+            let cell = self.of_point[point];
             let (initial, ratio) = (points.initial_volume[point], points.volume_ratio[point]);
             self.volume[cell] += initial * ratio;
             // n V = (J − (1 − n_0)) V_0
@@ -60,6 +78,44 @@ impl Cells {
         for cell in 0..self.porosity.len() {
             if self.is_occupied(cell) {
                 self.porosity[cell] /= self.volume[cell];
+            }
+        }
+    }
+
+    /// Finds the cells that the points' domains reach into: a cell may have lost its last point and
+    /// still carry the edge of the material.
+    pub fn find_reached(&mut self, grid: &Grid<D>, points: &Points<D>) {
+        self.reached.fill(false);
+        let inset = LEAST_REACH * grid.cell_size;
+        for point in 0..points.len() {
+            self.reached[self.of_point[point]] = true;
+            for direction in 0..D {
+                let reach = points.half_length[point][direction] - inset;
+                for side in [-reach, reach] {
+                    let mut place = points.position[point];
+                    place[direction] += side;
+                    self.reached[grid.flat_cell(&grid.cell_of(&place))] = true;
+                }
+            }
+        }
+    }
+
+    /// Whether a cell holds a point, or the edge of one's domain.
+    #[inline]
+    pub fn is_reached(&self, cell: usize) -> bool {
+        self.reached[cell]
+    }
+
+    /// Means of the inverse deformation gradients over each cell's points.
+    pub fn average_deformation(&mut self, points: &Points<D>) {
+        self.inverse_deformation.fill([[0.0; D]; D]);
+        for point in 0..points.len() {
+            let cell = self.of_point[point];
+            let share = points.volume(point) / self.volume[cell];
+            for i in 0..D {
+                for j in 0..D {
+                    self.inverse_deformation[cell][i][j] += share * points.inverse_deformation[point][i][j];
+                }
             }
         }
     }
@@ -78,7 +134,7 @@ impl Cells {
     /// Divergence of a nodal field at the centre of a cell, by the linear shape functions, 1/m of
     /// the field.
     #[inline]
-    pub fn centre_divergence<const D: usize>(&self, grid: &Grid<D>, cell: usize, field: &[Vector<D>]) -> f64 {
+    pub fn centre_divergence(&self, grid: &Grid<D>, cell: usize, field: &[Vector<D>]) -> f64 {
         let corners = 1_usize << D;
         let mut divergence = 0.0;
         for corner in 0..corners {
@@ -94,6 +150,28 @@ impl Cells {
         // Each direction averages over the 2^(D−1) edges along it.
         divergence * grid.inverse_cell_size() * 2.0 / corners as f64
     }
+
+    /// The same on the deformed configuration, for a field on the initial one: its gradient there
+    /// times the cell's inverse deformation gradient.
+    #[inline]
+    pub fn deformed_centre_divergence(&self, grid: &Grid<D>, cell: usize, field: &[Vector<D>]) -> f64 {
+        let corners = 1_usize << D;
+        let inverse = &self.inverse_deformation[cell];
+        let mut divergence = 0.0;
+        for corner in 0..corners {
+            let mut node = self.first_node[cell];
+            for direction in 0..D {
+                node += (corner >> direction & 1) * grid.node_stride()[direction];
+            }
+            for direction in 0..D {
+                let sign = if corner >> direction & 1 == 1 { 1.0 } else { -1.0 };
+                for component in 0..D {
+                    divergence += sign * field[node][component] * inverse[direction][component];
+                }
+            }
+        }
+        divergence * grid.inverse_cell_size() * 2.0 / corners as f64
+    }
 }
 
 #[cfg(test)]
@@ -103,7 +181,7 @@ mod tests {
     #[test]
     fn the_divergence_of_a_linear_field_is_exact_at_the_centre() {
         let grid = Grid::new(0.5, [3, 2]);
-        let cells = Cells::new(&grid, 0);
+        let mut cells = Cells::new(&grid, 0);
         let field: Vec<Vector<2>> = (0..grid.node_count())
             .map(|node| {
                 let [x, y] = grid.node_position(node);
@@ -112,6 +190,10 @@ mod tests {
             .collect();
         let cell = grid.flat_cell(&grid.cell_of(&[0.7, 0.2]));
         assert!((cells.centre_divergence(&grid, cell, &field) - 1.5).abs() < 1e-13);
+        // tr(∇v F⁻¹) with ∇v = [[2, 7], [5, −0.5]].
+        cells.inverse_deformation[cell] = [[0.5, 0.25], [0.125, 2.0]];
+        let expected = 2.0 * 0.5 + 7.0 * 0.125 + 5.0 * 0.25 - 0.5 * 2.0;
+        assert!((cells.deformed_centre_divergence(&grid, cell, &field) - expected).abs() < 1e-13);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::body::{Body, ShapeFunction};
 use super::grid::{Tensor, Vector};
-use super::method::{PressureIntegration, Recovery, StrainGradient};
+use super::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
 use serde::{Deserialize, Serialize};
 
 /// Time level at which the drag between skeleton and water is taken.
@@ -52,11 +52,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// (1) Operators, masses and velocities on the points' places. Where nothing moves, the
     /// operators stand, and velocities mapped back by the last step are already there.
     fn reset_grid(&mut self, settings: &ExplicitSettings) {
-        if self.is_moving() {
-            self.build_operators();
-            self.map_masses();
-        }
-        if self.is_moving() || !settings.mapping_back {
+        self.follow_points();
+        if self.configuration.deforms() || !settings.mapping_back {
             self.map_velocities();
         }
     }
@@ -107,7 +104,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// (4) Velocities and places of the points.
     fn advance_points(&mut self, dt: f64, flip: f64) {
         let nodes = &self.nodes;
-        let moving = self.is_moving();
+        let moving = self.configuration.moves_points();
         let pic = 1.0 - flip;
         for point in 0..self.points.len() {
             let at_point = |field: &[Vector<D>]| self.basis.value(self.grid.node_stride(), point, field);
@@ -128,7 +125,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// (6) Effective stress by the method's strain gradient; with moving points also volume and
+    /// (6) Effective stress by the method's strain gradient; at finite strain also volume and
     /// domain.
     fn update_effective_stress(&mut self, dt: f64) {
         match self.method.strain {
@@ -143,17 +140,20 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     #[inline]
     fn stress_from(&mut self, dt: f64, velocity_gradient: impl Fn(&Self, usize) -> Tensor<D>) {
-        let moving = self.is_moving();
+        let deforms = self.configuration.deforms();
         for point in 0..self.points.len() {
-            let increment = velocity_gradient(self, point).map(|row| row.map(|rate| dt * rate));
+            let gradient = self.pushed_forward(point, velocity_gradient(self, point));
+            let increment = gradient.map(|row| row.map(|rate| dt * rate));
+            let before = self.points.volume_ratio[point];
+            if deforms {
+                self.deform(point, &increment);
+            }
+            let modulus = self.material.law.modulus_ratio(before, self.points.volume_ratio[point]);
             let stress = self.stiffness.stress(&increment);
             for d in 0..D {
                 for e in 0..D {
-                    self.points.effective_stress[point][d][e] += stress[d][e];
+                    self.points.effective_stress[point][d][e] += modulus * stress[d][e];
                 }
-            }
-            if moving {
-                self.deform(point, &increment);
             }
         }
     }
@@ -161,12 +161,20 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
     #[inline]
     fn deform(&mut self, point: usize, increment: &Tensor<D>) {
-        let volumetric: f64 = (0..D).map(|d| increment[d][d]).sum();
-        self.points.volume_ratio[point] *= volumetric.exp();
-        if self.method.domains_follow() {
-            for d in 0..D {
-                self.points.half_length[point][d] *= increment[d][d].exp();
+        let stretch: Vector<D> = std::array::from_fn(|d| stretch_of(increment[d][d]));
+        let points = &mut self.points;
+        points.volume_ratio[point] *= stretch.iter().product::<f64>();
+        match self.configuration {
+            Configuration::Updated if self.method.domains_follow() => {
+                for d in 0..D {
+                    points.half_length[point][d] *= stretch[d];
+                }
             }
+            Configuration::Total => {
+                let inverse = &mut points.inverse_deformation[point];
+                *inverse = relaxed(inverse, increment);
+            }
+            Configuration::Updated | Configuration::Frozen => {}
         }
     }
 
@@ -195,8 +203,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     fn pressure_at_points(&mut self, dt: f64) {
         for point in 0..self.points.len() {
             let porosity = self.material.porosity_at(self.points.volume_ratio[point]);
-            let rate = self
-                .volume_rate(porosity, |field| self.basis.divergence(self.grid.node_stride(), point, field));
+            let rate = self.volume_rate(porosity, |field| self.divergence_at_point(point, field));
             self.points.pressure[point] -= dt * self.material.water_bulk_modulus / porosity * rate;
         }
     }
@@ -205,11 +212,54 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         for cell in 0..self.cells.pressure_increment.len() {
             if self.cells.is_occupied(cell) {
                 let porosity = self.cells.porosity[cell];
-                let rate =
-                    self.volume_rate(porosity, |field| self.cells.centre_divergence(&self.grid, cell, field));
+                let rate = self.volume_rate(porosity, |field| self.divergence_at_centre(cell, field));
                 self.cells.pressure_increment[cell] =
                     -dt * self.material.water_bulk_modulus / porosity * rate;
             }
         }
+    }
+}
+
+/// `exp(ε)`: a step's strain is so small that four terms are exact to round-off.
+#[inline]
+fn stretch_of(strain: f64) -> f64 {
+    if strain.abs() < 1e-4 {
+        1.0 + strain * (1.0 + strain * (0.5 + strain * (1.0 / 6.0 + strain / 24.0)))
+    } else {
+        strain.exp()
+    }
+}
+
+/// `F⁻¹ exp(−A)` for a step's strain `A`, to third order in it.
+#[inline]
+fn relaxed<const D: usize>(inverse: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
+    let times = |a: &Tensor<D>| -> Tensor<D> {
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| a[i][k] * increment[k][j]).sum()))
+    };
+    let once = times(inverse);
+    let twice = times(&once);
+    std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j] - once[i][j] + 0.5 * twice[i][j]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stretch_is_the_exponential() {
+        for strain in [-0.3_f64, -9e-5, -1e-7, 0.0, 3e-6, 9.9e-5, 0.2] {
+            assert!((stretch_of(strain) / strain.exp() - 1.0).abs() < 3e-16);
+        }
+    }
+
+    #[test]
+    fn the_inverse_deformation_keeps_to_the_volume() {
+        let mut inverse = [[1.0, 0.0], [0.0, 1.0]];
+        let increment = [[1e-6, 3e-6], [-2e-6, -4e-6]];
+        for _ in 0..50_000 {
+            inverse = relaxed(&inverse, &increment);
+        }
+        let determinant: f64 = inverse[0][0] * inverse[1][1] - inverse[0][1] * inverse[1][0];
+        assert!((determinant.ln() - 50_000.0 * 3e-6).abs() < 1e-10, "det F⁻¹ = exp(−tr ε)");
     }
 }

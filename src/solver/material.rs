@@ -9,8 +9,50 @@ use serde::{Deserialize, Serialize};
 pub enum Law {
     /// Constant modulus and conductivity.
     Linear,
-    /// Constant modulus against logarithmic strain, `k = k_0 J²`: the material of Xie & Leo (2004).
+    /// Constant modulus against logarithmic strain, `σ' = E_oed ln J`, and `k = k_0 J²`: the
+    /// material of Xie & Leo (2004).
     LogLinear,
+    /// The modulus `E = E_0/J` in the rate form, `dσ' = (E_oed/J) dJ/J`, so `σ' = E_oed (1 − 1/J)`,
+    /// and `k = k_0 J²`: Zheng et al. (2021), Eqs 7 and 8, taken as rates.
+    PorosityDependent,
+    /// The same modulus `E = E_0/J` with the engineering strain that it belongs to,
+    /// `dσ' = (E_oed/J) dJ`, and `k = k_0 J²`: the material of Xie & Leo by another way.
+    Engineering,
+}
+
+impl Law {
+    /// Every law, in the order of the documentation.
+    pub const ALL: [Self; 4] = [Self::Linear, Self::LogLinear, Self::PorosityDependent, Self::Engineering];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::LogLinear => "log-linear",
+            Self::PorosityDependent => "porosity-dependent",
+            Self::Engineering => "engineering",
+        }
+    }
+
+    /// Modulus over the initial one against the logarithmic strain `dJ/J` of the rate form, over
+    /// a step from one volume ratio to another: at their geometric mean, of second order.
+    #[inline]
+    pub fn modulus_ratio(self, before: f64, after: f64) -> f64 {
+        match self {
+            // The engineering law has E_0/J against dJ, and that is E_0 against dJ/J.
+            Self::Linear | Self::LogLinear | Self::Engineering => 1.0,
+            Self::PorosityDependent => 1.0 / (before * after).sqrt(),
+        }
+    }
+
+    /// Vertical effective stress over the oedometric modulus of a uniaxial compression to the
+    /// engineering strain `J − 1`, which may be tiny: the integral of the rate form.
+    pub fn uniaxial_stress_ratio(self, strain: f64) -> f64 {
+        match self {
+            Self::Linear | Self::LogLinear | Self::Engineering => strain.ln_1p(),
+            Self::PorosityDependent => strain / (1.0 + strain),
+        }
+    }
 }
 
 /// Continuity equation of the mixture (theory: (4) and (4')).
@@ -21,6 +63,19 @@ pub enum Continuity {
     Conservative,
     /// `dp/dt = −(K_w/n)[(1−n)∇·v_s + n∇·v_w]`: Zheng et al. (2021), Eq. 6, drops `(v_w − v_s)·∇n`.
     ConstantPorosityGradient,
+}
+
+impl Continuity {
+    /// Both, the one that conserves water first.
+    pub const ALL: [Self; 2] = [Self::Conservative, Self::ConstantPorosityGradient];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Conservative => "conservative",
+            Self::ConstantPorosityGradient => "constant-porosity-gradient",
+        }
+    }
 }
 
 /// Parameters of the saturated soil in its initial state, SI.
@@ -99,8 +154,16 @@ impl Material {
     pub fn hydraulic_conductivity_at(&self, volume_ratio: f64) -> f64 {
         match self.law {
             Law::Linear => self.hydraulic_conductivity,
-            Law::LogLinear => self.hydraulic_conductivity * volume_ratio * volume_ratio,
+            Law::LogLinear | Law::PorosityDependent | Law::Engineering => {
+                self.hydraulic_conductivity * volume_ratio * volume_ratio
+            }
         }
+    }
+
+    /// Pore pressure, Pa, of the undrained water at the engineering strain `J − 1`:
+    /// `ṗ = −(K_w/n) J̇/J` with `nJ = J − (1 − n_0)` integrates to `−K_w ln(nJ/n_0)`.
+    pub fn undrained_pressure_at(&self, strain: f64) -> f64 {
+        -self.water_bulk_modulus * (strain / self.porosity).ln_1p()
     }
 
     /// The skeleton's stiffness as the stress update uses it.
@@ -156,6 +219,52 @@ mod tests {
         assert!((plane[1][1] / expected - 1.0).abs() < 1e-14);
         let lateral = plane[0][0] / plane[1][1];
         assert!((lateral - 0.31 / 0.69).abs() < 1e-14, "earth pressure at rest ν/(1−ν)");
+    }
+
+    #[test]
+    fn conductivity_falls_with_the_square_of_the_volume_but_for_the_linear_law() {
+        for law in Law::ALL {
+            let soil = Material { law, ..Material::default() };
+            let expected = if law == Law::Linear { 1e-4 } else { 0.64e-4 };
+            assert!((soil.hydraulic_conductivity_at(0.8) / expected - 1.0).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn the_published_modulus_belongs_to_engineering_strain() {
+        // Under q/E_oed = 1/6 the two readings of Eq. 8 end apart (theory, section 3).
+        let end = |law: Law| {
+            let (mut low, mut high): (f64, f64) = (0.5, 1.0);
+            while high - low > 1e-15 {
+                let middle = 0.5 * (low + high);
+                if law.uniaxial_stress_ratio(middle - 1.0) < -1.0 / 6.0 {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            1.0 - low
+        };
+        assert!((end(Law::Engineering) - 0.153_518_275_1).abs() < 1e-9);
+        assert!((end(Law::PorosityDependent) - 1.0 / 7.0).abs() < 1e-9);
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn the_rate_form_integrates_to_the_closed_form(end in 0.6..1.4_f64) {
+            let steps = 20_000;
+            let strain = end.ln() / f64::from(steps);
+            for law in Law::ALL {
+                let (mut ratio, mut stress) = (1.0, 0.0);
+                for _ in 0..steps {
+                    let before = ratio;
+                    ratio *= strain.exp();
+                    stress += law.modulus_ratio(before, ratio) * strain;
+                }
+                let closed = law.uniaxial_stress_ratio(end - 1.0);
+                proptest::prop_assert!((stress - closed).abs() < 1e-9, "{law:?}: {stress} for {closed}");
+            }
+        }
     }
 
     #[test]

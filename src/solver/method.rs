@@ -51,8 +51,37 @@ pub enum Recovery {
 pub enum Configuration {
     /// Points move and weights follow them.
     Updated,
+    /// Finite strain with weights that stay on the initial configuration: gradients are pushed
+    /// forward by the inverse deformation gradient.
+    Total,
     /// Nothing moves: infinitesimal strain on the initial configuration.
     Frozen,
+}
+
+impl Configuration {
+    /// Every configuration.
+    pub const ALL: [Self; 3] = [Self::Updated, Self::Total, Self::Frozen];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Updated => "updated",
+            Self::Total => "total",
+            Self::Frozen => "frozen",
+        }
+    }
+
+    /// Whether points change place and weights follow.
+    #[inline]
+    pub fn moves_points(self) -> bool {
+        self == Self::Updated
+    }
+
+    /// Whether volumes, porosities and conductivities follow the deformation.
+    #[inline]
+    pub fn deforms(self) -> bool {
+        self != Self::Frozen
+    }
 }
 
 /// The four operators of a method; `configuration` is left to the scene where it is `None`.
@@ -79,9 +108,19 @@ const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 5] =
     ("GC-SRI-patch", Basis::Cpgimp, StrainGradient::Cmpm, PressureIntegration::Sri, Recovery::Patch),
 ];
 
+/// Prefix of the names of methods with weights on the initial configuration.
+const TOTAL_PREFIX: &str = "TL-";
+
 impl Method {
-    /// The method of a name, with or without the prefix `u` for fixed domains.
+    /// The method of a name, bare, with the prefix `u` for fixed domains, or with the prefix
+    /// `TL-` for weights on the initial configuration.
     pub fn named(name: &str) -> Option<Self> {
+        if let Some(bare) = name.strip_prefix(TOTAL_PREFIX) {
+            let method = Self::named(bare).filter(|method| method.configuration.is_none())?;
+            // Domains on the initial configuration have nothing to follow.
+            let total = Self { configuration: Some(Configuration::Total), ..method };
+            return (method.basis != Basis::Ugimp).then_some(total);
+        }
         let (bare, fixed_domains) = match name.strip_prefix('u') {
             Some(rest) => (rest, true),
             None => (name, false),
@@ -99,7 +138,8 @@ impl Method {
     pub fn names() -> Vec<String> {
         let bare = NAMED.iter().map(|row| row.0.to_owned());
         let fixed = NAMED.iter().filter(|row| row.1 == Basis::Cpgimp).map(|row| format!("u{}", row.0));
-        bare.chain(fixed).collect()
+        let total = NAMED.iter().map(|row| format!("{TOTAL_PREFIX}{}", row.0));
+        bare.chain(fixed).chain(total).collect()
     }
 
     /// The operators in the words of a study file: `basis+strain+pressure+recovery`.
@@ -120,9 +160,11 @@ impl Method {
 impl fmt::Display for Method {
     /// The name where there is one, the four choices otherwise.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let bare = Self { configuration: None, ..*self };
-        let name = Self::names().into_iter().find(|name| Self::named(name).as_ref() == Some(&bare));
-        match (name, self.configuration) {
+        let name_of = |method: Self| Self::names().into_iter().find(|name| Self::named(name) == Some(method));
+        if let Some(name) = name_of(*self) {
+            return out.write_str(&name);
+        }
+        match (name_of(Self { configuration: None, ..*self }), self.configuration) {
             (Some(name), None) => write!(out, "{name}"),
             (Some(name), Some(configuration)) => write!(out, "{name} ({})", word(configuration)),
             (None, None) => write!(out, "{}", self.choices()),
@@ -149,7 +191,7 @@ mod tests {
 
     #[test]
     fn names_that_are_none_are_refused() {
-        for name in ["", "uMPM", "gimp", "GC-SRI", "uuGIMP"] {
+        for name in ["", "uMPM", "gimp", "GC-SRI", "uuGIMP", "TL-", "TL-uGIMP", "TL-TL-GIMP"] {
             assert_eq!(Method::named(name), None, "{name}");
         }
     }

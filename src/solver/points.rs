@@ -17,6 +17,8 @@ pub struct Points<const D: usize> {
     pub initial_volume: Vec<f64>,
     /// Volume ratio `J`.
     pub volume_ratio: Vec<f64>,
+    /// Inverse `F⁻¹` of the deformation gradient, where weights stay on the initial configuration.
+    pub inverse_deformation: Vec<Tensor<D>>,
     /// Velocity of the skeleton, m/s.
     pub solid_velocity: Vec<Vector<D>>,
     /// Velocity of the pore water, m/s.
@@ -51,6 +53,7 @@ impl<const D: usize> Points<D> {
             half_length: vec![[0.5 * spacing; D]; count],
             initial_volume: vec![(0..D).map(|_| spacing).product(); count],
             volume_ratio: vec![1.0; count],
+            inverse_deformation: vec![identity(); count],
             solid_velocity: vec![[0.0; D]; count],
             water_velocity: vec![[0.0; D]; count],
             effective_stress: vec![[[0.0; D]; D]; count],
@@ -81,6 +84,7 @@ impl<const D: usize> Points<D> {
             half_length: pick(&self.half_length, keep),
             initial_volume: pick(&self.initial_volume, keep),
             volume_ratio: pick(&self.volume_ratio, keep),
+            inverse_deformation: pick(&self.inverse_deformation, keep),
             solid_velocity: pick(&self.solid_velocity, keep),
             water_velocity: pick(&self.water_velocity, keep),
             effective_stress: pick(&self.effective_stress, keep),
@@ -93,6 +97,11 @@ impl<const D: usize> Points<D> {
     pub fn volume(&self, point: usize) -> f64 {
         self.initial_volume[point] * self.volume_ratio[point]
     }
+}
+
+/// The unit tensor.
+fn identity<const D: usize>() -> Tensor<D> {
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }))
 }
 
 #[cfg(test)]

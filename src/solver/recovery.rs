@@ -32,7 +32,7 @@ impl<const D: usize> PatchRows<D> {
     }
 
     /// Fits the rows to the points' places and to the occupied cells.
-    pub fn build(&mut self, grid: &Grid<D>, cells: &Cells, position: &[Vector<D>]) {
+    pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>, position: &[Vector<D>]) {
         for (point, place) in position.iter().enumerate() {
             let home = grid.cell_of(place);
             let first = grid.flat_cell(&home.map(|index| index - 1));

@@ -16,8 +16,9 @@ use serde::{Deserialize, Serialize};
 const WATCH_INTERVAL: u64 = 64;
 /// Velocities beyond this multiple of their scale have left.
 const BLOW_UP: f64 = 1e3;
-/// Steps after which moving points are given a new step size.
-const STEP_RENEWAL: u64 = 4096;
+/// Steps after which deforming points are given a new step size: the pores at the drained end
+/// close within a thousand.
+const STEP_RENEWAL: u64 = 256;
 /// Cells of the column on which the critical step is computed where the run has more.
 const STABILITY_CELLS: usize = 12;
 
@@ -172,21 +173,23 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             let remaining = output - self.time;
             let count = steps_for(remaining, self.steps.target * self.step_reduction());
             let dt = remaining / count as f64;
-            let chunk = if self.body.is_moving() { count.min(STEP_RENEWAL) } else { count };
+            let chunk = if self.body.configuration.deforms() { count.min(STEP_RENEWAL) } else { count };
             self.steps.largest = self.steps.largest.max(dt);
             self.take_steps(chunk, dt, go_on);
         }
     }
 
-    /// Ratio by which the step shrinks as the pores close and waves get faster.
+    /// Ratio by which the step shrinks as the pores close and waves get faster, and as cells shrink
+    /// that go with the points.
     fn step_reduction(&self) -> f64 {
-        if !self.body.is_moving() || matches!(self.schedule.rule, TimeStepRule::Seconds(_)) {
+        if !self.body.configuration.deforms() || matches!(self.schedule.rule, TimeStepRule::Seconds(_)) {
             return 1.0;
         }
         let soil = &self.body.material;
         let least_ratio = self.body.points.volume_ratio.iter().copied().fold(1.0, f64::min);
         let porosity = soil.porosity_at(least_ratio).max(1e-3);
-        limits::fastest_wave_speed(soil, soil.porosity) / limits::fastest_wave_speed(soil, porosity)
+        let shrunk = if self.body.configuration.moves_points() { 1.0 } else { least_ratio };
+        shrunk * limits::fastest_wave_speed(soil, soil.porosity) / limits::fastest_wave_speed(soil, porosity)
     }
 
     fn take_steps(&mut self, count: u64, dt: f64, go_on: &dyn Fn(u64) -> bool) {
@@ -236,7 +239,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
     fn settlement(&self) -> f64 {
         match &self.column {
             Some(column) => self.initial_settlement - column.surface_displacement(),
-            None if self.body.is_moving() => {
+            None if self.body.configuration.moves_points() => {
                 self.initial_height - self.body.surface.height(&self.body.points)
             }
             None => {
@@ -273,7 +276,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             );
             return Some(self.failure(FailureKind::Unstable, reason));
         }
-        if self.body.is_moving() { self.find_lost_point() } else { None }
+        if self.body.configuration.deforms() { self.find_lost_point() } else { None }
     }
 
     fn find_lost_point(&self) -> Option<Failure> {

@@ -2,7 +2,6 @@
 
 use super::body::{Body, ShapeFunction};
 use super::grid::Vector;
-use super::method::Configuration;
 use super::points::Points;
 use serde::{Deserialize, Serialize};
 
@@ -105,7 +104,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             });
         }
         let mut samples = means.finish();
-        if self.configuration == Configuration::Frozen {
+        if !self.configuration.moves_points() {
             // The nodes' own displacement is known, and better than any projection.
             let places = || (0..self.nodes.len()).filter(|node| means.volume[*node] > means.least_volume());
             samples.displacement = places().map(|node| self.nodes.displacement[node][D - 1]).collect();

@@ -16,6 +16,8 @@ pub struct LoadedSurface {
     pub load: f64,
     /// The points of the topmost row.
     top_points: Vec<usize>,
+    /// Whether the edge follows the volume of the points because their domains do not.
+    stretches: bool,
 }
 
 impl LoadedSurface {
@@ -25,12 +27,28 @@ impl LoadedSurface {
         let highest = (0..points.len()).map(height).fold(f64::NEG_INFINITY, f64::max);
         let tolerance = 1e-9 * highest.abs();
         let top_points = (0..points.len()).filter(|point| height(*point) > highest - tolerance).collect();
-        Self { load, top_points }
+        Self { load, top_points, stretches: false }
+    }
+
+    /// The surface of points whose domains keep their length: the material's edge still follows.
+    #[must_use]
+    pub fn stretching(self, stretches: bool) -> Self {
+        Self { stretches, ..self }
+    }
+
+    /// Middle of the upper edge of a point's share of the material.
+    #[inline]
+    fn edge<const D: usize>(&self, points: &Points<D>, point: usize) -> Vector<D> {
+        let mut place = points.position[point];
+        // An oedometer strains vertically only: its stretch is the volume ratio.
+        let stretch = if self.stretches { points.volume_ratio[point] } else { 1.0 };
+        place[D - 1] += stretch * points.half_length[point][D - 1];
+        place
     }
 
     /// Height of the surface now, mean over its width, m.
     pub fn height<const D: usize>(&self, points: &Points<D>) -> f64 {
-        let sum: f64 = self.top_points.iter().map(|point| edge(points, *point)[D - 1]).sum();
+        let sum: f64 = self.top_points.iter().map(|point| self.edge(points, *point)[D - 1]).sum();
         sum / self.top_points.len() as f64
     }
 
@@ -40,7 +58,7 @@ impl LoadedSurface {
         for point in &self.top_points {
             let width: f64 = points.half_length[*point][..D - 1].iter().map(|half| 2.0 * half).product();
             let force = -self.load * width;
-            visit_hat(grid, &edge(points, *point), |node, weight| {
+            visit_hat(grid, &self.edge(points, *point), |node, weight| {
                 nodes.external_force[node][D - 1] += weight * force;
             });
         }
@@ -51,7 +69,7 @@ impl LoadedSurface {
         let mut weights = Vec::new();
         let share = 1.0 / self.top_points.len() as f64;
         for point in &self.top_points {
-            visit_hat(grid, &edge(points, *point), |node, weight| weights.push((node, share * weight)));
+            visit_hat(grid, &self.edge(points, *point), |node, weight| weights.push((node, share * weight)));
         }
         weights
     }
@@ -60,18 +78,10 @@ impl LoadedSurface {
     pub fn mean_of<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
         let mut sum = 0.0;
         for point in &self.top_points {
-            visit_hat(grid, &edge(points, *point), |node, weight| sum += weight * field[node][D - 1]);
+            visit_hat(grid, &self.edge(points, *point), |node, weight| sum += weight * field[node][D - 1]);
         }
         sum / self.top_points.len() as f64
     }
-}
-
-/// Middle of the upper edge of a point's domain.
-#[inline]
-fn edge<const D: usize>(points: &Points<D>, point: usize) -> Vector<D> {
-    let mut place = points.position[point];
-    place[D - 1] += points.half_length[point][D - 1];
-    place
 }
 
 /// Visits the corner nodes of the cell that holds a place, with the hat weights there.

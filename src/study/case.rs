@@ -2,7 +2,7 @@
 
 use crate::scene::{Column, SceneKind};
 use crate::solver::explicit::{Drag, ExplicitSettings};
-use crate::solver::material::Material;
+use crate::solver::material::{Continuity, Material};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
 use serde::{Deserialize, Serialize};
@@ -73,7 +73,8 @@ impl Case {
         self.column.height * self.column.height / self.material.coefficient_of_consolidation()
     }
 
-    /// What is special about the integration: empty for the paper's own choices.
+    /// What is special about integration and equations: empty for the paper's integration of the
+    /// scene's own equations.
     pub fn variant(&self) -> String {
         let defaults = ExplicitSettings::default();
         let mut parts = Vec::new();
@@ -88,6 +89,12 @@ impl Case {
         }
         if self.settings.mapping_back != defaults.mapping_back {
             parts.push("no mapping back".to_owned());
+        }
+        if self.material.law != self.scene.default_law() {
+            parts.push(format!("{} law", self.material.law.name()));
+        }
+        if self.material.continuity != Continuity::Conservative {
+            parts.push("porosity gradient dropped".to_owned());
         }
         parts.join(", ")
     }

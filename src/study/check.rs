@@ -11,9 +11,10 @@ use super::sweep::{AXES, Sweep};
 use crate::assess::class::Class;
 use crate::assess::expectation::{Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure};
 use crate::assess::norms::Norm;
-use crate::exact::ReferenceKind;
+use crate::exact::xie_leo::XieLeo;
+use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Quantity, Sample};
-use crate::scene::{Column, SceneKind};
+use crate::scene::{Column, SceneKind, column_parameters};
 use crate::solver::explicit::{Drag, ExplicitSettings};
 use crate::solver::material::{Continuity, Law, Material};
 use crate::solver::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
@@ -126,7 +127,8 @@ impl Checker<'_> {
         let scene = self.scene(&file.scene)?;
         let column = self.column(&file.column);
         self.column_height = Some(column.height);
-        let material = self.material(&file.material);
+        let material = self.material(&file.material, scene);
+        self.porosity_at_the_end(file, scene, &column, &material);
         let settings = self.settings(&file.integrator);
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
@@ -144,7 +146,7 @@ impl Checker<'_> {
         let mut planned: Vec<PlannedCase> = Vec::new();
         for block in &file.sweep {
             let table = block.get_ref();
-            let Some(sweep) = self.sweep(table, block.span(), &settings) else { continue };
+            let Some(sweep) = self.sweep(table, block.span(), &settings, scene, &material) else { continue };
             let time_factors = match &table.time_factors {
                 Some(list) => self.time_factors(list),
                 None => time_factors.clone(),
@@ -154,7 +156,7 @@ impl Checker<'_> {
                 let case = Case {
                     scene,
                     column,
-                    material,
+                    material: Material { law: one.law, continuity: one.continuity, ..material },
                     method: one.method,
                     integrator: one.integrator,
                     settings: ExplicitSettings {
@@ -210,15 +212,12 @@ impl Checker<'_> {
         }
     }
 
-    fn material(&mut self, table: &MaterialTable) -> Material {
+    fn material(&mut self, table: &MaterialTable, scene: SceneKind) -> Material {
         let seed = Material::default();
-        let law = table.law.as_ref().and_then(|word| self.word(word, "law", &["linear", "log-linear"]));
-        let continuity = table
-            .continuity
-            .as_ref()
-            .and_then(|word| self.word(word, "continuity", &["conservative", "constant-porosity-gradient"]));
+        let law = table.law.as_ref().and_then(|word| self.law(word, scene));
+        let continuity = table.continuity.as_ref().and_then(|word| self.continuity(word));
         let soil = Material {
-            law: if law == Some(1) { Law::LogLinear } else { Law::Linear },
+            law: law.unwrap_or(scene.default_law()),
             youngs_modulus: self.positive(
                 table.youngs_modulus.as_ref(),
                 "material.youngs_modulus",
@@ -258,14 +257,50 @@ impl Checker<'_> {
                 seed.hydraulic_conductivity,
             ),
             gravity: self.positive(table.gravity.as_ref(), "material.gravity", "m/s²", seed.gravity),
-            continuity: if continuity == Some(1) {
-                Continuity::ConstantPorosityGradient
-            } else {
-                Continuity::Conservative
-            },
+            continuity: continuity.unwrap_or(seed.continuity),
         };
         self.units_of_thought(table);
         soil
+    }
+
+    fn law(&mut self, word: &Spanned<String>, scene: SceneKind) -> Option<Law> {
+        let law = Law::ALL[self.word(word, "law", &Law::ALL.map(Law::name))?];
+        if let Some(why) = scene.refuses_law(law) {
+            let fit = Law::ALL.into_iter().filter(|law| scene.refuses_law(*law).is_none());
+            let names: Vec<&str> = fit.map(Law::name).collect();
+            self.complain(
+                word.span(),
+                why,
+                format!("the scene `{}` takes {}", scene.name(), names.join(", ")),
+            );
+            return None;
+        }
+        Some(law)
+    }
+
+    fn continuity(&mut self, word: &Spanned<String>) -> Option<Continuity> {
+        let index = self.word(word, "continuity", &Continuity::ALL.map(Continuity::name))?;
+        Some(Continuity::ALL[index])
+    }
+
+    /// A load that would press out more water than the pores hold has no end state: the exact
+    /// solutions say so before anything runs.
+    fn porosity_at_the_end(&mut self, file: &StudyFile, scene: SceneKind, column: &Column, soil: &Material) {
+        if scene != SceneKind::XieLeo || !self.diagnostics.is_empty() {
+            return;
+        }
+        let parameters = column_parameters(column, soil);
+        if let Err(error @ ExactError::LoadClosesPores { limit, .. }) = XieLeo::new(&parameters) {
+            let typed = file.column.load.as_ref().or(file.material.porosity.as_ref());
+            let typed = typed.or(file.material.youngs_modulus.as_ref()).map(Spanned::span);
+            let most = limit * soil.oedometric_modulus();
+            let least = -(-column.load / soil.oedometric_modulus()).exp_m1();
+            self.complain(
+                typed.unwrap_or_else(|| file.scene.span()),
+                error.to_string(),
+                format!("load less than {most:.4e} Pa, or give a porosity above {least:.4}"),
+            );
+        }
     }
 
     /// Values that are legal numbers and no soil's: a unit of thought.
@@ -367,6 +402,8 @@ impl Checker<'_> {
         table: &SweepTable,
         span: Range<usize>,
         settings: &ExplicitSettings,
+        scene: SceneKind,
+        soil: &Material,
     ) -> Option<Sweep> {
         let before = self.diagnostics.len();
         if table.method.is_none() {
@@ -384,7 +421,9 @@ impl Checker<'_> {
             );
         }
         let sweep = Sweep {
-            method: self.list(table.method.as_ref(), "method", &[], Self::method),
+            method: self.list(table.method.as_ref(), "method", &[], |c, typed| {
+                c.method(typed).filter(|method| c.configuration_fits(typed, scene, *method))
+            }),
             integrator: self.list(
                 table.integrator.as_ref(),
                 "integrator",
@@ -416,6 +455,13 @@ impl Checker<'_> {
                 "mapping_back",
                 &[settings.mapping_back],
                 |_, typed| Some(*typed.get_ref()),
+            ),
+            law: self.list(table.law.as_ref(), "law", &[soil.law], |c, word| c.law(word, scene)),
+            continuity: self.list(
+                table.continuity.as_ref(),
+                "continuity",
+                &[soil.continuity],
+                Self::continuity,
             ),
             path: self.list(table.path.as_ref(), "path", &[], |c, word| {
                 c.word(word, "axis", &AXES).map(|index| AXES[index].to_owned())
@@ -469,6 +515,24 @@ impl Checker<'_> {
         }
     }
 
+    /// Whether a scene takes the configuration that a method insists on.
+    fn configuration_fits(&mut self, typed: &Spanned<MethodEntry>, scene: SceneKind, method: Method) -> bool {
+        let refused =
+            method.configuration.and_then(|configuration| scene.refuses_configuration(configuration));
+        if let Some(why) = refused {
+            let place = match typed.get_ref() {
+                MethodEntry::Choices(table) => table.configuration.as_ref().map(Spanned::span),
+                MethodEntry::Name(_) => None,
+            };
+            self.complain(
+                place.unwrap_or_else(|| typed.span()),
+                why,
+                "take \"updated\" or \"total\", or leave the key out",
+            );
+        }
+        refused.is_none()
+    }
+
     fn method_of_choices(&mut self, table: &MethodTable, span: Range<usize>) -> Option<Method> {
         let mut pick = |word: &Option<Spanned<String>>, name: &str, choices: &[&str]| {
             if let Some(word) = word {
@@ -490,7 +554,9 @@ impl Checker<'_> {
             (word, _) => pick(word, "recovery", &["constant", "patch"]),
         };
         let configuration = match &table.configuration {
-            Some(word) => Some(self.word(word, "configuration", &["updated", "frozen"])?),
+            Some(word) => {
+                Some(self.word(word, "configuration", &Configuration::ALL.map(Configuration::name))?)
+            }
             None => None,
         };
         Some(Method {
@@ -498,7 +564,7 @@ impl Checker<'_> {
             strain: [StrainGradient::Standard, StrainGradient::Cmpm][strain?],
             pressure: [PressureIntegration::Points, PressureIntegration::Sri][pressure?],
             recovery: [Recovery::Constant, Recovery::Patch][recovery?],
-            configuration: configuration.map(|index| [Configuration::Updated, Configuration::Frozen][index]),
+            configuration: configuration.map(|index| Configuration::ALL[index]),
         })
     }
 
@@ -593,6 +659,8 @@ impl Checker<'_> {
             method,
             cells: self.count(table.cells.as_ref(), "cells", 1..=MOST_CELLS),
             points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
+            law: table.law.as_ref().and_then(|word| self.law(word, scene)),
+            continuity: table.continuity.as_ref().and_then(|word| self.continuity(word)),
             drag: table.drag.as_ref().and_then(|word| self.drag(word)),
             mapping_back: table.mapping_back.as_ref().map(|typed| *typed.get_ref()),
             measure: Measure { quantity, sample, norm, reference: reference.name().to_owned(), time_factor },

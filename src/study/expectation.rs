@@ -6,6 +6,7 @@ use crate::assess::norms::Norm;
 use crate::exact::ReferenceKind;
 use crate::record::{Quantity, Sample};
 use crate::solver::explicit::Drag;
+use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +60,10 @@ pub struct Expectation {
     pub cells: Option<usize>,
     /// Points a cell, where they are named.
     pub points_per_cell: Option<usize>,
+    /// Law of the soil, where it is named.
+    pub law: Option<Law>,
+    /// Continuity of the water, where it is named.
+    pub continuity: Option<Continuity>,
     /// Drag, where it is named.
     pub drag: Option<Drag>,
     /// Mapping back, where it is named.

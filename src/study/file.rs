@@ -100,6 +100,8 @@ pub struct SweepTable {
     pub flip: TypedList<f64>,
     pub mapping_back: TypedList<bool>,
     pub time_factors: TypedList<f64>,
+    pub law: TypedList<String>,
+    pub continuity: TypedList<String>,
     pub path: TypedList<String>,
     pub tier: Typed<String>,
 }
@@ -141,6 +143,8 @@ pub struct ExpectTable {
     pub axis: Typed<String>,
     pub cells: Typed<i64>,
     pub points_per_cell: Typed<i64>,
+    pub law: Typed<String>,
+    pub continuity: Typed<String>,
     pub drag: Typed<String>,
     pub mapping_back: Typed<bool>,
     pub order: Typed<OrderTable>,

@@ -12,6 +12,9 @@ pub fn shipped_studies() -> Vec<StudySource> {
         ("studies/terzaghi-methods.toml", include_str!("../../studies/terzaghi-methods.toml")),
         ("studies/terzaghi-moving.toml", include_str!("../../studies/terzaghi-moving.toml")),
         ("studies/single-mode.toml", include_str!("../../studies/single-mode.toml")),
+        ("studies/large-strain-mesh.toml", include_str!("../../studies/large-strain-mesh.toml")),
+        ("studies/large-strain-models.toml", include_str!("../../studies/large-strain-models.toml")),
+        ("studies/large-strain-points.toml", include_str!("../../studies/large-strain-points.toml")),
     ];
     SHIPPED
         .iter()

@@ -2,6 +2,7 @@
 
 use super::case::IntegratorKind;
 use crate::solver::explicit::Drag;
+use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
 
@@ -16,13 +17,25 @@ pub struct Sweep {
     pub drag: Vec<Drag>,
     pub flip: Vec<f64>,
     pub mapping_back: Vec<bool>,
+    pub law: Vec<Law>,
+    pub continuity: Vec<Continuity>,
     /// Axes that step together, by key.
     pub path: Vec<String>,
 }
 
 /// Keys that a path can tie.
-pub const AXES: [&str; 8] =
-    ["method", "integrator", "cells", "points_per_cell", "time_step", "drag", "flip", "mapping_back"];
+pub const AXES: [&str; 10] = [
+    "method",
+    "integrator",
+    "cells",
+    "points_per_cell",
+    "time_step",
+    "drag",
+    "flip",
+    "mapping_back",
+    "law",
+    "continuity",
+];
 
 /// One combination of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +48,8 @@ pub struct Combination {
     pub drag: Drag,
     pub flip: f64,
     pub mapping_back: bool,
+    pub law: Law,
+    pub continuity: Continuity,
 }
 
 impl Sweep {
@@ -48,6 +63,8 @@ impl Sweep {
             self.drag.len(),
             self.flip.len(),
             self.mapping_back.len(),
+            self.law.len(),
+            self.continuity.len(),
         ]
     }
 
@@ -92,6 +109,8 @@ impl Sweep {
                     drag: self.drag[at[5]],
                     flip: self.flip[at[6]],
                     mapping_back: self.mapping_back[at[7]],
+                    law: self.law[at[8]],
+                    continuity: self.continuity[at[9]],
                 }
             })
             .collect()
@@ -116,6 +135,8 @@ mod tests {
             drag: vec![Drag::Explicit],
             flip: vec![1.0],
             mapping_back: vec![true],
+            law: vec![Law::Linear],
+            continuity: vec![Continuity::Conservative],
             path: path.iter().map(|key| (*key).to_owned()).collect(),
         }
     }

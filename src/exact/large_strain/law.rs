@@ -19,7 +19,8 @@ pub enum SoilLaw {
     /// `E = E_0/J` in the rate form `dσ' = E dJ/J`, so `σ' = E_oed (1 − 1/J)`, and `k = k_0 J²`
     /// (Zheng et al. 2021, Eqs 7 and 8, taken as rates).
     PorosityDependent,
-    /// `σ' = E_oed (J − 1)`, `k = k_0 J²`: constant modulus of engineering strain.
+    /// The same `E = E_0/J` with the engineering strain that it belongs to, `dσ' = E dJ`: again
+    /// `σ' = E_oed ln J`, and `k = k_0 J²`, the material of Xie & Leo by another way.
     Engineering,
 }
 
@@ -148,9 +149,9 @@ impl Diffusion {
     pub fn shrinkage(&self, ratio: f64) -> f64 {
         let compression = self.load * (1.0 - ratio);
         match self.model.law {
-            SoilLaw::LogLinear => -libm::expm1(-compression),
+            SoilLaw::LogLinear | SoilLaw::Engineering => -libm::expm1(-compression),
             SoilLaw::PorosityDependent => compression / (1.0 + compression),
-            SoilLaw::Linear | SoilLaw::Engineering => compression,
+            SoilLaw::Linear => compression,
         }
     }
 
@@ -162,9 +163,8 @@ impl Diffusion {
             SoilLaw::Linear => {
                 return Coefficients { storage: 1.0 + self.porosity * self.compliance, steepening: 0.0 };
             }
-            SoilLaw::LogLinear => (volume.recip(), volume, volume.recip()),
+            SoilLaw::LogLinear | SoilLaw::Engineering => (volume.recip(), volume, volume.recip()),
             SoilLaw::PorosityDependent => ((volume * volume).recip(), volume, volume.recip()),
-            SoilLaw::Engineering => (1.0, volume, volume.recip()),
         };
         let pores = volume - (1.0 - self.porosity);
         let dropped = match self.model.continuity {
@@ -217,7 +217,7 @@ mod tests {
         let end = |law| diffusion(law).shrinkage(0.0);
         assert!((end(SoilLaw::LogLinear) - 0.153_518_275_109_386).abs() < 1e-15);
         assert!((end(SoilLaw::PorosityDependent) - 1.0 / 7.0).abs() < 1e-15);
-        assert!((end(SoilLaw::Engineering) - 1.0 / 6.0).abs() < 1e-15);
+        assert_eq!(end(SoilLaw::Engineering), end(SoilLaw::LogLinear));
     }
 
     #[test]

@@ -127,8 +127,11 @@ fn figure(
     let floor = summaries.iter().find_map(|summary| summary.classification.floor.clone());
     if let Some(floor) = floor.filter(|_| axis == Axis::Cells) {
         let kind: Option<ReferenceKind> = reference.parse().ok();
-        let cause =
-            kind.and_then(|kind| results.study.scene.model_difference(kind)).unwrap_or("of unknown cause");
+        let cause = kind
+            .and_then(|kind| {
+                results.study.scene.model_difference(kind, &summaries[0].path.records[0].case.material)
+            })
+            .unwrap_or("of unknown cause");
         chart.rules.push(Rule { axis: Direction::Y, at: floor.value, label: format!("floor: {cause}") });
     }
     let name = slug(&format!(

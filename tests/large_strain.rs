@@ -1,0 +1,96 @@
+//! The scene `xie-leo` through the public door: what it refuses, where it starts, what it solves.
+
+use oedometer::exact::ReferenceKind;
+use oedometer::record::{Quantity, Record, Sample, Status};
+use oedometer::solver::material::{Continuity, Law};
+use oedometer::solver::run::Kernel;
+use oedometer::study::{Study, StudySource, run_case};
+
+fn study(lines: &str, sweep: &str) -> Result<Study, String> {
+    let text = format!(
+        "title = \"t\"\nscene = \"xie-leo\"\n{lines}\n[integrator]\ndrag = \"implicit\"\n[output]\ntime_factors = [0.05]\n\
+         [[sweep]]\ncells = [5]\npoints_per_cell = [2]\n{sweep}\n"
+    );
+    Study::check(&StudySource { name: "typed.toml".to_owned(), text }).map_err(|error| error.to_string())
+}
+
+fn record(lines: &str, sweep: &str) -> Record {
+    let study = study(lines, sweep).expect("a good study");
+    run_case(&study.planned[0].case, &study.references, Kernel::Fastest, false, &|_, _| true)
+        .expect("references that hold")
+}
+
+const LOADED: &str = "[column]\nload = 200e3";
+
+#[test]
+fn the_default_law_is_the_scene_s() {
+    let study = study(LOADED, "method = [\"GIMP\"]").expect("a good study");
+    assert_eq!(study.planned[0].case.material.law, Law::LogLinear);
+    assert_eq!(study.references[0].name(), "large-strain");
+    assert_eq!(study.references[1], ReferenceKind::XieLeo);
+}
+
+#[test]
+fn impossible_porosities_small_strain_laws_and_frozen_points_are_refused_at_their_place() {
+    let refused = |lines: &str, sweep: &str| study(lines, sweep).expect_err("a refusal");
+    let closing = refused("[column]\nload = 450e3", "method = [\"GIMP\"]");
+    assert!(
+        closing.contains("typed.toml:4") && closing.contains("more water than the pores hold"),
+        "{closing}"
+    );
+    assert!(closing.contains('^'), "{closing}");
+    let linear = refused("[material]\nlaw = \"linear\"", "method = [\"GIMP\"]");
+    assert!(linear.contains("typed.toml:4") && linear.contains("small strain"), "{linear}");
+    let table = "method = [{ basis = \"hat\", strain = \"standard\", pressure = \"points\", configuration = \"frozen\" }]";
+    let frozen = refused(LOADED, table);
+    assert!(frozen.contains("nothing moves") && frozen.contains("typed.toml:12"), "{frozen}");
+}
+
+#[test]
+fn the_start_is_the_undrained_equilibrium_of_every_model() {
+    for law in [Law::LogLinear, Law::PorosityDependent, Law::Engineering] {
+        for method in ["GC-SRI-patch", "TL-GIMP-SRI-patch"] {
+            let sweep = format!("method = [\"{method}\"]\nlaw = [\"{}\"]\ntime_factors = [0.0]", law.name());
+            let start = record(LOADED, &sweep).start.expect("a start");
+            assert!(start.undrained_pressure_error < 1e-11, "{law:?} {method} {start:?}");
+            assert!(start.unbalanced_force < 1e-9, "{law:?} {method} {start:?}");
+        }
+    }
+}
+
+#[test]
+fn every_model_comes_near_its_own_reference_and_keeps_its_water() {
+    for law in [Law::LogLinear, Law::PorosityDependent, Law::Engineering] {
+        for continuity in Continuity::ALL {
+            let sweep = format!(
+                "method = [\"TL-GIMP-SRI-patch\"]\nlaw = [\"{}\"]\ncontinuity = [\"{}\"]",
+                law.name(),
+                continuity.name()
+            );
+            let record = record(LOADED, &sweep);
+            assert_eq!(record.status, Status::Ok);
+            let norm = oedometer::assess::norms::Norm::L2;
+            let error = record.error(Quantity::Pressure, Sample::Points, norm, "large-strain", 0.05);
+            let error = error.expect("an error").value;
+            assert!(error < 0.045, "{law:?} {continuity:?} {error}");
+            let balance = record.balance[0];
+            if continuity == Continuity::Conservative {
+                assert!(balance.water_imbalance.abs() < 1e-3, "{balance:?}");
+            }
+            assert!(balance.solid_mass_drift.abs() < 1e-12, "{balance:?}");
+        }
+    }
+}
+
+#[test]
+fn a_cell_that_loses_its_last_point_does_not_end_the_run() {
+    let sweep = "method = [\"GIMP-SRI-patch\", \"GC-SRI-patch\"]\ntime_factors = [0.5]";
+    let study = study(LOADED, sweep).expect("a good study");
+    for planned in &study.planned {
+        // Eight cells of 12.5 cm: the surface sinks by 12.7 cm until T_v = 0.5.
+        let mut case = planned.case.clone();
+        (case.cells, case.points_per_cell) = (8, 4);
+        let record = run_case(&case, &study.references, Kernel::Fastest, false, &|_, _| true).expect("runs");
+        assert_eq!(record.status, Status::Ok, "{}", case.label());
+    }
+}
