@@ -3,8 +3,10 @@
 //! the other.
 
 mod column;
+mod problem;
 
 pub use column::{Column, column_parameters, column_problem};
+pub use problem::SceneProblem;
 
 use crate::exact::large_strain::{self, LargeStrainModel, SoilLaw, Water};
 use crate::exact::reference::ReferenceKind;
@@ -24,6 +26,9 @@ pub enum SceneKind {
     /// A column loaded at once and drained at its top, at large strain, from the undrained
     /// equilibrium.
     XieLeo,
+    /// A plane layer loaded at once by a cosine and drained at its top, at small strain, from the
+    /// undrained equilibrium.
+    CosineLayer,
 }
 
 /// The large-strain reference of the default law; see [`SceneKind::reference_for`].
@@ -35,7 +40,7 @@ const LARGE_STRAIN: ReferenceKind = ReferenceKind::LargeStrain(LargeStrainModel 
 
 impl SceneKind {
     /// Every scene.
-    pub const ALL: [Self; 3] = [Self::Terzaghi, Self::SingleMode, Self::XieLeo];
+    pub const ALL: [Self; 4] = [Self::Terzaghi, Self::SingleMode, Self::XieLeo, Self::CosineLayer];
 
     /// Name in study files and at the command line.
     pub fn name(self) -> &'static str {
@@ -43,6 +48,7 @@ impl SceneKind {
             Self::Terzaghi => "terzaghi",
             Self::SingleMode => "single-mode",
             Self::XieLeo => "xie-leo",
+            Self::CosineLayer => "cosine-layer",
         }
     }
 
@@ -57,6 +63,7 @@ impl SceneKind {
             Self::Terzaghi => "column under a sudden load, drained at its top, small strain",
             Self::SingleMode => "slowest consolidation mode, no load: smooth, for formal orders",
             Self::XieLeo => "column under a sudden load, drained at its top, large strain",
+            Self::CosineLayer => "plane layer under a cosine load, drained at its top: where locking shows",
         }
     }
 
@@ -66,6 +73,7 @@ impl SceneKind {
             Self::Terzaghi => &[ReferenceKind::Terzaghi, ReferenceKind::TerzaghiIncompressible],
             Self::SingleMode => &[ReferenceKind::SingleMode],
             Self::XieLeo => &[LARGE_STRAIN, ReferenceKind::XieLeo],
+            Self::CosineLayer => &[ReferenceKind::CosineLayer, ReferenceKind::CosineLayerIncompressible],
         }
     }
 
@@ -95,7 +103,7 @@ impl SceneKind {
     /// Law of the soil where a study names none.
     pub fn default_law(self) -> Law {
         match self {
-            Self::Terzaghi | Self::SingleMode => Law::Linear,
+            Self::Terzaghi | Self::SingleMode | Self::CosineLayer => Law::Linear,
             Self::XieLeo => Law::LogLinear,
         }
     }
@@ -115,15 +123,20 @@ impl SceneKind {
     /// Configuration of the weights where the method leaves it open: small strain moves nothing.
     pub fn configuration(self) -> Configuration {
         match self {
-            Self::Terzaghi | Self::SingleMode => Configuration::Frozen,
+            Self::Terzaghi | Self::SingleMode | Self::CosineLayer => Configuration::Frozen,
             Self::XieLeo => Configuration::Updated,
         }
+    }
+
+    /// Whether the problem is one of two dimensions only.
+    pub fn is_plane(self) -> bool {
+        self == Self::CosineLayer
     }
 
     /// Whether a load acts, so that `σ' − p = −q` at rest.
     pub fn is_loaded(self) -> bool {
         match self {
-            Self::Terzaghi | Self::XieLeo => true,
+            Self::Terzaghi | Self::XieLeo | Self::CosineLayer => true,
             Self::SingleMode => false,
         }
     }
@@ -131,7 +144,8 @@ impl SceneKind {
     /// Why a reference is not the scene's own, where it is a second one.
     pub fn model_difference(self, reference: ReferenceKind, soil: &Material) -> Option<&'static str> {
         match (self, reference) {
-            (Self::Terzaghi, ReferenceKind::TerzaghiIncompressible) => Some("the water's storage"),
+            (Self::Terzaghi, ReferenceKind::TerzaghiIncompressible)
+            | (Self::CosineLayer, ReferenceKind::CosineLayerIncompressible) => Some("the water's storage"),
             (Self::XieLeo, ReferenceKind::XieLeo) => {
                 Some(match (soil.continuity, soil.law == Law::PorosityDependent) {
                     (Continuity::Conservative, false) => "the water's storage",

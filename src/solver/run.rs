@@ -122,7 +122,9 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let critical = predicted_critical_step(&problem, &schedule.settings);
         let target = schedule.rule.step(&problem, critical);
         let velocity_scale = velocity_scale(&problem);
-        let initial_height = LoadedSurface::of(&problem.points, problem.load).height(&problem.points);
+        let initial_height = LoadedSurface::of(&problem.points, problem.load)
+            .shaped(problem.load_shape, &problem.points)
+            .height(&problem.points);
         let body = discretise(problem);
         let column = match (body.configuration, schedule.kernel) {
             (Configuration::Frozen, Kernel::Fastest) => AssembledColumn::new(&body),
@@ -131,7 +133,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         Self {
             start: body.points.clone(),
             initial_height,
-            initial_settlement: -body.surface.mean_of(&body.grid, &body.points, &body.nodes.displacement),
+            initial_settlement: -body.surface.amplitude_of(&body.grid, &body.points, &body.nodes.displacement),
             velocity_scale,
             steps: StepSizes { predicted_critical: critical, target, largest: 0.0 },
             counters: Counters { points: body.points.len(), nodes: body.nodes.len(), ..Counters::default() },
@@ -244,7 +246,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             }
             None => {
                 let body = &self.body;
-                -body.surface.mean_of(&body.grid, &body.points, &body.nodes.displacement)
+                -body.surface.amplitude_of(&body.grid, &body.points, &body.nodes.displacement)
             }
         }
     }

@@ -5,7 +5,34 @@ use super::nodes::Nodes;
 use super::points::Points;
 use super::shape;
 
-/// A uniform pressure on the upper outline of the material.
+/// How a load varies along the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum LoadShape {
+    /// The same everywhere.
+    #[default]
+    Uniform,
+    /// `cos(πx/L)` of the initial place `x` along the first direction.
+    Cosine {
+        /// Half a wave's length `L`, m.
+        length: f64,
+    },
+}
+
+impl LoadShape {
+    /// Mean of the shape over an edge about `middle` of half-length `half`, both in m.
+    fn mean_over(self, middle: f64, half: f64) -> f64 {
+        match self {
+            Self::Uniform => 1.0,
+            Self::Cosine { length } => {
+                let (phase, reach) =
+                    (std::f64::consts::PI * middle / length, std::f64::consts::PI * half / length);
+                phase.cos() * reach.sin() / reach
+            }
+        }
+    }
+}
+
+/// A pressure on the upper outline of the material.
 ///
 /// It acts at the outer edge of the outermost points' domains and is spread with the hat weights
 /// there. Left on a node, it errs once the top cell empties; spread over the top point, it costs
@@ -16,6 +43,10 @@ pub struct LoadedSurface {
     pub load: f64,
     /// The points of the topmost row.
     top_points: Vec<usize>,
+    /// Load at each of them over `load`.
+    shape: Vec<f64>,
+    /// Sum of the squares of `shape`.
+    squares: f64,
     /// Whether the edge follows the volume of the points because their domains do not.
     stretches: bool,
 }
@@ -26,8 +57,21 @@ impl LoadedSurface {
         let height = |point: usize| points.initial_position[point][D - 1];
         let highest = (0..points.len()).map(height).fold(f64::NEG_INFINITY, f64::max);
         let tolerance = 1e-9 * highest.abs();
-        let top_points = (0..points.len()).filter(|point| height(*point) > highest - tolerance).collect();
-        Self { load, top_points, stretches: false }
+        let top_points: Vec<usize> =
+            (0..points.len()).filter(|point| height(*point) > highest - tolerance).collect();
+        let count = top_points.len();
+        Self { load, top_points, shape: vec![1.0; count], squares: count as f64, stretches: false }
+    }
+
+    /// The surface under a load that varies along it.
+    #[must_use]
+    pub fn shaped<const D: usize>(mut self, shape: LoadShape, points: &Points<D>) -> Self {
+        let mean = |point: &usize| {
+            shape.mean_over(points.initial_position[*point][0], points.half_length[*point][0])
+        };
+        self.shape = self.top_points.iter().map(mean).collect();
+        self.squares = self.shape.iter().map(|factor| factor * factor).sum();
+        self
     }
 
     /// The surface of points whose domains keep their length: the material's edge still follows.
@@ -46,32 +90,51 @@ impl LoadedSurface {
         place
     }
 
-    /// Height of the surface now, mean over its width, m.
+    /// Height of the surface now, m, as much of it as has the load's shape: the mean over the
+    /// width under a uniform load.
     pub fn height<const D: usize>(&self, points: &Points<D>) -> f64 {
-        let sum: f64 = self.top_points.iter().map(|point| self.edge(points, *point)[D - 1]).sum();
-        sum / self.top_points.len() as f64
+        let heights = self.top_points.iter().map(|point| self.edge(points, *point)[D - 1]);
+        let sum: f64 = heights.zip(&self.shape).map(|(height, factor)| factor * height).sum();
+        sum / self.squares
     }
 
     /// Puts the load on the nodes as the external force of the mixture.
     pub fn apply<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>, nodes: &mut Nodes<D>) {
         nodes.external_force.fill([0.0; D]);
-        for point in &self.top_points {
+        for (point, factor) in self.top_points.iter().zip(&self.shape) {
             let width: f64 = points.half_length[*point][..D - 1].iter().map(|half| 2.0 * half).product();
-            let force = -self.load * width;
+            let force = -self.load * factor * width;
             visit_hat(grid, &self.edge(points, *point), |node, weight| {
                 nodes.external_force[node][D - 1] += weight * force;
             });
         }
     }
 
-    /// Nodes that span the surface, with the weights of a mean over it.
+    /// Nodes that span the surface, with the weights of [`amplitude_of`](Self::amplitude_of).
     pub fn weights<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>) -> Vec<(usize, f64)> {
         let mut weights = Vec::new();
-        let share = 1.0 / self.top_points.len() as f64;
-        for point in &self.top_points {
+        for (point, factor) in self.top_points.iter().zip(&self.shape) {
+            let share = factor / self.squares;
             visit_hat(grid, &self.edge(points, *point), |node, weight| weights.push((node, share * weight)));
         }
         weights
+    }
+
+    /// Vertical component of a nodal vector field on the surface, as much of it as has the load's
+    /// shape: the mean under a uniform load, the amplitude of the cosine under a cosine.
+    pub fn amplitude_of<const D: usize>(
+        &self,
+        grid: &Grid<D>,
+        points: &Points<D>,
+        field: &[Vector<D>],
+    ) -> f64 {
+        let mut sum = 0.0;
+        for (point, factor) in self.top_points.iter().zip(&self.shape) {
+            visit_hat(grid, &self.edge(points, *point), |node, weight| {
+                sum += factor * weight * field[node][D - 1];
+            });
+        }
+        sum / self.squares
     }
 
     /// Mean over the surface of a nodal vector field's vertical component.
@@ -126,6 +189,28 @@ mod tests {
         assert!((nodes.external_force[top][0] + 3.75).abs() < 1e-9);
         assert!((nodes.external_force[top - 1][0] + 1.25).abs() < 1e-9);
         assert!((surface.height(&points) - 0.975).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_cosine_load_has_no_resultant_and_its_own_amplitude() {
+        let grid = Grid::new(0.25, [4, 5]);
+        let points = Points::<2>::lattice(0.25, [4, 4], 2);
+        let surface = LoadedSurface::of(&points, 3.0).shaped(LoadShape::Cosine { length: 1.0 }, &points);
+        let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
+        surface.apply(&grid, &points, &mut nodes);
+        let force = |node: usize| nodes.external_force[node][1];
+        let total: f64 = (0..nodes.len()).map(force).sum();
+        assert!(total.abs() < 1e-12);
+        // ∫ q cos(πx) · cos(πx) dx = q/2, up to the hats' interpolation of the second cosine.
+        let moment: f64 = (0..nodes.len())
+            .map(|node| force(node) * (std::f64::consts::PI * grid.node_position(node)[0]).cos())
+            .sum();
+        assert!((moment / 1.5 + 1.0).abs() < 0.06, "{moment}");
+        let field: Vec<Vector<2>> = (0..nodes.len())
+            .map(|node| [0.0, 7.0 * (std::f64::consts::PI * grid.node_position(node)[0]).cos() + 2.0])
+            .collect();
+        assert!((surface.amplitude_of(&grid, &points, &field) / 7.0 - 1.0).abs() < 0.06);
+        assert!((surface.mean_of(&grid, &points, &field) - 2.0).abs() < 1e-12);
     }
 
     #[test]

@@ -1,0 +1,80 @@
+//! The paper's grid, 0.1 m × 1.0 m and one cell wide, against its column: one problem, two
+//! dimensions, one result.
+
+use oedometer::scene::{Column, SceneKind, column_problem};
+use oedometer::solver::explicit::{Drag, ExplicitSettings};
+use oedometer::solver::material::Material;
+use oedometer::solver::method::Method;
+use oedometer::solver::outcome::{Outcome, RunStatus};
+use oedometer::solver::run::{Kernel, Schedule, TimeStepRule, run};
+use oedometer::solver::snapshot::Snapshot;
+
+const CELLS: usize = 10;
+const PER_CELL: usize = 2;
+
+/// Runs a scene in one and in two dimensions with the same steps.
+fn both(scene: SceneKind, method: &str, load: f64, end: f64, drag: Drag) -> (Outcome, Outcome) {
+    let soil = Material { law: scene.default_law(), ..Material::default() };
+    let column = Column { load, ..Column::default() };
+    let plane = Column { dimensions: 2, ..column };
+    let method = Method::named(method).expect("a known method");
+    let schedule = Schedule {
+        outputs: vec![0.5 * end, end],
+        history: vec![0.25 * end],
+        rule: TimeStepRule::Seconds(1.2e-5),
+        settings: ExplicitSettings { drag, ..ExplicitSettings::default() },
+        kernel: Kernel::PointWise,
+    };
+    let narrow = column_problem::<1>(scene, &column, &soil, method, CELLS, PER_CELL).expect("the seed");
+    let wide = column_problem::<2>(scene, &plane, &soil, method, CELLS, PER_CELL).expect("the seed");
+    (run(narrow, &schedule, &|_, _| true), run(wide, &schedule, &|_, _| true))
+}
+
+/// Largest difference of two fields over the largest value of the first, point by point: the plane
+/// has two points side by side for each of the column.
+fn difference(column: &[f64], plane: &[f64]) -> f64 {
+    assert_eq!(plane.len(), PER_CELL * column.len());
+    let scale = column.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
+    let pairs = plane.iter().enumerate().map(|(point, value)| (value, column[point / PER_CELL]));
+    pairs.fold(0.0, |worst: f64, (plane, column)| worst.max((plane - column).abs())) / scale
+}
+
+fn assert_same(what: &str, column: &Outcome, plane: &Outcome, tolerance: f64) {
+    assert_eq!(column.status, RunStatus::Ok, "{what}");
+    assert_eq!(plane.status, RunStatus::Ok, "{what}");
+    assert_eq!(column.counters.steps, plane.counters.steps, "{what}");
+    for (column, plane) in column.snapshots.iter().zip(&plane.snapshots) {
+        let fields: [fn(&Snapshot) -> &Vec<f64>; 3] = [
+            |snapshot| &snapshot.points.pressure,
+            |snapshot| &snapshot.points.effective_stress,
+            |snapshot| &snapshot.points.displacement,
+        ];
+        for field in fields {
+            let worst = difference(field(column), field(plane));
+            assert!(worst < tolerance, "{what} at {} s: {worst:e}", column.time);
+        }
+        let settled = (plane.settlement / column.settlement - 1.0).abs();
+        assert!(settled < tolerance, "{what}: settlement {settled:e}");
+        let sideways = plane.points.plane.as_ref().expect("two dimensions");
+        let drift = sideways.horizontal_displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+        assert!(drift < tolerance * column.settlement.abs(), "{what}: {drift:e} m sideways");
+    }
+}
+
+#[test]
+fn the_paper_s_grid_is_its_column_at_small_strain_whatever_the_method() {
+    for scene in [SceneKind::Terzaghi, SceneKind::SingleMode] {
+        for method in Method::names().iter().filter(|name| !name.starts_with("TL-")) {
+            let (column, plane) = both(scene, method, 1e3, 0.05, Drag::Explicit);
+            assert_same(&format!("{} {method}", scene.name()), &column, &plane, 1e-10);
+        }
+    }
+}
+
+#[test]
+fn the_paper_s_grid_is_its_column_at_200_kpa_whatever_the_method() {
+    for method in Method::names() {
+        let (column, plane) = both(SceneKind::XieLeo, &method, 2e5, 0.1, Drag::Implicit);
+        assert_same(&format!("xie-leo {method}"), &column, &plane, 1e-9);
+    }
+}
