@@ -3,8 +3,8 @@
 use core::fmt;
 use core::str::FromStr;
 
-use super::dynamic_column::{DynamicColumn, Start};
 use super::cosine_layer::{CosineLayer, LayerState};
+use super::dynamic_column::{DynamicColumn, Start};
 use super::error::ExactError;
 use super::large_strain::{Continuity, LargeStrain, LargeStrainModel, SoilLaw, Water};
 use super::parameters::ColumnParameters;
@@ -172,12 +172,8 @@ impl Reference {
                 let solution = LargeStrain::new(parameters, model, time_factors)?;
                 Solution::LargeStrain(Box::new(solution))
             }
-            ReferenceKind::CosineLayer => {
-                Solution::CosineLayer(layer(Water::Compressible)?)
-            }
-            ReferenceKind::CosineLayerIncompressible => {
-                Solution::CosineLayer(layer(Water::Incompressible)?)
-            }
+            ReferenceKind::CosineLayer => Solution::CosineLayer(layer(Water::Compressible)?),
+            ReferenceKind::CosineLayerIncompressible => Solution::CosineLayer(layer(Water::Incompressible)?),
         };
         Ok(Self { kind, solution })
     }

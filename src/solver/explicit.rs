@@ -165,7 +165,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
     #[inline]
-    fn deform(&mut self, point: usize, increment: &Tensor<D>) {
+    pub(super) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
         let stretch: Vector<D> = std::array::from_fn(|d| stretch_of(increment[d][d]));
         let points = &mut self.points;
         points.volume_ratio[point] *= stretch.iter().product::<f64>();

@@ -9,6 +9,7 @@
 //! Nothing here knows of studies, references or reports.
 
 pub mod assembled;
+pub mod banded;
 pub mod body;
 pub mod cells;
 pub mod explicit;
@@ -25,4 +26,7 @@ pub mod shape;
 pub mod snapshot;
 pub mod stability;
 pub mod stencil;
+pub mod stiffness;
 pub mod surface;
+pub mod undrained;
+pub mod volumetric;

@@ -13,6 +13,8 @@ pub enum FailureKind {
     PoresClosed,
     /// A point left the grid.
     LeftGrid,
+    /// A system of equations has no solution: nothing holds the body.
+    Singular,
     /// The run was stopped from outside or ran out of its time.
     Stopped,
 }
@@ -24,6 +26,7 @@ impl FailureKind {
             Self::Unstable => "unstable",
             Self::PoresClosed => "pores-closed",
             Self::LeftGrid => "left-grid",
+            Self::Singular => "singular",
             Self::Stopped => "stopped",
         }
     }

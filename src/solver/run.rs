@@ -125,7 +125,9 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let initial_height = LoadedSurface::of(&problem.points, problem.load)
             .shaped(problem.load_shape, &problem.points)
             .height(&problem.points);
-        let body = discretise(problem);
+        let undrained_start = problem.undrained_start;
+        let mut body = discretise(problem);
+        let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
         let column = match (body.configuration, schedule.kernel) {
             (Configuration::Frozen, Kernel::Fastest) => AssembledColumn::new(&body),
             _ => None,
@@ -133,7 +135,11 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         Self {
             start: body.points.clone(),
             initial_height,
-            initial_settlement: -body.surface.amplitude_of(&body.grid, &body.points, &body.nodes.displacement),
+            initial_settlement: -body.surface.amplitude_of(
+                &body.grid,
+                &body.points,
+                &body.nodes.displacement,
+            ),
             velocity_scale,
             steps: StepSizes { predicted_critical: critical, target, largest: 0.0 },
             counters: Counters { points: body.points.len(), nodes: body.nodes.len(), ..Counters::default() },
@@ -143,7 +149,12 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             snapshots: Vec::new(),
             history: Vec::new(),
             time: 0.0,
-            failure: None,
+            failure: start_failure.map(|error| Failure {
+                kind: FailureKind::Singular,
+                step: 0,
+                time: 0.0,
+                reason: format!("no undrained start: {error}"),
+            }),
         }
     }
 
@@ -153,6 +164,9 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let end = schedule.outputs.last().copied().unwrap_or(0.0);
         let expected = steps_for(end, self.steps.target);
         for output in &schedule.outputs {
+            if self.failure.is_some() {
+                break;
+            }
             self.advance_to(*output, &|done| observer(done, expected));
             if self.failure.is_some() {
                 break;

@@ -19,15 +19,11 @@ pub enum LoadShape {
 }
 
 impl LoadShape {
-    /// Mean of the shape over an edge about `middle` of half-length `half`, both in m.
-    fn mean_over(self, middle: f64, half: f64) -> f64 {
+    /// The shape at an initial distance along the surface, m.
+    fn at(self, distance: f64) -> f64 {
         match self {
             Self::Uniform => 1.0,
-            Self::Cosine { length } => {
-                let (phase, reach) =
-                    (std::f64::consts::PI * middle / length, std::f64::consts::PI * half / length);
-                phase.cos() * reach.sin() / reach
-            }
+            Self::Cosine { length } => (std::f64::consts::PI * distance / length).cos(),
         }
     }
 }
@@ -41,15 +37,28 @@ impl LoadShape {
 pub struct LoadedSurface {
     /// Load `q`, Pa, compression positive, carried by the total stress.
     pub load: f64,
-    /// The points of the topmost row.
-    top_points: Vec<usize>,
-    /// Load at each of them over `load`.
-    shape: Vec<f64>,
-    /// Sum of the squares of `shape`.
+    /// Where it acts.
+    spots: Vec<Spot>,
+    /// Sum of the squares of the spots' shapes.
     squares: f64,
     /// Whether the edge follows the volume of the points because their domains do not.
     stretches: bool,
 }
+
+/// One of the places where the load acts: a Gauss point of the outer edge of a topmost point's
+/// domain, so that the nodal forces of a load that varies are those of its integral with the hats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Spot {
+    /// The point.
+    point: usize,
+    /// Place along the edge, from −1 to 1.
+    along: f64,
+    /// Load over that of the surface.
+    shape: f64,
+}
+
+/// Gauss points of an edge: exact for the hats times a line.
+const EDGE_SPOTS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
 
 impl LoadedSurface {
     /// The surface of a lattice: the highest points of the initial configuration.
@@ -57,20 +66,23 @@ impl LoadedSurface {
         let height = |point: usize| points.initial_position[point][D - 1];
         let highest = (0..points.len()).map(height).fold(f64::NEG_INFINITY, f64::max);
         let tolerance = 1e-9 * highest.abs();
-        let top_points: Vec<usize> =
-            (0..points.len()).filter(|point| height(*point) > highest - tolerance).collect();
-        let count = top_points.len();
-        Self { load, top_points, shape: vec![1.0; count], squares: count as f64, stretches: false }
+        let top_points = (0..points.len()).filter(|point| height(*point) > highest - tolerance);
+        // A column's edge is a point.
+        let places = if D == 1 { &[0.0][..] } else { &EDGE_SPOTS };
+        let spots: Vec<Spot> = top_points
+            .flat_map(|point| places.iter().map(move |along| Spot { point, along: *along, shape: 1.0 }))
+            .collect();
+        Self { load, squares: spots.len() as f64, spots, stretches: false }
     }
 
     /// The surface under a load that varies along it.
     #[must_use]
     pub fn shaped<const D: usize>(mut self, shape: LoadShape, points: &Points<D>) -> Self {
-        let mean = |point: &usize| {
-            shape.mean_over(points.initial_position[*point][0], points.half_length[*point][0])
-        };
-        self.shape = self.top_points.iter().map(mean).collect();
-        self.squares = self.shape.iter().map(|factor| factor * factor).sum();
+        for spot in &mut self.spots {
+            let reach = spot.along * points.half_length[spot.point][0];
+            spot.shape = shape.at(points.initial_position[spot.point][0] + reach);
+        }
+        self.squares = self.spots.iter().map(|spot| spot.shape * spot.shape).sum();
         self
     }
 
@@ -80,10 +92,14 @@ impl LoadedSurface {
         Self { stretches, ..self }
     }
 
-    /// Middle of the upper edge of a point's share of the material.
+    /// Place of a spot on the upper edge of its point's share of the material.
     #[inline]
-    fn edge<const D: usize>(&self, points: &Points<D>, point: usize) -> Vector<D> {
+    fn place<const D: usize>(&self, points: &Points<D>, spot: &Spot) -> Vector<D> {
+        let point = spot.point;
         let mut place = points.position[point];
+        if D > 1 {
+            place[0] += spot.along * points.half_length[point][0];
+        }
         // An oedometer strains vertically only: its stretch is the volume ratio.
         let stretch = if self.stretches { points.volume_ratio[point] } else { 1.0 };
         place[D - 1] += stretch * points.half_length[point][D - 1];
@@ -93,18 +109,19 @@ impl LoadedSurface {
     /// Height of the surface now, m, as much of it as has the load's shape: the mean over the
     /// width under a uniform load.
     pub fn height<const D: usize>(&self, points: &Points<D>) -> f64 {
-        let heights = self.top_points.iter().map(|point| self.edge(points, *point)[D - 1]);
-        let sum: f64 = heights.zip(&self.shape).map(|(height, factor)| factor * height).sum();
+        let sum: f64 = self.spots.iter().map(|spot| spot.shape * self.place(points, spot)[D - 1]).sum();
         sum / self.squares
     }
 
     /// Puts the load on the nodes as the external force of the mixture.
     pub fn apply<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>, nodes: &mut Nodes<D>) {
         nodes.external_force.fill([0.0; D]);
-        for (point, factor) in self.top_points.iter().zip(&self.shape) {
-            let width: f64 = points.half_length[*point][..D - 1].iter().map(|half| 2.0 * half).product();
-            let force = -self.load * factor * width;
-            visit_hat(grid, &self.edge(points, *point), |node, weight| {
+        let share = if D == 1 { 1.0 } else { 1.0 / EDGE_SPOTS.len() as f64 };
+        for spot in &self.spots {
+            let half_length = &points.half_length[spot.point];
+            let width: f64 = half_length[..D - 1].iter().map(|half| 2.0 * half).product();
+            let force = -self.load * spot.shape * share * width;
+            visit_hat(grid, &self.place(points, spot), |node, weight| {
                 nodes.external_force[node][D - 1] += weight * force;
             });
         }
@@ -113,9 +130,9 @@ impl LoadedSurface {
     /// Nodes that span the surface, with the weights of [`amplitude_of`](Self::amplitude_of).
     pub fn weights<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>) -> Vec<(usize, f64)> {
         let mut weights = Vec::new();
-        for (point, factor) in self.top_points.iter().zip(&self.shape) {
-            let share = factor / self.squares;
-            visit_hat(grid, &self.edge(points, *point), |node, weight| weights.push((node, share * weight)));
+        for spot in &self.spots {
+            let share = spot.shape / self.squares;
+            visit_hat(grid, &self.place(points, spot), |node, weight| weights.push((node, share * weight)));
         }
         weights
     }
@@ -129,9 +146,9 @@ impl LoadedSurface {
         field: &[Vector<D>],
     ) -> f64 {
         let mut sum = 0.0;
-        for (point, factor) in self.top_points.iter().zip(&self.shape) {
-            visit_hat(grid, &self.edge(points, *point), |node, weight| {
-                sum += factor * weight * field[node][D - 1];
+        for spot in &self.spots {
+            visit_hat(grid, &self.place(points, spot), |node, weight| {
+                sum += spot.shape * weight * field[node][D - 1];
             });
         }
         sum / self.squares
@@ -140,10 +157,10 @@ impl LoadedSurface {
     /// Mean over the surface of a nodal vector field's vertical component.
     pub fn mean_of<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
         let mut sum = 0.0;
-        for point in &self.top_points {
-            visit_hat(grid, &self.edge(points, *point), |node, weight| sum += weight * field[node][D - 1]);
+        for spot in &self.spots {
+            visit_hat(grid, &self.place(points, spot), |node, weight| sum += weight * field[node][D - 1]);
         }
-        sum / self.top_points.len() as f64
+        sum / self.spots.len() as f64
     }
 }
 

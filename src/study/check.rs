@@ -4,8 +4,8 @@ use super::case::{Case, IntegratorKind};
 use super::diagnostic::{Diagnostic, StudyError, one_of};
 use super::expectation::{Axis, Expectation, Measure};
 use super::file::{
-    ColumnTable, ExpectTable, IntegratorTable, LayerTable, LevelTable, MaterialTable, MethodEntry, MethodTable,
-    OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
+    ColumnTable, ExpectTable, IntegratorTable, LayerTable, LevelTable, MaterialTable, MethodEntry,
+    MethodTable, OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
 };
 use super::sweep::{AXES, Sweep};
 use crate::assess::class::Class;
@@ -256,7 +256,7 @@ impl Checker<'_> {
 
     /// Square cells must fill the width: their number over the height decides their size.
     fn cells_fill_the_width(&mut self, table: &SweepTable, column: &Column) {
-        for typed in table.cells.iter().flat_map(|list| list.get_ref()) {
+        for typed in table.cells.iter().flat_map(Spanned::get_ref) {
             let cells = usize::try_from(*typed.get_ref()).unwrap_or(0);
             if cells == 0 || column.cells_across(cells).is_some() {
                 continue;
