@@ -1,7 +1,9 @@
 //! The paper's grid, 0.1 m × 1.0 m and one cell wide, against its column: one problem, two
 //! dimensions, one result.
 
+use oedometer::exact::cosine_layer::Base;
 use oedometer::scene::{Column, SceneKind, column_problem};
+use oedometer::solver::body::Problem;
 use oedometer::solver::explicit::{Drag, ExplicitSettings};
 use oedometer::solver::material::Material;
 use oedometer::solver::method::Method;
@@ -76,5 +78,74 @@ fn the_paper_s_grid_is_its_column_at_200_kpa_whatever_the_method() {
     for method in Method::names() {
         let (column, plane) = both(SceneKind::XieLeo, &method, 2e5, 0.1, Drag::Implicit);
         assert_same(&format!("xie-leo {method}"), &column, &plane, 1e-9);
+    }
+}
+
+/// The seed layer on 6 × 6 cells.
+fn layer(method: &str, base: Base) -> Problem<2> {
+    let (column, soil) = (Column { base: Some(base), ..Column::layer() }, Material::default());
+    let method = Method::named(method).expect("a known method");
+    column_problem(SceneKind::CosineLayer, &column, &soil, method, 6, PER_CELL).expect("the seed layer")
+}
+
+#[test]
+fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
+    for name in ["MPM", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"] {
+        for (drag, flip, mapping_back) in
+            [(Drag::Explicit, 1.0, true), (Drag::Implicit, 1.0, false), (Drag::Implicit, 0.99, true)]
+        {
+            let run_by = |kernel: Kernel| {
+                let schedule = Schedule {
+                    outputs: vec![0.0, 0.01],
+                    history: vec![0.005],
+                    rule: TimeStepRule::Seconds(1e-5),
+                    settings: ExplicitSettings { drag, flip, mapping_back },
+                    kernel,
+                };
+                run(layer(name, Base::Rough), &schedule, &|_, _| true)
+            };
+            let (fast, plain) = (run_by(Kernel::Fastest), run_by(Kernel::PointWise));
+            assert_eq!(fast.status, RunStatus::Ok, "{name}");
+            assert_eq!(fast.counters, plain.counters);
+            let (fast, plain) = (&fast.snapshots[1], &plain.snapshots[1]);
+            let sideways =
+                |snapshot: &Snapshot| snapshot.nodes.plane.clone().expect("a plane").horizontal_displacement;
+            for (a, b) in [
+                (&fast.points.pressure, &plain.points.pressure),
+                (&fast.points.effective_stress, &plain.points.effective_stress),
+                (&fast.points.displacement, &plain.points.displacement),
+                (&sideways(fast), &sideways(plain)),
+                (&vec![fast.settlement], &vec![plain.settlement]),
+            ] {
+                let scale = b.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
+                for (x, y) in a.iter().zip(b) {
+                    assert!((x - y).abs() <= 1e-10 * scale, "{name} {drag:?} {flip}: {x} for {y}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_predicted_step_of_a_plane_parts_stable_from_unstable_runs() {
+    for name in ["GIMP", "GIMP-SRI", "GC-SRI-patch"] {
+        for mapping_back in [true, false] {
+            for (share, stable) in [(0.98, true), (1.02, false)] {
+                let schedule = Schedule {
+                    outputs: vec![0.3],
+                    history: Vec::new(),
+                    rule: TimeStepRule::Stable(share),
+                    settings: ExplicitSettings { mapping_back, ..ExplicitSettings::default() },
+                    kernel: Kernel::Fastest,
+                };
+                let outcome = run(layer(name, Base::Smooth), &schedule, &|_, _| true);
+                let limit = outcome.step_sizes.predicted_critical;
+                assert_eq!(
+                    outcome.status == RunStatus::Ok,
+                    stable,
+                    "{name} {mapping_back} {share}: {limit:e}"
+                );
+            }
+        }
     }
 }

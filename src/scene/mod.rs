@@ -114,7 +114,7 @@ impl SceneKind {
             Self::XieLeo => (law == Law::Linear).then_some(
                 "the law `linear` is of small strain: its conductivity ignores that the pores close",
             ),
-            Self::Terzaghi | Self::SingleMode => (law != Law::Linear).then_some(
+            Self::Terzaghi | Self::SingleMode | Self::CosineLayer => (law != Law::Linear).then_some(
                 "this scene is of small strain, where every law is linear: the one named would be ignored",
             ),
         }
@@ -123,7 +123,7 @@ impl SceneKind {
     /// Whether the scene's theory holds at small strain only.
     pub fn is_small_strain(self) -> bool {
         match self {
-            Self::Terzaghi | Self::SingleMode => true,
+            Self::Terzaghi | Self::SingleMode | Self::CosineLayer => true,
             Self::XieLeo => false,
         }
     }

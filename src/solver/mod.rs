@@ -9,10 +9,12 @@
 //! Nothing here knows of studies, references or reports.
 
 pub mod assembled;
+pub mod assembled_plane;
 pub mod banded;
 pub mod body;
 pub mod cells;
 pub mod explicit;
+pub mod frozen;
 pub mod grid;
 pub mod limits;
 pub mod material;

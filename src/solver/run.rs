@@ -1,8 +1,9 @@
 //! A run: from a problem and a schedule to snapshots, history, counters and a named end.
 
-use super::assembled::AssembledColumn;
 use super::body::{Body, Gimp, Hat, Problem, ShapeFunction};
 use super::explicit::ExplicitSettings;
+use super::frozen::FrozenStep;
+use super::grid::Grid;
 use super::limits;
 use super::method::{Basis, Configuration};
 use super::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
@@ -74,32 +75,43 @@ pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: O
 /// Critical step, s, of the explicit integrator on a problem's initial configuration.
 ///
 /// Computed on the problem's own operators; a long column is cut to twelve cells, which moves
-/// the limit by less than a percent. Above one dimension, the safe formula.
+/// the limit by less than a percent, a wide layer to six by six.
 pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
     let safe = limits::combined_limit(&problem.material, problem.grid.cell_size, settings.drag);
-    let problem = cut_column(problem);
-    let column = match problem.method.basis {
-        Basis::Hat => AssembledColumn::new(&Body::<D, 2, Hat>::new(problem)),
-        Basis::Ugimp | Basis::Cpgimp => AssembledColumn::new(&Body::<D, 3, Gimp>::new(problem)),
+    let problem = cut_problem(problem);
+    let frozen = match problem.method.basis {
+        Basis::Hat => FrozenStep::new(&Body::<D, 2, Hat>::new(problem)),
+        Basis::Ugimp | Basis::Cpgimp => FrozenStep::new(&Body::<D, 3, Gimp>::new(problem)),
     };
-    column.map_or(safe, |column| stability::critical_step(&column, settings, safe))
+    match frozen {
+        FrozenStep::Column(column) => stability::critical_step(&column, settings, safe),
+        FrozenStep::Plane(plane) => stability::critical_step_of_plane(&plane, settings, safe),
+    }
 }
 
 /// The problem on its lowest cells only, with the load on their top.
-fn cut_column<const D: usize>(problem: &Problem<D>) -> Problem<D> {
+fn cut_problem<const D: usize>(problem: &Problem<D>) -> Problem<D> {
     let mut cut = problem.clone();
-    let height = STABILITY_CELLS as f64 * problem.grid.cell_size;
-    let keep: Vec<usize> =
-        (0..cut.points.len()).filter(|point| cut.points.position[*point][D - 1] < height).collect();
+    let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
+    let most = if is_narrow { STABILITY_CELLS } else { STABILITY_CELLS / 2 };
+    let extent = most as f64 * problem.grid.cell_size;
+    let is_kept = |point: &usize| problem.points.position[*point].iter().all(|place| *place < extent);
+    let keep: Vec<usize> = (0..cut.points.len()).filter(is_kept).collect();
     if keep.len() < cut.points.len() {
         cut.points = cut.points.select(&keep);
+        // The sides stay held; the top stays free.
+        let mut cells = problem.grid.cells;
+        for across in &mut cells[..D - 1] {
+            *across = (*across).min(most);
+        }
+        cut.grid = Grid::new(problem.grid.cell_size, cells);
     }
     cut
 }
 
 struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
     body: Body<D, W, S>,
-    column: Option<AssembledColumn>,
+    frozen: Option<FrozenStep<D>>,
     schedule: &'a Schedule,
     start: Points<D>,
     initial_height: f64,
@@ -128,10 +140,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let undrained_start = problem.undrained_start;
         let mut body = discretise(problem);
         let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
-        let column = match (body.configuration, schedule.kernel) {
-            (Configuration::Frozen, Kernel::Fastest) => AssembledColumn::new(&body),
-            _ => None,
-        };
+        let is_assembled = body.configuration == Configuration::Frozen && schedule.kernel == Kernel::Fastest;
+        let frozen = is_assembled.then(|| FrozenStep::new(&body));
         Self {
             start: body.points.clone(),
             initial_height,
@@ -144,7 +154,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             steps: StepSizes { predicted_critical: critical, target, largest: 0.0 },
             counters: Counters { points: body.points.len(), nodes: body.nodes.len(), ..Counters::default() },
             body,
-            column,
+            frozen,
             schedule,
             snapshots: Vec::new(),
             history: Vec::new(),
@@ -210,16 +220,16 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
 
     fn take_steps(&mut self, count: u64, dt: f64, go_on: &dyn Fn(u64) -> bool) {
         let settings = self.schedule.settings;
-        if let Some(column) = &mut self.column {
-            column.set_step(dt, &settings);
+        if let Some(frozen) = &mut self.frozen {
+            frozen.set_step(dt, &settings);
         }
         let start = self.time;
         let mut done = 0;
         while done < count && self.failure.is_none() {
             let some = WATCH_INTERVAL.min(count - done).min(self.steps_to_history(dt));
             for _ in 0..some {
-                match &mut self.column {
-                    Some(column) => column.step(dt, &settings),
+                match &mut self.frozen {
+                    Some(frozen) => frozen.step(dt, &settings),
                     None => self.body.explicit_step(dt, &settings),
                 }
             }
@@ -253,8 +263,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
     }
 
     fn settlement(&self) -> f64 {
-        match &self.column {
-            Some(column) => self.initial_settlement - column.surface_displacement(),
+        match &self.frozen {
+            Some(frozen) => self.initial_settlement - frozen.surface_displacement(),
             None if self.body.configuration.moves_points() => {
                 self.initial_height - self.body.surface.height(&self.body.points)
             }
@@ -267,8 +277,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
 
     fn snapshot(&self) -> Snapshot {
         let settlement = self.settlement();
-        match &self.column {
-            Some(column) => column.body_now(&self.body).snapshot(self.time, settlement, &self.start),
+        match &self.frozen {
+            Some(frozen) => frozen.body_now(&self.body).snapshot(self.time, settlement, &self.start),
             None => self.body.snapshot(self.time, settlement, &self.start),
         }
     }
@@ -278,8 +288,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
     }
 
     fn find_failure(&self) -> Option<Failure> {
-        let velocity = match &self.column {
-            Some(column) => column.largest_velocity(),
+        let velocity = match &self.frozen {
+            Some(frozen) => frozen.largest_velocity(),
             None => self.body.largest_velocity(),
         };
         if velocity > BLOW_UP * self.velocity_scale {

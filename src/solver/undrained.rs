@@ -115,13 +115,25 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Displaces nodes and points by a nodal field, with the stresses and pressures that it makes
     /// without flow.
     pub fn displace_undrained(&mut self, rows: &VolumetricRows<D>, displacements: &[Vector<D>]) {
-        let mut pressures = rows.at_sites(displacements);
+        self.displace_points(rows, displacements, displacements, displacements);
+    }
+
+    /// Displaces nodes and points by a field, strains the skeleton by another and compresses the
+    /// water by a third, all nodal.
+    pub fn displace_points(
+        &mut self,
+        rows: &VolumetricRows<D>,
+        strained: &[Vector<D>],
+        flux: &[Vector<D>],
+        displacements: &[Vector<D>],
+    ) {
+        let mut pressures = rows.at_sites(flux);
         for (value, coupling) in pressures.iter_mut().zip(&rows.coupling) {
             *value *= -coupling;
         }
         let pressures = rows.at_points(&pressures);
         for point in 0..self.points.len() {
-            let gradient = self.gradient_of(point, displacements);
+            let gradient = self.gradient_of(point, strained);
             let stress = self.stiffness.stress(&gradient);
             let moved = self.basis.value(self.grid.node_stride(), point, displacements);
             self.points.pressure[point] += pressures[point];

@@ -100,8 +100,16 @@ impl Study {
     /// # Errors
     /// Every complaint with its place.
     pub fn check(source: &StudySource) -> Result<Self, StudyError> {
+        Self::check_for(source, Purpose::Solving)
+    }
+
+    /// Checks a study for a purpose.
+    ///
+    /// # Errors
+    /// Every complaint with its place.
+    pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
         let file = source.parse()?;
-        let mut checker = Checker { source, diagnostics: Vec::new(), column_height: None };
+        let mut checker = Checker { source, diagnostics: Vec::new(), column_height: None, purpose };
         let study = checker.study(&file);
         match study {
             Some(study) if checker.diagnostics.is_empty() => Ok(study),
@@ -115,12 +123,22 @@ impl Study {
     }
 }
 
+/// What a study is read for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Its cases are to be solved.
+    Solving,
+    /// Only its problem is wanted, for an exact solution: no grid has to fit it.
+    Theory,
+}
+
 /// Complaints as they come up; every method gives a usable value or none.
 struct Checker<'a> {
     source: &'a StudySource,
     diagnostics: Vec<Diagnostic>,
     /// Height by which the levels of expectations are sized, once it is known.
     column_height: Option<f64>,
+    purpose: Purpose,
 }
 
 impl Checker<'_> {
@@ -154,7 +172,9 @@ impl Checker<'_> {
         for block in &file.sweep {
             let table = block.get_ref();
             let Some(sweep) = self.sweep(table, block.span(), &settings, scene, &material) else { continue };
-            self.cells_fill_the_width(table, &column);
+            if self.purpose == Purpose::Solving {
+                self.cells_fill_the_width(table, &column);
+            }
             let time_factors = match &table.time_factors {
                 Some(list) => self.time_factors(list),
                 None => time_factors.clone(),

@@ -10,7 +10,7 @@ mod shipped;
 mod sweep;
 
 pub use case::{Case, IntegratorKind, step_label};
-pub use check::{Study, Tier};
+pub use check::{Purpose, Study, Tier};
 pub use diagnostic::{Diagnostic, StudyError};
 pub use expectation::{Axis, Expectation, Measure};
 pub use file::StudySource;
