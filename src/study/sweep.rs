@@ -5,6 +5,7 @@ use crate::solver::explicit::Drag;
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
+use crate::solver::scheme::Scheme;
 
 /// One block of a study, checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +15,7 @@ pub struct Sweep {
     pub cells: Vec<usize>,
     pub points_per_cell: Vec<usize>,
     pub time_step: Vec<TimeStepRule>,
+    pub scheme: Vec<Scheme>,
     pub drag: Vec<Drag>,
     pub flip: Vec<f64>,
     pub mapping_back: Vec<bool>,
@@ -24,7 +26,7 @@ pub struct Sweep {
 }
 
 /// Keys that a path can tie.
-pub const AXES: [&str; 10] = [
+pub const AXES: [&str; 11] = [
     "method",
     "integrator",
     "cells",
@@ -35,6 +37,7 @@ pub const AXES: [&str; 10] = [
     "mapping_back",
     "law",
     "continuity",
+    "scheme",
 ];
 
 /// One combination of a sweep.
@@ -45,6 +48,7 @@ pub struct Combination {
     pub cells: usize,
     pub points_per_cell: usize,
     pub time_step: TimeStepRule,
+    pub scheme: Scheme,
     pub drag: Drag,
     pub flip: f64,
     pub mapping_back: bool,
@@ -65,6 +69,7 @@ impl Sweep {
             self.mapping_back.len(),
             self.law.len(),
             self.continuity.len(),
+            self.scheme.len(),
         ]
     }
 
@@ -111,6 +116,7 @@ impl Sweep {
                     mapping_back: self.mapping_back[at[7]],
                     law: self.law[at[8]],
                     continuity: self.continuity[at[9]],
+                    scheme: self.scheme[at[10]],
                 }
             })
             .collect()
@@ -132,6 +138,7 @@ mod tests {
                 TimeStepRule::Seconds(2e-6),
                 TimeStepRule::Seconds(1e-6),
             ],
+            scheme: vec![Scheme::ForwardEuler],
             drag: vec![Drag::Explicit],
             flip: vec![1.0],
             mapping_back: vec![true],
