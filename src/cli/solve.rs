@@ -37,9 +37,10 @@ pub struct Arguments {
     /// Points a cell and direction
     #[arg(long, default_value_t = 2, allow_negative_numbers = true)]
     points_per_cell: i64,
-    /// Step rule: stable=0.8, courant=0.5 or seconds=1e-6
-    #[arg(long, default_value = "stable=0.8", value_name = "RULE")]
-    time_step: String,
+    /// Step rule: stable=0.8, courant=0.5, seconds=1e-6 or growth=0.05 [default: stable=0.8, for
+    /// implicit integrators growth=0.05]
+    #[arg(long, value_name = "RULE")]
+    time_step: Option<String>,
     /// Time factors of the outputs, comma-separated
     #[arg(long, default_value = "0.05,0.1,0.2,0.5,1.0", value_name = "LIST", allow_hyphen_values = true)]
     time_factor: String,
@@ -75,7 +76,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     lines.push(format!("integrator = [{}]", overrides::quoted(&arguments.integrator)));
     lines.push(format!("cells = [{}]", arguments.cells));
     lines.push(format!("points_per_cell = [{}]", arguments.points_per_cell));
-    lines.push(format!("time_step = [{}]", overrides::step_rule(&arguments.time_step)?));
+    if let Some(rule) = &arguments.time_step {
+        lines.push(format!("time_step = [{}]", overrides::step_rule(rule)?));
+    }
     let study = overrides::study_of(&lines)?;
     let [planned] = study.planned.as_slice() else {
         return Err(Ended::with(Exit::NothingSelected, "the command line describes no single case"));
