@@ -470,8 +470,10 @@ impl Checker<'_> {
                 "give the axes of a path lists of one length",
             );
         }
-        self.rules_fit(table, &sweep);
-        self.integrators_fit(table, &sweep, scene);
+        if self.diagnostics.len() == before {
+            self.rules_fit(table, &sweep);
+            self.integrators_fit(table, &sweep, scene);
+        }
         (self.diagnostics.len() == before).then_some(sweep)
     }
 
