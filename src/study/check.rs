@@ -27,6 +27,8 @@ use toml::Spanned;
 const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
 /// Half-width of an order's band where an expectation names none.
 const DEFAULT_BAND: f64 = 0.1;
+/// Final strain `m_vl q` up to which small-strain theory is taken without a word.
+const LARGEST_SMALL_STRAIN: f64 = 1e-2;
 /// More cells than a column is ever given on purpose.
 const MOST_CELLS: i64 = 100_000;
 /// More points a cell and direction than any scheme uses.
@@ -86,6 +88,8 @@ pub struct Study {
     pub expectations: Vec<Expectation>,
     /// Times each case is run alone for its wall time; 0 where it is not timed.
     pub timing_repeats: usize,
+    /// What is odd and runs all the same, as a person reads it.
+    pub warnings: Vec<String>,
 }
 
 impl Study {
@@ -128,6 +132,7 @@ impl Checker<'_> {
         self.column_height = Some(column.height);
         let material = self.material(&file.material, scene);
         self.porosity_at_the_end(file, scene, &column, &material);
+        let warnings = self.large_for_small_strain(file, scene, &column, &material).into_iter().collect();
         let settings = self.settings(&file.integrator);
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
@@ -135,10 +140,11 @@ impl Checker<'_> {
         };
         let references = self.references(&file.output, scene);
         if file.sweep.is_empty() {
-            let end = self.source.text.len();
+            let end = self.source.text.trim_end().len();
+            let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
             self.complain(
-                end..end,
-                "the study has no [[sweep]] block",
+                last_line..end,
+                "the study ends here without a [[sweep]] block",
                 "add one with at least `method` and `cells`",
             );
         }
@@ -187,6 +193,7 @@ impl Checker<'_> {
             planned,
             expectations,
             timing_repeats,
+            warnings,
         })
     }
 
@@ -300,6 +307,30 @@ impl Checker<'_> {
                 format!("load less than {most:.4e} Pa, or give a porosity above {least:.4}"),
             );
         }
+    }
+
+    /// A load under which a theory of small strain is off by more than a percent.
+    fn large_for_small_strain(
+        &self,
+        file: &StudyFile,
+        scene: SceneKind,
+        column: &Column,
+        soil: &Material,
+    ) -> Option<String> {
+        let strain = column.load / soil.oedometric_modulus();
+        if !scene.is_small_strain() || strain <= LARGEST_SMALL_STRAIN {
+            return None;
+        }
+        let typed = file.column.load.as_ref().or(file.material.youngs_modulus.as_ref()).map(Spanned::span);
+        let diagnostic = Diagnostic::at(
+            typed.unwrap_or_else(|| file.scene.span()),
+            format!(
+                "the load strains the column by m_vl q = {strain:.2e}: real soil is off this scene's small-strain \
+                 theory by a share of that size"
+            ),
+            "the errors printed are against small-strain theory all the same; the scene `xie-leo` is of large strain",
+        );
+        Some(diagnostic.warning(&self.source.name, &self.source.text))
     }
 
     /// Values that are legal numbers and no soil's: a unit of thought.
