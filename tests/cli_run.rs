@@ -319,3 +319,27 @@ fn a_plan_is_the_same_whatever_the_folder_and_has_every_shipped_study() {
     assert!(told.out.lines().skip(1).any(|line| line.starts_with("terzaghi-mesh,")));
     assert!(told.out.lines().skip(1).any(|line| line.starts_with("single-mode,")));
 }
+
+#[test]
+fn a_later_run_of_less_takes_nothing_from_the_table() {
+    let place = Place::with(STUDY);
+    assert_eq!(place.run(&[]).code, 0);
+    let whole = place.table("out");
+    assert_eq!(place.run(&["--shard", "1/3"]).code, 0);
+    assert_eq!(place.table("out"), whole, "a shard adds to the table");
+    assert_eq!(place.run(&["--tier", "smoke"]).code, 4);
+    assert_eq!(place.table("out"), whole, "nothing selected, nothing written");
+    let fresh = place.run(&["--tier", "smoke", "--out", "fresh"]);
+    assert_eq!(fresh.code, 4);
+    assert!(!place.path().join("fresh").exists(), "nothing selected, nothing written");
+}
+
+#[test]
+fn shards_into_one_folder_add_up_to_the_whole_table() {
+    let place = Place::with(STUDY);
+    assert_eq!(place.run(&["--out", "whole"]).code, 0);
+    for shard in ["1/3", "2/3", "3/3"] {
+        place.run(&["--shard", shard]);
+    }
+    assert_eq!(place.table("out"), place.table("whole"));
+}

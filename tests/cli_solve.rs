@@ -410,3 +410,46 @@ fn list_names_what_can_be_chosen() {
         );
     }
 }
+
+#[test]
+fn outputs_can_be_set_by_their_key_too_but_not_twice() {
+    let by_key =
+        ["solve", "terzaghi", "--cells", "3", "--set", "output.time_factors=[0.01]", "--format", "csv"];
+    let by_option = ["solve", "terzaghi", "--cells", "3", "--time-factor", "0.01", "--format", "csv"];
+    let (code, out, err) = told(&by_key);
+    assert_eq!((code, out), (0, told(&by_option).1), "{err}");
+    let (code, _, err) = told(&[&by_option[..], &["--set", "output.time_factors=[0.01]"]].concat());
+    assert_eq!(code, 2);
+    assert!(err.contains("given by `--time-factor` and by `--set`"), "{err}");
+    let (code, _, err) = told(&["solve", "terzaghi", "--set", "cells=20"]);
+    assert_eq!(code, 2);
+    assert!(err.contains("--cells NUMBER"), "{err}");
+    let (code, _, err) = told(&["exact", "terzaghi", "--set", "column.load=1.0", "--set", "column.load=2.0"]);
+    assert_eq!(code, 2);
+    assert!(err.contains("`column.load` is given twice"), "{err}");
+}
+
+#[test]
+fn a_degree_that_is_never_reached_is_named_as_it_was_typed() {
+    for degree in ["1.5", "1", "-0.1"] {
+        let (code, out, err) = told(&["exact", "terzaghi", "--degree", degree]);
+        assert_eq!((code, out.as_str()), (2, ""), "{err}");
+        assert!(err.contains(&format!("a degree of consolidation of {degree} ")), "{err}");
+    }
+}
+
+#[test]
+fn small_strain_scenes_take_no_other_law_and_warn_of_large_loads() {
+    for scene in ["terzaghi", "single-mode"] {
+        let (code, _, err) = told(&["solve", scene, "--set", "material.law=log-linear"]);
+        assert_eq!(code, 2, "{err}");
+        assert!(err.contains("small strain") && err.contains("takes linear"), "{err}");
+    }
+    let quick = ["solve", "terzaghi", "--cells", "3", "--time-factor", "0.001"];
+    let (code, _, err) = told(&quick);
+    assert_eq!((code, err.as_str()), (0, ""));
+    let (code, out, err) = told(&[&quick[..], &["--set", "column.load=200e3"]].concat());
+    assert_eq!(code, 0);
+    assert!(err.starts_with("warning: ") && err.contains("m_vl q = 1.67e-1"), "{err}");
+    assert!(err.contains("xie-leo") && !out.is_empty(), "{err}");
+}

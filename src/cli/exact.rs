@@ -1,7 +1,7 @@
 //! `oedometer exact`: an exact solution as numbers.
 
 use super::exit::{Ended, Exit};
-use super::overrides;
+use super::overrides::{self, StudyLines};
 use crate::exact::{ColumnParameters, Reference, ReferenceKind, consolidation};
 use crate::scene::{SceneKind, column_parameters};
 use clap::ValueEnum;
@@ -129,12 +129,11 @@ fn parameters_of(
         ReferenceKind::XieLeo | ReferenceKind::LargeStrain(_) => SceneKind::XieLeo,
         _ => SceneKind::Terzaghi,
     };
-    let mut lines = vec!["title = \"exact\"".to_owned(), format!("scene = \"{}\"", scene.name())];
-    for typed in assignments {
-        lines.push(overrides::assignment(typed)?);
-    }
-    lines.extend(["[[sweep]]", "method = [\"MPM\"]", "cells = [1]"].map(str::to_owned));
-    let study = overrides::study_of(&lines)?;
+    let mut lines = StudyLines::default();
+    lines.give("title", "\"exact\"", "`exact`")?;
+    lines.give("scene", &overrides::quoted(scene.name()), "the solution's name")?;
+    lines.assign(assignments)?;
+    let study = lines.study_with(["method = [\"MPM\"]", "cells = [1]"].map(str::to_owned))?;
     let Some(planned) = study.planned.first() else {
         return Err(Ended::usage("the assignments leave no column"));
     };
@@ -156,6 +155,13 @@ fn time_factors_of(
     };
     // By settlement: degree = 1 − B + B U(B T_v); the first 1 − B is there at once.
     let one = |degree: &f64| {
+        let at_once = 1.0 - storage;
+        if !(*degree >= at_once && *degree < 1.0) {
+            return Err(Ended::usage(format!(
+                "a degree of consolidation of {degree} has no time factor: it must be at least {at_once:.3e}, \
+                 which is there at once, and below 1, which is never reached"
+            )));
+        }
         let drained = (degree - (1.0 - storage)) / storage;
         Ok(consolidation::time_factor_for_degree(drained)? / storage)
     };

@@ -31,6 +31,50 @@ pub fn assignment(typed: &str) -> anyhow::Result<String> {
     Ok(format!("{key} = {}", quoted(value)))
 }
 
+/// The text of a study from options and `--set`, each key given once.
+#[derive(Default)]
+pub struct StudyLines {
+    lines: Vec<String>,
+    /// Keys so far, each with who gave it.
+    given: Vec<(String, String)>,
+}
+
+impl StudyLines {
+    /// A key whose value comes from an option; `by` names it in messages.
+    pub fn give(&mut self, key: &str, value: &str, by: &str) -> anyhow::Result<()> {
+        if let Some((_, other)) = self.given.iter().find(|(given, _)| given == key) {
+            let by = if other == by { "twice".to_owned() } else { format!("by {other} and by {by}") };
+            return Err(Ended::usage(format!("`{key}` is given {by}: leave one out")));
+        }
+        self.given.push((key.to_owned(), by.to_owned()));
+        self.lines.push(format!("{key} = {value}"));
+        Ok(())
+    }
+
+    /// The keys typed as `--set KEY=VALUE`.
+    pub fn assign(&mut self, typed: &[String]) -> anyhow::Result<()> {
+        for one in typed {
+            let line = assignment(one)?;
+            let (key, value) = line.split_once(" = ").unwrap_or((&line, ""));
+            self.give(key, value, "`--set`")?;
+        }
+        Ok(())
+    }
+
+    /// Whether a key is given already.
+    pub fn has(&self, key: &str) -> bool {
+        self.given.iter().any(|(given, _)| given == key)
+    }
+
+    /// The study with one sweep of these lines.
+    pub fn study_with(mut self, sweep: impl IntoIterator<Item = String>) -> anyhow::Result<Study> {
+        self.lines.push("[[sweep]]".to_owned());
+        self.lines.extend(sweep);
+        let text = self.lines.join("\n") + "\n";
+        super::run::checked(&StudySource { name: "command line".to_owned(), text })
+    }
+}
+
 /// A word as a TOML string.
 pub fn quoted(word: &str) -> String {
     toml::Value::String(word.to_owned()).to_string()
@@ -42,7 +86,7 @@ pub fn step_rule(typed: &str) -> anyhow::Result<String> {
     match rule {
         Some((rule, value)) if value.parse::<f64>().is_ok() => Ok(format!("{{ {rule} = {} }}", float(value))),
         _ => Err(Ended::usage(format!(
-            "`{typed}` is no step rule: write stable=0.5, courant=0.5 or seconds=1e-6"
+            "`{typed}` is no step rule: write stable=0.5, courant=0.5, seconds=1e-6 or growth=0.05"
         ))),
     }
 }
@@ -83,12 +127,6 @@ fn float(typed: &str) -> String {
     format!("{number:?}")
 }
 
-/// Checks a study made of lines.
-pub fn study_of(lines: &[String]) -> anyhow::Result<Study> {
-    let source = StudySource { name: "command line".to_owned(), text: lines.join("\n") + "\n" };
-    Ok(Study::check(&source)?)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -108,6 +146,18 @@ mod tests {
     fn a_value_cannot_smuggle_lines_in() {
         assert!(assignment("title=x\nscene = 1").is_err());
         assert!(assignment("column.load=1\nscene = 1").is_err());
+    }
+
+    #[test]
+    fn a_key_is_given_once() {
+        let mut lines = StudyLines::default();
+        assert!(lines.give("output.time_factors", "[0.1]", "`--time-factor`").is_ok());
+        let twice =
+            lines.assign(&["output.time_factors=[0.2]".to_owned()]).map_err(|error| error.to_string());
+        let told = "`output.time_factors` is given by `--time-factor` and by `--set`: leave one out";
+        assert_eq!(twice, Err(told.to_owned()));
+        let same = ["column.load=1.0".to_owned(), "column.load=2.0".to_owned()];
+        assert!(lines.assign(&same).is_err_and(|error| error.to_string().contains("twice")));
     }
 
     #[test]

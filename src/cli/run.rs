@@ -2,7 +2,7 @@
 
 use super::exit::{Ended, Exit};
 use super::progress::StudyBar;
-use crate::record::{RecordStore, tidy_csv, write_whole};
+use crate::record::{Provenance, Record, RecordStore, tidy_csv, write_whole};
 use crate::study::{
     RunOptions, RunReport, Shard, Study, StudySource, Tier, run_study, shipped_studies, time_study,
 };
@@ -93,8 +93,10 @@ pub fn run_and_store(study: &Study, options: &RunOptions, results: &Path) -> any
     if let Some(error) = report.errors.pop() {
         return Err(error.into());
     }
-    let table = store.folder().join(format!("{}.csv", study.name));
-    write_whole(&table, tidy_csv(&study.name, &report.records)?.as_bytes())?;
+    if report.records.is_empty() {
+        return Ok(report);
+    }
+    let table = write_table(study, &store)?;
     let failed = report.failed().count();
     eprintln!(
         "{}: {} cases ({} from disk, {failed} failed), {}",
@@ -106,6 +108,21 @@ pub fn run_and_store(study: &Study, options: &RunOptions, results: &Path) -> any
     Ok(report)
 }
 
+/// Writes the CSV of every record that a store keeps of a study, whichever run made it: a run of
+/// one tier or shard takes nothing away from what others found.
+pub fn write_table(study: &Study, store: &RecordStore) -> anyhow::Result<PathBuf> {
+    let records: Vec<Record> =
+        study.cases(Tier::Full).into_iter().filter_map(|case| store.kept(case)).collect();
+    let own = Provenance::of_this_program().sources;
+    let foreign = records.iter().filter(|record| record.provenance.sources != own).count();
+    if foreign > 0 {
+        eprintln!("{}: {foreign} older records in the table are of other sources", study.name);
+    }
+    let table = store.folder().join(format!("{}.csv", study.name));
+    write_whole(&table, tidy_csv(&study.name, &records)?.as_bytes())?;
+    Ok(table)
+}
+
 /// Reads and checks study files.
 pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
     paths
@@ -114,9 +131,18 @@ pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
             let text = std::fs::read_to_string(path).map_err(|error| {
                 Ended::usage(format!("cannot read the study {}: {error}", path.display()))
             })?;
-            Ok(Study::check(&StudySource { name: path.display().to_string(), text })?)
+            checked(&StudySource { name: path.display().to_string(), text })
         })
         .collect()
+}
+
+/// A study that can run; what is odd about it goes to standard error.
+pub fn checked(source: &StudySource) -> anyhow::Result<Study> {
+    let study = Study::check(source)?;
+    for warning in &study.warnings {
+        eprintln!("{warning}");
+    }
+    Ok(study)
 }
 
 /// The named studies, or every shipped one where none is named.

@@ -1,11 +1,11 @@
 //! `oedometer solve`: one case from the command line, its errors on standard output.
 
 use super::exit::{Ended, Exit};
-use super::overrides;
+use super::overrides::{self, StudyLines};
 use crate::record::{ErrorRow, Record, Status};
 use crate::render::measures;
 use crate::solver::run::Kernel;
-use crate::study::{IntegratorKind, run_case};
+use crate::study::{IntegratorKind, Study, run_case};
 use clap::ValueEnum;
 use std::io::Write;
 
@@ -37,12 +37,15 @@ pub struct Arguments {
     /// Points a cell and direction
     #[arg(long, default_value_t = 2, allow_negative_numbers = true)]
     points_per_cell: i64,
-    /// Step rule: stable=0.8, courant=0.5 or seconds=1e-6
-    #[arg(long, default_value = "stable=0.8", value_name = "RULE")]
-    time_step: String,
+    /// Step rule: stable=0.8, courant=0.5, seconds=1e-6 or growth=0.05 [default: stable=0.8, for
+    /// implicit integrators growth=0.05]
+    #[arg(long, value_name = "RULE")]
+    time_step: Option<String>,
     /// Time factors of the outputs, comma-separated
-    #[arg(long, default_value = "0.05,0.1,0.2,0.5,1.0", value_name = "LIST", allow_hyphen_values = true)]
-    time_factor: String,
+    ///
+    /// [default: 0.05,0.1,0.2,0.5,1.0]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    time_factor: Option<String>,
     /// Hold the result against this reference only
     #[arg(long, value_name = "NAME")]
     reference: Option<String>,
@@ -59,24 +62,7 @@ pub struct Arguments {
 
 /// Solves and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let mut lines = vec![
-        "title = \"solve\"".to_owned(),
-        format!("scene = {}", overrides::quoted(&arguments.scene)),
-        format!("output.time_factors = {}", overrides::list("--time-factor", &arguments.time_factor)?),
-    ];
-    if let Some(reference) = &arguments.reference {
-        lines.push(format!("output.references = [{}]", overrides::quoted(reference)));
-    }
-    for typed in &arguments.assignments {
-        lines.push(overrides::assignment(typed)?);
-    }
-    lines.push("[[sweep]]".to_owned());
-    lines.push(format!("method = [{}]", overrides::quoted(&arguments.method)));
-    lines.push(format!("integrator = [{}]", overrides::quoted(&arguments.integrator)));
-    lines.push(format!("cells = [{}]", arguments.cells));
-    lines.push(format!("points_per_cell = [{}]", arguments.points_per_cell));
-    lines.push(format!("time_step = [{}]", overrides::step_rule(&arguments.time_step)?));
-    let study = overrides::study_of(&lines)?;
+    let study = study_of(arguments)?;
     let [planned] = study.planned.as_slice() else {
         return Err(Ended::with(Exit::NothingSelected, "the command line describes no single case"));
     };
@@ -103,6 +89,45 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     Ok(Exit::Pass)
 }
+
+/// The study of one case that the command line describes.
+fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
+    let mut lines = StudyLines::default();
+    lines.give("title", "\"solve\"", "`solve`")?;
+    lines.give("scene", &overrides::quoted(&arguments.scene), "the scene's name")?;
+    if let Some(factors) = &arguments.time_factor {
+        let factors = overrides::list("--time-factor", factors)?;
+        lines.give("output.time_factors", &factors, "`--time-factor`")?;
+    }
+    if let Some(reference) = &arguments.reference {
+        lines.give("output.references", &format!("[{}]", overrides::quoted(reference)), "`--reference`")?;
+    }
+    lines.assign(&arguments.assignments)?;
+    for (key, option) in OWN_OPTIONS {
+        if lines.has(key) || lines.has(&format!("sweep.{key}")) {
+            return Err(Ended::usage(format!("`{key}` has an option of its own: {option}")));
+        }
+    }
+    let mut sweep = vec![
+        format!("method = [{}]", overrides::quoted(&arguments.method)),
+        format!("integrator = [{}]", overrides::quoted(&arguments.integrator)),
+        format!("cells = [{}]", arguments.cells),
+        format!("points_per_cell = [{}]", arguments.points_per_cell),
+    ];
+    if let Some(rule) = &arguments.time_step {
+        sweep.push(format!("time_step = [{}]", overrides::step_rule(rule)?));
+    }
+    lines.study_with(sweep)
+}
+
+/// Keys of a sweep that `solve` takes as options.
+const OWN_OPTIONS: [(&str, &str); 5] = [
+    ("method", "--method NAME"),
+    ("integrator", "--integrator NAME"),
+    ("cells", "--cells NUMBER"),
+    ("points_per_cell", "--points-per-cell NUMBER"),
+    ("time_step", "--time-step RULE"),
+];
 
 fn csv_of(record: &Record) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());

@@ -60,17 +60,20 @@ impl RecordStore {
     /// A record that cannot be read, is of another layout, of another case or of other sources is
     /// as good as none: the case is run again.
     pub fn finished(&self, case: &Case) -> Option<Record> {
+        let own = Provenance::of_this_program();
+        self.kept(case).filter(|record| {
+            record.provenance.sources == own.sources && record.provenance.profile == own.profile
+        })
+    }
+
+    /// The record of a case, whichever program of this layout made it.
+    pub fn kept(&self, case: &Case) -> Option<Record> {
         let text = fs::read_to_string(self.path(&case.hash(), RECORD)).ok()?;
         let mut record: Record = serde_json::from_str(&text).ok()?;
         // Without readable wall times the case is done all the same, only not timed.
         let wall = fs::read_to_string(self.path(&record.hash, WALL)).ok();
         record.wall = wall.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
-        let own = Provenance::of_this_program();
-        let fits = record.schema == SCHEMA
-            && record.case == *case
-            && record.provenance.sources == own.sources
-            && record.provenance.profile == own.profile;
-        fits.then_some(record)
+        (record.schema == SCHEMA && record.case == *case).then_some(record)
     }
 
     /// Whether a record of this hash is on disk.

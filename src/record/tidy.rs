@@ -4,7 +4,7 @@ use super::{ErrorRow, Record};
 use crate::study::step_label;
 
 /// Columns of the tidy CSV.
-const COLUMNS: [&str; 20] = [
+const COLUMNS: [&str; 21] = [
     "study",
     "case",
     "method",
@@ -19,6 +19,7 @@ const COLUMNS: [&str; 20] = [
     "steps",
     "point_updates",
     "status",
+    "sources",
     "time_factor",
     "quantity",
     "sample",
@@ -64,6 +65,7 @@ fn fields(study: &str, record: &Record, row: Option<&ErrorRow>) -> Vec<String> {
         record.counters.steps.to_string(),
         record.counters.point_updates.to_string(),
         record.status.name(),
+        record.provenance.sources.clone(),
     ];
     match row {
         Some(row) => fields.extend([

@@ -42,7 +42,8 @@ pub fn errors_table(record: &Record) -> Table {
         columns,
         rows,
         notes: vec![
-            "relative L2 error over the points, weighted with volume; settlement as s/s_exact − 1".to_owned(),
+            "relative L2 error over the places of `sample`, weighted with volume; settlement as s/s_exact − 1"
+                .to_owned(),
             work_note(record),
         ],
     }

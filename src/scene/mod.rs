@@ -124,8 +124,19 @@ impl SceneKind {
 
     /// Why the scene cannot take a law, where it cannot.
     pub fn refuses_law(self, law: Law) -> Option<&'static str> {
-        (self == Self::XieLeo && law == Law::Linear)
-            .then_some("the law `linear` is of small strain: its conductivity ignores that the pores close")
+        match self {
+            Self::XieLeo => (law == Law::Linear).then_some(
+                "the law `linear` is of small strain: its conductivity ignores that the pores close",
+            ),
+            _ => (law != Law::Linear).then_some(
+                "this scene is of small strain, where every law is linear: the one named would be ignored",
+            ),
+        }
+    }
+
+    /// Whether the scene's theory holds at small strain only.
+    pub fn is_small_strain(self) -> bool {
+        self != Self::XieLeo
     }
 
     /// Why the scene cannot take a configuration, where it cannot.

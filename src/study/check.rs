@@ -1,6 +1,6 @@
 //! From what was typed to what will run: every value judged, every complaint at its place.
 
-use super::case::{Case, IntegratorKind};
+use super::case::Case;
 use super::diagnostic::{Diagnostic, StudyError, one_of};
 use super::expectation::{Axis, Expectation, Measure, NEXT_FINER};
 use super::file::{
@@ -16,6 +16,7 @@ use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Quantity, Sample};
 use crate::scene::{Column, SceneKind, column_parameters};
 use crate::solver::explicit::{Drag, ExplicitSettings};
+use crate::solver::integrator::IntegratorKind;
 use crate::solver::material::{Continuity, Law, Material};
 use crate::solver::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
 use crate::solver::run::TimeStepRule;
@@ -25,10 +26,10 @@ use toml::Spanned;
 
 /// Time factors where a study names none.
 const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
-/// Share of the critical step where a sweep names no rule.
-const DEFAULT_SHARE: f64 = 0.8;
 /// Half-width of an order's band where an expectation names none.
 const DEFAULT_BAND: f64 = 0.1;
+/// Final strain `m_vl q` up to which small-strain theory is taken without a word.
+const LARGEST_SMALL_STRAIN: f64 = 1e-2;
 /// More cells than a column is ever given on purpose.
 const MOST_CELLS: i64 = 100_000;
 /// More points a cell and direction than any scheme uses.
@@ -88,6 +89,8 @@ pub struct Study {
     pub expectations: Vec<Expectation>,
     /// Times each case is run alone for its wall time; 0 where it is not timed.
     pub timing_repeats: usize,
+    /// What is odd and runs all the same, as a person reads it.
+    pub warnings: Vec<String>,
 }
 
 impl Study {
@@ -130,6 +133,7 @@ impl Checker<'_> {
         self.column_height = Some(column.height);
         let material = self.material(&file.material, scene);
         self.porosity_at_the_end(file, scene, &column, &material);
+        let warnings = self.large_for_small_strain(file, scene, &column, &material).into_iter().collect();
         let settings = self.settings(&file.integrator);
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
@@ -137,10 +141,11 @@ impl Checker<'_> {
         };
         let references = self.references(&file.output, scene);
         if file.sweep.is_empty() {
-            let end = self.source.text.len();
+            let end = self.source.text.trim_end().len();
+            let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
             self.complain(
-                end..end,
-                "the study has no [[sweep]] block",
+                last_line..end,
+                "the study ends here without a [[sweep]] block",
                 "add one with at least `method` and `cells`",
             );
         }
@@ -190,6 +195,7 @@ impl Checker<'_> {
             planned,
             expectations,
             timing_repeats,
+            warnings,
         })
     }
 
@@ -311,6 +317,30 @@ impl Checker<'_> {
                 format!("load less than {most:.4e} Pa, or give a porosity above {least:.4}"),
             );
         }
+    }
+
+    /// A load under which a theory of small strain is off by more than a percent.
+    fn large_for_small_strain(
+        &self,
+        file: &StudyFile,
+        scene: SceneKind,
+        column: &Column,
+        soil: &Material,
+    ) -> Option<String> {
+        let strain = column.load / soil.oedometric_modulus();
+        if !scene.is_small_strain() || strain <= LARGEST_SMALL_STRAIN {
+            return None;
+        }
+        let typed = file.column.load.as_ref().or(file.material.youngs_modulus.as_ref()).map(Spanned::span);
+        let diagnostic = Diagnostic::at(
+            typed.unwrap_or_else(|| file.scene.span()),
+            format!(
+                "the load strains the column by m_vl q = {strain:.2e}: real soil is off this scene's small-strain \
+                 theory by a share of that size"
+            ),
+            "the errors printed are against small-strain theory all the same; the scene `xie-leo` is of large strain",
+        );
+        Some(diagnostic.warning(&self.source.name, &self.source.text))
     }
 
     /// Values that are legal numbers and no soil's: a unit of thought.
@@ -457,12 +487,9 @@ impl Checker<'_> {
                 &[2],
                 |c, typed| c.count(Some(typed), "points_per_cell", 1..=MOST_POINTS),
             ),
-            time_step: self.list(
-                table.time_step.as_ref(),
-                "time_step",
-                &[TimeStepRule::Stable(DEFAULT_SHARE)],
-                Self::time_step,
-            ),
+            time_step: self.list(table.time_step.as_ref(), "time_step", &[None], |c, typed| {
+                c.time_step(typed).map(Some)
+            }),
             scheme: self.list(table.scheme.as_ref(), "scheme", &[settings.scheme], Self::scheme),
             drag: self.list(table.drag.as_ref(), "drag", &[settings.drag], Self::drag),
             flip: self.list(table.flip.as_ref(), "flip", &[settings.flip], |c, typed| Some(c.flip(typed))),
@@ -490,7 +517,48 @@ impl Checker<'_> {
                 "give the axes of a path lists of one length",
             );
         }
+        if self.diagnostics.len() == before {
+            self.rules_fit(table, &sweep);
+            self.integrators_fit(table, &sweep, scene);
+        }
         (self.diagnostics.len() == before).then_some(sweep)
+    }
+
+    /// Complains where an integrator meets a configuration that it cannot follow.
+    fn integrators_fit(&mut self, table: &SweepTable, sweep: &Sweep, scene: SceneKind) {
+        let Some(list) = &table.integrator else { return };
+        let moves = |method: Method| method.configuration_or(scene.configuration()) != Configuration::Frozen;
+        let unfit = |one: &crate::study::sweep::Combination| {
+            one.integrator == IntegratorKind::Implicit && moves(one.method)
+        };
+        if sweep.combinations().iter().any(unfit) {
+            self.complain(
+                list.span(),
+                "the implicit integrator takes frozen configurations only",
+                "leave it to scenes of small strain, and to methods without `configuration` or the prefix TL-",
+            );
+        }
+        if scene.has_waves() && sweep.integrator.contains(&IntegratorKind::Implicit) {
+            self.complain(
+                list.span(),
+                format!("the implicit integrator leaves out inertia, which `{}` is about", scene.name()),
+                "take \"explicit\", or the scene \"terzaghi\"",
+            );
+        }
+    }
+
+    /// Complains where a step rule meets an integrator that cannot follow it.
+    fn rules_fit(&mut self, table: &SweepTable, sweep: &Sweep) {
+        let Some(list) = &table.time_step else { return };
+        let refused =
+            sweep.combinations().into_iter().find_map(|one| one.integrator.refuses_rule(one.time_step));
+        if let Some(why) = refused {
+            self.complain(
+                list.span(),
+                why,
+                "give each integrator a [[sweep]] block of its own, or tie both axes with `path`",
+            );
+        }
     }
 
     /// A list of choices, or the default where it is not given; empty lists are refused.
@@ -590,13 +658,14 @@ impl Checker<'_> {
             table.stable.as_ref().map(|value| (TimeStepRule::Stable(*value.get_ref()), value)),
             table.courant.as_ref().map(|value| (TimeStepRule::Courant(*value.get_ref()), value)),
             table.seconds.as_ref().map(|value| (TimeStepRule::Seconds(*value.get_ref()), value)),
+            table.growth.as_ref().map(|value| (TimeStepRule::Growth(*value.get_ref()), value)),
         ];
         let given: Vec<_> = given.into_iter().flatten().collect();
         let [(rule, value)] = given.as_slice() else {
             self.complain(
                 typed.span(),
                 format!("a time step by {} rules", given.len()),
-                "give exactly one: { stable = 0.5 }, { courant = 0.5 } or { seconds = 1e-6 }",
+                "give exactly one: { stable = 0.5 }, { courant = 0.5 }, { seconds = 1e-6 } or { growth = 0.05 }",
             );
             return None;
         };

@@ -43,42 +43,47 @@ impl std::error::Error for StudyError {}
 
 impl fmt::Display for StudyError {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let renderer = Renderer::plain().term_width(RENDER_WIDTH).decor_style(DecorStyle::Ascii);
-        for (index, diagnostic) in self.diagnostics.iter().enumerate() {
-            let title = Level::ERROR.primary_title(diagnostic.message.as_str());
-            let mut group = match &diagnostic.span {
-                Some(span) => title.element(
-                    Snippet::source(self.source.as_str())
-                        .path(self.name.as_str())
-                        .annotation(AnnotationKind::Primary.span(self.inside(span))),
-                ),
-                None => title.element(annotate_snippets::Origin::path(self.name.as_str())),
-            };
-            if let Some(help) = &diagnostic.help {
-                group = group.element(Level::HELP.message(help.as_str()));
-            }
-            if index > 0 {
-                writeln!(out)?;
-            }
-            write!(out, "{}", renderer.render(&[group]))?;
-        }
-        Ok(())
+        let rendered: Vec<String> =
+            self.diagnostics.iter().map(|one| one.render(Level::ERROR, &self.name, &self.source)).collect();
+        out.write_str(&rendered.join("\n"))
     }
 }
 
-impl StudyError {
-    /// A span held inside the source and on character boundaries.
-    fn inside(&self, span: &Range<usize>) -> Range<usize> {
-        let floor = |mut index: usize| {
-            index = index.min(self.source.len());
-            while !self.source.is_char_boundary(index) {
-                index -= 1;
-            }
-            index
-        };
-        let start = floor(span.start);
-        start..floor(span.end).max(start)
+impl Diagnostic {
+    /// The diagnostic as a warning about a source: the study runs all the same.
+    pub fn warning(&self, name: &str, source: &str) -> String {
+        self.render(Level::WARNING, name, source)
     }
+
+    fn render(&self, level: Level<'_>, name: &str, source: &str) -> String {
+        let title = level.primary_title(self.message.as_str());
+        let mut group = match &self.span {
+            Some(span) => title.element(
+                Snippet::source(source)
+                    .path(name)
+                    .annotation(AnnotationKind::Primary.span(inside(source, span))),
+            ),
+            None => title.element(annotate_snippets::Origin::path(name)),
+        };
+        if let Some(help) = &self.help {
+            group = group.element(Level::HELP.message(help.as_str()));
+        }
+        let renderer = Renderer::plain().term_width(RENDER_WIDTH).decor_style(DecorStyle::Ascii);
+        renderer.render(&[group])
+    }
+}
+
+/// A span held inside a source and on character boundaries.
+fn inside(source: &str, span: &Range<usize>) -> Range<usize> {
+    let floor = |mut index: usize| {
+        index = index.min(source.len());
+        while !source.is_char_boundary(index) {
+            index -= 1;
+        }
+        index
+    };
+    let start = floor(span.start);
+    start..floor(span.end).max(start)
 }
 
 /// The candidate nearest to a misspelt word, if one is near at all.
