@@ -59,10 +59,14 @@ impl Case {
     pub fn variant(&self) -> String {
         let defaults = ExplicitSettings::default();
         let mut parts = Vec::new();
+        if self.settings.scheme != defaults.scheme {
+            parts.push(self.settings.scheme.name().to_owned());
+        }
         if self.settings.drag != defaults.drag {
             parts.push(match self.settings.drag {
                 Drag::Explicit => "explicit drag".to_owned(),
                 Drag::Implicit => "implicit drag".to_owned(),
+                Drag::Centred => "centred drag".to_owned(),
             });
         }
         if self.settings.flip != defaults.flip {
