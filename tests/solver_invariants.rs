@@ -59,6 +59,7 @@ impl Setup {
         .expect("a possible column");
         let seconds = self.column.height * self.column.height / self.soil.coefficient_of_consolidation();
         let schedule = Schedule {
+            integrator: oedometer::solver::integrator::IntegratorKind::Explicit,
             outputs: self.time_factors.iter().map(|factor| factor * seconds).collect(),
             history: Vec::new(),
             rule: self.rule,
@@ -176,7 +177,7 @@ proptest! {
         mapping_back: bool,
     ) {
         let mut setup = Setup::of(name);
-        setup.settings = ExplicitSettings { drag: Drag::Implicit, flip, mapping_back };
+        setup.settings = ExplicitSettings { drag: Drag::Implicit, flip, mapping_back, ..ExplicitSettings::default() };
         let mut other = setup.clone();
         let factor = f64::from(power).exp2();
         other.column.load *= factor;

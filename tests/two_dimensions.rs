@@ -5,6 +5,7 @@ use oedometer::exact::cosine_layer::Base;
 use oedometer::scene::{Column, SceneKind, column_problem};
 use oedometer::solver::body::Problem;
 use oedometer::solver::explicit::{Drag, ExplicitSettings};
+use oedometer::solver::integrator::IntegratorKind;
 use oedometer::solver::material::Material;
 use oedometer::solver::method::Method;
 use oedometer::solver::outcome::{Outcome, RunStatus};
@@ -26,6 +27,7 @@ fn both(scene: SceneKind, method: &str, load: f64, end: f64, drag: Drag) -> (Out
         rule: TimeStepRule::Seconds(1.2e-5),
         settings: ExplicitSettings { drag, ..ExplicitSettings::default() },
         kernel: Kernel::PointWise,
+        integrator: IntegratorKind::Explicit,
     };
     let narrow = column_problem::<1>(scene, &column, &soil, method, CELLS, PER_CELL).expect("the seed");
     let wide = column_problem::<2>(scene, &plane, &soil, method, CELLS, PER_CELL).expect("the seed");
@@ -99,8 +101,9 @@ fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
                     outputs: vec![0.0, 0.01],
                     history: vec![0.005],
                     rule: TimeStepRule::Seconds(1e-5),
-                    settings: ExplicitSettings { drag, flip, mapping_back },
+                    settings: ExplicitSettings { drag, flip, mapping_back, ..ExplicitSettings::default() },
                     kernel,
+                    integrator: IntegratorKind::Explicit,
                 };
                 run(layer(name, Base::Rough), &schedule, &|_, _| true)
             };
@@ -137,6 +140,7 @@ fn the_predicted_step_of_a_plane_parts_stable_from_unstable_runs() {
                     rule: TimeStepRule::Stable(share),
                     settings: ExplicitSettings { mapping_back, ..ExplicitSettings::default() },
                     kernel: Kernel::Fastest,
+                    integrator: IntegratorKind::Explicit,
                 };
                 let outcome = run(layer(name, Base::Smooth), &schedule, &|_, _| true);
                 let limit = outcome.step_sizes.predicted_critical;

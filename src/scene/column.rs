@@ -2,6 +2,7 @@
 
 use super::SceneKind;
 use crate::exact::cosine_layer::Base;
+use crate::exact::dynamic_column::{DynamicColumn, Start};
 use crate::exact::single_mode::SingleMode;
 use crate::exact::{ColumnParameters, ExactError};
 use crate::solver::body::Problem;
@@ -32,6 +33,14 @@ pub struct Column {
     /// How a layer rests on its base; a column's base has no say.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub base: Option<Base>,
+    /// Time over which the load grows linearly, s; 0 where it acts at once.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub loading_time: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 fn one() -> usize {
@@ -49,7 +58,7 @@ const WIDTH_TOLERANCE: f64 = 1e-9;
 impl Default for Column {
     /// The seed column under 1 Pa, in one dimension.
     fn default() -> Self {
-        Self { height: 1.0, width: 0.1, load: 1.0, dimensions: 1, base: None }
+        Self { height: 1.0, width: 0.1, load: 1.0, dimensions: 1, base: None, loading_time: 0.0 }
     }
 }
 
@@ -92,6 +101,7 @@ pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
         water_bulk_modulus: soil.water_bulk_modulus,
         hydraulic_conductivity: soil.hydraulic_conductivity,
         gravity: soil.gravity,
+        loading_time: column.loading_time,
     }
 }
 
@@ -114,13 +124,17 @@ pub fn column_problem<const D: usize>(
     let mut points = Points::lattice(cell_size, extent, points_per_cell);
     let (load, vertical_gradient) = match scene {
         SceneKind::Terzaghi => (column.load, start_undrained(&mut points, soil, column.load)),
-        SceneKind::SingleMode => {
+        SceneKind::StandingWave => {
+            start_standing_wave(&mut points, column, soil)?;
+            (0.0, 0.0)
+        }
+        SceneKind::SingleMode | SceneKind::DynamicSingleMode => {
             start_single_mode(&mut points, column, soil)?;
             (0.0, 0.0)
         }
         SceneKind::XieLeo => (column.load, start_undrained_finite(&mut points, soil, column.load)),
-        // The body finds its own equilibrium, by its own operators.
-        SceneKind::CosineLayer => (column.load, 0.0),
+        // At rest without stress; a layer's body then finds its equilibrium by its own operators.
+        SceneKind::DynamicColumn | SceneKind::CosineLayer => (column.load, 0.0),
     };
     let mut initial_gradient = [[0.0; D]; D];
     initial_gradient[D - 1][D - 1] = vertical_gradient;
@@ -137,11 +151,13 @@ pub fn column_problem<const D: usize>(
         method,
         configuration: method.configuration_or(scene.configuration()),
         load,
-        load_shape: match scene {
-            SceneKind::CosineLayer => LoadShape::Cosine { length: column.width },
-            SceneKind::Terzaghi | SceneKind::SingleMode | SceneKind::XieLeo => LoadShape::Uniform,
+        load_shape: if scene == SceneKind::CosineLayer {
+            LoadShape::Cosine { length: column.width }
+        } else {
+            LoadShape::Uniform
         },
         undrained_start: scene == SceneKind::CosineLayer,
+        loading_time: column.loading_time,
         initial_gradient,
         pressure_scale: column.load.abs(),
     })
@@ -212,6 +228,23 @@ fn at_rest<const D: usize>(soil: &Material, vertical_stress: f64) -> Tensor<D> {
         stress[d][d] = ratio * vertical_stress;
     }
     stress
+}
+
+/// Skeleton and water displaced together and let go at rest.
+fn start_standing_wave<const D: usize>(
+    points: &mut Points<D>,
+    column: &Column,
+    soil: &Material,
+) -> Result<(), ExactError> {
+    let parameters = column_parameters(column, soil);
+    let wave = DynamicColumn::new(&parameters, Start::StandingWave, &[0.0])?;
+    for point in 0..points.len() {
+        let zeta = 1.0 - points.initial_position[point][D - 1] / column.height;
+        let fields = wave.fields(0.0, zeta)?;
+        points.pressure[point] = fields.pressure;
+        points.effective_stress[point] = at_rest(soil, fields.effective_stress);
+    }
+    Ok(())
 }
 
 #[cfg(test)]

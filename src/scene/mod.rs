@@ -29,6 +29,12 @@ pub enum SceneKind {
     /// A plane layer loaded at once by a cosine and drained at its top, at small strain, from the
     /// undrained equilibrium.
     CosineLayer,
+    /// A column at rest, loaded at once or over a time, with all its waves.
+    DynamicColumn,
+    /// The slowest mode of an unloaded column, with the inertia that it has.
+    DynamicSingleMode,
+    /// An undrained wave that stands in an unloaded column: smooth, and nothing but inertia.
+    StandingWave,
 }
 
 /// The large-strain reference of the default law; see [`SceneKind::reference_for`].
@@ -40,7 +46,15 @@ const LARGE_STRAIN: ReferenceKind = ReferenceKind::LargeStrain(LargeStrainModel 
 
 impl SceneKind {
     /// Every scene.
-    pub const ALL: [Self; 4] = [Self::Terzaghi, Self::SingleMode, Self::XieLeo, Self::CosineLayer];
+    pub const ALL: [Self; 7] = [
+        Self::Terzaghi,
+        Self::SingleMode,
+        Self::XieLeo,
+        Self::CosineLayer,
+        Self::DynamicColumn,
+        Self::DynamicSingleMode,
+        Self::StandingWave,
+    ];
 
     /// Name in study files and at the command line.
     pub fn name(self) -> &'static str {
@@ -49,6 +63,9 @@ impl SceneKind {
             Self::SingleMode => "single-mode",
             Self::XieLeo => "xie-leo",
             Self::CosineLayer => "cosine-layer",
+            Self::DynamicColumn => "dynamic-column",
+            Self::DynamicSingleMode => "dynamic-single-mode",
+            Self::StandingWave => "standing-wave",
         }
     }
 
@@ -64,6 +81,9 @@ impl SceneKind {
             Self::SingleMode => "slowest consolidation mode, no load: smooth, for formal orders",
             Self::XieLeo => "column under a sudden load, drained at its top, large strain",
             Self::CosineLayer => "plane layer under a cosine load, drained at its top: where locking shows",
+            Self::DynamicColumn => "column at rest under a sudden or growing load: waves and consolidation",
+            Self::DynamicSingleMode => "slowest consolidation mode with its inertia, no load: smooth",
+            Self::StandingWave => "undrained standing wave, no load: smooth, for the order in the step",
         }
     }
 
@@ -74,6 +94,9 @@ impl SceneKind {
             Self::SingleMode => &[ReferenceKind::SingleMode],
             Self::XieLeo => &[LARGE_STRAIN, ReferenceKind::XieLeo],
             Self::CosineLayer => &[ReferenceKind::CosineLayer, ReferenceKind::CosineLayerIncompressible],
+            Self::DynamicColumn => &[ReferenceKind::DynamicColumn, ReferenceKind::Terzaghi],
+            Self::DynamicSingleMode => &[ReferenceKind::DynamicSingleMode, ReferenceKind::SingleMode],
+            Self::StandingWave => &[ReferenceKind::StandingWave],
         }
     }
 
@@ -103,8 +126,8 @@ impl SceneKind {
     /// Law of the soil where a study names none.
     pub fn default_law(self) -> Law {
         match self {
-            Self::Terzaghi | Self::SingleMode | Self::CosineLayer => Law::Linear,
             Self::XieLeo => Law::LogLinear,
+            _ => Law::Linear,
         }
     }
 
@@ -114,7 +137,7 @@ impl SceneKind {
             Self::XieLeo => (law == Law::Linear).then_some(
                 "the law `linear` is of small strain: its conductivity ignores that the pores close",
             ),
-            Self::Terzaghi | Self::SingleMode | Self::CosineLayer => (law != Law::Linear).then_some(
+            _ => (law != Law::Linear).then_some(
                 "this scene is of small strain, where every law is linear: the one named would be ignored",
             ),
         }
@@ -122,10 +145,7 @@ impl SceneKind {
 
     /// Whether the scene's theory holds at small strain only.
     pub fn is_small_strain(self) -> bool {
-        match self {
-            Self::Terzaghi | Self::SingleMode | Self::CosineLayer => true,
-            Self::XieLeo => false,
-        }
+        self != Self::XieLeo
     }
 
     /// Why the scene cannot take a configuration, where it cannot.
@@ -137,8 +157,8 @@ impl SceneKind {
     /// Configuration of the weights where the method leaves it open: small strain moves nothing.
     pub fn configuration(self) -> Configuration {
         match self {
-            Self::Terzaghi | Self::SingleMode | Self::CosineLayer => Configuration::Frozen,
             Self::XieLeo => Configuration::Updated,
+            _ => Configuration::Frozen,
         }
     }
 
@@ -147,11 +167,16 @@ impl SceneKind {
         self == Self::CosineLayer
     }
 
+    /// Whether waves run in it.
+    pub fn has_waves(self) -> bool {
+        matches!(self, Self::DynamicColumn | Self::DynamicSingleMode | Self::StandingWave)
+    }
+
     /// Whether a load acts, so that `σ' − p = −q` at rest.
     pub fn is_loaded(self) -> bool {
         match self {
-            Self::Terzaghi | Self::XieLeo | Self::CosineLayer => true,
-            Self::SingleMode => false,
+            Self::Terzaghi | Self::XieLeo | Self::DynamicColumn | Self::CosineLayer => true,
+            Self::SingleMode | Self::DynamicSingleMode | Self::StandingWave => false,
         }
     }
 
@@ -160,6 +185,8 @@ impl SceneKind {
         match (self, reference) {
             (Self::Terzaghi, ReferenceKind::TerzaghiIncompressible)
             | (Self::CosineLayer, ReferenceKind::CosineLayerIncompressible) => Some("the water's storage"),
+            (Self::DynamicColumn, ReferenceKind::Terzaghi)
+            | (Self::DynamicSingleMode, ReferenceKind::SingleMode) => Some("the inertia"),
             (Self::XieLeo, ReferenceKind::XieLeo) => {
                 Some(match (soil.continuity, soil.law == Law::PorosityDependent) {
                     (Continuity::Conservative, false) => "the water's storage",

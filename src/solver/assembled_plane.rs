@@ -6,7 +6,7 @@
 //! their product would be five times as long.
 
 use super::body::{Body, ShapeFunction};
-use super::explicit::{Drag, ExplicitSettings};
+use super::explicit::ExplicitSettings;
 use super::grid::{Tensor, Vector};
 use super::stiffness::NodeBlocks;
 use super::volumetric::VolumetricRows;
@@ -29,7 +29,17 @@ pub struct AssembledPlane<const D: usize> {
     rows: VolumetricRows<D>,
     /// Rows that span the loaded surface, with the weights there.
     surface: Vec<(usize, f64)>,
+    /// Rows that carry the load, with the force of all else and of the whole load.
+    loaded: Vec<LoadedNode<D>>,
     state: State<D>,
+}
+
+/// A node that carries a part of the load.
+#[derive(Clone, Copy, Debug)]
+struct LoadedNode<const D: usize> {
+    row: usize,
+    unloaded_force: Vector<D>,
+    load_force: Vector<D>,
 }
 
 /// Everything constant about one node.
@@ -122,6 +132,7 @@ impl<const D: usize> AssembledPlane<D> {
                     .collect()
             })),
             surface: numbered(&body.surface.weights(&body.grid, &body.points), &number),
+            loaded: Vec::new(),
             state: State::zero(nodes.len(), sites),
             node_count: fields.len(),
             rows,
@@ -138,19 +149,23 @@ impl<const D: usize> AssembledPlane<D> {
         mapped.map_forces();
         for (row, node) in self.nodes.iter().enumerate() {
             self.constants[row].mixture_force = mapped.nodes.mixture_force[*node];
+            let load_force = mapped.nodes.external_force[*node];
+            if load_force != [0.0; D] {
+                let all = mapped.nodes.mixture_force[*node];
+                let unloaded_force = std::array::from_fn(|d| all[d] - load_force[d]);
+                self.loaded.push(LoadedNode { row, unloaded_force, load_force });
+            }
             self.constants[row].water_force = mapped.nodes.water_force[*node];
             self.state.velocity[row] =
                 [mapped.nodes.solid_velocity[*node], mapped.nodes.water_velocity[*node]];
         }
     }
 
-    /// Fixes step size and drag. Call before `step`.
-    pub fn set_step(&mut self, dt: f64, settings: &ExplicitSettings) {
+    /// Fixes the duration of a kick and the drag. Call before `step`.
+    pub fn set_step(&mut self, kick: f64, settings: &ExplicitSettings) {
         for node in &mut self.constants {
-            let implicit = match settings.drag {
-                Drag::Explicit => 0.0,
-                Drag::Implicit => dt * node.drag,
-            };
+            let decay = || kick * node.drag * (1.0 + node.water_share) / node.water_inertia;
+            let implicit = settings.drag.implicit_weight(decay) * kick * node.drag;
             node.water_from_mixture = implicit;
             node.water_from_force = std::array::from_fn(|d| {
                 node.free[1][d] / (node.water_inertia + implicit * (1.0 + node.free[0][d] * node.water_share))
@@ -158,10 +173,23 @@ impl<const D: usize> AssembledPlane<D> {
         }
     }
 
+    /// Lets a share of the load act that was there at the assembly.
+    pub fn set_load_share(&mut self, share: f64) {
+        for one in &self.loaded {
+            let target = &mut self.constants[one.row].mixture_force;
+            *target = std::array::from_fn(|d| one.unloaded_force[d] + share * one.load_force[d]);
+        }
+    }
+
     /// One step of `dt` seconds; nothing is allocated.
     pub fn step(&mut self, dt: f64, settings: &ExplicitSettings) {
+        self.kick_and_drift(dt, dt, settings);
+    }
+
+    /// One step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
+    pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         self.dilations();
-        self.accelerations(dt);
+        self.accelerations(kick);
         let (flip, pic) = (settings.flip, 1.0 - settings.flip);
         let state = &mut self.state;
         for (row, node) in self.constants.iter().enumerate() {
@@ -169,7 +197,8 @@ impl<const D: usize> AssembledPlane<D> {
             let mut mapped = state.velocity[row];
             for phase in 0..2 {
                 for d in 0..D {
-                    mapped[phase][d] = flip * (mapped[phase][d] + dt * node.free[phase][d] * rate[phase][d]);
+                    mapped[phase][d] =
+                        flip * (mapped[phase][d] + kick * node.free[phase][d] * rate[phase][d]);
                 }
             }
             if pic > 0.0 {
@@ -204,7 +233,7 @@ impl<const D: usize> AssembledPlane<D> {
         }
     }
 
-    fn accelerations(&mut self, dt: f64) {
+    fn accelerations(&mut self, kick: f64) {
         let state = &mut self.state;
         for (row, node) in self.constants.iter().enumerate() {
             let mut pressure = [0.0; D];
@@ -234,8 +263,8 @@ impl<const D: usize> AssembledPlane<D> {
                 let solid_rate = mixture - free * node.water_share * water_rate;
                 state.acceleration[row][0][d] = solid_rate;
                 state.acceleration[row][1][d] = water_rate;
-                state.trial[row][0][d] = solid[d] + dt * solid_rate;
-                state.trial[row][1][d] = water[d] + dt * water_rate;
+                state.trial[row][0][d] = solid[d] + kick * solid_rate;
+                state.trial[row][1][d] = water[d] + kick * water_rate;
             }
         }
     }
@@ -278,6 +307,7 @@ impl<const D: usize> AssembledPlane<D> {
     pub fn disturb(&mut self) {
         let (nodes, sites) = (self.nodes.len(), self.rows.divergence.len());
         self.state = State::zero(nodes, sites);
+        self.loaded.clear();
         // A fixed sequence without a pattern on any grid (Knuth's multiplicative hash).
         let mut seed = 1_u32;
         for (node, velocity) in self.constants.iter_mut().zip(&mut self.state.velocity) {

@@ -23,20 +23,29 @@ impl<const D: usize> FrozenStep<D> {
         }
     }
 
-    /// Fixes step size and drag. Call before `step`.
-    pub fn set_step(&mut self, dt: f64, settings: &ExplicitSettings) {
+    /// Fixes the duration of a kick and the drag. Call before a step.
+    pub fn set_step(&mut self, kick: f64, settings: &ExplicitSettings) {
         match self {
-            Self::Column(column) => column.set_step(dt, settings),
-            Self::Plane(plane) => plane.set_step(dt, settings),
+            Self::Column(column) => column.set_step(kick, settings),
+            Self::Plane(plane) => plane.set_step(kick, settings),
         }
     }
 
-    /// One step of `dt` seconds; nothing is allocated.
-    #[inline]
-    pub fn step(&mut self, dt: f64, settings: &ExplicitSettings) {
+    /// Lets a share of the load act that was there at the assembly.
+    pub fn set_load_share(&mut self, share: f64) {
         match self {
-            Self::Column(column) => column.step(dt, settings),
-            Self::Plane(plane) => plane.step(dt, settings),
+            Self::Column(column) => column.set_load_share(share),
+            Self::Plane(plane) => plane.set_load_share(share),
+        }
+    }
+
+    /// One step whose velocities advance by `kick` seconds, and all that they carry by `dt`; nothing
+    /// is allocated.
+    #[inline]
+    pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
+        match self {
+            Self::Column(column) => column.kick_and_drift(kick, dt, settings),
+            Self::Plane(plane) => plane.kick_and_drift(kick, dt, settings),
         }
     }
 

@@ -4,18 +4,20 @@
 //! centres: weights (`shape`, `stencil`), strain gradient (`stencil`), pressure divergence
 //! (`cells`) and recovery (`recovery`). A `body` joins them with points and nodes; `explicit` is
 //! the step of Zheng et al. (2021); `assembled` is the same step as one banded map where nothing
-//! moves; `run` drives either from output to output.
+//! moves; `run` drives either from output to output; `implicit` takes steps of any size on the same
+//! operators.
 //!
 //! Nothing here knows of studies, references or reports.
 
 pub mod assembled;
 pub mod assembled_plane;
-pub mod banded;
 pub mod body;
 pub mod cells;
 pub mod explicit;
 pub mod frozen;
 pub mod grid;
+pub mod implicit;
+pub mod integrator;
 pub mod limits;
 pub mod material;
 pub mod method;
@@ -24,6 +26,7 @@ pub mod outcome;
 pub mod points;
 pub mod recovery;
 pub mod run;
+pub mod scheme;
 pub mod shape;
 pub mod snapshot;
 pub mod stability;

@@ -4,10 +4,15 @@ use super::body::{Body, Gimp, Hat, Problem, ShapeFunction};
 use super::explicit::ExplicitSettings;
 use super::frozen::FrozenStep;
 use super::grid::Grid;
+use super::implicit::banded::Singular;
+use super::implicit::drive;
+use super::implicit::steps::{StepLimit, steps_for};
+use super::integrator::IntegratorKind;
 use super::limits;
 use super::method::{Basis, Configuration};
 use super::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
 use super::points::Points;
+use super::scheme::Rhythm;
 use super::snapshot::Snapshot;
 use super::stability;
 use super::surface::LoadedSurface;
@@ -33,6 +38,8 @@ pub enum TimeStepRule {
     Courant(f64),
     /// Seconds.
     Seconds(f64),
+    /// Grows with time, `max(Δt₀, α t)`; the number is `α`.
+    Growth(f64),
 }
 
 /// Kernel of the explicit step.
@@ -58,6 +65,8 @@ pub struct Schedule {
     pub settings: ExplicitSettings,
     /// Kernel of the step.
     pub kernel: Kernel,
+    /// Integrator.
+    pub integrator: IntegratorKind,
 }
 
 /// Told now and then how many steps are done, of how many; answers whether to go on.
@@ -67,9 +76,41 @@ pub type Observer<'a> = &'a dyn Fn(u64, u64) -> bool;
 /// named status, and what was finished before stays.
 pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
     match problem.method.basis {
-        Basis::Hat => Run::new(Body::<D, 2, Hat>::new, problem, schedule).solve(observer),
-        Basis::Ugimp | Basis::Cpgimp => Run::new(Body::<D, 3, Gimp>::new, problem, schedule).solve(observer),
+        Basis::Hat => solve(Body::<D, 2, Hat>::new, problem, schedule, observer),
+        Basis::Ugimp | Basis::Cpgimp => solve(Body::<D, 3, Gimp>::new, problem, schedule, observer),
     }
+}
+
+fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    discretise: impl Fn(Problem<D>) -> Body<D, W, S>,
+    problem: Problem<D>,
+    schedule: &Schedule,
+    observer: Observer<'_>,
+) -> Outcome {
+    match schedule.integrator {
+        IntegratorKind::Explicit => Run::new(discretise, problem, schedule).solve(observer),
+        IntegratorKind::Implicit => {
+            let sizes = implicit_sizes(&problem, schedule);
+            let limit = schedule.rule.limit(&problem, sizes.target, &schedule.outputs);
+            let undrained_start = problem.undrained_start;
+            let mut body = discretise(problem);
+            let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
+            drive::run_linear(&body, schedule, limit, sizes, start_failure.map(no_start), observer)
+        }
+    }
+}
+
+/// The end of a run that has no undrained start.
+fn no_start(singular: Singular) -> Failure {
+    let reason = format!("the undrained start has no pivot in row {}: nothing holds the body", singular.row);
+    Failure { kind: FailureKind::Singular, step: 0, time: 0.0, reason }
+}
+
+/// Step sizes of an implicit run: what it is measured by is the formula, for its own operator has
+/// no limit.
+fn implicit_sizes<const D: usize>(problem: &Problem<D>, schedule: &Schedule) -> StepSizes {
+    let safe = limits::combined_limit(&problem.material, problem.grid.cell_size, schedule.settings.drag);
+    StepSizes { predicted_critical: safe, target: schedule.rule.step(problem, safe), largest: 0.0 }
 }
 
 /// Critical step, s, of the explicit integrator on a problem's initial configuration.
@@ -117,6 +158,11 @@ struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
     initial_height: f64,
     initial_settlement: f64,
     velocity_scale: f64,
+    /// Whole load, Pa, and the time over which it grows, s.
+    load: f64,
+    loading_time: f64,
+    load_share: f64,
+    rhythm: Rhythm,
     steps: StepSizes,
     counters: Counters,
     snapshots: Vec<Snapshot>,
@@ -134,6 +180,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let critical = predicted_critical_step(&problem, &schedule.settings);
         let target = schedule.rule.step(&problem, critical);
         let velocity_scale = velocity_scale(&problem);
+        let (load, loading_time) = (problem.load, problem.loading_time);
         let initial_height = LoadedSurface::of(&problem.points, problem.load)
             .shaped(problem.load_shape, &problem.points)
             .height(&problem.points);
@@ -142,7 +189,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
         let is_assembled = body.configuration == Configuration::Frozen && schedule.kernel == Kernel::Fastest;
         let frozen = is_assembled.then(|| FrozenStep::new(&body));
-        Self {
+        let mut run = Self {
             start: body.points.clone(),
             initial_height,
             initial_settlement: -body.surface.amplitude_of(
@@ -151,6 +198,10 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
                 &body.nodes.displacement,
             ),
             velocity_scale,
+            load,
+            loading_time,
+            load_share: 1.0,
+            rhythm: Rhythm::default(),
             steps: StepSizes { predicted_critical: critical, target, largest: 0.0 },
             counters: Counters { points: body.points.len(), nodes: body.nodes.len(), ..Counters::default() },
             body,
@@ -159,13 +210,12 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             snapshots: Vec::new(),
             history: Vec::new(),
             time: 0.0,
-            failure: start_failure.map(|error| Failure {
-                kind: FailureKind::Singular,
-                step: 0,
-                time: 0.0,
-                reason: format!("no undrained start: {error}"),
-            }),
+            failure: start_failure.map(no_start),
+        };
+        if loading_time > 0.0 {
+            run.set_load_at(0.0);
         }
+        run
     }
 
     fn solve(mut self, observer: Observer<'_>) -> Outcome {
@@ -220,18 +270,27 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
 
     fn take_steps(&mut self, count: u64, dt: f64, go_on: &dyn Fn(u64) -> bool) {
         let settings = self.schedule.settings;
-        if let Some(frozen) = &mut self.frozen {
-            frozen.set_step(dt, &settings);
-        }
         let start = self.time;
+        let mut kick = f64::NAN;
         let mut done = 0;
         while done < count && self.failure.is_none() {
             let some = WATCH_INTERVAL.min(count - done).min(self.steps_to_history(dt));
-            for _ in 0..some {
-                match &mut self.frozen {
-                    Some(frozen) => frozen.step(dt, &settings),
-                    None => self.body.explicit_step(dt, &settings),
+            for step in done..done + some {
+                let now = start + step as f64 * dt;
+                if self.load_share < 1.0 {
+                    self.set_load_at(now);
                 }
+                let next_kick = self.rhythm.kick(dt, &settings);
+                match &mut self.frozen {
+                    Some(frozen) => {
+                        if next_kick != kick {
+                            frozen.set_step(next_kick, &settings);
+                        }
+                        frozen.kick_and_drift(next_kick, dt, &settings);
+                    }
+                    None => self.body.kick_and_drift(next_kick, dt, &settings),
+                }
+                kick = next_kick;
             }
             done += some;
             self.time = start + done as f64 * dt;
@@ -242,6 +301,17 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             if self.failure.is_none() && !go_on(self.counters.steps) {
                 self.failure = Some(self.failure(FailureKind::Stopped, "stopped from outside".to_owned()));
             }
+        }
+    }
+
+    /// Puts the load of a growing time on the surface.
+    fn set_load_at(&mut self, time: f64) {
+        self.load_share = (time / self.loading_time).min(1.0);
+        let body = &mut self.body;
+        body.surface.load = self.load_share * self.load;
+        body.surface.apply(&body.grid, &body.points, &mut body.nodes);
+        if let Some(frozen) = &mut self.frozen {
+            frozen.set_load_share(self.load_share);
         }
     }
 
@@ -339,19 +409,27 @@ impl TimeStepRule {
                 share * problem.grid.cell_size / limits::fastest_wave_speed(soil, soil.porosity)
             }
             Self::Seconds(seconds) => *seconds,
+            Self::Growth(growth) => growth * diffusion_time(problem),
+        }
+    }
+
+    /// Limit of an implicit run's steps whose rule asks for steps of `target` seconds at first:
+    /// where they grow, the first ones resolve the first output as the later ones theirs.
+    fn limit<const D: usize>(&self, problem: &Problem<D>, target: f64, outputs: &[f64]) -> StepLimit {
+        match self {
+            Self::Stable(_) | Self::Courant(_) | Self::Seconds(_) => StepLimit::Constant(target),
+            Self::Growth(growth) => {
+                let first = outputs.iter().copied().find(|output| *output > 0.0);
+                let start = first.unwrap_or(f64::INFINITY).min(diffusion_time(problem));
+                StepLimit::Growing { first: growth * start, growth: *growth }
+            }
         }
     }
 }
 
-/// Equal steps of at most `step` that fill a duration; at least one.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "saturates, and that is the right end"
-)]
-fn steps_for(duration: f64, step: f64) -> u64 {
-    // A duration that is a whole number of steps up to round-off is that number.
-    ((duration / step) * (1.0 - 1e-12)).ceil().max(1.0) as u64
+/// Time, s, in which pressure diffuses through a cell, `h²/c_v`: nothing earlier is resolved.
+fn diffusion_time<const D: usize>(problem: &Problem<D>) -> f64 {
+    problem.grid.cell_size * problem.grid.cell_size / problem.material.coefficient_of_consolidation()
 }
 
 #[cfg(test)]
@@ -361,6 +439,7 @@ mod tests {
     use crate::solver::explicit::Drag;
     use crate::solver::material::Material;
     use crate::solver::method::Method;
+    use crate::solver::scheme::Scheme;
 
     fn problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {
         let method = Method::named(method).expect("a known method");
@@ -377,16 +456,20 @@ mod tests {
             rule: TimeStepRule::Stable(0.6),
             settings,
             kernel,
+            integrator: IntegratorKind::Explicit,
         }
     }
 
     #[test]
     fn the_assembled_column_is_the_point_wise_step_to_round_off() {
         for name in ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"] {
-            for (drag, flip, mapping_back) in
-                [(Drag::Explicit, 1.0, true), (Drag::Implicit, 1.0, false), (Drag::Implicit, 0.99, true)]
-            {
-                let settings = ExplicitSettings { drag, flip, mapping_back };
+            for (scheme, drag, flip, mapping_back) in [
+                (Scheme::ForwardEuler, Drag::Explicit, 1.0, true),
+                (Scheme::ForwardEuler, Drag::Implicit, 1.0, false),
+                (Scheme::ForwardEuler, Drag::Implicit, 0.99, true),
+                (Scheme::Leapfrog, Drag::Centred, 1.0, true),
+            ] {
+                let settings = ExplicitSettings { scheme, drag, flip, mapping_back };
                 let end = 0.02;
                 let fast = run(problem(name, 7, 3), &schedule(Kernel::Fastest, settings, end), &|_, _| true);
                 let plain =

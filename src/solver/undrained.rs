@@ -4,58 +4,51 @@
 //! found by the method's own operators. It is a pure test of volumetric locking, and the start from
 //! which an explicit run has no waves.
 
-use super::banded::{BandedFactors, BandedMatrix, SingularMatrix};
 use super::body::{Body, ShapeFunction};
 use super::grid::{Tensor, Vector};
+use super::implicit::banded::{Banded, BandedLu, Singular};
 use super::method::Configuration;
 use super::stiffness::NodeBlocks;
 use super::volumetric::VolumetricRows;
 
 /// Free components of the nodes, in the order of the unknowns.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Unknowns {
+struct FreeComponents {
     /// Node and component of each unknown.
-    pub places: Vec<(usize, usize)>,
-    /// Unknown of each component of each node, node by node; `usize::MAX` where it is held.
-    number: Vec<usize>,
-    dimensions: usize,
+    places: Vec<(usize, usize)>,
+    /// Unknown of each component of each node, node by node.
+    number: Vec<Option<usize>>,
 }
 
-impl Unknowns {
+impl FreeComponents {
     /// Numbers the components that are free.
-    pub fn of<const D: usize>(free: &[Vector<D>]) -> Self {
-        let mut unknowns =
-            Self { places: Vec::new(), number: vec![usize::MAX; D * free.len()], dimensions: D };
+    fn of<const D: usize>(free: &[Vector<D>]) -> Self {
+        let mut components = Self { places: Vec::new(), number: vec![None; D * free.len()] };
         for (node, free) in free.iter().enumerate() {
             for d in (0..D).filter(|d| free[*d] > 0.0) {
-                unknowns.number[D * node + d] = unknowns.places.len();
-                unknowns.places.push((node, d));
+                components.number[D * node + d] = Some(components.places.len());
+                components.places.push((node, d));
             }
         }
-        unknowns
-    }
-
-    /// Number of an unknown, where the component is free.
-    pub fn number(&self, node: usize, component: usize) -> Option<usize> {
-        Some(self.number[self.dimensions * node + component]).filter(|number| *number != usize::MAX)
+        components
     }
 
     /// The blocks between free components as a banded matrix.
-    pub fn banded<const D: usize>(&self, blocks: &NodeBlocks<D>) -> BandedMatrix {
+    fn banded<const D: usize>(&self, blocks: &NodeBlocks<D>) -> Banded {
         let entries = || {
             self.places.iter().enumerate().flat_map(move |(row, (node, d))| {
                 blocks.rows[*node].iter().flat_map(move |(column, block)| {
-                    (0..D).filter_map(move |e| Some((row, self.number(*column, e)?, block[*d][e])))
+                    (0..D).filter_map(move |e| Some((row, self.number[D * column + e]?, block[*d][e])))
                 })
             })
         };
-        let reach = entries()
-            .filter(|(_, _, value)| *value != 0.0)
-            .map(|(row, column, _)| row.abs_diff(column))
-            .max()
-            .unwrap_or(0);
-        let mut matrix = BandedMatrix::zero(self.places.len(), reach);
-        for (row, column, value) in entries().filter(|(_, _, value)| *value != 0.0) {
+        let (mut lower, mut upper) = (0, 0);
+        for (row, column, _) in entries().filter(|entry| entry.2 != 0.0) {
+            lower = lower.max(row.saturating_sub(column));
+            upper = upper.max(column.saturating_sub(row));
+        }
+        let mut matrix = Banded::zeros(self.places.len(), lower, upper);
+        for (row, column, value) in entries().filter(|entry| entry.2 != 0.0) {
             matrix.add(row, column, value);
         }
         matrix
@@ -65,8 +58,8 @@ impl Unknowns {
 /// A body's undrained stiffness, factorised.
 #[derive(Clone, Debug)]
 pub struct UndrainedSystem<const D: usize> {
-    unknowns: Unknowns,
-    factors: BandedFactors,
+    unknowns: FreeComponents,
+    factors: BandedLu,
     rows: VolumetricRows<D>,
 }
 
@@ -75,20 +68,24 @@ impl<const D: usize> UndrainedSystem<D> {
     ///
     /// # Errors
     /// When it is singular: a body that nothing holds.
-    pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Result<Self, SingularMatrix> {
+    pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Result<Self, Singular> {
         let rows = body.volumetric_rows();
         let mut stiffness = body.skeleton_stiffness();
         stiffness.add(&body.pressure_stiffness(&rows));
-        let unknowns = Unknowns::of(&body.nodes.free);
-        let factors = unknowns.banded(&stiffness).factorised()?;
+        let unknowns = FreeComponents::of(&body.nodes.free);
+        let matrix = unknowns.banded(&stiffness);
+        let mut factors = BandedLu::of_shape(&matrix);
+        factors.factor(&matrix)?;
         Ok(Self { unknowns, factors, rows })
     }
 
     /// Displacements of the nodes under forces on them.
     pub fn displacements(&self, forces: &[Vector<D>]) -> Vec<Vector<D>> {
-        let right: Vec<f64> = self.unknowns.places.iter().map(|(node, d)| forces[*node][*d]).collect();
+        let places = &self.unknowns.places;
+        let mut values: Vec<f64> = places.iter().map(|(node, d)| forces[*node][*d]).collect();
+        self.factors.solve(&mut values);
         let mut displacements = vec![[0.0; D]; forces.len()];
-        for ((node, d), value) in self.unknowns.places.iter().zip(self.factors.solve(&right)) {
+        for ((node, d), value) in places.iter().zip(values) {
             displacements[*node][*d] = value;
         }
         displacements
@@ -100,7 +97,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     ///
     /// # Errors
     /// When its stiffness is singular.
-    pub fn settle_undrained(&mut self) -> Result<(), SingularMatrix> {
+    pub fn settle_undrained(&mut self) -> Result<(), Singular> {
         let system = UndrainedSystem::of(self)?;
         self.map_forces();
         let displacements = system.displacements(&self.nodes.mixture_force);

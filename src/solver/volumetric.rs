@@ -47,7 +47,11 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let mut rows = VolumetricRows::default();
         for cell in self.cells.occupied() {
             site[cell] = rows.divergence.len();
-            rows.divergence.push(self.cells.centre_divergence_row(&self.grid, cell));
+            let mut row = Vec::with_capacity(1 << D);
+            self.cells.visit_centre_divergence(&self.grid, cell, |node, coefficients| {
+                row.push((node, *coefficients));
+            });
+            rows.divergence.push(row);
             rows.coupling.push(self.material.water_bulk_modulus / self.cells.porosity[cell]);
         }
         rows.recovery = (0..self.points.len())

@@ -1,8 +1,8 @@
 //! From what was typed to what will run: every value judged, every complaint at its place.
 
-use super::case::{Case, IntegratorKind};
+use super::case::Case;
 use super::diagnostic::{Diagnostic, StudyError, one_of};
-use super::expectation::{Axis, Expectation, Measure};
+use super::expectation::{Axis, Expectation, Measure, NEXT_FINER};
 use super::file::{
     ColumnTable, ExpectTable, IntegratorTable, LayerTable, LevelTable, MaterialTable, MethodEntry,
     MethodTable, OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
@@ -17,16 +17,16 @@ use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Quantity, Sample};
 use crate::scene::{Column, SceneKind, column_parameters};
 use crate::solver::explicit::{Drag, ExplicitSettings};
+use crate::solver::integrator::IntegratorKind;
 use crate::solver::material::{Continuity, Law, Material};
 use crate::solver::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
 use crate::solver::run::TimeStepRule;
+use crate::solver::scheme::Scheme;
 use std::ops::{Range, RangeInclusive};
 use toml::Spanned;
 
 /// Time factors where a study names none.
 const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
-/// Share of the critical step where a sweep names no rule.
-const DEFAULT_SHARE: f64 = 0.8;
 /// Half-width of an order's band where an expectation names none.
 const DEFAULT_BAND: f64 = 0.1;
 /// Final strain `m_vl q` up to which small-strain theory is taken without a word.
@@ -188,6 +188,7 @@ impl Checker<'_> {
                     method: one.method,
                     integrator: one.integrator,
                     settings: ExplicitSettings {
+                        scheme: one.scheme,
                         drag: one.drag,
                         flip: one.flip,
                         mapping_back: one.mapping_back,
@@ -252,7 +253,7 @@ impl Checker<'_> {
                 "its geometry and load stand in the table [column]: height, width, load, dimensions",
             );
         }
-        self.column(&file.column)
+        self.column(&file.column, scene)
     }
 
     fn layer(&mut self, table: Option<&LayerTable>) -> Column {
@@ -268,8 +269,15 @@ impl Checker<'_> {
         }
     }
 
-    fn column(&mut self, table: &ColumnTable) -> Column {
+    fn column(&mut self, table: &ColumnTable, scene: SceneKind) -> Column {
         let seed = Column::default();
+        if let Some(typed) = table.loading_time.as_ref().filter(|_| scene != SceneKind::DynamicColumn) {
+            self.complain(
+                typed.span(),
+                format!("the load of `{}` acts at once", scene.name()),
+                "a load that grows belongs to the scene \"dynamic-column\"",
+            );
+        }
         Column {
             dimensions: self
                 .count(table.dimensions.as_ref(), "column.dimensions", 1..=2)
@@ -278,6 +286,7 @@ impl Checker<'_> {
             height: self.positive(table.height.as_ref(), "column.height", "m", seed.height),
             width: self.positive(table.width.as_ref(), "column.width", "m", seed.width),
             load: self.positive(table.load.as_ref(), "column.load", "Pa", seed.load),
+            loading_time: self.not_negative(table.loading_time.as_ref(), "column.loading_time", "s"),
         }
     }
 
@@ -444,6 +453,7 @@ impl Checker<'_> {
     fn settings(&mut self, table: &IntegratorTable) -> ExplicitSettings {
         let default = ExplicitSettings::default();
         ExplicitSettings {
+            scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)).unwrap_or(default.scheme),
             drag: table.drag.as_ref().and_then(|word| self.drag(word)).unwrap_or(default.drag),
             flip: table.flip.as_ref().map_or(default.flip, |flip| self.flip(flip)),
             mapping_back: table.mapping_back.as_ref().map_or(default.mapping_back, |typed| *typed.get_ref()),
@@ -451,8 +461,12 @@ impl Checker<'_> {
     }
 
     fn drag(&mut self, word: &Spanned<String>) -> Option<Drag> {
-        let index = self.word(word, "drag", &["explicit", "implicit"])?;
-        Some([Drag::Explicit, Drag::Implicit][index])
+        let index = self.word(word, "drag", &["explicit", "implicit", "centred"])?;
+        Some([Drag::Explicit, Drag::Implicit, Drag::Centred][index])
+    }
+
+    fn scheme(&mut self, word: &Spanned<String>) -> Option<Scheme> {
+        Some(Scheme::ALL[self.word(word, "scheme", &Scheme::ALL.map(Scheme::name))?])
     }
 
     fn flip(&mut self, typed: &Spanned<f64>) -> f64 {
@@ -551,12 +565,10 @@ impl Checker<'_> {
                 &[2],
                 |c, typed| c.count(Some(typed), "points_per_cell", 1..=MOST_POINTS),
             ),
-            time_step: self.list(
-                table.time_step.as_ref(),
-                "time_step",
-                &[TimeStepRule::Stable(DEFAULT_SHARE)],
-                Self::time_step,
-            ),
+            time_step: self.list(table.time_step.as_ref(), "time_step", &[None], |c, typed| {
+                c.time_step(typed).map(Some)
+            }),
+            scheme: self.list(table.scheme.as_ref(), "scheme", &[settings.scheme], Self::scheme),
             drag: self.list(table.drag.as_ref(), "drag", &[settings.drag], Self::drag),
             flip: self.list(table.flip.as_ref(), "flip", &[settings.flip], |c, typed| Some(c.flip(typed))),
             mapping_back: self.list(
@@ -583,7 +595,48 @@ impl Checker<'_> {
                 "give the axes of a path lists of one length",
             );
         }
+        if self.diagnostics.len() == before {
+            self.rules_fit(table, &sweep);
+            self.integrators_fit(table, &sweep, scene);
+        }
         (self.diagnostics.len() == before).then_some(sweep)
+    }
+
+    /// Complains where an integrator meets a configuration that it cannot follow.
+    fn integrators_fit(&mut self, table: &SweepTable, sweep: &Sweep, scene: SceneKind) {
+        let Some(list) = &table.integrator else { return };
+        let moves = |method: Method| method.configuration_or(scene.configuration()) != Configuration::Frozen;
+        let unfit = |one: &crate::study::sweep::Combination| {
+            one.integrator == IntegratorKind::Implicit && moves(one.method)
+        };
+        if sweep.combinations().iter().any(unfit) {
+            self.complain(
+                list.span(),
+                "the implicit integrator takes frozen configurations only",
+                "leave it to scenes of small strain, and to methods without `configuration` or the prefix TL-",
+            );
+        }
+        if scene.has_waves() && sweep.integrator.contains(&IntegratorKind::Implicit) {
+            self.complain(
+                list.span(),
+                format!("the implicit integrator leaves out inertia, which `{}` is about", scene.name()),
+                "take \"explicit\", or the scene \"terzaghi\"",
+            );
+        }
+    }
+
+    /// Complains where a step rule meets an integrator that cannot follow it.
+    fn rules_fit(&mut self, table: &SweepTable, sweep: &Sweep) {
+        let Some(list) = &table.time_step else { return };
+        let refused =
+            sweep.combinations().into_iter().find_map(|one| one.integrator.refuses_rule(one.time_step));
+        if let Some(why) = refused {
+            self.complain(
+                list.span(),
+                why,
+                "give each integrator a [[sweep]] block of its own, or tie both axes with `path`",
+            );
+        }
     }
 
     /// A list of choices, or the default where it is not given; empty lists are refused.
@@ -683,13 +736,14 @@ impl Checker<'_> {
             table.stable.as_ref().map(|value| (TimeStepRule::Stable(*value.get_ref()), value)),
             table.courant.as_ref().map(|value| (TimeStepRule::Courant(*value.get_ref()), value)),
             table.seconds.as_ref().map(|value| (TimeStepRule::Seconds(*value.get_ref()), value)),
+            table.growth.as_ref().map(|value| (TimeStepRule::Growth(*value.get_ref()), value)),
         ];
         let given: Vec<_> = given.into_iter().flatten().collect();
         let [(rule, value)] = given.as_slice() else {
             self.complain(
                 typed.span(),
                 format!("a time step by {} rules", given.len()),
-                "give exactly one: { stable = 0.5 }, { courant = 0.5 } or { seconds = 1e-6 }",
+                "give exactly one: { stable = 0.5 }, { courant = 0.5 }, { seconds = 1e-6 } or { growth = 0.05 }",
             );
             return None;
         };
@@ -727,12 +781,12 @@ impl Checker<'_> {
             self.complain(entry.span(), "the expectation names no time factor", "add `time_factor = 0.1`");
             return None;
         };
-        let names: Vec<&str> = references.iter().map(|kind| kind.name()).collect();
-        let reference = match &table.reference {
-            Some(word) => references[self.word(word, "reference", &names)?],
-            None => scene.references()[0],
-        };
         let axis = Axis::ALL[self.choice(table.axis.as_ref(), "axis", &Axis::ALL.map(Axis::name), 0)?];
+        let reference = if self.is_held_against_itself(table, axis)? {
+            None
+        } else {
+            Some(self.expected_reference(table, scene, references)?)
+        };
         let method = match &table.method {
             Some(typed) => Some(self.method(typed)?),
             None => None,
@@ -770,9 +824,16 @@ impl Checker<'_> {
             points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
             law: table.law.as_ref().and_then(|word| self.law(word, scene)),
             continuity: table.continuity.as_ref().and_then(|word| self.continuity(word)),
+            scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)),
             drag: table.drag.as_ref().and_then(|word| self.drag(word)),
             mapping_back: table.mapping_back.as_ref().map(|typed| *typed.get_ref()),
-            measure: Measure { quantity, sample, norm, reference: reference.name().to_owned(), time_factor },
+            measure: Measure {
+                quantity,
+                sample,
+                norm,
+                reference: reference.map_or(NEXT_FINER, |kind| kind.name()).to_owned(),
+                time_factor,
+            },
             reference,
             axis,
             demand,
@@ -780,6 +841,36 @@ impl Checker<'_> {
             line: self.source.text[..entry.span().start.min(self.source.text.len())].lines().count().max(1),
         };
         (self.diagnostics.len() == before).then_some(expectation)
+    }
+
+    /// Whether an expectation holds a series against itself; none where its axis forbids it.
+    fn is_held_against_itself(&mut self, table: &ExpectTable, axis: Axis) -> Option<bool> {
+        let asked = table.reference.as_ref().filter(|word| word.get_ref() == NEXT_FINER);
+        match asked {
+            Some(word) if axis != Axis::TimeStep => {
+                self.complain(
+                    word.span(),
+                    "the next finer level has other places",
+                    "\"next-finer\" is for `axis = \"time_step\"`",
+                );
+                None
+            }
+            asked => Some(asked.is_some()),
+        }
+    }
+
+    /// The reference of an expectation, the scene's own where it names none.
+    fn expected_reference(
+        &mut self,
+        table: &ExpectTable,
+        scene: SceneKind,
+        references: &[ReferenceKind],
+    ) -> Option<ReferenceKind> {
+        let names: Vec<&str> = references.iter().map(|kind| kind.name()).collect();
+        match &table.reference {
+            Some(word) => Some(references[self.word(word, "reference", &names)?]),
+            None => Some(scene.references()[0]),
+        }
     }
 
     /// A bound at a level that is named in the words of its axis.
@@ -855,6 +946,19 @@ impl Checker<'_> {
                 typed.span(),
                 format!("`{name}` is {value} {unit}"),
                 format!("it must be positive and finite; the seed column has {default} {unit}"),
+            );
+        }
+        value
+    }
+
+    fn not_negative(&mut self, typed: Option<&Spanned<f64>>, name: &str, unit: &str) -> f64 {
+        let Some(typed) = typed else { return 0.0 };
+        let value = *typed.get_ref();
+        if !(value.is_finite() && value >= 0.0) {
+            self.complain(
+                typed.span(),
+                format!("`{name}` is {value} {unit}"),
+                "it must be 0 or positive, and finite",
             );
         }
         value

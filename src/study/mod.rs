@@ -9,10 +9,11 @@ mod runner;
 mod shipped;
 mod sweep;
 
-pub use case::{Case, IntegratorKind, step_label};
+pub use crate::solver::integrator::IntegratorKind;
+pub use case::{Case, step_label};
 pub use check::{Purpose, Study, Tier};
 pub use diagnostic::{Diagnostic, StudyError};
-pub use expectation::{Axis, Expectation, Measure};
+pub use expectation::{Axis, Expectation, Measure, NEXT_FINER};
 pub use file::StudySource;
 pub use runner::{
     Progress, RunError, RunOptions, RunReport, Shard, TimingReport, estimated_updates, run_case, run_study,

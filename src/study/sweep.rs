@@ -1,10 +1,11 @@
 //! Sweeps: lists of choices, multiplied out or tied to a path.
 
-use super::case::IntegratorKind;
 use crate::solver::explicit::Drag;
+use crate::solver::integrator::IntegratorKind;
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
+use crate::solver::scheme::Scheme;
 
 /// One block of a study, checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,7 +14,9 @@ pub struct Sweep {
     pub integrator: Vec<IntegratorKind>,
     pub cells: Vec<usize>,
     pub points_per_cell: Vec<usize>,
-    pub time_step: Vec<TimeStepRule>,
+    /// Step rules; none where the integrator's own holds.
+    pub time_step: Vec<Option<TimeStepRule>>,
+    pub scheme: Vec<Scheme>,
     pub drag: Vec<Drag>,
     pub flip: Vec<f64>,
     pub mapping_back: Vec<bool>,
@@ -24,7 +27,7 @@ pub struct Sweep {
 }
 
 /// Keys that a path can tie.
-pub const AXES: [&str; 10] = [
+pub const AXES: [&str; 11] = [
     "method",
     "integrator",
     "cells",
@@ -35,6 +38,7 @@ pub const AXES: [&str; 10] = [
     "mapping_back",
     "law",
     "continuity",
+    "scheme",
 ];
 
 /// One combination of a sweep.
@@ -45,6 +49,7 @@ pub struct Combination {
     pub cells: usize,
     pub points_per_cell: usize,
     pub time_step: TimeStepRule,
+    pub scheme: Scheme,
     pub drag: Drag,
     pub flip: f64,
     pub mapping_back: bool,
@@ -65,6 +70,7 @@ impl Sweep {
             self.mapping_back.len(),
             self.law.len(),
             self.continuity.len(),
+            self.scheme.len(),
         ]
     }
 
@@ -105,12 +111,13 @@ impl Sweep {
                     integrator: self.integrator[at[1]],
                     cells: self.cells[at[2]],
                     points_per_cell: self.points_per_cell[at[3]],
-                    time_step: self.time_step[at[4]],
+                    time_step: self.time_step[at[4]].unwrap_or_else(|| self.integrator[at[1]].default_rule()),
                     drag: self.drag[at[5]],
                     flip: self.flip[at[6]],
                     mapping_back: self.mapping_back[at[7]],
                     law: self.law[at[8]],
                     continuity: self.continuity[at[9]],
+                    scheme: self.scheme[at[10]],
                 }
             })
             .collect()
@@ -127,11 +134,8 @@ mod tests {
             integrator: vec![IntegratorKind::Explicit],
             cells: vec![5, 10, 20],
             points_per_cell: vec![2],
-            time_step: vec![
-                TimeStepRule::Seconds(4e-6),
-                TimeStepRule::Seconds(2e-6),
-                TimeStepRule::Seconds(1e-6),
-            ],
+            time_step: [4e-6, 2e-6, 1e-6].map(|step| Some(TimeStepRule::Seconds(step))).to_vec(),
+            scheme: vec![Scheme::ForwardEuler],
             drag: vec![Drag::Explicit],
             flip: vec![1.0],
             mapping_back: vec![true],
@@ -157,7 +161,7 @@ mod tests {
         for one in all {
             let place = [5, 10, 20].iter().position(|cells| *cells == one.cells);
             let steps = sweep(&[]).time_step;
-            assert_eq!(place.map(|place| steps[place]), Some(one.time_step));
+            assert_eq!(place.and_then(|place| steps[place]), Some(one.time_step));
         }
     }
 
