@@ -14,7 +14,7 @@
 
 use super::body::{Body, ShapeFunction};
 use super::explicit::ExplicitSettings;
-use super::method::{PressureIntegration, Recovery, StrainGradient};
+use super::method::{PressureIntegration, Recovery};
 
 /// Nodes that couple to one side: basis (1) + patch (1) + centre or composite (1).
 const REACH: usize = 3;
@@ -245,10 +245,7 @@ impl AssembledColumn {
             }
         }
         for point in 0..body.points.len() {
-            let gradient = match body.method.strain {
-                StrainGradient::Standard => body.basis.gradient(&stride, point, &strained),
-                StrainGradient::Cmpm => body.composite.gradient(&stride, point, &strained),
-            };
+            let gradient = body.strain_gradient(point, &strained);
             body.points.effective_stress[point][0][0] += body.stiffness.stress(&gradient)[0][0];
             body.points.pressure[point] += match (body.method.pressure, body.method.recovery) {
                 (PressureIntegration::Points, _) => {
@@ -379,10 +376,7 @@ fn assemble_bands<const D: usize, const W: usize, S: ShapeFunction<W>>(
         // Every node within reach of the point, tried with a unit displacement.
         for column in nearest.saturating_sub(REACH)..(nearest + W + REACH).min(body.nodes.len()) {
             unit[column] = [1.0; D];
-            let strain = match body.method.strain {
-                StrainGradient::Standard => body.basis.gradient(stride, point, &unit),
-                StrainGradient::Cmpm => body.composite.gradient(stride, point, &unit),
-            }[0][0];
+            let strain = body.strain_gradient(point, &unit)[0][0];
             let pressure = pressure_of(body, point, &unit);
             let value = body.basis.value(stride, point, &unit)[0];
             unit[column] = [0.0; D];

@@ -1,6 +1,6 @@
 //! A run: from a problem and a schedule to snapshots, history, counters and a named end.
 
-use super::body::{Body, Gimp, Hat, Problem, ShapeFunction};
+use super::body::{Body, CubicSpline, DomainEnds, Gimp, Hat, Problem, QuadraticSpline, ShapeFunction};
 use super::explicit::ExplicitSettings;
 use super::frozen::FrozenStep;
 use super::grid::Grid;
@@ -23,8 +23,8 @@ const WATCH_INTERVAL: u64 = 64;
 /// Velocities beyond this multiple of their scale have left.
 const BLOW_UP: f64 = 1e3;
 /// Steps after which deforming points are given a new step size: the pores at the drained end
-/// close within a thousand.
-const STEP_RENEWAL: u64 = 256;
+/// close within a hundred.
+const STEP_RENEWAL: u64 = 32;
 /// Cells of the column on which the critical step is computed where the run has more.
 const STABILITY_CELLS: usize = 12;
 
@@ -78,6 +78,9 @@ pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: O
     match problem.method.basis {
         Basis::Hat => solve(Body::<D, 2, Hat>::new, problem, schedule, observer),
         Basis::Ugimp | Basis::Cpgimp => solve(Body::<D, 3, Gimp>::new, problem, schedule, observer),
+        Basis::Cpdi => solve(Body::<D, 3, DomainEnds>::new, problem, schedule, observer),
+        Basis::Bspline2 => solve(Body::<D, 3, QuadraticSpline>::new, problem, schedule, observer),
+        Basis::Bspline3 => solve(Body::<D, 4, CubicSpline>::new, problem, schedule, observer),
     }
 }
 
@@ -123,6 +126,9 @@ pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &
     let frozen = match problem.method.basis {
         Basis::Hat => FrozenStep::new(&Body::<D, 2, Hat>::new(problem)),
         Basis::Ugimp | Basis::Cpgimp => FrozenStep::new(&Body::<D, 3, Gimp>::new(problem)),
+        Basis::Cpdi => FrozenStep::new(&Body::<D, 3, DomainEnds>::new(problem)),
+        Basis::Bspline2 => FrozenStep::new(&Body::<D, 3, QuadraticSpline>::new(problem)),
+        Basis::Bspline3 => FrozenStep::new(&Body::<D, 4, CubicSpline>::new(problem)),
     };
     match frozen {
         FrozenStep::Column(column) => stability::critical_step(&column, settings, safe),

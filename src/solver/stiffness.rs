@@ -2,7 +2,6 @@
 
 use super::body::{Body, ShapeFunction};
 use super::grid::{Tensor, Vector};
-use super::method::StrainGradient;
 use super::volumetric::VolumetricRows;
 
 /// A sparse matrix of `D × D` blocks between nodes.
@@ -49,10 +48,9 @@ pub type StrainRow<const D: usize> = Vec<(usize, Vector<D>)>;
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// The gradient from which a point's effective stress takes its strain, as a row.
     pub fn strain_row(&self, point: usize) -> StrainRow<D> {
-        match self.method.strain {
-            StrainGradient::Standard => self.basis.gradient_row(&self.grid, point),
-            StrainGradient::Cmpm => self.composite.gradient_row(&self.grid, point),
-        }
+        let mut row = Vec::new();
+        self.visit_strain(point, |node, gradient| row.push((node, *gradient)));
+        row
     }
 
     /// `K_σ = Σ V ∇N ⊗ C G`: force of the effective stress on the nodes over their displacements,

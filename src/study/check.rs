@@ -19,7 +19,9 @@ use crate::scene::{Column, SceneKind, column_parameters};
 use crate::solver::explicit::{Drag, ExplicitSettings};
 use crate::solver::integrator::IntegratorKind;
 use crate::solver::material::{Continuity, Law, Material};
-use crate::solver::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
+use crate::solver::method::{
+    Basis, Configuration, Memory, Method, PressureIntegration, Recovery, StrainGradient,
+};
 use crate::solver::run::TimeStepRule;
 use crate::solver::scheme::Scheme;
 use std::ops::{Range, RangeInclusive};
@@ -708,12 +710,16 @@ impl Checker<'_> {
                 None
             }
         };
-        let basis = pick(&table.basis, "basis", &["hat", "ugimp", "cpgimp"]);
-        let strain = pick(&table.strain, "strain", &["standard", "cmpm"]);
+        let basis = pick(&table.basis, "basis", &["hat", "ugimp", "cpgimp", "cpdi", "bspline2", "bspline3"]);
+        let strain = pick(&table.strain, "strain", &["standard", "cmpm", "cmpm-ends"]);
         let pressure = pick(&table.pressure, "pressure", &["points", "sri"]);
         let recovery = match (&table.recovery, pressure) {
             (None, Some(0)) => Some(0),
             (word, _) => pick(word, "recovery", &["constant", "patch"]),
+        };
+        let memory = match &table.memory {
+            Some(word) => Memory::ALL[self.word(word, "memory", &["points", "cells"])?],
+            None => Memory::Points,
         };
         let configuration = match &table.configuration {
             Some(word) => {
@@ -722,10 +728,11 @@ impl Checker<'_> {
             None => None,
         };
         Some(Method {
-            basis: [Basis::Hat, Basis::Ugimp, Basis::Cpgimp][basis?],
-            strain: [StrainGradient::Standard, StrainGradient::Cmpm][strain?],
+            basis: Basis::ALL[basis?],
+            strain: StrainGradient::ALL[strain?],
             pressure: [PressureIntegration::Points, PressureIntegration::Sri][pressure?],
             recovery: [Recovery::Constant, Recovery::Patch][recovery?],
+            memory,
             configuration: configuration.map(|index| Configuration::ALL[index]),
         })
     }

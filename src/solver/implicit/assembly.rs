@@ -15,7 +15,6 @@ use super::unknowns::Unknowns;
 use crate::solver::body::{Body, ShapeFunction};
 use crate::solver::grid::Vector;
 use crate::solver::material::Continuity;
-use crate::solver::method::StrainGradient;
 
 /// Scales that make the unknowns and the equations pure numbers of like size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -156,11 +155,7 @@ fn mixture_entries<const D: usize, const W: usize, S: ShapeFunction<W>>(
     let mut straining: Vec<(usize, Vector<D>)> = Vec::new();
     for point in 0..body.points.len() {
         straining.clear();
-        let mut keep = |node: usize, _: f64, gradient: &Vector<D>| straining.push((node, *gradient));
-        match body.method.strain {
-            StrainGradient::Standard => body.basis.visit(stride, point, &mut keep),
-            StrainGradient::Cmpm => body.composite.visit(stride, point, &mut keep),
-        }
+        body.visit_strain(point, |node, gradient| straining.push((node, *gradient)));
         let factor = body.points.volume(point) * scales.length / scales.force;
         body.basis.visit(stride, point, |node, _, force| {
             for i in 0..D {

@@ -12,7 +12,6 @@ use super::assembly::LinearSystem;
 use super::banded::{BandedLu, Singular};
 use crate::solver::body::{Body, ShapeFunction};
 use crate::solver::grid::Vector;
-use crate::solver::method::StrainGradient;
 
 /// `γ = 1 − 1/√2`: both stages have the same matrix and the method is L-stable.
 pub const SDIRK_GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
@@ -132,10 +131,7 @@ impl<const D: usize> LinearMarch<D> {
         let displacement = nodal(&self.state, self.system.scales.length);
         let stride = *body.grid.node_stride();
         for point in 0..body.points.len() {
-            let gradient = match body.method.strain {
-                StrainGradient::Standard => body.basis.gradient(&stride, point, &displacement),
-                StrainGradient::Cmpm => body.composite.gradient(&stride, point, &displacement),
-            };
+            let gradient = body.strain_gradient(point, &displacement);
             let stress = body.stiffness.stress(&gradient);
             let moved = body.basis.value(&stride, point, &displacement);
             for i in 0..D {
