@@ -178,7 +178,7 @@ proptest! {
         mapping_back: bool,
     ) {
         let mut setup = Setup::of(name);
-        setup.settings = ExplicitSettings { drag: Drag::Implicit, flip, mapping_back };
+        setup.settings = ExplicitSettings { drag: Drag::Implicit, flip, mapping_back, ..ExplicitSettings::default() };
         let mut other = setup.clone();
         let factor = f64::from(power).exp2();
         other.column.load *= factor;

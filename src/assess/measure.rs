@@ -171,7 +171,7 @@ fn start_checks(case: &Case, references: &[Reference], start: &Snapshot) -> Resu
             SceneKind::Terzaghi => {
                 load / (1.0 + soil.porosity * soil.oedometric_modulus() / soil.water_bulk_modulus)
             }
-            SceneKind::SingleMode | SceneKind::XieLeo => match references.first() {
+            _ => match references.first() {
                 Some(own) => own.fields(0.0, 1.0 - height / case.column.height)?.pressure,
                 None => *pressure,
             },

@@ -28,6 +28,9 @@ pub struct ColumnParameters {
     pub hydraulic_conductivity: f64,
     /// Gravity in the drag, m/s².
     pub gravity: f64,
+    /// Time over which the load grows linearly, s; 0 where it acts at once. Only the column with
+    /// inertia heeds it.
+    pub loading_time: f64,
 }
 
 impl Default for ColumnParameters {
@@ -43,6 +46,7 @@ impl Default for ColumnParameters {
             water_bulk_modulus: 2.2e9,
             hydraulic_conductivity: 1.0e-4,
             gravity: 9.81,
+            loading_time: 0.0,
         }
     }
 }

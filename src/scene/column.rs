@@ -1,6 +1,7 @@
 //! Columns drained at their top: the lattice of points and its start.
 
 use super::SceneKind;
+use crate::exact::dynamic_column::{DynamicColumn, Start};
 use crate::exact::single_mode::SingleMode;
 use crate::exact::{ColumnParameters, ExactError};
 use crate::solver::body::Problem;
@@ -23,12 +24,20 @@ pub struct Column {
     pub width: f64,
     /// Load `q` on the surface, Pa; the amplitude of the initial pressure where there is no load.
     pub load: f64,
+    /// Time over which the load grows linearly, s; 0 where it acts at once.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub loading_time: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl Default for Column {
     /// The seed column under 1 Pa.
     fn default() -> Self {
-        Self { height: 1.0, width: 0.1, load: 1.0 }
+        Self { height: 1.0, width: 0.1, load: 1.0, loading_time: 0.0 }
     }
 }
 
@@ -45,6 +54,7 @@ pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
         water_bulk_modulus: soil.water_bulk_modulus,
         hydraulic_conductivity: soil.hydraulic_conductivity,
         gravity: soil.gravity,
+        loading_time: column.loading_time,
     }
 }
 
@@ -64,7 +74,12 @@ pub fn column_problem(
     let mut points = Points::lattice(cell_size, [cells], points_per_cell);
     let (load, initial_gradient) = match scene {
         SceneKind::Terzaghi => (column.load, [[start_undrained(&mut points, soil, column.load)]]),
-        SceneKind::SingleMode => {
+        SceneKind::DynamicColumn => (column.load, [[0.0]]),
+        SceneKind::StandingWave => {
+            start_standing_wave(&mut points, column, soil)?;
+            (0.0, [[0.0]])
+        }
+        SceneKind::SingleMode | SceneKind::DynamicSingleMode => {
             start_single_mode(&mut points, column, soil)?;
             (0.0, [[0.0]])
         }
@@ -78,6 +93,7 @@ pub fn column_problem(
         method,
         configuration: method.configuration_or(scene.configuration()),
         load,
+        loading_time: column.loading_time,
         initial_gradient,
         pressure_scale: column.load.abs(),
     })
@@ -125,6 +141,19 @@ fn start_single_mode(points: &mut Points<1>, column: &Column, soil: &Material) -
         points.effective_stress[point] = [[fields.effective_stress]];
         points.solid_velocity[point] = [velocities.solid];
         points.water_velocity[point] = [velocities.water];
+    }
+    Ok(())
+}
+
+/// Skeleton and water displaced together and let go at rest.
+fn start_standing_wave(points: &mut Points<1>, column: &Column, soil: &Material) -> Result<(), ExactError> {
+    let parameters = column_parameters(column, soil);
+    let wave = DynamicColumn::new(&parameters, Start::StandingWave, &[0.0])?;
+    for point in 0..points.len() {
+        let zeta = 1.0 - points.initial_position[point][0] / column.height;
+        let fields = wave.fields(0.0, zeta)?;
+        points.pressure[point] = fields.pressure;
+        points.effective_stress[point] = [[fields.effective_stress]];
     }
     Ok(())
 }

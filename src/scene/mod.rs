@@ -24,6 +24,12 @@ pub enum SceneKind {
     /// A column loaded at once and drained at its top, at large strain, from the undrained
     /// equilibrium.
     XieLeo,
+    /// A column at rest, loaded at once or over a time, with all its waves.
+    DynamicColumn,
+    /// The slowest mode of an unloaded column, with the inertia that it has.
+    DynamicSingleMode,
+    /// An undrained wave that stands in an unloaded column: smooth, and nothing but inertia.
+    StandingWave,
 }
 
 /// The large-strain reference of the default law; see [`SceneKind::reference_for`].
@@ -35,7 +41,14 @@ const LARGE_STRAIN: ReferenceKind = ReferenceKind::LargeStrain(LargeStrainModel 
 
 impl SceneKind {
     /// Every scene.
-    pub const ALL: [Self; 3] = [Self::Terzaghi, Self::SingleMode, Self::XieLeo];
+    pub const ALL: [Self; 6] = [
+        Self::Terzaghi,
+        Self::SingleMode,
+        Self::XieLeo,
+        Self::DynamicColumn,
+        Self::DynamicSingleMode,
+        Self::StandingWave,
+    ];
 
     /// Name in study files and at the command line.
     pub fn name(self) -> &'static str {
@@ -43,6 +56,9 @@ impl SceneKind {
             Self::Terzaghi => "terzaghi",
             Self::SingleMode => "single-mode",
             Self::XieLeo => "xie-leo",
+            Self::DynamicColumn => "dynamic-column",
+            Self::DynamicSingleMode => "dynamic-single-mode",
+            Self::StandingWave => "standing-wave",
         }
     }
 
@@ -57,6 +73,9 @@ impl SceneKind {
             Self::Terzaghi => "column under a sudden load, drained at its top, small strain",
             Self::SingleMode => "slowest consolidation mode, no load: smooth, for formal orders",
             Self::XieLeo => "column under a sudden load, drained at its top, large strain",
+            Self::DynamicColumn => "column at rest under a sudden or growing load: waves and consolidation",
+            Self::DynamicSingleMode => "slowest consolidation mode with its inertia, no load: smooth",
+            Self::StandingWave => "undrained standing wave, no load: smooth, for the order in the step",
         }
     }
 
@@ -66,6 +85,9 @@ impl SceneKind {
             Self::Terzaghi => &[ReferenceKind::Terzaghi, ReferenceKind::TerzaghiIncompressible],
             Self::SingleMode => &[ReferenceKind::SingleMode],
             Self::XieLeo => &[LARGE_STRAIN, ReferenceKind::XieLeo],
+            Self::DynamicColumn => &[ReferenceKind::DynamicColumn, ReferenceKind::Terzaghi],
+            Self::DynamicSingleMode => &[ReferenceKind::DynamicSingleMode, ReferenceKind::SingleMode],
+            Self::StandingWave => &[ReferenceKind::StandingWave],
         }
     }
 
@@ -95,8 +117,8 @@ impl SceneKind {
     /// Law of the soil where a study names none.
     pub fn default_law(self) -> Law {
         match self {
-            Self::Terzaghi | Self::SingleMode => Law::Linear,
             Self::XieLeo => Law::LogLinear,
+            _ => Law::Linear,
         }
     }
 
@@ -106,7 +128,7 @@ impl SceneKind {
             Self::XieLeo => (law == Law::Linear).then_some(
                 "the law `linear` is of small strain: its conductivity ignores that the pores close",
             ),
-            Self::Terzaghi | Self::SingleMode => (law != Law::Linear).then_some(
+            _ => (law != Law::Linear).then_some(
                 "this scene is of small strain, where every law is linear: the one named would be ignored",
             ),
         }
@@ -114,10 +136,7 @@ impl SceneKind {
 
     /// Whether the scene's theory holds at small strain only.
     pub fn is_small_strain(self) -> bool {
-        match self {
-            Self::Terzaghi | Self::SingleMode => true,
-            Self::XieLeo => false,
-        }
+        self != Self::XieLeo
     }
 
     /// Why the scene cannot take a configuration, where it cannot.
@@ -129,16 +148,21 @@ impl SceneKind {
     /// Configuration of the weights where the method leaves it open: small strain moves nothing.
     pub fn configuration(self) -> Configuration {
         match self {
-            Self::Terzaghi | Self::SingleMode => Configuration::Frozen,
             Self::XieLeo => Configuration::Updated,
+            _ => Configuration::Frozen,
         }
+    }
+
+    /// Whether waves run in it.
+    pub fn has_waves(self) -> bool {
+        matches!(self, Self::DynamicColumn | Self::DynamicSingleMode | Self::StandingWave)
     }
 
     /// Whether a load acts, so that `σ' − p = −q` at rest.
     pub fn is_loaded(self) -> bool {
         match self {
-            Self::Terzaghi | Self::XieLeo => true,
-            Self::SingleMode => false,
+            Self::Terzaghi | Self::XieLeo | Self::DynamicColumn => true,
+            Self::SingleMode | Self::DynamicSingleMode | Self::StandingWave => false,
         }
     }
 
@@ -146,6 +170,8 @@ impl SceneKind {
     pub fn model_difference(self, reference: ReferenceKind, soil: &Material) -> Option<&'static str> {
         match (self, reference) {
             (Self::Terzaghi, ReferenceKind::TerzaghiIncompressible) => Some("the water's storage"),
+            (Self::DynamicColumn, ReferenceKind::Terzaghi)
+            | (Self::DynamicSingleMode, ReferenceKind::SingleMode) => Some("the inertia"),
             (Self::XieLeo, ReferenceKind::XieLeo) => {
                 Some(match (soil.continuity, soil.law == Law::PorosityDependent) {
                     (Continuity::Conservative, false) => "the water's storage",

@@ -58,6 +58,8 @@ pub struct Problem<const D: usize> {
     pub configuration: Configuration,
     /// Load on the surface, Pa.
     pub load: f64,
+    /// Time over which the load grows linearly, s; 0 where it acts at once.
+    pub loading_time: f64,
     /// Displacement gradient of the start against the unloaded state.
     pub initial_gradient: Tensor<D>,
     /// Pressure that this problem is about, Pa: what leaves it a thousandfold has blown up.

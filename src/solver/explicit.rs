@@ -3,6 +3,7 @@
 use super::body::{Body, ShapeFunction};
 use super::grid::{Tensor, Vector};
 use super::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
+use super::scheme::Scheme;
 use serde::{Deserialize, Serialize};
 
 /// Time level at which the drag between skeleton and water is taken.
@@ -13,11 +14,16 @@ pub enum Drag {
     Explicit,
     /// New velocities, a 2 × 2 solve a node: no bound from the drag.
     Implicit,
+    /// The mean over the step: of second order in it, and no bound either.
+    Centred,
 }
 
 /// Choices of the explicit integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExplicitSettings {
+    /// Time levels of velocities and stresses.
+    #[serde(default, skip_serializing_if = "Scheme::is_paper")]
+    pub scheme: Scheme,
     /// Time level of the drag.
     pub drag: Drag,
     /// Share of the acceleration update (FLIP) in the points' velocities; the rest is
@@ -29,19 +35,24 @@ pub struct ExplicitSettings {
 }
 
 impl Default for ExplicitSettings {
-    /// The paper's: explicit drag, pure FLIP, mapping back.
+    /// The paper's: forward Euler, explicit drag, pure FLIP, mapping back.
     fn default() -> Self {
-        Self { drag: Drag::Explicit, flip: 1.0, mapping_back: true }
+        Self { scheme: Scheme::ForwardEuler, drag: Drag::Explicit, flip: 1.0, mapping_back: true }
     }
 }
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
-    /// One explicit step of `dt` seconds.
+    /// One explicit step of `dt` seconds, as the paper has it.
     pub fn explicit_step(&mut self, dt: f64, settings: &ExplicitSettings) {
+        self.kick_and_drift(dt, dt, settings);
+    }
+
+    /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
+    pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         self.reset_grid(settings); // (1)
-        self.nodal_accelerations(dt, settings.drag); // (2)
-        self.nodal_velocities(dt); // (3)
-        self.advance_points(dt, settings.flip); // (4)
+        self.nodal_accelerations(kick, settings.drag); // (2)
+        self.nodal_velocities(kick, dt); // (3)
+        self.advance_points(kick, dt, settings.flip); // (4)
         if settings.mapping_back {
             self.map_velocities(); // (5)
         }
@@ -59,7 +70,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// (2) Accelerations of the water, equation (1), then of the skeleton, equation (2).
-    fn nodal_accelerations(&mut self, dt: f64, drag: Drag) {
+    fn nodal_accelerations(&mut self, kick: f64, drag: Drag) {
         self.map_forces();
         let water_density = self.material.water_density;
         let nodes = &mut self.nodes;
@@ -72,11 +83,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             let per_solid_mass = nodes.per_solid_mass[node];
             let (water_inertia, drag_coefficient) = (water_density * nodes.volume[node], nodes.drag[node]);
             let water_share = nodes.water_mass[node] * per_solid_mass;
-            // The drag at the new velocities adds Δt D (a_w − a_s) with a_s from (2).
-            let implicit = match drag {
-                Drag::Explicit => 0.0,
-                Drag::Implicit => dt * drag_coefficient,
-            };
+            // A share w of the drag at the new velocities adds w Δt D (a_w − a_s) with a_s from (2).
+            let decay = || kick * drag_coefficient * (1.0 + water_share) / water_inertia;
+            let implicit = drag.implicit_weight(decay) * kick * drag_coefficient;
             let per_inertia = 1.0 / (water_inertia + implicit * (1.0 + water_share));
             for d in 0..D {
                 let relative = nodes.water_velocity[node][d] - nodes.solid_velocity[node][d];
@@ -90,19 +99,19 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// (3) Nodal velocities by forward Euler.
-    fn nodal_velocities(&mut self, dt: f64) {
+    fn nodal_velocities(&mut self, kick: f64, dt: f64) {
         let nodes = &mut self.nodes;
         for node in 0..nodes.len() {
             for d in 0..D {
-                nodes.solid_velocity[node][d] += dt * nodes.solid_acceleration[node][d];
-                nodes.water_velocity[node][d] += dt * nodes.water_acceleration[node][d];
+                nodes.solid_velocity[node][d] += kick * nodes.solid_acceleration[node][d];
+                nodes.water_velocity[node][d] += kick * nodes.water_acceleration[node][d];
                 nodes.displacement[node][d] += dt * nodes.solid_velocity[node][d];
             }
         }
     }
 
     /// (4) Velocities and places of the points.
-    fn advance_points(&mut self, dt: f64, flip: f64) {
+    fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
         let nodes = &self.nodes;
         let moving = self.configuration.moves_points();
         let pic = 1.0 - flip;
@@ -114,9 +123,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             for d in 0..D {
                 let points = &mut self.points;
                 points.solid_velocity[point][d] =
-                    flip * (points.solid_velocity[point][d] + dt * solid_rate[d]) + pic * solid[d];
+                    flip * (points.solid_velocity[point][d] + kick * solid_rate[d]) + pic * solid[d];
                 points.water_velocity[point][d] =
-                    flip * (points.water_velocity[point][d] + dt * water_rate[d]) + pic * water[d];
+                    flip * (points.water_velocity[point][d] + kick * water_rate[d]) + pic * water[d];
                 points.displacement[point][d] += dt * solid[d];
                 if moving {
                     points.position[point][d] += dt * solid[d];

@@ -24,6 +24,7 @@ pub mod outcome;
 pub mod points;
 pub mod recovery;
 pub mod run;
+pub mod scheme;
 pub mod shape;
 pub mod snapshot;
 pub mod stability;

@@ -10,6 +10,7 @@ use super::limits;
 use super::method::{Basis, Configuration};
 use super::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
 use super::points::Points;
+use super::scheme::Rhythm;
 use super::snapshot::Snapshot;
 use super::stability;
 use super::surface::LoadedSurface;
@@ -143,6 +144,11 @@ struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
     initial_height: f64,
     initial_settlement: f64,
     velocity_scale: f64,
+    /// Whole load, Pa, and the time over which it grows, s.
+    load: f64,
+    loading_time: f64,
+    load_share: f64,
+    rhythm: Rhythm,
     steps: StepSizes,
     counters: Counters,
     snapshots: Vec<Snapshot>,
@@ -160,17 +166,22 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let critical = predicted_critical_step(&problem, &schedule.settings);
         let target = schedule.rule.step(&problem, critical);
         let velocity_scale = velocity_scale(&problem);
+        let (load, loading_time) = (problem.load, problem.loading_time);
         let initial_height = LoadedSurface::of(&problem.points, problem.load).height(&problem.points);
         let body = discretise(problem);
         let column = match (body.configuration, schedule.kernel) {
             (Configuration::Frozen, Kernel::Fastest) => AssembledColumn::new(&body),
             _ => None,
         };
-        Self {
+        let mut run = Self {
             start: body.points.clone(),
             initial_height,
             initial_settlement: -body.surface.mean_of(&body.grid, &body.points, &body.nodes.displacement),
             velocity_scale,
+            load,
+            loading_time,
+            load_share: 1.0,
+            rhythm: Rhythm::default(),
             steps: StepSizes { predicted_critical: critical, target, largest: 0.0 },
             counters: Counters { points: body.points.len(), nodes: body.nodes.len(), ..Counters::default() },
             body,
@@ -180,7 +191,11 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             history: Vec::new(),
             time: 0.0,
             failure: None,
+        };
+        if loading_time > 0.0 {
+            run.set_load_at(0.0);
         }
+        run
     }
 
     fn solve(mut self, observer: Observer<'_>) -> Outcome {
@@ -232,18 +247,27 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
 
     fn take_steps(&mut self, count: u64, dt: f64, go_on: &dyn Fn(u64) -> bool) {
         let settings = self.schedule.settings;
-        if let Some(column) = &mut self.column {
-            column.set_step(dt, &settings);
-        }
         let start = self.time;
+        let mut kick = f64::NAN;
         let mut done = 0;
         while done < count && self.failure.is_none() {
             let some = WATCH_INTERVAL.min(count - done).min(self.steps_to_history(dt));
-            for _ in 0..some {
-                match &mut self.column {
-                    Some(column) => column.step(dt, &settings),
-                    None => self.body.explicit_step(dt, &settings),
+            for step in done..done + some {
+                let now = start + step as f64 * dt;
+                if self.load_share < 1.0 {
+                    self.set_load_at(now);
                 }
+                let next_kick = self.rhythm.kick(dt, &settings);
+                match &mut self.column {
+                    Some(column) => {
+                        if next_kick != kick {
+                            column.set_step(next_kick, &settings);
+                        }
+                        column.kick_and_drift(next_kick, dt, &settings);
+                    }
+                    None => self.body.kick_and_drift(next_kick, dt, &settings),
+                }
+                kick = next_kick;
             }
             done += some;
             self.time = start + done as f64 * dt;
@@ -254,6 +278,17 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             if self.failure.is_none() && !go_on(self.counters.steps) {
                 self.failure = Some(self.failure(FailureKind::Stopped, "stopped from outside".to_owned()));
             }
+        }
+    }
+
+    /// Puts the load of a growing time on the surface.
+    fn set_load_at(&mut self, time: f64) {
+        self.load_share = (time / self.loading_time).min(1.0);
+        let body = &mut self.body;
+        body.surface.load = self.load_share * self.load;
+        body.surface.apply(&body.grid, &body.points, &mut body.nodes);
+        if let Some(column) = &mut self.column {
+            column.set_load_share(self.load_share);
         }
     }
 
@@ -387,6 +422,7 @@ mod tests {
     use crate::solver::explicit::Drag;
     use crate::solver::material::Material;
     use crate::solver::method::Method;
+    use crate::solver::scheme::Scheme;
 
     fn problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {
         let method = Method::named(method).expect("a known method");
@@ -411,10 +447,13 @@ mod tests {
     #[test]
     fn the_assembled_column_is_the_point_wise_step_to_round_off() {
         for name in ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"] {
-            for (drag, flip, mapping_back) in
-                [(Drag::Explicit, 1.0, true), (Drag::Implicit, 1.0, false), (Drag::Implicit, 0.99, true)]
-            {
-                let settings = ExplicitSettings { drag, flip, mapping_back };
+            for (scheme, drag, flip, mapping_back) in [
+                (Scheme::ForwardEuler, Drag::Explicit, 1.0, true),
+                (Scheme::ForwardEuler, Drag::Implicit, 1.0, false),
+                (Scheme::ForwardEuler, Drag::Implicit, 0.99, true),
+                (Scheme::Leapfrog, Drag::Centred, 1.0, true),
+            ] {
+                let settings = ExplicitSettings { scheme, drag, flip, mapping_back };
                 let end = 0.02;
                 let fast = run(problem(name, 7, 3), &schedule(Kernel::Fastest, settings, end), &|_, _| true);
                 let plain =

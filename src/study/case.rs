@@ -64,10 +64,14 @@ impl Case {
         if self.formulation != self.integrator.default_formulation() {
             parts.push(self.formulation.name().to_owned());
         }
+        if self.settings.scheme != defaults.scheme {
+            parts.push(self.settings.scheme.name().to_owned());
+        }
         if self.settings.drag != defaults.drag {
             parts.push(match self.settings.drag {
                 Drag::Explicit => "explicit drag".to_owned(),
                 Drag::Implicit => "implicit drag".to_owned(),
+                Drag::Centred => "centred drag".to_owned(),
             });
         }
         if self.settings.flip != defaults.flip {

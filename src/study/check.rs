@@ -2,7 +2,7 @@
 
 use super::case::Case;
 use super::diagnostic::{Diagnostic, StudyError, one_of};
-use super::expectation::{Axis, Expectation, Measure};
+use super::expectation::{Axis, Expectation, Measure, NEXT_FINER};
 use super::file::{
     ColumnTable, ExpectTable, IntegratorTable, LevelTable, MaterialTable, MethodEntry, MethodTable,
     OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
@@ -20,6 +20,7 @@ use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Law, Material};
 use crate::solver::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
 use crate::solver::run::TimeStepRule;
+use crate::solver::scheme::Scheme;
 use std::ops::{Range, RangeInclusive};
 use toml::Spanned;
 
@@ -128,13 +129,14 @@ impl Checker<'_> {
 
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.scene(&file.scene)?;
-        let column = self.column(&file.column);
+        let column = self.column(&file.column, scene);
         self.column_height = Some(column.height);
         let material = self.material(&file.material, scene);
         self.porosity_at_the_end(file, scene, &column, &material);
         let warnings = self.large_for_small_strain(file, scene, &column, &material).into_iter().collect();
         let settings = self.settings(&file.integrator);
-        let formulation = file.integrator.formulation.as_ref().and_then(|word| self.formulation(word));
+        let typed = file.integrator.formulation.as_ref().and_then(|word| self.formulation(word));
+        let formulation = typed.or(scene.has_waves().then_some(Formulation::VW));
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
@@ -170,6 +172,7 @@ impl Checker<'_> {
                     integrator: one.integrator,
                     formulation: one.formulation,
                     settings: ExplicitSettings {
+                        scheme: one.scheme,
                         drag: one.drag,
                         flip: one.flip,
                         mapping_back: one.mapping_back,
@@ -214,12 +217,20 @@ impl Checker<'_> {
         Some(SceneKind::ALL[index])
     }
 
-    fn column(&mut self, table: &ColumnTable) -> Column {
+    fn column(&mut self, table: &ColumnTable, scene: SceneKind) -> Column {
         let seed = Column::default();
+        if let Some(typed) = table.loading_time.as_ref().filter(|_| scene != SceneKind::DynamicColumn) {
+            self.complain(
+                typed.span(),
+                format!("the load of `{}` acts at once", scene.name()),
+                "a load that grows belongs to the scene \"dynamic-column\"",
+            );
+        }
         Column {
             height: self.positive(table.height.as_ref(), "column.height", "m", seed.height),
             width: self.positive(table.width.as_ref(), "column.width", "m", seed.width),
             load: self.positive(table.load.as_ref(), "column.load", "Pa", seed.load),
+            loading_time: self.not_negative(table.loading_time.as_ref(), "column.loading_time", "s"),
         }
     }
 
@@ -370,6 +381,7 @@ impl Checker<'_> {
     fn settings(&mut self, table: &IntegratorTable) -> ExplicitSettings {
         let default = ExplicitSettings::default();
         ExplicitSettings {
+            scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)).unwrap_or(default.scheme),
             drag: table.drag.as_ref().and_then(|word| self.drag(word)).unwrap_or(default.drag),
             flip: table.flip.as_ref().map_or(default.flip, |flip| self.flip(flip)),
             mapping_back: table.mapping_back.as_ref().map_or(default.mapping_back, |typed| *typed.get_ref()),
@@ -382,8 +394,12 @@ impl Checker<'_> {
     }
 
     fn drag(&mut self, word: &Spanned<String>) -> Option<Drag> {
-        let index = self.word(word, "drag", &["explicit", "implicit"])?;
-        Some([Drag::Explicit, Drag::Implicit][index])
+        let index = self.word(word, "drag", &["explicit", "implicit", "centred"])?;
+        Some([Drag::Explicit, Drag::Implicit, Drag::Centred][index])
+    }
+
+    fn scheme(&mut self, word: &Spanned<String>) -> Option<Scheme> {
+        Some(Scheme::ALL[self.word(word, "scheme", &Scheme::ALL.map(Scheme::name))?])
     }
 
     fn flip(&mut self, typed: &Spanned<f64>) -> f64 {
@@ -489,6 +505,7 @@ impl Checker<'_> {
             time_step: self.list(table.time_step.as_ref(), "time_step", &[None], |c, typed| {
                 c.time_step(typed).map(Some)
             }),
+            scheme: self.list(table.scheme.as_ref(), "scheme", &[settings.scheme], Self::scheme),
             drag: self.list(table.drag.as_ref(), "drag", &[settings.drag], Self::drag),
             flip: self.list(table.flip.as_ref(), "flip", &[settings.flip], |c, typed| Some(c.flip(typed))),
             mapping_back: self.list(
@@ -517,13 +534,13 @@ impl Checker<'_> {
         }
         if self.diagnostics.len() == before {
             self.rules_fit(table, &sweep);
-            self.formulations_fit(table, span, &sweep);
+            self.formulations_fit(table, &span, &sweep, scene);
         }
         (self.diagnostics.len() == before).then_some(sweep)
     }
 
     /// Complains where a formulation meets an integrator that cannot solve it.
-    fn formulations_fit(&mut self, table: &SweepTable, span: Range<usize>, sweep: &Sweep) {
+    fn formulations_fit(&mut self, table: &SweepTable, span: &Range<usize>, sweep: &Sweep, scene: SceneKind) {
         let refusal = |one: Combination| one.integrator.refuses_formulation(one.formulation);
         if let Some(why) = sweep.combinations().into_iter().find_map(refusal) {
             let place = table.formulation.as_ref().map(Spanned::span);
@@ -531,6 +548,15 @@ impl Checker<'_> {
                 place.unwrap_or(span.start..span.start + 1),
                 why,
                 "give each integrator a [[sweep]] block of its own, or leave `formulation` out",
+            );
+        }
+        let still = |one: &Combination| one.formulation == Formulation::QuasiStatic;
+        if scene.has_waves() && sweep.combinations().iter().any(still) {
+            let place = table.formulation.as_ref().map(Spanned::span);
+            self.complain(
+                place.unwrap_or(span.start..span.start + 1),
+                format!("the quasi-static formulation leaves out the waves that `{}` is about", scene.name()),
+                "take \"v-w\" or \"u-p\", or the scene \"terzaghi\"",
             );
         }
     }
@@ -691,12 +717,12 @@ impl Checker<'_> {
             self.complain(entry.span(), "the expectation names no time factor", "add `time_factor = 0.1`");
             return None;
         };
-        let names: Vec<&str> = references.iter().map(|kind| kind.name()).collect();
-        let reference = match &table.reference {
-            Some(word) => references[self.word(word, "reference", &names)?],
-            None => scene.references()[0],
-        };
         let axis = Axis::ALL[self.choice(table.axis.as_ref(), "axis", &Axis::ALL.map(Axis::name), 0)?];
+        let reference = if self.is_held_against_itself(table, axis)? {
+            None
+        } else {
+            Some(self.expected_reference(table, scene, references)?)
+        };
         let method = match &table.method {
             Some(typed) => Some(self.method(typed)?),
             None => None,
@@ -734,9 +760,16 @@ impl Checker<'_> {
             points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
             law: table.law.as_ref().and_then(|word| self.law(word, scene)),
             continuity: table.continuity.as_ref().and_then(|word| self.continuity(word)),
+            scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)),
             drag: table.drag.as_ref().and_then(|word| self.drag(word)),
             mapping_back: table.mapping_back.as_ref().map(|typed| *typed.get_ref()),
-            measure: Measure { quantity, sample, norm, reference: reference.name().to_owned(), time_factor },
+            measure: Measure {
+                quantity,
+                sample,
+                norm,
+                reference: reference.map_or(NEXT_FINER, |kind| kind.name()).to_owned(),
+                time_factor,
+            },
             reference,
             axis,
             demand,
@@ -744,6 +777,36 @@ impl Checker<'_> {
             line: self.source.text[..entry.span().start.min(self.source.text.len())].lines().count().max(1),
         };
         (self.diagnostics.len() == before).then_some(expectation)
+    }
+
+    /// Whether an expectation holds a series against itself; none where its axis forbids it.
+    fn is_held_against_itself(&mut self, table: &ExpectTable, axis: Axis) -> Option<bool> {
+        let asked = table.reference.as_ref().filter(|word| word.get_ref() == NEXT_FINER);
+        match asked {
+            Some(word) if axis != Axis::TimeStep => {
+                self.complain(
+                    word.span(),
+                    "the next finer level has other places",
+                    "\"next-finer\" is for `axis = \"time_step\"`",
+                );
+                None
+            }
+            asked => Some(asked.is_some()),
+        }
+    }
+
+    /// The reference of an expectation, the scene's own where it names none.
+    fn expected_reference(
+        &mut self,
+        table: &ExpectTable,
+        scene: SceneKind,
+        references: &[ReferenceKind],
+    ) -> Option<ReferenceKind> {
+        let names: Vec<&str> = references.iter().map(|kind| kind.name()).collect();
+        match &table.reference {
+            Some(word) => Some(references[self.word(word, "reference", &names)?]),
+            None => Some(scene.references()[0]),
+        }
     }
 
     /// A bound at a level that is named in the words of its axis.
@@ -819,6 +882,19 @@ impl Checker<'_> {
                 typed.span(),
                 format!("`{name}` is {value} {unit}"),
                 format!("it must be positive and finite; the seed column has {default} {unit}"),
+            );
+        }
+        value
+    }
+
+    fn not_negative(&mut self, typed: Option<&Spanned<f64>>, name: &str, unit: &str) -> f64 {
+        let Some(typed) = typed else { return 0.0 };
+        let value = *typed.get_ref();
+        if !(value.is_finite() && value >= 0.0) {
+            self.complain(
+                typed.span(),
+                format!("`{name}` is {value} {unit}"),
+                "it must be 0 or positive, and finite",
             );
         }
         value

@@ -50,6 +50,7 @@ pub struct ColumnTable {
     pub height: Typed<f64>,
     pub width: Typed<f64>,
     pub load: Typed<f64>,
+    pub loading_time: Typed<f64>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -71,6 +72,7 @@ pub struct MaterialTable {
 #[serde(deny_unknown_fields)]
 pub struct IntegratorTable {
     pub formulation: Typed<String>,
+    pub scheme: Typed<String>,
     pub drag: Typed<String>,
     pub flip: Typed<f64>,
     pub mapping_back: Typed<bool>,
@@ -98,6 +100,7 @@ pub struct SweepTable {
     pub cells: TypedList<i64>,
     pub points_per_cell: TypedList<i64>,
     pub time_step: TypedList<TimeStepTable>,
+    pub scheme: TypedList<String>,
     pub drag: TypedList<String>,
     pub flip: TypedList<f64>,
     pub mapping_back: TypedList<bool>,
@@ -148,6 +151,7 @@ pub struct ExpectTable {
     pub points_per_cell: Typed<i64>,
     pub law: Typed<String>,
     pub continuity: Typed<String>,
+    pub scheme: Typed<String>,
     pub drag: Typed<String>,
     pub mapping_back: Typed<bool>,
     pub order: Typed<OrderTable>,

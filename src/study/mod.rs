@@ -13,7 +13,7 @@ pub use crate::solver::integrator::IntegratorKind;
 pub use case::{Case, step_label};
 pub use check::{Study, Tier};
 pub use diagnostic::{Diagnostic, StudyError};
-pub use expectation::{Axis, Expectation, Measure};
+pub use expectation::{Axis, Expectation, Measure, NEXT_FINER};
 pub use file::StudySource;
 pub use runner::{
     Progress, RunError, RunOptions, RunReport, Shard, TimingReport, estimated_updates, run_case, run_study,

@@ -5,6 +5,7 @@ use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
+use crate::solver::scheme::Scheme;
 
 /// One block of a study, checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +18,7 @@ pub struct Sweep {
     pub points_per_cell: Vec<usize>,
     /// Step rules; none where the integrator's own holds.
     pub time_step: Vec<Option<TimeStepRule>>,
+    pub scheme: Vec<Scheme>,
     pub drag: Vec<Drag>,
     pub flip: Vec<f64>,
     pub mapping_back: Vec<bool>,
@@ -27,7 +29,7 @@ pub struct Sweep {
 }
 
 /// Keys that a path can tie.
-pub const AXES: [&str; 11] = [
+pub const AXES: [&str; 12] = [
     "method",
     "integrator",
     "cells",
@@ -39,6 +41,7 @@ pub const AXES: [&str; 11] = [
     "law",
     "continuity",
     "formulation",
+    "scheme",
 ];
 
 /// One combination of a sweep.
@@ -50,6 +53,7 @@ pub struct Combination {
     pub cells: usize,
     pub points_per_cell: usize,
     pub time_step: TimeStepRule,
+    pub scheme: Scheme,
     pub drag: Drag,
     pub flip: f64,
     pub mapping_back: bool,
@@ -71,6 +75,7 @@ impl Sweep {
             self.law.len(),
             self.continuity.len(),
             self.formulation.len(),
+            self.scheme.len(),
         ]
     }
 
@@ -119,6 +124,7 @@ impl Sweep {
                     continuity: self.continuity[at[9]],
                     formulation: self.formulation[at[10]]
                         .unwrap_or_else(|| self.integrator[at[1]].default_formulation()),
+                    scheme: self.scheme[at[11]],
                 }
             })
             .collect()
@@ -136,6 +142,7 @@ mod tests {
             cells: vec![5, 10, 20],
             points_per_cell: vec![2],
             time_step: [4e-6, 2e-6, 1e-6].map(|step| Some(TimeStepRule::Seconds(step))).to_vec(),
+            scheme: vec![Scheme::ForwardEuler],
             drag: vec![Drag::Explicit],
             flip: vec![1.0],
             mapping_back: vec![true],

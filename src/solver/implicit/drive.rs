@@ -129,7 +129,8 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
                 }
                 self.history.note(before, after, self.march.settlement_rate());
                 self.march.lost_point().map_or(Ok(()), Err)?;
-                if self.counters.steps % WATCH_INTERVAL == 0 && !observer(self.counters.steps, self.expected)
+                if self.counters.steps.is_multiple_of(WATCH_INTERVAL)
+                    && !observer(self.counters.steps, self.expected)
                 {
                     let reason = "stopped from outside".to_owned();
                     return Err(StepFailure { kind: FailureKind::Stopped, reason });

@@ -147,7 +147,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
     /// What the balances leave at increments of the unknowns, scaled: forces on the mixture that
     /// nothing balances, and volume that a site gained beyond its storage.
     ///
-    /// Where a point's pores are closed, there is no residual: the index of the point.
+    /// # Errors
+    /// The index of a point whose pores are closed: there is no residual then.
     pub fn residual(
         &mut self,
         increments: &[f64],
