@@ -48,7 +48,7 @@ impl Setup {
 
     /// Runs to the last output, which every test here must reach.
     fn solve(&self) -> Outcome {
-        let problem = column_problem(
+        let problem = column_problem::<1>(
             self.scene,
             &self.column,
             &self.soil,

@@ -1,8 +1,10 @@
 //! A run: from a problem and a schedule to snapshots, history, counters and a named end.
 
-use super::assembled::AssembledColumn;
 use super::body::{Body, Gimp, Hat, Problem, ShapeFunction};
 use super::explicit::ExplicitSettings;
+use super::frozen::FrozenStep;
+use super::grid::Grid;
+use super::implicit::banded::Singular;
 use super::implicit::drive::{self, Plan};
 use super::implicit::steps::{StepLimit, steps_for};
 use super::integrator::{Formulation, IntegratorKind};
@@ -96,11 +98,23 @@ fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
                 limit: schedule.rule.limit(&problem, sizes.target, &schedule.outputs),
                 sizes,
                 pressure_scale: problem.pressure_scale,
-                initial_height: LoadedSurface::of(&problem.points, problem.load).height(&problem.points),
+                initial_height: LoadedSurface::of(&problem.points, problem.load)
+                    .shaped(problem.load_shape, &problem.points)
+                    .height(&problem.points),
+                loading_time: problem.loading_time,
             };
-            drive::solve(discretise(problem), &plan, observer)
+            let undrained_start = problem.undrained_start;
+            let mut body = discretise(problem);
+            let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
+            drive::solve(body, &plan, start_failure.map(no_start), observer)
         }
     }
+}
+
+/// The end of a run that has no undrained start.
+fn no_start(singular: Singular) -> Failure {
+    let reason = format!("the undrained start has no pivot in row {}: nothing holds the body", singular.row);
+    Failure { kind: FailureKind::Singular, step: 0, time: 0.0, reason }
 }
 
 /// Step sizes of an implicit run: what it is measured by is the formula, for its own operator has
@@ -113,32 +127,43 @@ fn implicit_sizes<const D: usize>(problem: &Problem<D>, schedule: &Schedule) -> 
 /// Critical step, s, of the explicit integrator on a problem's initial configuration.
 ///
 /// Computed on the problem's own operators; a long column is cut to twelve cells, which moves
-/// the limit by less than a percent. Above one dimension, the safe formula.
+/// the limit by less than a percent, a wide layer to six by six.
 pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
     let safe = limits::combined_limit(&problem.material, problem.grid.cell_size, settings.drag);
-    let problem = cut_column(problem);
-    let column = match problem.method.basis {
-        Basis::Hat => AssembledColumn::new(&Body::<D, 2, Hat>::new(problem)),
-        Basis::Ugimp | Basis::Cpgimp => AssembledColumn::new(&Body::<D, 3, Gimp>::new(problem)),
+    let problem = cut_problem(problem);
+    let frozen = match problem.method.basis {
+        Basis::Hat => FrozenStep::new(&Body::<D, 2, Hat>::new(problem)),
+        Basis::Ugimp | Basis::Cpgimp => FrozenStep::new(&Body::<D, 3, Gimp>::new(problem)),
     };
-    column.map_or(safe, |column| stability::critical_step(&column, settings, safe))
+    match frozen {
+        FrozenStep::Column(column) => stability::critical_step(&column, settings, safe),
+        FrozenStep::Plane(plane) => stability::critical_step_of_plane(&plane, settings, safe),
+    }
 }
 
 /// The problem on its lowest cells only, with the load on their top.
-fn cut_column<const D: usize>(problem: &Problem<D>) -> Problem<D> {
+fn cut_problem<const D: usize>(problem: &Problem<D>) -> Problem<D> {
     let mut cut = problem.clone();
-    let height = STABILITY_CELLS as f64 * problem.grid.cell_size;
-    let keep: Vec<usize> =
-        (0..cut.points.len()).filter(|point| cut.points.position[*point][D - 1] < height).collect();
+    let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
+    let most = if is_narrow { STABILITY_CELLS } else { STABILITY_CELLS / 2 };
+    let extent = most as f64 * problem.grid.cell_size;
+    let is_kept = |point: &usize| problem.points.position[*point].iter().all(|place| *place < extent);
+    let keep: Vec<usize> = (0..cut.points.len()).filter(is_kept).collect();
     if keep.len() < cut.points.len() {
         cut.points = cut.points.select(&keep);
+        // The sides stay held; the top stays free.
+        let mut cells = problem.grid.cells;
+        for across in &mut cells[..D - 1] {
+            *across = (*across).min(most);
+        }
+        cut.grid = Grid::new(problem.grid.cell_size, cells);
     }
     cut
 }
 
 struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
     body: Body<D, W, S>,
-    column: Option<AssembledColumn>,
+    frozen: Option<FrozenStep<D>>,
     schedule: &'a Schedule,
     start: Points<D>,
     initial_height: f64,
@@ -167,16 +192,22 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let target = schedule.rule.step(&problem, critical);
         let velocity_scale = velocity_scale(&problem);
         let (load, loading_time) = (problem.load, problem.loading_time);
-        let initial_height = LoadedSurface::of(&problem.points, problem.load).height(&problem.points);
-        let body = discretise(problem);
-        let column = match (body.configuration, schedule.kernel) {
-            (Configuration::Frozen, Kernel::Fastest) => AssembledColumn::new(&body),
-            _ => None,
-        };
+        let initial_height = LoadedSurface::of(&problem.points, problem.load)
+            .shaped(problem.load_shape, &problem.points)
+            .height(&problem.points);
+        let undrained_start = problem.undrained_start;
+        let mut body = discretise(problem);
+        let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
+        let is_assembled = body.configuration == Configuration::Frozen && schedule.kernel == Kernel::Fastest;
+        let frozen = is_assembled.then(|| FrozenStep::new(&body));
         let mut run = Self {
             start: body.points.clone(),
             initial_height,
-            initial_settlement: -body.surface.mean_of(&body.grid, &body.points, &body.nodes.displacement),
+            initial_settlement: -body.surface.amplitude_of(
+                &body.grid,
+                &body.points,
+                &body.nodes.displacement,
+            ),
             velocity_scale,
             load,
             loading_time,
@@ -185,12 +216,12 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             steps: StepSizes { predicted_critical: critical, target, largest: 0.0 },
             counters: Counters { points: body.points.len(), nodes: body.nodes.len(), ..Counters::default() },
             body,
-            column,
+            frozen,
             schedule,
             snapshots: Vec::new(),
             history: Vec::new(),
             time: 0.0,
-            failure: None,
+            failure: start_failure.map(no_start),
         };
         if loading_time > 0.0 {
             run.set_load_at(0.0);
@@ -204,6 +235,9 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let end = schedule.outputs.last().copied().unwrap_or(0.0);
         let expected = steps_for(end, self.steps.target);
         for output in &schedule.outputs {
+            if self.failure.is_some() {
+                break;
+            }
             self.advance_to(*output, &|done| observer(done, expected));
             if self.failure.is_some() {
                 break;
@@ -258,12 +292,12 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
                     self.set_load_at(now);
                 }
                 let next_kick = self.rhythm.kick(dt, &settings);
-                match &mut self.column {
-                    Some(column) => {
+                match &mut self.frozen {
+                    Some(frozen) => {
                         if next_kick != kick {
-                            column.set_step(next_kick, &settings);
+                            frozen.set_step(next_kick, &settings);
                         }
-                        column.kick_and_drift(next_kick, dt, &settings);
+                        frozen.kick_and_drift(next_kick, dt, &settings);
                     }
                     None => self.body.kick_and_drift(next_kick, dt, &settings),
                 }
@@ -287,8 +321,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let body = &mut self.body;
         body.surface.load = self.load_share * self.load;
         body.surface.apply(&body.grid, &body.points, &mut body.nodes);
-        if let Some(column) = &mut self.column {
-            column.set_load_share(self.load_share);
+        if let Some(frozen) = &mut self.frozen {
+            frozen.set_load_share(self.load_share);
         }
     }
 
@@ -310,22 +344,22 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
     }
 
     fn settlement(&self) -> f64 {
-        match &self.column {
-            Some(column) => self.initial_settlement - column.surface_displacement(),
+        match &self.frozen {
+            Some(frozen) => self.initial_settlement - frozen.surface_displacement(),
             None if self.body.configuration.moves_points() => {
                 self.initial_height - self.body.surface.height(&self.body.points)
             }
             None => {
                 let body = &self.body;
-                -body.surface.mean_of(&body.grid, &body.points, &body.nodes.displacement)
+                -body.surface.amplitude_of(&body.grid, &body.points, &body.nodes.displacement)
             }
         }
     }
 
     fn snapshot(&self) -> Snapshot {
         let settlement = self.settlement();
-        match &self.column {
-            Some(column) => column.body_now(&self.body).snapshot(self.time, settlement, &self.start),
+        match &self.frozen {
+            Some(frozen) => frozen.body_now(&self.body).snapshot(self.time, settlement, &self.start),
             None => self.body.snapshot(self.time, settlement, &self.start),
         }
     }
@@ -335,8 +369,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
     }
 
     fn find_failure(&self) -> Option<Failure> {
-        let velocity = match &self.column {
-            Some(column) => column.largest_velocity(),
+        let velocity = match &self.frozen {
+            Some(frozen) => frozen.largest_velocity(),
             None => self.body.largest_velocity(),
         };
         if velocity > BLOW_UP * self.velocity_scale {

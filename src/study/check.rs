@@ -4,13 +4,14 @@ use super::case::Case;
 use super::diagnostic::{Diagnostic, StudyError, one_of};
 use super::expectation::{Axis, Expectation, Measure, NEXT_FINER};
 use super::file::{
-    ColumnTable, ExpectTable, IntegratorTable, LevelTable, MaterialTable, MethodEntry, MethodTable,
-    OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
+    ColumnTable, ExpectTable, IntegratorTable, LayerTable, LevelTable, MaterialTable, MethodEntry,
+    MethodTable, OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
 };
 use super::sweep::{AXES, Combination, Sweep};
 use crate::assess::class::Class;
 use crate::assess::expectation::{Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure};
 use crate::assess::norms::Norm;
+use crate::exact::cosine_layer::Base;
 use crate::exact::xie_leo::XieLeo;
 use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Quantity, Sample};
@@ -99,8 +100,16 @@ impl Study {
     /// # Errors
     /// Every complaint with its place.
     pub fn check(source: &StudySource) -> Result<Self, StudyError> {
+        Self::check_for(source, Purpose::Solving)
+    }
+
+    /// Checks a study for a purpose.
+    ///
+    /// # Errors
+    /// Every complaint with its place.
+    pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
         let file = source.parse()?;
-        let mut checker = Checker { source, diagnostics: Vec::new(), column_height: None };
+        let mut checker = Checker { source, diagnostics: Vec::new(), column_height: None, purpose };
         let study = checker.study(&file);
         match study {
             Some(study) if checker.diagnostics.is_empty() => Ok(study),
@@ -114,12 +123,22 @@ impl Study {
     }
 }
 
+/// What a study is read for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Its cases are to be solved.
+    Solving,
+    /// Only its problem is wanted, for an exact solution: no grid has to fit it.
+    Theory,
+}
+
 /// Complaints as they come up; every method gives a usable value or none.
 struct Checker<'a> {
     source: &'a StudySource,
     diagnostics: Vec<Diagnostic>,
     /// Height by which the levels of expectations are sized, once it is known.
     column_height: Option<f64>,
+    purpose: Purpose,
 }
 
 impl Checker<'_> {
@@ -129,7 +148,7 @@ impl Checker<'_> {
 
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.scene(&file.scene)?;
-        let column = self.column(&file.column, scene);
+        let column = self.geometry(file, scene);
         self.column_height = Some(column.height);
         let material = self.material(&file.material, scene);
         self.porosity_at_the_end(file, scene, &column, &material);
@@ -158,6 +177,9 @@ impl Checker<'_> {
             else {
                 continue;
             };
+            if self.purpose == Purpose::Solving {
+                self.cells_fill_the_width(table, &column);
+            }
             let time_factors = match &table.time_factors {
                 Some(list) => self.time_factors(list),
                 None => time_factors.clone(),
@@ -217,6 +239,42 @@ impl Checker<'_> {
         Some(SceneKind::ALL[index])
     }
 
+    /// The column's or the layer's table, whichever the scene is about; the other is refused.
+    fn geometry(&mut self, file: &StudyFile, scene: SceneKind) -> Column {
+        if scene.is_plane() {
+            if let Some(span) = file.column.typed() {
+                let name = scene.name();
+                self.complain(
+                    span,
+                    format!("the scene `{name}` has no [column]"),
+                    "its geometry and load stand in the table [layer]: length, height, base, load",
+                );
+            }
+            return self.layer(file.layer.as_ref().map(Spanned::get_ref));
+        }
+        if let Some(layer) = &file.layer {
+            self.complain(
+                layer.span(),
+                format!("the scene `{}` has no [layer]", scene.name()),
+                "its geometry and load stand in the table [column]: height, width, load, dimensions",
+            );
+        }
+        self.column(&file.column, scene)
+    }
+
+    fn layer(&mut self, table: Option<&LayerTable>) -> Column {
+        let seed = Column::layer();
+        let Some(table) = table else { return seed };
+        let base = table.base.as_ref().and_then(|word| self.word(word, "base", &Base::ALL.map(Base::name)));
+        Column {
+            height: self.positive(table.height.as_ref(), "layer.height", "m", seed.height),
+            width: self.positive(table.length.as_ref(), "layer.length", "m", seed.width),
+            load: self.positive(table.load.as_ref(), "layer.load", "Pa", seed.load),
+            base: base.map_or(seed.base, |index| Some(Base::ALL[index])),
+            ..seed
+        }
+    }
+
     fn column(&mut self, table: &ColumnTable, scene: SceneKind) -> Column {
         let seed = Column::default();
         if let Some(typed) = table.loading_time.as_ref().filter(|_| scene != SceneKind::DynamicColumn) {
@@ -227,10 +285,30 @@ impl Checker<'_> {
             );
         }
         Column {
+            dimensions: self
+                .count(table.dimensions.as_ref(), "column.dimensions", 1..=2)
+                .unwrap_or(seed.dimensions),
+            base: None,
             height: self.positive(table.height.as_ref(), "column.height", "m", seed.height),
             width: self.positive(table.width.as_ref(), "column.width", "m", seed.width),
             load: self.positive(table.load.as_ref(), "column.load", "Pa", seed.load),
             loading_time: self.not_negative(table.loading_time.as_ref(), "column.loading_time", "s"),
+        }
+    }
+
+    /// Square cells must fill the width: their number over the height decides their size.
+    fn cells_fill_the_width(&mut self, table: &SweepTable, column: &Column) {
+        for typed in table.cells.iter().flat_map(Spanned::get_ref) {
+            let cells = usize::try_from(*typed.get_ref()).unwrap_or(0);
+            if cells == 0 || column.cells_across(cells).is_some() {
+                continue;
+            }
+            let size = column.height / cells as f64;
+            self.complain(
+                typed.span(),
+                format!("square cells of {size} m do not fill a width of {} m", column.width),
+                format!("a width of {size} m is one cell wide, or take a number of cells that divides it"),
+            );
         }
     }
 

@@ -30,6 +30,7 @@ pub struct StudyFile {
     pub scene: Spanned<String>,
     #[serde(default)]
     pub column: ColumnTable,
+    pub layer: Option<Spanned<LayerTable>>,
     #[serde(default)]
     pub material: MaterialTable,
     #[serde(default)]
@@ -50,7 +51,26 @@ pub struct ColumnTable {
     pub height: Typed<f64>,
     pub width: Typed<f64>,
     pub load: Typed<f64>,
+    pub dimensions: Typed<i64>,
     pub loading_time: Typed<f64>,
+}
+
+impl ColumnTable {
+    /// Place of the first key that was typed.
+    pub fn typed(&self) -> Option<std::ops::Range<usize>> {
+        let numbers = [&self.height, &self.width, &self.load, &self.loading_time];
+        let numbers = numbers.into_iter().flatten().map(Spanned::span);
+        numbers.chain(self.dimensions.as_ref().map(Spanned::span)).min_by_key(|span| span.start)
+    }
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LayerTable {
+    pub length: Typed<f64>,
+    pub height: Typed<f64>,
+    pub base: Typed<String>,
+    pub load: Typed<f64>,
 }
 
 #[derive(Debug, Default, Deserialize)]

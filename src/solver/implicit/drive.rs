@@ -25,6 +25,8 @@ pub struct Plan<'a> {
     pub pressure_scale: f64,
     /// Height of the surface that settlements count from, m.
     pub initial_height: f64,
+    /// Time over which the load grows to its full value, s.
+    pub loading_time: f64,
 }
 
 /// Solves a body: by one linear system where it is frozen and at rest, by Newton's iteration
@@ -32,17 +34,18 @@ pub struct Plan<'a> {
 pub fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
     body: Body<D, W, S>,
     plan: &Plan<'_>,
+    start_failure: Option<Failure>,
     observer: Observer<'_>,
 ) -> Outcome {
     match (body.configuration, plan.schedule.formulation) {
         (Configuration::Frozen, Formulation::QuasiStatic) => {
             let start = body.points.clone();
-            MarchRun::new(LinearMarch::new(body), start, plan).solve(observer)
+            MarchRun::new(LinearMarch::new(body), start, plan).solve(start_failure, observer)
         }
         (_, formulation) => {
             let start = body.points.clone();
-            let march = NewtonMarch::new(body, formulation, plan.pressure_scale, plan.initial_height);
-            MarchRun::new(march, start, plan).solve(observer)
+            let march = NewtonMarch::new(body, formulation, plan);
+            MarchRun::new(march, start, plan).solve(start_failure, observer)
         }
     }
 }
@@ -74,15 +77,22 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
         }
     }
 
-    fn solve<const W: usize, S: ShapeFunction<W>>(mut self, observer: Observer<'_>) -> Outcome
+    fn solve<const W: usize, S: ShapeFunction<W>>(
+        mut self,
+        start_failure: Option<Failure>,
+        observer: Observer<'_>,
+    ) -> Outcome
     where
         M: March<D, W, S>,
     {
         let start = self.snapshot();
         self.counters.nodes = self.march.body_now().nodes.len();
         let mut snapshots = Vec::new();
-        let mut status = RunStatus::Ok;
+        let mut status = start_failure.map_or(RunStatus::Ok, RunStatus::Failed);
         for output in &self.plan.schedule.outputs {
+            if status != RunStatus::Ok {
+                break;
+            }
             if let Err(StepFailure { kind, reason }) = self.advance_to(*output, observer) {
                 status =
                     RunStatus::Failed(Failure { kind, step: self.counters.steps, time: self.time, reason });

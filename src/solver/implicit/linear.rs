@@ -49,7 +49,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
         let system = LinearSystem::of(&start);
         let zero = vec![0.0; system.unknowns.count];
         Self {
-            settled: -start.surface.mean_of(&start.grid, &start.points, &start.nodes.displacement),
+            settled: -start.surface.amplitude_of(&start.grid, &start.points, &start.nodes.displacement),
             lu: BandedLu::of_shape(&system.fixed),
             factored: None,
             state: zero.clone(),

@@ -1,6 +1,7 @@
 //! SDIRK2 with a Newton iteration a stage: for finite strain, and for bodies with inertia.
 
 use super::banded::{Banded, BandedLu};
+use super::drive::Plan;
 use super::linear::{SDIRK_GAMMA, SECOND_STAGE};
 use super::march::{March, StepFailure, Work};
 use super::tangent::Pattern;
@@ -64,19 +65,20 @@ pub struct NewtonMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
     residual: Vec<f64>,
     scratch: Vec<f64>,
     initial_height: f64,
+    /// Time over which the load grows, s.
+    loading_time: f64,
+    /// What it grows to, Pa.
+    full_load: f64,
+    /// Time at the start of the step, s.
+    time: f64,
     settlement_rate: f64,
     work: Work,
 }
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
-    /// A body at its start, whose strains are of the size of `pressure_scale` over the modulus and
-    /// whose settlement counts from `initial_height`.
-    pub fn new(
-        body: Body<D, W, S>,
-        formulation: Formulation,
-        pressure_scale: f64,
-        initial_height: f64,
-    ) -> Self {
+    /// A body at its start.
+    pub fn new(body: Body<D, W, S>, formulation: Formulation, plan: &Plan<'_>) -> Self {
+        let full_load = body.surface.load;
         let trial = Trial::new(body, formulation);
         let pattern = Pattern::of(&trial.body, &trial.unknowns);
         let tangent = pattern.zeros();
@@ -88,13 +90,16 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
             pattern,
             factored: None,
             contraction: SLOW,
-            tolerance: TOLERANCE * pressure_scale / trial.scales.pressure,
+            tolerance: TOLERANCE * plan.pressure_scale / trial.scales.pressure,
             start: StageStart::default(),
             rate: zero.clone(),
             state: zero.clone(),
             residual: zero.clone(),
             scratch: zero,
-            initial_height,
+            initial_height: plan.initial_height,
+            loading_time: plan.loading_time,
+            full_load,
+            time: 0.0,
             settlement_rate: 0.0,
             work: Work::default(),
             trial,
@@ -117,7 +122,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
         let stage = SDIRK_GAMMA * dt;
         self.start_step(stage);
         let mut flux = 0.0;
-        for share in [SECOND_STAGE, 1.0] {
+        for (share, end) in [(SECOND_STAGE, stage), (1.0, dt)] {
+            self.load_at(self.time + end);
             self.solve_stage()?;
             let body = &self.trial.body;
             flux += share * stage * body.surface.mean_of(&body.grid, &body.points, &body.nodes.flux);
@@ -131,9 +137,17 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
         let body = &self.trial.body;
         self.settlement_rate = -body.surface.mean_of(&body.grid, &body.points, &body.nodes.solid_velocity);
         self.trial.commit(&self.state);
+        self.time += dt;
         self.trial.body.surface_flux += flux;
         self.follow_structure();
         Ok(())
+    }
+
+    /// The load at a time, where it grows.
+    fn load_at(&mut self, time: f64) {
+        if self.loading_time > 0.0 {
+            self.trial.load(self.full_load * (time / self.loading_time).min(1.0));
+        }
     }
 
     /// The first stage starts where the last step ended, and is guessed to have its rates.

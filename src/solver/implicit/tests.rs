@@ -1,8 +1,10 @@
 //! The implicit integrator against the explicit one, against itself and across dimensions.
 
+use super::drive::Plan;
 use super::linear::LinearMarch;
 use super::march::March;
 use super::newton::NewtonMarch;
+use super::steps::StepLimit;
 use crate::scene::{Column, SceneKind, column_problem};
 use crate::solver::body::{Body, Gimp, Problem};
 use crate::solver::explicit::{Drag, ExplicitSettings};
@@ -11,7 +13,7 @@ use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Law, Material};
 use crate::solver::method::Method;
 use crate::solver::nodes::Support;
-use crate::solver::outcome::{FailureKind, Outcome, RunStatus};
+use crate::solver::outcome::{FailureKind, Outcome, RunStatus, StepSizes};
 use crate::solver::points::Points;
 use crate::solver::run::{Kernel, Schedule, TimeStepRule, run};
 
@@ -141,7 +143,17 @@ fn newton_on_a_frozen_body_is_the_linear_system() {
             continue;
         }
         let mut linear = LinearMarch::new(body());
-        let mut newton = NewtonMarch::new(body(), Formulation::QuasiStatic, 1.0, 1.0);
+        let schedule =
+            schedule(&Material::default(), IntegratorKind::Implicit, TimeStepRule::Seconds(1.0), &[]);
+        let plan = Plan {
+            schedule: &schedule,
+            limit: StepLimit::Constant(1.0),
+            sizes: StepSizes::default(),
+            pressure_scale: 1.0,
+            initial_height: 1.0,
+            loading_time: 0.0,
+        };
+        let mut newton = NewtonMarch::new(body(), Formulation::QuasiStatic, &plan);
         for dt in [0.05, 0.05, 0.1, 0.1, 0.3] {
             linear.step(dt).expect("solvable");
             newton.step(dt).expect("solvable");
@@ -270,6 +282,8 @@ fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
         method: one.method,
         configuration: one.configuration,
         load: one.load,
+        load_shape: crate::solver::surface::LoadShape::Uniform,
+        undrained_start: false,
         loading_time: 0.0,
         initial_gradient: [[0.0, 0.0], [0.0, strain]],
         pressure_scale: one.pressure_scale,

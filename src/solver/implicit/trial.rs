@@ -86,8 +86,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
         if self.moves_points {
             initial_height - body.surface.height(&body.points)
         } else {
-            -body.surface.mean_of(&body.grid, &body.points, &body.nodes.displacement)
+            -body.surface.amplitude_of(&body.grid, &body.points, &body.nodes.displacement)
         }
+    }
+
+    /// Loads the surface, Pa.
+    pub fn load(&mut self, load: f64) {
+        let body = &mut self.body;
+        body.surface.load = load;
+        body.surface.apply(&body.grid, &body.points, &mut body.nodes);
     }
 
     /// Makes the present state the one that increments count from.
@@ -179,30 +186,35 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
             let drag = nodes.drag[node];
             let water_inertia = water_density * nodes.volume[node] * per_duration;
             for d in 0..D {
-                let Some(number) = self.unknowns.displacement[node][d] else { continue };
-                let solid = self.scales.length * per_duration * (increments[number] - start.unknowns[number]);
+                // Where the skeleton is held, the water may still slide.
+                let number = self.unknowns.displacement[node][d];
+                let moved = number.map_or(0.0, |number| increments[number] - start.unknowns[number]);
+                let solid = self.scales.length * per_duration * moved;
                 let solid_change = solid - start.solid_velocity[node][d];
                 let force = nodes.water_force[node][d];
-                let (water, inertia) = match self.formulation {
-                    Formulation::QuasiStatic => (solid + force / drag, 0.0),
-                    Formulation::UP => {
-                        let mass = nodes.solid_mass[node] + nodes.water_mass[node];
-                        (
-                            solid + (force - water_inertia * solid_change) / drag,
-                            mass * per_duration * solid_change,
-                        )
-                    }
+                let before = start.water_velocity[node][d];
+                let water = match self.formulation {
+                    Formulation::QuasiStatic => solid + force / drag,
+                    Formulation::UP => solid + (force - water_inertia * solid_change) / drag,
                     Formulation::VW => {
-                        let before = start.water_velocity[node][d];
-                        let water = (water_inertia * before + force + drag * solid) / (water_inertia + drag);
-                        let momentum =
-                            nodes.solid_mass[node] * solid_change + nodes.water_mass[node] * (water - before);
-                        (water, per_duration * momentum)
+                        (water_inertia * before + force + drag * solid) / (water_inertia + drag)
                     }
                 };
                 nodes.solid_velocity[node][d] = solid;
-                nodes.water_velocity[node][d] = water;
-                residual[number] = (inertia - nodes.mixture_force[node][d]) / self.scales.force;
+                if nodes.water_free[node][d] > 0.0 {
+                    nodes.water_velocity[node][d] = water;
+                }
+                let Some(row) = number else { continue };
+                let water_change = match self.formulation {
+                    Formulation::QuasiStatic => {
+                        residual[row] = -nodes.mixture_force[node][d] / self.scales.force;
+                        continue;
+                    }
+                    Formulation::UP => solid_change,
+                    Formulation::VW => water - before,
+                };
+                let momentum = nodes.solid_mass[node] * solid_change + nodes.water_mass[node] * water_change;
+                residual[row] = (per_duration * momentum - nodes.mixture_force[node][d]) / self.scales.force;
             }
         }
     }
