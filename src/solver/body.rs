@@ -389,7 +389,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         self.nodes.mixture_force.copy_from_slice(&self.nodes.external_force);
         self.nodes.water_force.fill([0.0; D]);
         for point in 0..self.points.len() {
-            let volume = self.stressed_volume(point);
+            let volume = self.points.stressed_volume(point);
             let pressure = volume * self.points.pressure[point];
             let mut total = self.points.effective_stress[point];
             let mut water = [[0.0; D]; D];

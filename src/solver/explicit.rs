@@ -122,7 +122,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         for point in 0..self.points.len() {
             let at_point = |field: &[Vector<D>]| self.basis.value(self.grid.node_stride(), point, field);
             let (solid, water) = (at_point(&nodes.solid_velocity), at_point(&nodes.water_velocity));
-            let carrying = self.carrying_velocity(point, &solid);
+            let carrying = self.carrying(point, &nodes.solid_velocity, solid);
             let solid_rate = at_point(&nodes.solid_acceleration);
             let water_rate = at_point(&nodes.water_acceleration);
             for d in 0..D {

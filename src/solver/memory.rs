@@ -138,17 +138,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         self.method.memory == Memory::Cells && self.configuration.moves_points()
     }
 
-    /// Volume that a point's stress fills in the internal force, m^D: that of its domain, where the
-    /// cells remember the volume ratio; the domains still tile the material.
-    #[inline]
-    pub fn stressed_volume(&self, point: usize) -> f64 {
-        if self.remembers_in_cells() && self.method.domains_follow() {
-            self.points.half_length[point].iter().map(|half| 2.0 * half).product()
-        } else {
-            self.points.volume(point)
-        }
-    }
-
     /// Spreads pressure, effective stress and volume ratio over the points of each cell by the
     /// parabolas through the cells' means.
     pub fn remember_in_cells(&mut self) {
@@ -160,7 +149,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
         memory.fit(&self.grid, cells, &points.initial_volume, |point| points.volume_ratio[point]);
         for point in 0..points.len() {
-            points.volume_ratio[point] = memory.value(cells.of_point[point], &points.position[point]);
+            let ratio = memory.value(cells.of_point[point], &points.position[point]);
+            // The domains still tile the material: what they fill does not change.
+            points.stressed_share[point] *= points.volume_ratio[point] / ratio;
+            points.volume_ratio[point] = ratio;
         }
         for (i, j) in (0..D).flat_map(|i| (i..D).map(move |j| (i, j))) {
             memory

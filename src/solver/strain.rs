@@ -35,15 +35,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// Velocity that carries a point, m/s: that of the basis, or the mean of its domain's ends where
-    /// those are what its strain is taken between.
+    /// What carries a point under a nodal velocity or displacement: the value of the basis, or the
+    /// mean of its domain's ends where those are what its strain is taken between.
     #[inline]
-    pub fn carrying_velocity(&self, point: usize, of_basis: &Vector<D>) -> Vector<D> {
+    pub fn carrying(&self, point: usize, field: &[Vector<D>], of_basis: Vector<D>) -> Vector<D> {
         match self.method.strain {
-            StrainGradient::Standard | StrainGradient::Cmpm => *of_basis,
-            StrainGradient::CmpmEnds => {
-                self.between_ends.value(self.grid.node_stride(), point, &self.nodes.solid_velocity)
-            }
+            StrainGradient::Standard | StrainGradient::Cmpm => of_basis,
+            StrainGradient::CmpmEnds => self.between_ends.value(self.grid.node_stride(), point, field),
         }
     }
 
