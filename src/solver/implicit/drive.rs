@@ -39,15 +39,13 @@ pub fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
     start_failure: Option<Failure>,
     observer: Observer<'_>,
 ) -> Outcome {
-    match (body.configuration, plan.schedule.formulation) {
-        (Configuration::Frozen, Formulation::QuasiStatic) => {
-            let start = body.points.clone();
-            MarchRun::new(LinearMarch::new(body, plan), start, plan).solve(start_failure, observer)
-        }
-        _ => {
-            let start = body.points.clone();
-            MarchRun::new(NewtonMarch::new(body, plan), start, plan).solve(start_failure, observer)
-        }
+    let start = body.points.clone();
+    let is_linear = body.configuration == Configuration::Frozen
+        && plan.schedule.formulation == Formulation::QuasiStatic;
+    if is_linear {
+        MarchRun::new(LinearMarch::new(body, plan), start, plan).solve(start_failure, observer)
+    } else {
+        MarchRun::new(NewtonMarch::new(body, plan), start, plan).solve(start_failure, observer)
     }
 }
 
