@@ -40,8 +40,8 @@ pub fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
     observer: Observer<'_>,
 ) -> Outcome {
     let start = body.points.clone();
-    let is_linear = body.configuration == Configuration::Frozen
-        && plan.schedule.formulation == Formulation::QuasiStatic;
+    let is_linear =
+        body.configuration == Configuration::Frozen && plan.schedule.formulation == Formulation::QuasiStatic;
     if is_linear {
         MarchRun::new(LinearMarch::new(body, plan), start, plan).solve(start_failure, observer)
     } else {
