@@ -12,7 +12,8 @@ pub use store::{RecordStore, StoreError, write_whole};
 pub use tidy::tidy_csv;
 
 use crate::assess::norms::Norm;
-use crate::solver::outcome::{Counters, Failure, StepSizes};
+use crate::solver::critical::CriticalStep;
+use crate::solver::outcome::{Counters, Failure, FailureKind, StepSizes};
 use crate::solver::snapshot::Snapshot;
 use crate::study::Case;
 use serde::{Deserialize, Serialize};
@@ -89,6 +90,11 @@ pub enum Status {
 }
 
 impl Status {
+    /// Whether the time was over before the case was.
+    pub fn is_late(&self) -> bool {
+        matches!(self, Self::Failed(failure) if failure.kind == FailureKind::TimedOut)
+    }
+
     /// `ok`, or the failure's name.
     pub fn name(&self) -> String {
         match self {
@@ -212,6 +218,9 @@ pub struct Record {
     /// day and the record does not.
     #[serde(skip)]
     pub wall: Vec<WallSample>,
+    /// The critical step, where that was the question.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stability: Option<CriticalStep>,
     /// Dimensionless groups.
     pub groups: Groups,
     /// Start checks, where the start was reached.

@@ -58,11 +58,13 @@ impl RecordStore {
     /// The finished record of a case, if there is one that this very program made.
     ///
     /// A record that cannot be read, is of another layout, of another case or of other sources is
-    /// as good as none: the case is run again.
+    /// as good as none, and so is one that ran out of its time: the case is run again.
     pub fn finished(&self, case: &Case) -> Option<Record> {
         let own = Provenance::of_this_program();
         self.kept(case).filter(|record| {
-            record.provenance.sources == own.sources && record.provenance.profile == own.profile
+            record.provenance.sources == own.sources
+                && record.provenance.profile == own.profile
+                && !record.status.is_late()
         })
     }
 

@@ -9,6 +9,7 @@ pub mod number;
 pub mod page;
 pub mod report;
 mod script;
+pub mod stability;
 #[cfg(test)]
 mod showcase;
 pub mod table;

@@ -1,6 +1,6 @@
 //! Columns drained at their top: the lattice of points and its start.
 
-use super::SceneKind;
+use super::{Arrangement, SceneKind};
 use crate::exact::dynamic_column::{DynamicColumn, Start};
 use crate::exact::single_mode::SingleMode;
 use crate::exact::{ColumnParameters, ExactError};
@@ -27,6 +27,9 @@ pub struct Column {
     /// Time over which the load grows linearly, s; 0 where it acts at once.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub loading_time: f64,
+    /// Where the points lie in their cells.
+    #[serde(default, skip_serializing_if = "Arrangement::is_regular")]
+    pub points: Arrangement,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
@@ -37,7 +40,7 @@ fn is_zero(value: &f64) -> bool {
 impl Default for Column {
     /// The seed column under 1 Pa.
     fn default() -> Self {
-        Self { height: 1.0, width: 0.1, load: 1.0, loading_time: 0.0 }
+        Self { height: 1.0, width: 0.1, load: 1.0, loading_time: 0.0, points: Arrangement::default() }
     }
 }
 
@@ -70,8 +73,9 @@ pub fn column_problem(
     cells: usize,
     points_per_cell: usize,
 ) -> Result<Problem<1>, ExactError> {
-    let cell_size = column.height / cells as f64;
+    let cell_size = column.points.cell_size(column.height, cells);
     let mut points = Points::lattice(cell_size, [cells], points_per_cell);
+    column.points.arrange(&mut points, cell_size, cells);
     let (load, initial_gradient) = match scene {
         SceneKind::Terzaghi => (column.load, [[start_undrained(&mut points, soil, column.load)]]),
         SceneKind::DynamicColumn => (column.load, [[0.0]]),

@@ -2,8 +2,10 @@
 //! that hold for it. It knows the exact solutions and the solver, and makes a problem for one from
 //! the other.
 
+mod arrangement;
 mod column;
 
+pub use arrangement::Arrangement;
 pub use column::{Column, column_parameters, column_problem};
 
 use crate::exact::large_strain::{self, LargeStrainModel, SoilLaw, Water};

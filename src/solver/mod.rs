@@ -12,6 +12,7 @@
 pub mod assembled;
 pub mod body;
 pub mod cells;
+pub mod critical;
 pub mod explicit;
 pub mod grid;
 pub mod implicit;
@@ -22,6 +23,7 @@ pub mod method;
 pub mod nodes;
 pub mod outcome;
 pub mod points;
+pub mod prediction;
 pub mod recovery;
 pub mod run;
 pub mod scheme;

@@ -10,9 +10,9 @@ use super::limits;
 use super::method::{Basis, Configuration};
 use super::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
 use super::points::Points;
+pub use super::prediction::predicted_critical_step;
 use super::scheme::Rhythm;
 use super::snapshot::Snapshot;
-use super::stability;
 use super::surface::LoadedSurface;
 use serde::{Deserialize, Serialize};
 
@@ -23,8 +23,6 @@ const BLOW_UP: f64 = 1e3;
 /// Steps after which deforming points are given a new step size: the pores at the drained end
 /// close within a thousand.
 const STEP_RENEWAL: u64 = 256;
-/// Cells of the column on which the critical step is computed where the run has more.
-const STABILITY_CELLS: usize = 12;
 
 /// How the time step is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,6 +63,8 @@ pub struct Schedule {
     pub kernel: Kernel,
     /// Integrator.
     pub integrator: IntegratorKind,
+    /// Critical step, s, where it is known already.
+    pub critical_step: Option<f64>,
 }
 
 /// Told now and then how many steps are done, of how many; answers whether to go on.
@@ -102,32 +102,6 @@ fn implicit_sizes<const D: usize>(problem: &Problem<D>, schedule: &Schedule) -> 
     StepSizes { predicted_critical: safe, target: schedule.rule.step(problem, safe), largest: 0.0 }
 }
 
-/// Critical step, s, of the explicit integrator on a problem's initial configuration.
-///
-/// Computed on the problem's own operators; a long column is cut to twelve cells, which moves
-/// the limit by less than a percent. Above one dimension, the safe formula.
-pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
-    let safe = limits::combined_limit(&problem.material, problem.grid.cell_size, settings.drag);
-    let problem = cut_column(problem);
-    let column = match problem.method.basis {
-        Basis::Hat => AssembledColumn::new(&Body::<D, 2, Hat>::new(problem)),
-        Basis::Ugimp | Basis::Cpgimp => AssembledColumn::new(&Body::<D, 3, Gimp>::new(problem)),
-    };
-    column.map_or(safe, |column| stability::critical_step(&column, settings, safe))
-}
-
-/// The problem on its lowest cells only, with the load on their top.
-fn cut_column<const D: usize>(problem: &Problem<D>) -> Problem<D> {
-    let mut cut = problem.clone();
-    let height = STABILITY_CELLS as f64 * problem.grid.cell_size;
-    let keep: Vec<usize> =
-        (0..cut.points.len()).filter(|point| cut.points.position[*point][D - 1] < height).collect();
-    if keep.len() < cut.points.len() {
-        cut.points = cut.points.select(&keep);
-    }
-    cut
-}
-
 struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
     body: Body<D, W, S>,
     column: Option<AssembledColumn>,
@@ -146,6 +120,9 @@ struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
     snapshots: Vec<Snapshot>,
     history: Vec<HistoryPoint>,
     time: f64,
+    /// Largest velocity at the last look, m/s, and its growth a step since the one before.
+    watched_velocity: f64,
+    growth: Option<f64>,
     failure: Option<Failure>,
 }
 
@@ -155,7 +132,9 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         problem: Problem<D>,
         schedule: &'a Schedule,
     ) -> Self {
-        let critical = predicted_critical_step(&problem, &schedule.settings);
+        let critical = schedule
+            .critical_step
+            .unwrap_or_else(|| predicted_critical_step(&problem, &schedule.settings));
         let target = schedule.rule.step(&problem, critical);
         let velocity_scale = velocity_scale(&problem);
         let (load, loading_time) = (problem.load, problem.loading_time);
@@ -182,6 +161,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             snapshots: Vec::new(),
             history: Vec::new(),
             time: 0.0,
+            watched_velocity: 0.0,
+            growth: None,
             failure: None,
         };
         if loading_time > 0.0 {
@@ -243,7 +224,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let mut kick = f64::NAN;
         let mut done = 0;
         while done < count && self.failure.is_none() {
-            let some = WATCH_INTERVAL.min(count - done).min(self.steps_to_history(dt));
+            let some = self.steps_to_look().min(count - done).min(self.steps_to_history(dt));
             for step in done..done + some {
                 let now = start + step as f64 * dt;
                 if self.load_share < 1.0 {
@@ -266,6 +247,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             self.counters.steps += some;
             self.counters.point_updates += some * self.counters.points as u64;
             self.note_history();
+            self.watch(some);
             self.failure = self.find_failure();
             if self.failure.is_none() && !go_on(self.counters.steps) {
                 self.failure = Some(self.failure(FailureKind::Stopped, "stopped from outside".to_owned()));
@@ -323,14 +305,30 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
     }
 
     fn failure(&self, kind: FailureKind, reason: String) -> Failure {
-        Failure { kind, step: self.counters.steps, time: self.time, reason }
+        Failure { kind, step: self.counters.steps, time: self.time, growth: self.growth, reason }
     }
 
-    fn find_failure(&self) -> Option<Failure> {
+    /// Steps to the next look: at first it comes after 1, 2, 4 steps and so on, for what grows fast
+    /// is soon beyond all numbers.
+    fn steps_to_look(&self) -> u64 {
+        let done = self.counters.steps;
+        if done >= WATCH_INTERVAL { WATCH_INTERVAL } else { ((done + 1).next_power_of_two() - done).max(1) }
+    }
+
+    /// Looks at the largest velocity after some steps.
+    fn watch(&mut self, steps: u64) {
         let velocity = match &self.column {
             Some(column) => column.largest_velocity(),
             None => self.body.largest_velocity(),
         };
+        if velocity.is_finite() && self.watched_velocity > 0.0 && velocity > 0.0 {
+            self.growth = Some((velocity / self.watched_velocity).powf(1.0 / steps as f64));
+        }
+        self.watched_velocity = velocity;
+    }
+
+    fn find_failure(&self) -> Option<Failure> {
+        let velocity = self.watched_velocity;
         if velocity > BLOW_UP * self.velocity_scale {
             let reason = format!(
                 "a nodal velocity of {velocity:.3e} m/s is more than {BLOW_UP:.0} times its scale of {:.3e} m/s; the step \
@@ -426,6 +424,7 @@ mod tests {
             settings,
             kernel,
             integrator: IntegratorKind::Explicit,
+            critical_step: None,
         }
     }
 

@@ -1,24 +1,26 @@
 //! From what was typed to what will run: every value judged, every complaint at its place.
 
-use super::case::Case;
+use super::case::{Case, Task};
 use super::diagnostic::{Diagnostic, StudyError, one_of};
 use super::expectation::{Axis, Expectation, Measure, NEXT_FINER};
 use super::file::{
-    ColumnTable, ExpectTable, IntegratorTable, LevelTable, MaterialTable, MethodEntry, MethodTable,
-    OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
+    ColumnTable, ExpectCaseTable, ExpectTable, IntegratorTable, LevelTable, MaterialTable, MethodEntry, MethodTable,
+    OutputTable, PointsTable, RangeTable, StudyFile, StudySource, SweepTable, TimeStepTable,
 };
 use super::sweep::{AXES, Sweep};
+use crate::assess::case_expectation::{CaseDemand, CaseExpectation, ErrorRange, Selection};
 use crate::assess::class::Class;
 use crate::assess::expectation::{Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure};
 use crate::assess::norms::Norm;
 use crate::exact::xie_leo::XieLeo;
 use crate::exact::{ExactError, ReferenceKind};
-use crate::record::{Quantity, Sample};
-use crate::scene::{Column, SceneKind, column_parameters};
+use crate::record::{Quantity, Record, Sample};
+use crate::scene::{Arrangement, Column, SceneKind, column_parameters};
 use crate::solver::explicit::{Drag, ExplicitSettings};
 use crate::solver::integrator::IntegratorKind;
 use crate::solver::material::{Continuity, Law, Material};
 use crate::solver::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
+use crate::solver::outcome::FailureKind;
 use crate::solver::run::TimeStepRule;
 use crate::solver::scheme::Scheme;
 use std::ops::{Range, RangeInclusive};
@@ -26,6 +28,8 @@ use toml::Spanned;
 
 /// Time factors where a study names none.
 const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
+/// Longest wall time of a case, s, where a study names none.
+const DEFAULT_CASE_SECONDS: f64 = 3600.0;
 /// Half-width of an order's band where an expectation names none.
 const DEFAULT_BAND: f64 = 0.1;
 /// Final strain `m_vl q` up to which small-strain theory is taken without a word.
@@ -87,6 +91,10 @@ pub struct Study {
     pub planned: Vec<PlannedCase>,
     /// What it expects of its results.
     pub expectations: Vec<Expectation>,
+    /// What it expects of single cases.
+    pub case_expectations: Vec<CaseExpectation>,
+    /// Longest wall time of a case, s.
+    pub case_seconds: f64,
     /// Times each case is run alone for its wall time; 0 where it is not timed.
     pub timing_repeats: usize,
     /// What is odd and runs all the same, as a person reads it.
@@ -106,6 +114,11 @@ impl Study {
             Some(study) if checker.diagnostics.is_empty() => Ok(study),
             _ => Err(source.error(checker.diagnostics)),
         }
+    }
+
+    /// Whether an expectation says that a record is to end as it did.
+    pub fn foresees(&self, record: &Record) -> bool {
+        self.case_expectations.iter().any(|expectation| expectation.foresees(record))
     }
 
     /// The cases of a tier.
@@ -129,12 +142,16 @@ impl Checker<'_> {
 
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.scene(&file.scene)?;
-        let column = self.column(&file.column, scene);
+        let column = Column { points: self.arrangement(&file.points), ..self.column(&file.column, scene) };
         self.column_height = Some(column.height);
         let material = self.material(&file.material, scene);
         self.porosity_at_the_end(file, scene, &column, &material);
         let warnings = self.large_for_small_strain(file, scene, &column, &material).into_iter().collect();
         let settings = self.settings(&file.integrator);
+        let task = match &file.task {
+            Some(word) => Task::ALL[self.word(word, "task", &Task::ALL.map(Task::name))?],
+            None => Task::default(),
+        };
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
@@ -152,7 +169,10 @@ impl Checker<'_> {
         let mut planned: Vec<PlannedCase> = Vec::new();
         for block in &file.sweep {
             let table = block.get_ref();
-            let Some(sweep) = self.sweep(table, block.span(), &settings, scene, &material) else { continue };
+            let offset = column.points.offset;
+            let Some(sweep) = self.sweep(table, block.span(), &settings, scene, &material, offset) else {
+                continue;
+            };
             let time_factors = match &table.time_factors {
                 Some(list) => self.time_factors(list),
                 None => time_factors.clone(),
@@ -160,9 +180,20 @@ impl Checker<'_> {
             let tier = self.tier(table);
             for one in sweep.combinations() {
                 let case = Case {
+                    task,
                     scene,
-                    column,
-                    material: Material { law: one.law, continuity: one.continuity, ..material },
+                    column: Column {
+                        points: Arrangement { offset: one.offset, ..column.points },
+                        ..column
+                    },
+                    material: Material {
+                        law: one.law,
+                        continuity: one.continuity,
+                        hydraulic_conductivity: one.hydraulic_conductivity,
+                        water_bulk_modulus: one.water_bulk_modulus,
+                        porosity: one.porosity,
+                        ..material
+                    },
                     method: one.method,
                     integrator: one.integrator,
                     settings: ExplicitSettings {
@@ -184,6 +215,13 @@ impl Checker<'_> {
         }
         let expectations =
             file.expect.iter().filter_map(|entry| self.expectation(entry, scene, &references)).collect();
+        let case_expectations = file
+            .expect_case
+            .iter()
+            .filter_map(|entry| self.case_expectation(entry, scene, &references))
+            .collect();
+        let case_seconds =
+            self.positive(file.case_seconds.as_ref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
         let timing_repeats =
             self.count(file.timing.repeats.as_ref(), "timing.repeats", 0..=1000).unwrap_or(0);
         Some(Study {
@@ -194,6 +232,8 @@ impl Checker<'_> {
             references,
             planned,
             expectations,
+            case_expectations,
+            case_seconds,
             timing_repeats,
             warnings,
         })
@@ -225,7 +265,39 @@ impl Checker<'_> {
             width: self.positive(table.width.as_ref(), "column.width", "m", seed.width),
             load: self.positive(table.load.as_ref(), "column.load", "Pa", seed.load),
             loading_time: self.not_negative(table.loading_time.as_ref(), "column.loading_time", "s"),
+            points: Arrangement::default(),
         }
+    }
+
+    fn arrangement(&mut self, table: &PointsTable) -> Arrangement {
+        let regular = Arrangement::default();
+        let filling = table.filling.as_ref().map_or(regular.filling, |typed| *typed.get_ref());
+        if let Some(typed) = table.filling.as_ref().filter(|_| !(filling > 0.0 && filling <= 1.0)) {
+            self.complain(
+                typed.span(),
+                format!("`points.filling` is {filling}"),
+                "it is the share of the top cell that is filled: more than 0, at most 1",
+            );
+        }
+        Arrangement {
+            offset: table.offset.as_ref().map_or(Some(0.0), |typed| self.offset(typed)).unwrap_or(0.0),
+            jitter: table.jitter.as_ref().map_or(Some(0.0), |typed| self.offset(typed)).unwrap_or(0.0).abs(),
+            filling,
+        }
+    }
+
+    /// A shift of points, in spacings.
+    fn offset(&mut self, typed: &Spanned<f64>) -> Option<f64> {
+        let offset = *typed.get_ref();
+        if (-0.5..=0.5).contains(&offset) {
+            return Some(offset);
+        }
+        self.complain(
+            typed.span(),
+            format!("points shifted by {offset} spacings"),
+            "half a spacing up or down, 0.5 or -0.5, is as far as they go",
+        );
+        None
     }
 
     fn material(&mut self, table: &MaterialTable, scene: SceneKind) -> Material {
@@ -383,8 +455,7 @@ impl Checker<'_> {
     }
 
     fn drag(&mut self, word: &Spanned<String>) -> Option<Drag> {
-        let index = self.word(word, "drag", &["explicit", "implicit", "centred"])?;
-        Some([Drag::Explicit, Drag::Implicit, Drag::Centred][index])
+        Some(Drag::ALL[self.word(word, "drag", &Drag::ALL.map(Drag::name))?])
     }
 
     fn scheme(&mut self, word: &Spanned<String>) -> Option<Scheme> {
@@ -449,6 +520,7 @@ impl Checker<'_> {
         settings: &ExplicitSettings,
         scene: SceneKind,
         soil: &Material,
+        offset: f64,
     ) -> Option<Sweep> {
         let before = self.diagnostics.len();
         if table.method.is_none() {
@@ -500,6 +572,27 @@ impl Checker<'_> {
                 |_, typed| Some(*typed.get_ref()),
             ),
             law: self.list(table.law.as_ref(), "law", &[soil.law], |c, word| c.law(word, scene)),
+            porosity: self.list(table.porosity.as_ref(), "porosity", &[soil.porosity], |c, typed| {
+                Some(c.between(Some(typed), "porosity", 0.0, 1.0, soil.porosity))
+            }),
+            hydraulic_conductivity: self.list(
+                table.hydraulic_conductivity.as_ref(),
+                "hydraulic_conductivity",
+                &[soil.hydraulic_conductivity],
+                |c, typed| {
+                    let usual = soil.hydraulic_conductivity;
+                    Some(c.positive(Some(typed), "hydraulic_conductivity", "m/s", usual))
+                },
+            ),
+            water_bulk_modulus: self.list(
+                table.water_bulk_modulus.as_ref(),
+                "water_bulk_modulus",
+                &[soil.water_bulk_modulus],
+                |c, typed| {
+                    Some(c.positive(Some(typed), "water_bulk_modulus", "Pa", soil.water_bulk_modulus))
+                },
+            ),
+            offset: self.list(table.offset.as_ref(), "offset", &[offset], Self::offset),
             continuity: self.list(
                 table.continuity.as_ref(),
                 "continuity",
@@ -793,6 +886,102 @@ impl Checker<'_> {
             Some(word) => Some(references[self.word(word, "reference", &names)?]),
             None => Some(scene.references()[0]),
         }
+    }
+
+    /// What single cases must do.
+    fn case_expectation(
+        &mut self,
+        entry: &Spanned<ExpectCaseTable>,
+        scene: SceneKind,
+        references: &[ReferenceKind],
+    ) -> Option<CaseExpectation> {
+        let table = entry.get_ref();
+        let before = self.diagnostics.len();
+        let status = table.status.as_ref().and_then(|word| {
+            let mut names = vec!["ok"];
+            names.extend(FailureKind::ALL.map(FailureKind::name));
+            self.word(word, "status", &names).map(|index| names[index].to_owned())
+        });
+        let error = table.error.as_ref().and_then(|range| self.error_range(table, range, scene, references));
+        let bound = |c: &mut Self, typed: &Option<Spanned<f64>>, name: &str| {
+            typed.as_ref().map(|typed| c.positive(Some(typed), name, "", 1e-12))
+        };
+        let demand = CaseDemand {
+            status,
+            critical_step_within: bound(self, &table.critical_step_within, "critical_step_within"),
+            error,
+            solid_drift_below: bound(self, &table.solid_drift_below, "solid_drift_below"),
+            water_drift_below: bound(self, &table.water_drift_below, "water_drift_below"),
+        };
+        if demand == CaseDemand::default() && self.diagnostics.len() == before {
+            self.complain(
+                entry.span(),
+                "the expectation asks for nothing",
+                "add `status = \"ok\"`, `critical_step_within = 0.02` or `error = { below = 1e-2 }`",
+            );
+        }
+        let integrator = table.integrator.as_ref().and_then(|word| {
+            let names = IntegratorKind::ALL.map(IntegratorKind::name);
+            self.word(word, "integrator", &names).map(|index| IntegratorKind::ALL[index])
+        });
+        let selection = Selection {
+            method: table.method.as_ref().and_then(|typed| self.method(typed)),
+            integrator,
+            cells: self.count(table.cells.as_ref(), "cells", 1..=MOST_CELLS),
+            points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
+            drag: table.drag.as_ref().and_then(|word| self.drag(word)),
+            scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)),
+        };
+        let tiers = Tier::ALL.map(Tier::name);
+        let tier = table.tier.as_ref().map_or(Some(1), |word| self.word(word, "tier", &tiers))?;
+        let line = self.source.text[..entry.span().start.min(self.source.text.len())].lines().count().max(1);
+        (self.diagnostics.len() == before).then_some(CaseExpectation {
+            selection,
+            demand,
+            tier: Tier::ALL[tier],
+            line,
+        })
+    }
+
+    /// Bounds on one error of a case.
+    fn error_range(
+        &mut self,
+        table: &ExpectCaseTable,
+        range: &Spanned<RangeTable>,
+        scene: SceneKind,
+        references: &[ReferenceKind],
+    ) -> Option<ErrorRange> {
+        let quantity =
+            self.choice(table.quantity.as_ref(), "quantity", &Quantity::ALL.map(Quantity::name), 0)?;
+        let quantity = Quantity::ALL[quantity];
+        let at_surface = quantity == Quantity::Settlement;
+        let (usual_sample, usual_norm) =
+            if at_surface { (Sample::Surface, Norm::Relative) } else { (Sample::Points, Norm::L2) };
+        let place = |all: &[Sample]| all.iter().position(|one| *one == usual_sample).unwrap_or(0);
+        let usual = place(&Sample::ALL);
+        let sample = self.choice(table.sample.as_ref(), "sample", &Sample::ALL.map(Sample::name), usual)?;
+        let usual = Norm::ALL.iter().position(|one| *one == usual_norm).unwrap_or(0);
+        let norm = self.choice(table.norm.as_ref(), "norm", &Norm::ALL.map(Norm::name), usual)?;
+        let names: Vec<&str> = references.iter().map(|kind| kind.name()).collect();
+        let reference = match &table.reference {
+            Some(word) => references[self.word(word, "reference", &names)?],
+            None => scene.references()[0],
+        };
+        let Some(time_factor) = table.time_factor.as_ref().map(|typed| *typed.get_ref()) else {
+            self.complain(range.span(), "the error names no time factor", "add `time_factor = 0.1`");
+            return None;
+        };
+        Some(ErrorRange {
+            measure: Measure {
+                quantity,
+                sample: Sample::ALL[sample],
+                norm: Norm::ALL[norm],
+                reference: reference.name().to_owned(),
+                time_factor,
+            },
+            below: range.get_ref().below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
+            above: range.get_ref().above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
+        })
     }
 
     /// A bound at a level that is named in the words of its axis.

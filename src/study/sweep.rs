@@ -22,12 +22,16 @@ pub struct Sweep {
     pub mapping_back: Vec<bool>,
     pub law: Vec<Law>,
     pub continuity: Vec<Continuity>,
+    pub porosity: Vec<f64>,
+    pub hydraulic_conductivity: Vec<f64>,
+    pub water_bulk_modulus: Vec<f64>,
+    pub offset: Vec<f64>,
     /// Axes that step together, by key.
     pub path: Vec<String>,
 }
 
 /// Keys that a path can tie.
-pub const AXES: [&str; 11] = [
+pub const AXES: [&str; 15] = [
     "method",
     "integrator",
     "cells",
@@ -39,6 +43,10 @@ pub const AXES: [&str; 11] = [
     "law",
     "continuity",
     "scheme",
+    "porosity",
+    "hydraulic_conductivity",
+    "water_bulk_modulus",
+    "offset",
 ];
 
 /// One combination of a sweep.
@@ -55,6 +63,10 @@ pub struct Combination {
     pub mapping_back: bool,
     pub law: Law,
     pub continuity: Continuity,
+    pub porosity: f64,
+    pub hydraulic_conductivity: f64,
+    pub water_bulk_modulus: f64,
+    pub offset: f64,
 }
 
 impl Sweep {
@@ -71,6 +83,10 @@ impl Sweep {
             self.law.len(),
             self.continuity.len(),
             self.scheme.len(),
+            self.porosity.len(),
+            self.hydraulic_conductivity.len(),
+            self.water_bulk_modulus.len(),
+            self.offset.len(),
         ]
     }
 
@@ -118,6 +134,10 @@ impl Sweep {
                     law: self.law[at[8]],
                     continuity: self.continuity[at[9]],
                     scheme: self.scheme[at[10]],
+                    porosity: self.porosity[at[11]],
+                    hydraulic_conductivity: self.hydraulic_conductivity[at[12]],
+                    water_bulk_modulus: self.water_bulk_modulus[at[13]],
+                    offset: self.offset[at[14]],
                 }
             })
             .collect()
@@ -141,6 +161,10 @@ mod tests {
             mapping_back: vec![true],
             law: vec![Law::Linear],
             continuity: vec![Continuity::Conservative],
+            porosity: vec![0.3],
+            hydraulic_conductivity: vec![1e-4],
+            water_bulk_modulus: vec![2.2e9],
+            offset: vec![0.0],
             path: path.iter().map(|key| (*key).to_owned()).collect(),
         }
     }

@@ -101,7 +101,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearRun<'_, D, W, S>
     }
 
     fn failure(&self, kind: FailureKind, reason: String) -> Failure {
-        Failure { kind, step: self.counters.steps, time: self.time, reason }
+        Failure { kind, step: self.counters.steps, time: self.time, growth: None, reason }
     }
 }
 
