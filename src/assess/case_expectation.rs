@@ -96,7 +96,10 @@ impl CaseExpectation {
             let check = check("cases", false, None, "no case is selected".to_owned());
             return vec![self.judgement("any case".to_owned(), vec![check])];
         }
-        selected.iter().map(|record| self.judgement(record.case.label(), self.demand.checks(record))).collect()
+        selected
+            .iter()
+            .map(|record| self.judgement(record.case.label(), self.demand.checks(record)))
+            .collect()
     }
 
     fn judgement(&self, subject: String, checks: Vec<Check>) -> Judgement {
@@ -126,9 +129,10 @@ impl CaseDemand {
         let worst = |of: fn(&crate::record::Balance) -> f64| {
             record.balance.iter().map(|balance| of(balance).abs()).reduce(f64::max)
         };
-        checks.extend(self.solid_drift_below.map(|below| {
-            drift_found("mass of solids", worst(|balance| balance.solid_mass_drift), below)
-        }));
+        checks
+            .extend(self.solid_drift_below.map(|below| {
+                drift_found("mass of solids", worst(|balance| balance.solid_mass_drift), below)
+            }));
         checks.extend(
             self.water_drift_below
                 .map(|below| drift_found("water", worst(|balance| balance.water_imbalance), below)),

@@ -7,8 +7,8 @@ use crate::record::{
     StartChecks, Status,
 };
 use crate::scene::{SceneKind, column_parameters};
-use crate::solver::limits;
 use crate::solver::critical::CriticalStep;
+use crate::solver::limits;
 use crate::solver::outcome::{Counters, Outcome, RunStatus, StepSizes};
 use crate::solver::snapshot::{Samples, Snapshot};
 use crate::study::Case;

@@ -115,13 +115,18 @@ fn widest_axis(records: &[Record]) -> Option<MapAxis> {
         values.dedup();
         values.len()
     };
-    AXES.into_iter().map(|axis| (axis, values(axis))).filter(|(_, count)| *count > 1).max_by_key(|one| one.1).map(|one| one.0)
+    AXES.into_iter()
+        .map(|axis| (axis, values(axis)))
+        .filter(|(_, count)| *count > 1)
+        .max_by_key(|one| one.1)
+        .map(|one| one.0)
 }
 
 /// The choices of the integrator, in words.
 fn settings_of(case: &Case) -> String {
     let settings = &case.settings;
     let mapping = if settings.mapping_back { "" } else { ", no mapping back" };
-    let scheme = if settings.scheme.is_paper() { String::new() } else { format!(", {}", settings.scheme.name()) };
+    let scheme =
+        if settings.scheme.is_paper() { String::new() } else { format!(", {}", settings.scheme.name()) };
     format!("{} drag{mapping}{scheme}", settings.drag.name())
 }

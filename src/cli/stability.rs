@@ -5,6 +5,7 @@ use super::overrides::{self, StudyLines};
 use super::run::jobs_of;
 use crate::record::Record;
 use crate::render::stability;
+use crate::solver::critical::CriticalStep;
 use crate::study::{RunOptions, Tier, run_study};
 use clap::ValueEnum;
 use std::io::Write;
@@ -88,7 +89,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 struct StabilityJson<'a> {
     label: String,
     deviation: Option<f64>,
-    stability: Option<&'a crate::solver::critical::CriticalStep>,
+    stability: Option<&'a CriticalStep>,
     case: &'a crate::study::Case,
 }
 
@@ -96,7 +97,7 @@ impl<'a> StabilityJson<'a> {
     fn of(record: &'a Record) -> Self {
         Self {
             label: record.case.label(),
-            deviation: record.stability.as_ref().and_then(|found| found.deviation()),
+            deviation: record.stability.as_ref().and_then(CriticalStep::deviation),
             stability: record.stability.as_ref(),
             case: &record.case,
         }

@@ -9,9 +9,9 @@ pub mod number;
 pub mod page;
 pub mod report;
 mod script;
-pub mod stability;
 #[cfg(test)]
 mod showcase;
+pub mod stability;
 pub mod table;
 pub mod verdicts;
 

@@ -4,8 +4,8 @@
 //! runs of the solver itself, which know nothing of the prediction, bisected between a step that runs
 //! and one that leaves.
 
-use super::explicit::ExplicitSettings;
 use super::body::Problem;
+use super::explicit::ExplicitSettings;
 use super::integrator::IntegratorKind;
 use super::limits;
 use super::outcome::{Failure, RunStatus};

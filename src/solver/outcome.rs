@@ -25,7 +25,15 @@ pub enum FailureKind {
 
 impl FailureKind {
     /// Every failure.
-    pub const ALL: [Self; 7] = [Self::Unstable, Self::PoresClosed, Self::LeftGrid, Self::Singular, Self::NotConverged, Self::Stopped, Self::TimedOut];
+    pub const ALL: [Self; 7] = [
+        Self::Unstable,
+        Self::PoresClosed,
+        Self::LeftGrid,
+        Self::Singular,
+        Self::NotConverged,
+        Self::Stopped,
+        Self::TimedOut,
+    ];
 
     /// Name in records and tables.
     pub fn name(self) -> &'static str {

@@ -56,8 +56,9 @@ pub fn predict<const D: usize>(
         Basis::Hat => AssembledColumn::new(&Body::<D, 2, Hat>::new(problem)),
         Basis::Ugimp | Basis::Cpgimp => AssembledColumn::new(&Body::<D, 3, Gimp>::new(problem)),
     };
-    let critical_step =
-        column.as_ref().map_or(safe, |column| stability::critical_step(column, settings, safe, GROWTH_TOLERANCE));
+    let critical_step = column
+        .as_ref()
+        .map_or(safe, |column| stability::critical_step(column, settings, safe, GROWTH_TOLERANCE));
     Prediction { critical_step, column, settings: *settings }
 }
 
@@ -104,9 +105,8 @@ mod tests {
             let points = Arrangement { filling, ..Arrangement::default() };
             let column = Column { points, ..Column::default() };
             let method = Method::named(name).expect("a known method");
-            let problem =
-                column_problem(SceneKind::Terzaghi, &column, &Material::default(), method, 30, 2)
-                    .expect("the seed column");
+            let problem = column_problem(SceneKind::Terzaghi, &column, &Material::default(), method, 30, 2)
+                .expect("the seed column");
             let whole = predict(&problem, &settings, 30).critical_step;
             let cut = predict(&problem, &settings, FEW_CELLS).critical_step;
             assert!((cut / whole - 1.0).abs() < 0.01, "{name} {filling}: {cut} for {whole}");

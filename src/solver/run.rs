@@ -132,9 +132,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         problem: Problem<D>,
         schedule: &'a Schedule,
     ) -> Self {
-        let critical = schedule
-            .critical_step
-            .unwrap_or_else(|| predicted_critical_step(&problem, &schedule.settings));
+        let critical =
+            schedule.critical_step.unwrap_or_else(|| predicted_critical_step(&problem, &schedule.settings));
         let target = schedule.rule.step(&problem, critical);
         let velocity_scale = velocity_scale(&problem);
         let (load, loading_time) = (problem.load, problem.loading_time);

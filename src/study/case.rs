@@ -34,6 +34,7 @@ impl Task {
         }
     }
 
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     fn is_solve(&self) -> bool {
         *self == Self::Solve
     }

@@ -4,8 +4,8 @@ use super::case::{Case, Task};
 use super::diagnostic::{Diagnostic, StudyError, one_of};
 use super::expectation::{Axis, Expectation, Measure, NEXT_FINER};
 use super::file::{
-    ColumnTable, ExpectCaseTable, ExpectTable, IntegratorTable, LevelTable, MaterialTable, MethodEntry, MethodTable,
-    OutputTable, PointsTable, RangeTable, StudyFile, StudySource, SweepTable, TimeStepTable,
+    ColumnTable, ExpectCaseTable, ExpectTable, IntegratorTable, LevelTable, MaterialTable, MethodEntry,
+    MethodTable, OutputTable, PointsTable, RangeTable, StudyFile, StudySource, SweepTable, TimeStepTable,
 };
 use super::sweep::{AXES, Sweep};
 use crate::assess::case_expectation::{CaseDemand, CaseExpectation, ErrorRange, Selection};
@@ -182,10 +182,7 @@ impl Checker<'_> {
                 let case = Case {
                     task,
                     scene,
-                    column: Column {
-                        points: Arrangement { offset: one.offset, ..column.points },
-                        ..column
-                    },
+                    column: Column { points: Arrangement { offset: one.offset, ..column.points }, ..column },
                     material: Material {
                         law: one.law,
                         continuity: one.continuity,
@@ -588,9 +585,7 @@ impl Checker<'_> {
                 table.water_bulk_modulus.as_ref(),
                 "water_bulk_modulus",
                 &[soil.water_bulk_modulus],
-                |c, typed| {
-                    Some(c.positive(Some(typed), "water_bulk_modulus", "Pa", soil.water_bulk_modulus))
-                },
+                |c, typed| Some(c.positive(Some(typed), "water_bulk_modulus", "Pa", soil.water_bulk_modulus)),
             ),
             offset: self.list(table.offset.as_ref(), "offset", &[offset], Self::offset),
             continuity: self.list(

@@ -26,6 +26,10 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
                 ChartAxis::log10(axis_label(map.axis))
             }
         };
+        let x = match map.axis {
+            MapAxis::Points => x.with_ticks((1..=5).map(f64::from).collect()),
+            _ => x,
+        };
         let y = if most > WIDE * least { ChartAxis::log10(label) } else { ChartAxis::linear(label) };
         let mut chart = Chart::new(format!("Critical step, {}", map.shared), x, y);
         chart.size = Size { width: 560.0, ..Size::default() };

@@ -6,6 +6,7 @@ use crate::record::{Quantity, Record, Sample, Status};
 use crate::render::number;
 use crate::render::page::{Block, Section};
 use crate::render::table::{Cell, Column, Mood, Table};
+use crate::study::IntegratorKind;
 
 /// One table over the studies that say how their cases are to end; none where there are none.
 pub fn section(results: &[StudyResults<'_>]) -> Option<Section> {
@@ -73,9 +74,10 @@ fn is_hard(results: &StudyResults<'_>) -> bool {
 /// Method, with the integrator where it is not the explicit one.
 fn runner_of(record: &Record) -> String {
     let case = &record.case;
-    match case.integrator {
-        crate::study::IntegratorKind::Explicit => case.method.to_string(),
-        other => format!("{}, {}", case.method, other.name()),
+    if case.integrator == IntegratorKind::Explicit {
+        case.method.to_string()
+    } else {
+        format!("{}, {}", case.method, case.integrator.name())
     }
 }
 
@@ -92,10 +94,11 @@ fn end_of(record: &Record) -> Cell {
             Cell::Verdict(Mood::Fail, format!("{} at step {}", failure.kind.name(), failure.step))
         }
         Status::Ok => {
-            let error = record.references.first().zip(record.case.time_factors.last()).and_then(|(own, at)| {
-                let norm = first_norm(Quantity::Pressure);
-                record.error(Quantity::Pressure, Sample::Points, norm, &own.name, *at)
-            });
+            let error =
+                record.references.first().zip(record.case.time_factors.last()).and_then(|(own, at)| {
+                    let norm = first_norm(Quantity::Pressure);
+                    record.error(Quantity::Pressure, Sample::Points, norm, &own.name, *at)
+                });
             let words = error.map_or("ran".to_owned(), |row| number::error(row.value));
             Cell::Verdict(Mood::Pass, words)
         }

@@ -35,6 +35,7 @@ fn solve<const D: usize>(
         settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
         kernel: Kernel::Fastest,
         integrator,
+        critical_step: None,
     };
     let outcome = run(problem, &schedule, &|_, _| true);
     assert_eq!(outcome.status, RunStatus::Ok);
