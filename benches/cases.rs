@@ -32,11 +32,13 @@ fn moving(bencher: Bencher, cells: usize) {
 fn case(method: &str, cells: usize, configuration: Configuration) -> Case {
     let method = Method::named(method).expect("a known method");
     Case {
+        task: oedometer::study::Task::Solve,
         scene: SceneKind::Terzaghi,
         column: Column::default(),
         material: Material::default(),
         method: Method { configuration: Some(configuration), ..method },
         integrator: IntegratorKind::Explicit,
+        formulation: IntegratorKind::Explicit.default_formulation(),
         settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
         cells,
         points_per_cell: 2,

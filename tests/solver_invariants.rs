@@ -48,7 +48,7 @@ impl Setup {
 
     /// Runs to the last output, which every test here must reach.
     fn solve(&self) -> Outcome {
-        let problem = column_problem(
+        let problem = column_problem::<1>(
             self.scene,
             &self.column,
             &self.soil,
@@ -61,6 +61,7 @@ impl Setup {
         let schedule = Schedule {
             integrator: oedometer::solver::integrator::IntegratorKind::Explicit,
             critical_step: None,
+            formulation: oedometer::solver::integrator::Formulation::VW,
             outputs: self.time_factors.iter().map(|factor| factor * seconds).collect(),
             history: Vec::new(),
             rule: self.rule,

@@ -138,7 +138,7 @@ fn csv_of(records: &[Record]) -> anyhow::Result<String> {
                 probe.share.to_string(),
                 failure.map_or("ok", |failure| failure.kind.name()).to_owned(),
                 probe.steps.to_string(),
-                format!("{:e}", probe.predicted_growth),
+                number(probe.predicted_growth),
                 number(failure.and_then(|failure| failure.growth)),
             ])?;
         }

@@ -1,5 +1,6 @@
 //! The column and its material, as plain SI numbers.
 
+use super::cosine_layer::Base;
 use super::error::{ExactError, positive};
 
 /// A saturated column of soil on an impermeable base, drained and loaded at its top.
@@ -10,6 +11,10 @@ use super::error::{ExactError, positive};
 pub struct ColumnParameters {
     /// Initial height `H`, m.
     pub height: f64,
+    /// Length `L` along the layer, m; a column has none and ignores it.
+    pub length: f64,
+    /// How a layer rests on its base; a column ignores it.
+    pub base: Base,
     /// Load `q` on the top, compression positive, Pa.
     pub load: f64,
     /// Drained Young's modulus `E`, Pa.
@@ -37,6 +42,8 @@ impl Default for ColumnParameters {
     fn default() -> Self {
         Self {
             height: 1.0,
+            length: 1.0,
+            base: Base::Rough,
             load: 1.0,
             youngs_modulus: 1.0e6,
             poissons_ratio: 0.25,

@@ -51,14 +51,14 @@ fn words(probe: &Probe) -> String {
         None if probe.reaches_end => format!("runs to the end, {} steps", probe.steps),
         None => format!("runs {} steps", probe.steps),
         Some(failure) => {
-            let growth =
-                failure.growth.map_or(String::new(), |growth| format!(", grows by {growth:.4} a step"));
-            format!(
-                "{} at step {}{growth} ({:.4} predicted)",
-                failure.kind.name(),
-                failure.step,
-                probe.predicted_growth
-            )
+            let growth = match (failure.growth, probe.predicted_growth) {
+                (Some(seen), Some(predicted)) => {
+                    format!(", grows by {seen:.4} a step ({predicted:.4} predicted)")
+                }
+                (Some(seen), None) => format!(", grows by {seen:.4} a step"),
+                _ => String::new(),
+            };
+            format!("{} at step {}{growth}", failure.kind.name(), failure.step)
         }
     }
 }

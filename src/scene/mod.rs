@@ -4,9 +4,11 @@
 
 mod arrangement;
 mod column;
+mod problem;
 
 pub use arrangement::Arrangement;
 pub use column::{Column, column_parameters, column_problem};
+pub use problem::SceneProblem;
 
 use crate::exact::large_strain::{self, LargeStrainModel, SoilLaw, Water};
 use crate::exact::reference::ReferenceKind;
@@ -26,6 +28,9 @@ pub enum SceneKind {
     /// A column loaded at once and drained at its top, at large strain, from the undrained
     /// equilibrium.
     XieLeo,
+    /// A plane layer loaded at once by a cosine and drained at its top, at small strain, from the
+    /// undrained equilibrium.
+    CosineLayer,
     /// A column at rest, loaded at once or over a time, with all its waves.
     DynamicColumn,
     /// The slowest mode of an unloaded column, with the inertia that it has.
@@ -43,10 +48,11 @@ const LARGE_STRAIN: ReferenceKind = ReferenceKind::LargeStrain(LargeStrainModel 
 
 impl SceneKind {
     /// Every scene.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Terzaghi,
         Self::SingleMode,
         Self::XieLeo,
+        Self::CosineLayer,
         Self::DynamicColumn,
         Self::DynamicSingleMode,
         Self::StandingWave,
@@ -58,6 +64,7 @@ impl SceneKind {
             Self::Terzaghi => "terzaghi",
             Self::SingleMode => "single-mode",
             Self::XieLeo => "xie-leo",
+            Self::CosineLayer => "cosine-layer",
             Self::DynamicColumn => "dynamic-column",
             Self::DynamicSingleMode => "dynamic-single-mode",
             Self::StandingWave => "standing-wave",
@@ -75,6 +82,7 @@ impl SceneKind {
             Self::Terzaghi => "column under a sudden load, drained at its top, small strain",
             Self::SingleMode => "slowest consolidation mode, no load: smooth, for formal orders",
             Self::XieLeo => "column under a sudden load, drained at its top, large strain",
+            Self::CosineLayer => "plane layer under a cosine load, drained at its top: where locking shows",
             Self::DynamicColumn => "column at rest under a sudden or growing load: waves and consolidation",
             Self::DynamicSingleMode => "slowest consolidation mode with its inertia, no load: smooth",
             Self::StandingWave => "undrained standing wave, no load: smooth, for the order in the step",
@@ -87,6 +95,7 @@ impl SceneKind {
             Self::Terzaghi => &[ReferenceKind::Terzaghi, ReferenceKind::TerzaghiIncompressible],
             Self::SingleMode => &[ReferenceKind::SingleMode],
             Self::XieLeo => &[LARGE_STRAIN, ReferenceKind::XieLeo],
+            Self::CosineLayer => &[ReferenceKind::CosineLayer, ReferenceKind::CosineLayerIncompressible],
             Self::DynamicColumn => &[ReferenceKind::DynamicColumn, ReferenceKind::Terzaghi],
             Self::DynamicSingleMode => &[ReferenceKind::DynamicSingleMode, ReferenceKind::SingleMode],
             Self::StandingWave => &[ReferenceKind::StandingWave],
@@ -155,6 +164,11 @@ impl SceneKind {
         }
     }
 
+    /// Whether the problem is one of two dimensions only.
+    pub fn is_plane(self) -> bool {
+        self == Self::CosineLayer
+    }
+
     /// Whether waves run in it.
     pub fn has_waves(self) -> bool {
         matches!(self, Self::DynamicColumn | Self::DynamicSingleMode | Self::StandingWave)
@@ -163,7 +177,7 @@ impl SceneKind {
     /// Whether a load acts, so that `σ' − p = −q` at rest.
     pub fn is_loaded(self) -> bool {
         match self {
-            Self::Terzaghi | Self::XieLeo | Self::DynamicColumn => true,
+            Self::Terzaghi | Self::XieLeo | Self::DynamicColumn | Self::CosineLayer => true,
             Self::SingleMode | Self::DynamicSingleMode | Self::StandingWave => false,
         }
     }
@@ -171,7 +185,8 @@ impl SceneKind {
     /// Why a reference is not the scene's own, where it is a second one.
     pub fn model_difference(self, reference: ReferenceKind, soil: &Material) -> Option<&'static str> {
         match (self, reference) {
-            (Self::Terzaghi, ReferenceKind::TerzaghiIncompressible) => Some("the water's storage"),
+            (Self::Terzaghi, ReferenceKind::TerzaghiIncompressible)
+            | (Self::CosineLayer, ReferenceKind::CosineLayerIncompressible) => Some("the water's storage"),
             (Self::DynamicColumn, ReferenceKind::Terzaghi)
             | (Self::DynamicSingleMode, ReferenceKind::SingleMode) => Some("the inertia"),
             (Self::XieLeo, ReferenceKind::XieLeo) => {

@@ -6,7 +6,7 @@
 
 use super::body::Problem;
 use super::explicit::ExplicitSettings;
-use super::integrator::IntegratorKind;
+use super::integrator::{Formulation, IntegratorKind};
 use super::limits;
 use super::outcome::{Failure, RunStatus};
 use super::prediction::predict;
@@ -35,8 +35,9 @@ pub struct Probe {
     pub share: f64,
     /// Step, s.
     pub step: f64,
-    /// Spectral radius of the step operator: growth a step of what grows fastest.
-    pub predicted_growth: f64,
+    /// Spectral radius of the step operator: growth a step of what grows fastest; none above one
+    /// dimension.
+    pub predicted_growth: Option<f64>,
     /// Steps taken.
     pub steps: u64,
     /// Whether they reach the end of the scene.
@@ -102,7 +103,7 @@ pub fn critical_step<const D: usize>(
     }
     let prediction = predict(&problem, settings, WHOLE_COLUMN);
     let strict = prediction.critical_step;
-    let is_sharp = prediction.growth(SHARES[1] * strict) > 1.0 + VISIBLE_GROWTH;
+    let is_sharp = prediction.growth(SHARES[1] * strict).is_none_or(|growth| growth > 1.0 + VISIBLE_GROWTH);
     let predicted = if is_sharp { strict } else { prediction.critical_step_for(VISIBLE_GROWTH).max(strict) };
     let creeping_from = (strict < SHARES[0] * predicted).then_some(strict);
     let observed = observed_step(&problem, settings, predicted);
@@ -182,6 +183,7 @@ fn leaves<const D: usize>(
         settings: *settings,
         kernel: Kernel::Fastest,
         integrator: IntegratorKind::Explicit,
+        formulation: Formulation::VW,
         // A run that observes knows nothing of the prediction.
         critical_step: Some(step),
     };

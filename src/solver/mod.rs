@@ -10,10 +10,12 @@
 //! Nothing here knows of studies, references or reports.
 
 pub mod assembled;
+pub mod assembled_plane;
 pub mod body;
 pub mod cells;
 pub mod critical;
 pub mod explicit;
+pub mod frozen;
 pub mod grid;
 pub mod implicit;
 pub mod integrator;
@@ -31,4 +33,7 @@ pub mod shape;
 pub mod snapshot;
 pub mod stability;
 pub mod stencil;
+pub mod stiffness;
 pub mod surface;
+pub mod undrained;
+pub mod volumetric;

@@ -13,7 +13,7 @@ pub enum FailureKind {
     PoresClosed,
     /// A point left the grid.
     LeftGrid,
-    /// The equations of an implicit step have no unique solution.
+    /// A system of equations, of an implicit step or of a static start, has no unique solution.
     Singular,
     /// The iterations of an implicit step did not come to an end.
     NotConverged,
@@ -91,6 +91,9 @@ pub struct Counters {
     /// Iterations of an implicit integrator's nonlinear solves; a linear problem needs none.
     #[serde(default)]
     pub iterations: u64,
+    /// Steps that an implicit integrator had to halve before its iterations came to an end.
+    #[serde(default)]
+    pub halved_steps: u64,
 }
 
 /// Step sizes of a run, s.

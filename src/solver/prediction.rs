@@ -1,8 +1,8 @@
 //! The critical time step of a problem, predicted from its own operators.
 
-use super::assembled::AssembledColumn;
 use super::body::{Body, Gimp, Hat, Problem};
 use super::explicit::ExplicitSettings;
+use super::frozen::FrozenStep;
 use super::grid::Grid;
 use super::limits;
 use super::method::Basis;
@@ -13,33 +13,41 @@ const FEW_CELLS: usize = 12;
 
 /// A predicted critical step, with what it was predicted from.
 #[derive(Clone, Debug)]
-pub struct Prediction {
+pub struct Prediction<const D: usize> {
     /// Largest stable step, s.
     pub critical_step: f64,
-    column: Option<AssembledColumn>,
+    frozen: FrozenStep<D>,
     settings: ExplicitSettings,
 }
 
-impl Prediction {
-    /// Largest step, s, under which nothing grows by more than `growth` a step.
+impl<const D: usize> Prediction<D> {
+    /// Largest step, s, under which nothing grows by more than `growth` a step; above one dimension the
+    /// critical one.
     pub fn critical_step_for(&self, growth: f64) -> f64 {
-        let safe = self.critical_step;
-        let search = |column| stability::critical_step(column, &self.settings, safe, growth);
-        self.column.as_ref().map_or(safe, search)
+        match &self.frozen {
+            FrozenStep::Column(column) => {
+                stability::critical_step(column, &self.settings, self.critical_step, growth)
+            }
+            FrozenStep::Plane(_) => self.critical_step,
+        }
     }
 
-    /// Growth a step of what grows fastest under steps of a size; 1 where the operator is not
-    /// known.
-    pub fn growth(&self, step: f64) -> f64 {
-        let operator = |column| stability::step_operator(column, step, &self.settings);
-        self.column.as_ref().map_or(1.0, |column| stability::spectral_radius(&operator(column)))
+    /// Growth a step of what grows fastest under steps of a size, where the operator is small enough to
+    /// be known.
+    pub fn growth(&self, step: f64) -> Option<f64> {
+        match &self.frozen {
+            FrozenStep::Column(column) => {
+                Some(stability::spectral_radius(&stability::step_operator(column, step, &self.settings)))
+            }
+            FrozenStep::Plane(_) => None,
+        }
     }
 }
 
 /// Critical step, s, of the explicit integrator on a problem's initial configuration.
 ///
 /// Computed on the problem's own operators; a long column loses its middle, which moves the limit
-/// by less than a percent. Above one dimension, the safe formula.
+/// by less than a percent, a wide layer is cut to six by six.
 pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
     predict(problem, settings, FEW_CELLS).critical_step
 }
@@ -49,17 +57,38 @@ pub fn predict<const D: usize>(
     problem: &Problem<D>,
     settings: &ExplicitSettings,
     most_cells: usize,
-) -> Prediction {
+) -> Prediction<D> {
     let safe = limits::combined_limit(&problem.material, problem.grid.cell_size, settings.drag);
-    let problem = without_middle(problem, most_cells);
-    let column = match problem.method.basis {
-        Basis::Hat => AssembledColumn::new(&Body::<D, 2, Hat>::new(problem)),
-        Basis::Ugimp | Basis::Cpgimp => AssembledColumn::new(&Body::<D, 3, Gimp>::new(problem)),
+    let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
+    let problem =
+        if is_narrow { without_middle(problem, most_cells) } else { corner(problem, most_cells / 2) };
+    let frozen = match problem.method.basis {
+        Basis::Hat => FrozenStep::new(&Body::<D, 2, Hat>::new(problem)),
+        Basis::Ugimp | Basis::Cpgimp => FrozenStep::new(&Body::<D, 3, Gimp>::new(problem)),
     };
-    let critical_step = column
-        .as_ref()
-        .map_or(safe, |column| stability::critical_step(column, settings, safe, GROWTH_TOLERANCE));
-    Prediction { critical_step, column, settings: *settings }
+    let critical_step = match &frozen {
+        FrozenStep::Column(column) => stability::critical_step(column, settings, safe, GROWTH_TOLERANCE),
+        FrozenStep::Plane(plane) => stability::critical_step_of_plane(plane, settings, safe),
+    };
+    Prediction { critical_step, frozen, settings: *settings }
+}
+
+/// The problem on so many cells of its lower corner, with the load on their top: the sides stay held,
+/// the top stays free.
+fn corner<const D: usize>(problem: &Problem<D>, most: usize) -> Problem<D> {
+    let mut cut = problem.clone();
+    let extent = most as f64 * problem.grid.cell_size;
+    let is_kept = |point: &usize| problem.points.position[*point].iter().all(|place| *place < extent);
+    let keep: Vec<usize> = (0..cut.points.len()).filter(is_kept).collect();
+    if keep.len() < cut.points.len() {
+        cut.points = cut.points.select(&keep);
+        let mut cells = problem.grid.cells;
+        for across in &mut cells[..D - 1] {
+            *across = (*across).min(most);
+        }
+        cut.grid = Grid::new(problem.grid.cell_size, cells);
+    }
+    cut
 }
 
 /// The problem with as many cells taken out of its middle as it has too many: base and surface, where
@@ -105,8 +134,9 @@ mod tests {
             let points = Arrangement { filling, ..Arrangement::default() };
             let column = Column { points, ..Column::default() };
             let method = Method::named(name).expect("a known method");
-            let problem = column_problem(SceneKind::Terzaghi, &column, &Material::default(), method, 30, 2)
-                .expect("the seed column");
+            let problem =
+                column_problem::<1>(SceneKind::Terzaghi, &column, &Material::default(), method, 30, 2)
+                    .expect("the seed column");
             let whole = predict(&problem, &settings, 30).critical_step;
             let cut = predict(&problem, &settings, FEW_CELLS).critical_step;
             assert!((cut / whole - 1.0).abs() < 0.01, "{name} {filling}: {cut} for {whole}");

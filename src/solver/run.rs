@@ -1,11 +1,12 @@
 //! A run: from a problem and a schedule to snapshots, history, counters and a named end.
 
-use super::assembled::AssembledColumn;
 use super::body::{Body, Gimp, Hat, Problem, ShapeFunction};
 use super::explicit::ExplicitSettings;
-use super::implicit::drive;
+use super::frozen::FrozenStep;
+use super::implicit::banded::Singular;
+use super::implicit::drive::{self, Plan};
 use super::implicit::steps::{StepLimit, steps_for};
-use super::integrator::IntegratorKind;
+use super::integrator::{Formulation, IntegratorKind};
 use super::limits;
 use super::method::{Basis, Configuration};
 use super::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
@@ -65,6 +66,8 @@ pub struct Schedule {
     pub integrator: IntegratorKind,
     /// Critical step, s, where it is known already.
     pub critical_step: Option<f64>,
+    /// Accelerations that an implicit integrator keeps.
+    pub formulation: Formulation,
 }
 
 /// Told now and then how many steps are done, of how many; answers whether to go on.
@@ -89,10 +92,28 @@ fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
         IntegratorKind::Explicit => Run::new(discretise, problem, schedule).solve(observer),
         IntegratorKind::Implicit => {
             let sizes = implicit_sizes(&problem, schedule);
-            let limit = schedule.rule.limit(&problem, sizes.target, &schedule.outputs);
-            drive::run_linear(&discretise(problem), schedule, limit, sizes, observer)
+            let plan = Plan {
+                schedule,
+                limit: schedule.rule.limit(&problem, sizes.target, &schedule.outputs),
+                sizes,
+                pressure_scale: problem.pressure_scale,
+                initial_height: LoadedSurface::of(&problem.points, problem.load)
+                    .shaped(problem.load_shape, &problem.points)
+                    .height(&problem.points),
+                loading_time: problem.loading_time,
+            };
+            let undrained_start = problem.undrained_start;
+            let mut body = discretise(problem);
+            let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
+            drive::solve(body, &plan, start_failure.map(no_start), observer)
         }
     }
+}
+
+/// The end of a run that has no undrained start.
+fn no_start(singular: Singular) -> Failure {
+    let reason = format!("the undrained start has no pivot in row {}: nothing holds the body", singular.row);
+    Failure { kind: FailureKind::Singular, step: 0, time: 0.0, growth: None, reason }
 }
 
 /// Step sizes of an implicit run: what it is measured by is the formula, for its own operator has
@@ -104,7 +125,7 @@ fn implicit_sizes<const D: usize>(problem: &Problem<D>, schedule: &Schedule) -> 
 
 struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
     body: Body<D, W, S>,
-    column: Option<AssembledColumn>,
+    frozen: Option<FrozenStep<D>>,
     schedule: &'a Schedule,
     start: Points<D>,
     initial_height: f64,
@@ -137,16 +158,22 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let target = schedule.rule.step(&problem, critical);
         let velocity_scale = velocity_scale(&problem);
         let (load, loading_time) = (problem.load, problem.loading_time);
-        let initial_height = LoadedSurface::of(&problem.points, problem.load).height(&problem.points);
-        let body = discretise(problem);
-        let column = match (body.configuration, schedule.kernel) {
-            (Configuration::Frozen, Kernel::Fastest) => AssembledColumn::new(&body),
-            _ => None,
-        };
+        let initial_height = LoadedSurface::of(&problem.points, problem.load)
+            .shaped(problem.load_shape, &problem.points)
+            .height(&problem.points);
+        let undrained_start = problem.undrained_start;
+        let mut body = discretise(problem);
+        let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
+        let is_assembled = body.configuration == Configuration::Frozen && schedule.kernel == Kernel::Fastest;
+        let frozen = is_assembled.then(|| FrozenStep::new(&body));
         let mut run = Self {
             start: body.points.clone(),
             initial_height,
-            initial_settlement: -body.surface.mean_of(&body.grid, &body.points, &body.nodes.displacement),
+            initial_settlement: -body.surface.amplitude_of(
+                &body.grid,
+                &body.points,
+                &body.nodes.displacement,
+            ),
             velocity_scale,
             load,
             loading_time,
@@ -155,14 +182,14 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             steps: StepSizes { predicted_critical: critical, target, largest: 0.0 },
             counters: Counters { points: body.points.len(), nodes: body.nodes.len(), ..Counters::default() },
             body,
-            column,
+            frozen,
             schedule,
             snapshots: Vec::new(),
             history: Vec::new(),
             time: 0.0,
             watched_velocity: 0.0,
             growth: None,
-            failure: None,
+            failure: start_failure.map(no_start),
         };
         if loading_time > 0.0 {
             run.set_load_at(0.0);
@@ -176,6 +203,9 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let end = schedule.outputs.last().copied().unwrap_or(0.0);
         let expected = steps_for(end, self.steps.target);
         for output in &schedule.outputs {
+            if self.failure.is_some() {
+                break;
+            }
             self.advance_to(*output, &|done| observer(done, expected));
             if self.failure.is_some() {
                 break;
@@ -230,12 +260,12 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
                     self.set_load_at(now);
                 }
                 let next_kick = self.rhythm.kick(dt, &settings);
-                match &mut self.column {
-                    Some(column) => {
+                match &mut self.frozen {
+                    Some(frozen) => {
                         if next_kick != kick {
-                            column.set_step(next_kick, &settings);
+                            frozen.set_step(next_kick, &settings);
                         }
-                        column.kick_and_drift(next_kick, dt, &settings);
+                        frozen.kick_and_drift(next_kick, dt, &settings);
                     }
                     None => self.body.kick_and_drift(next_kick, dt, &settings),
                 }
@@ -260,8 +290,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let body = &mut self.body;
         body.surface.load = self.load_share * self.load;
         body.surface.apply(&body.grid, &body.points, &mut body.nodes);
-        if let Some(column) = &mut self.column {
-            column.set_load_share(self.load_share);
+        if let Some(frozen) = &mut self.frozen {
+            frozen.set_load_share(self.load_share);
         }
     }
 
@@ -283,22 +313,22 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
     }
 
     fn settlement(&self) -> f64 {
-        match &self.column {
-            Some(column) => self.initial_settlement - column.surface_displacement(),
+        match &self.frozen {
+            Some(frozen) => self.initial_settlement - frozen.surface_displacement(),
             None if self.body.configuration.moves_points() => {
                 self.initial_height - self.body.surface.height(&self.body.points)
             }
             None => {
                 let body = &self.body;
-                -body.surface.mean_of(&body.grid, &body.points, &body.nodes.displacement)
+                -body.surface.amplitude_of(&body.grid, &body.points, &body.nodes.displacement)
             }
         }
     }
 
     fn snapshot(&self) -> Snapshot {
         let settlement = self.settlement();
-        match &self.column {
-            Some(column) => column.body_now(&self.body).snapshot(self.time, settlement, &self.start),
+        match &self.frozen {
+            Some(frozen) => frozen.body_now(&self.body).snapshot(self.time, settlement, &self.start),
             None => self.body.snapshot(self.time, settlement, &self.start),
         }
     }
@@ -316,8 +346,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
 
     /// Looks at the largest velocity after some steps.
     fn watch(&mut self, steps: u64) {
-        let velocity = match &self.column {
-            Some(column) => column.largest_velocity(),
+        let velocity = match &self.frozen {
+            Some(frozen) => frozen.largest_velocity(),
             None => self.body.largest_velocity(),
         };
         if velocity.is_finite() && self.watched_velocity > 0.0 && velocity > 0.0 {
@@ -342,17 +372,23 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
     }
 
     fn find_lost_point(&self) -> Option<Failure> {
-        let points = &self.body.points;
-        let grains = 1.0 - self.body.material.porosity;
-        if let Some(point) = points.volume_ratio.iter().position(|ratio| *ratio <= grains) {
-            let ratio = points.volume_ratio[point];
-            let reason = format!("point {point} has J = {ratio:.4}, its grains alone fill {grains:.4}");
-            return Some(self.failure(FailureKind::PoresClosed, reason));
-        }
-        let outside = points.position.iter().position(|position| !self.body.grid.holds(position))?;
-        let reason = format!("point {outside} is at {:?} m", points.position[outside]);
-        Some(self.failure(FailureKind::LeftGrid, reason))
+        lost_point(&self.body).map(|(kind, reason)| self.failure(kind, reason))
     }
+}
+
+/// A point whose pores closed or that left the grid: by name, and in a sentence.
+pub fn lost_point<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    body: &Body<D, W, S>,
+) -> Option<(FailureKind, String)> {
+    let points = &body.points;
+    let grains = 1.0 - body.material.porosity;
+    if let Some(point) = points.volume_ratio.iter().position(|ratio| *ratio <= grains) {
+        let ratio = points.volume_ratio[point];
+        let reason = format!("point {point} has J = {ratio:.4}, its grains alone fill {grains:.4}");
+        return Some((FailureKind::PoresClosed, reason));
+    }
+    let outside = points.position.iter().position(|position| !body.grid.holds(position))?;
+    Some((FailureKind::LeftGrid, format!("point {outside} is at {:?} m", points.position[outside])))
 }
 
 /// Velocity, m/s, of an undrained wave or of Darcy's flow through one cell under the problem's
@@ -424,6 +460,7 @@ mod tests {
             kernel,
             integrator: IntegratorKind::Explicit,
             critical_step: None,
+            formulation: Formulation::VW,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::scene::{Arrangement, Column, SceneKind};
 use crate::solver::explicit::{Drag, ExplicitSettings};
-use crate::solver::integrator::IntegratorKind;
+use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Material};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
@@ -56,6 +56,8 @@ pub struct Case {
     pub method: Method,
     /// Integrator.
     pub integrator: IntegratorKind,
+    /// Accelerations that the balances keep.
+    pub formulation: Formulation,
     /// Choices of the explicit integrator.
     pub settings: ExplicitSettings,
     /// Cells over the height.
@@ -81,6 +83,15 @@ impl Case {
         self.column.points.cell_size(self.column.height, self.cells)
     }
 
+    /// Points there are to be: cells times points a cell, in every direction.
+    pub fn expected_points(&self) -> usize {
+        let along = self.cells * self.points_per_cell;
+        match self.column.dimensions {
+            1 => along,
+            _ => along * self.column.cells_across(self.cells).unwrap_or(1) * self.points_per_cell,
+        }
+    }
+
     /// Time, s, at which `T_v = 1`.
     pub fn seconds_per_time_factor(&self) -> f64 {
         self.column.height * self.column.height / self.material.coefficient_of_consolidation()
@@ -91,6 +102,9 @@ impl Case {
     pub fn variant(&self) -> String {
         let defaults = ExplicitSettings::default();
         let mut parts = Vec::new();
+        if self.formulation != self.integrator.default_formulation() {
+            parts.push(self.formulation.name().to_owned());
+        }
         if self.settings.scheme != defaults.scheme {
             parts.push(self.settings.scheme.name().to_owned());
         }
@@ -106,6 +120,9 @@ impl Case {
         }
         if self.settings.mapping_back != defaults.mapping_back {
             parts.push("no mapping back".to_owned());
+        }
+        if self.column.dimensions == 2 && !self.scene.is_plane() {
+            parts.push("two dimensions".to_owned());
         }
         if self.material.law != self.scene.default_law() {
             parts.push(format!("{} law", self.material.law.name()));
@@ -196,6 +213,7 @@ mod tests {
             material: Material::default(),
             method: Method::named("GC-SRI-patch").expect("the paper's method"),
             integrator: IntegratorKind::Explicit,
+            formulation: Formulation::VW,
             settings: ExplicitSettings::default(),
             cells: 10,
             points_per_cell: 2,

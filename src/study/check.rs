@@ -1,26 +1,28 @@
 //! From what was typed to what will run: every value judged, every complaint at its place.
 
+mod case;
+
 use super::case::{Case, Task};
 use super::diagnostic::{Diagnostic, StudyError, one_of};
 use super::expectation::{Axis, Expectation, Measure, NEXT_FINER};
 use super::file::{
-    ColumnTable, ExpectCaseTable, ExpectTable, IntegratorTable, LevelTable, MaterialTable, MethodEntry,
-    MethodTable, OutputTable, PointsTable, RangeTable, StudyFile, StudySource, SweepTable, TimeStepTable,
+    ColumnTable, ExpectTable, IntegratorTable, LayerTable, LevelTable, MaterialTable, MethodEntry,
+    MethodTable, OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
 };
-use super::sweep::{AXES, Sweep};
-use crate::assess::case_expectation::{CaseDemand, CaseExpectation, ErrorRange, Selection};
+use super::sweep::{AXES, Combination, Sweep};
+use crate::assess::case_expectation::CaseExpectation;
 use crate::assess::class::Class;
 use crate::assess::expectation::{Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure};
 use crate::assess::norms::Norm;
+use crate::exact::cosine_layer::Base;
 use crate::exact::xie_leo::XieLeo;
 use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Quantity, Record, Sample};
 use crate::scene::{Arrangement, Column, SceneKind, column_parameters};
 use crate::solver::explicit::{Drag, ExplicitSettings};
-use crate::solver::integrator::IntegratorKind;
+use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Law, Material};
 use crate::solver::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
-use crate::solver::outcome::FailureKind;
 use crate::solver::run::TimeStepRule;
 use crate::solver::scheme::Scheme;
 use std::ops::{Range, RangeInclusive};
@@ -107,8 +109,16 @@ impl Study {
     /// # Errors
     /// Every complaint with its place.
     pub fn check(source: &StudySource) -> Result<Self, StudyError> {
+        Self::check_for(source, Purpose::Solving)
+    }
+
+    /// Checks a study for a purpose.
+    ///
+    /// # Errors
+    /// Every complaint with its place.
+    pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
         let file = source.parse()?;
-        let mut checker = Checker { source, diagnostics: Vec::new(), column_height: None };
+        let mut checker = Checker { source, diagnostics: Vec::new(), column_height: None, purpose };
         let study = checker.study(&file);
         match study {
             Some(study) if checker.diagnostics.is_empty() => Ok(study),
@@ -127,12 +137,68 @@ impl Study {
     }
 }
 
+/// What a study is read for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Its cases are to be solved.
+    Solving,
+    /// Only its problem is wanted, for an exact solution: no grid has to fit it.
+    Theory,
+}
+
+/// What the cases of a study share where a sweep does not say otherwise.
+#[derive(Clone, Copy)]
+struct Common {
+    task: Task,
+    scene: SceneKind,
+    column: Column,
+    soil: Material,
+    settings: ExplicitSettings,
+    formulation: Option<Formulation>,
+}
+
+impl Common {
+    /// The case of one combination of a sweep.
+    fn case_of(&self, one: &Combination, time_factors: &[f64]) -> Case {
+        Case {
+            task: self.task,
+            scene: self.scene,
+            column: Column {
+                points: Arrangement { offset: one.offset, ..self.column.points },
+                ..self.column
+            },
+            material: Material {
+                law: one.law,
+                continuity: one.continuity,
+                hydraulic_conductivity: one.hydraulic_conductivity,
+                water_bulk_modulus: one.water_bulk_modulus,
+                porosity: one.porosity,
+                ..self.soil
+            },
+            method: one.method,
+            integrator: one.integrator,
+            formulation: one.formulation,
+            settings: ExplicitSettings {
+                scheme: one.scheme,
+                drag: one.drag,
+                flip: one.flip,
+                mapping_back: one.mapping_back,
+            },
+            cells: one.cells,
+            points_per_cell: one.points_per_cell,
+            time_step: one.time_step,
+            time_factors: time_factors.to_vec(),
+        }
+    }
+}
+
 /// Complaints as they come up; every method gives a usable value or none.
 struct Checker<'a> {
     source: &'a StudySource,
     diagnostics: Vec<Diagnostic>,
     /// Height by which the levels of expectations are sized, once it is known.
     column_height: Option<f64>,
+    purpose: Purpose,
 }
 
 impl Checker<'_> {
@@ -142,16 +208,16 @@ impl Checker<'_> {
 
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.scene(&file.scene)?;
-        let column = Column { points: self.arrangement(&file.points), ..self.column(&file.column, scene) };
+        let column = Column { points: self.arrangement(&file.points), ..self.geometry(file, scene) };
         self.column_height = Some(column.height);
         let material = self.material(&file.material, scene);
         self.porosity_at_the_end(file, scene, &column, &material);
         let warnings = self.large_for_small_strain(file, scene, &column, &material).into_iter().collect();
+        let task = self.task(file)?;
         let settings = self.settings(&file.integrator);
-        let task = match &file.task {
-            Some(word) => Task::ALL[self.word(word, "task", &Task::ALL.map(Task::name))?],
-            None => Task::default(),
-        };
+        let typed = file.integrator.formulation.as_ref().and_then(|word| self.formulation(word));
+        let formulation = typed.or(scene.has_waves().then_some(Formulation::VW));
+        let common = Common { task, scene, column, soil: material, settings, formulation };
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
@@ -169,41 +235,17 @@ impl Checker<'_> {
         let mut planned: Vec<PlannedCase> = Vec::new();
         for block in &file.sweep {
             let table = block.get_ref();
-            let offset = column.points.offset;
-            let Some(sweep) = self.sweep(table, block.span(), &settings, scene, &material, offset) else {
-                continue;
-            };
+            let Some(sweep) = self.sweep(table, block.span(), &common) else { continue };
+            if self.purpose == Purpose::Solving {
+                self.cells_fill_the_width(table, &column);
+            }
             let time_factors = match &table.time_factors {
                 Some(list) => self.time_factors(list),
                 None => time_factors.clone(),
             };
             let tier = self.tier(table);
             for one in sweep.combinations() {
-                let case = Case {
-                    task,
-                    scene,
-                    column: Column { points: Arrangement { offset: one.offset, ..column.points }, ..column },
-                    material: Material {
-                        law: one.law,
-                        continuity: one.continuity,
-                        hydraulic_conductivity: one.hydraulic_conductivity,
-                        water_bulk_modulus: one.water_bulk_modulus,
-                        porosity: one.porosity,
-                        ..material
-                    },
-                    method: one.method,
-                    integrator: one.integrator,
-                    settings: ExplicitSettings {
-                        scheme: one.scheme,
-                        drag: one.drag,
-                        flip: one.flip,
-                        mapping_back: one.mapping_back,
-                    },
-                    cells: one.cells,
-                    points_per_cell: one.points_per_cell,
-                    time_step: one.time_step,
-                    time_factors: time_factors.clone(),
-                };
+                let case = common.case_of(&one, &time_factors);
                 match planned.iter_mut().find(|other| other.case == case) {
                     Some(other) => other.tier = other.tier.min(tier),
                     None => planned.push(PlannedCase { case, tier }),
@@ -212,11 +254,7 @@ impl Checker<'_> {
         }
         let expectations =
             file.expect.iter().filter_map(|entry| self.expectation(entry, scene, &references)).collect();
-        let case_expectations = file
-            .expect_case
-            .iter()
-            .filter_map(|entry| self.case_expectation(entry, scene, &references))
-            .collect();
+        let case_expectations = self.case_expectations(file, scene, &references);
         let case_seconds =
             self.positive(file.case_seconds.as_ref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
         let timing_repeats =
@@ -248,6 +286,42 @@ impl Checker<'_> {
         Some(SceneKind::ALL[index])
     }
 
+    /// The column's or the layer's table, whichever the scene is about; the other is refused.
+    fn geometry(&mut self, file: &StudyFile, scene: SceneKind) -> Column {
+        if scene.is_plane() {
+            if let Some(span) = file.column.typed() {
+                let name = scene.name();
+                self.complain(
+                    span,
+                    format!("the scene `{name}` has no [column]"),
+                    "its geometry and load stand in the table [layer]: length, height, base, load",
+                );
+            }
+            return self.layer(file.layer.as_ref().map(Spanned::get_ref));
+        }
+        if let Some(layer) = &file.layer {
+            self.complain(
+                layer.span(),
+                format!("the scene `{}` has no [layer]", scene.name()),
+                "its geometry and load stand in the table [column]: height, width, load, dimensions",
+            );
+        }
+        self.column(&file.column, scene)
+    }
+
+    fn layer(&mut self, table: Option<&LayerTable>) -> Column {
+        let seed = Column::layer();
+        let Some(table) = table else { return seed };
+        let base = table.base.as_ref().and_then(|word| self.word(word, "base", &Base::ALL.map(Base::name)));
+        Column {
+            height: self.positive(table.height.as_ref(), "layer.height", "m", seed.height),
+            width: self.positive(table.length.as_ref(), "layer.length", "m", seed.width),
+            load: self.positive(table.load.as_ref(), "layer.load", "Pa", seed.load),
+            base: base.map_or(seed.base, |index| Some(Base::ALL[index])),
+            ..seed
+        }
+    }
+
     fn column(&mut self, table: &ColumnTable, scene: SceneKind) -> Column {
         let seed = Column::default();
         if let Some(typed) = table.loading_time.as_ref().filter(|_| scene != SceneKind::DynamicColumn) {
@@ -258,6 +332,10 @@ impl Checker<'_> {
             );
         }
         Column {
+            dimensions: self
+                .count(table.dimensions.as_ref(), "column.dimensions", 1..=2)
+                .unwrap_or(seed.dimensions),
+            base: None,
             height: self.positive(table.height.as_ref(), "column.height", "m", seed.height),
             width: self.positive(table.width.as_ref(), "column.width", "m", seed.width),
             load: self.positive(table.load.as_ref(), "column.load", "Pa", seed.load),
@@ -266,35 +344,20 @@ impl Checker<'_> {
         }
     }
 
-    fn arrangement(&mut self, table: &PointsTable) -> Arrangement {
-        let regular = Arrangement::default();
-        let filling = table.filling.as_ref().map_or(regular.filling, |typed| *typed.get_ref());
-        if let Some(typed) = table.filling.as_ref().filter(|_| !(filling > 0.0 && filling <= 1.0)) {
+    /// Square cells must fill the width: their number over the height decides their size.
+    fn cells_fill_the_width(&mut self, table: &SweepTable, column: &Column) {
+        for typed in table.cells.iter().flat_map(Spanned::get_ref) {
+            let cells = usize::try_from(*typed.get_ref()).unwrap_or(0);
+            if cells == 0 || column.cells_across(cells).is_some() {
+                continue;
+            }
+            let size = column.height / cells as f64;
             self.complain(
                 typed.span(),
-                format!("`points.filling` is {filling}"),
-                "it is the share of the top cell that is filled: more than 0, at most 1",
+                format!("square cells of {size} m do not fill a width of {} m", column.width),
+                format!("a width of {size} m is one cell wide, or take a number of cells that divides it"),
             );
         }
-        Arrangement {
-            offset: table.offset.as_ref().map_or(Some(0.0), |typed| self.offset(typed)).unwrap_or(0.0),
-            jitter: table.jitter.as_ref().map_or(Some(0.0), |typed| self.offset(typed)).unwrap_or(0.0).abs(),
-            filling,
-        }
-    }
-
-    /// A shift of points, in spacings.
-    fn offset(&mut self, typed: &Spanned<f64>) -> Option<f64> {
-        let offset = *typed.get_ref();
-        if (-0.5..=0.5).contains(&offset) {
-            return Some(offset);
-        }
-        self.complain(
-            typed.span(),
-            format!("points shifted by {offset} spacings"),
-            "half a spacing up or down, 0.5 or -0.5, is as far as they go",
-        );
-        None
     }
 
     fn material(&mut self, table: &MaterialTable, scene: SceneKind) -> Material {
@@ -451,6 +514,11 @@ impl Checker<'_> {
         }
     }
 
+    fn formulation(&mut self, word: &Spanned<String>) -> Option<Formulation> {
+        let index = self.word(word, "formulation", &Formulation::ALL.map(Formulation::name))?;
+        Some(Formulation::ALL[index])
+    }
+
     fn drag(&mut self, word: &Spanned<String>) -> Option<Drag> {
         Some(Drag::ALL[self.word(word, "drag", &Drag::ALL.map(Drag::name))?])
     }
@@ -510,15 +578,8 @@ impl Checker<'_> {
         index.map_or(Tier::default(), |index| Tier::ALL[index])
     }
 
-    fn sweep(
-        &mut self,
-        table: &SweepTable,
-        span: Range<usize>,
-        settings: &ExplicitSettings,
-        scene: SceneKind,
-        soil: &Material,
-        offset: f64,
-    ) -> Option<Sweep> {
+    fn sweep(&mut self, table: &SweepTable, span: Range<usize>, common: &Common) -> Option<Sweep> {
+        let Common { scene, column, soil, settings, formulation, .. } = *common;
         let before = self.diagnostics.len();
         if table.method.is_none() {
             self.complain(
@@ -547,6 +608,9 @@ impl Checker<'_> {
                     c.word(word, "integrator", &names).map(|index| IntegratorKind::ALL[index])
                 },
             ),
+            formulation: self.list(table.formulation.as_ref(), "formulation", &[formulation], |c, word| {
+                c.formulation(word).map(Some)
+            }),
             cells: self.list(table.cells.as_ref(), "cells", &[], |c, typed| {
                 c.count(Some(typed), "cells", 1..=MOST_CELLS)
             }),
@@ -587,7 +651,7 @@ impl Checker<'_> {
                 &[soil.water_bulk_modulus],
                 |c, typed| Some(c.positive(Some(typed), "water_bulk_modulus", "Pa", soil.water_bulk_modulus)),
             ),
-            offset: self.list(table.offset.as_ref(), "offset", &[offset], Self::offset),
+            offset: self.list(table.offset.as_ref(), "offset", &[column.points.offset], Self::offset),
             continuity: self.list(
                 table.continuity.as_ref(),
                 "continuity",
@@ -607,30 +671,29 @@ impl Checker<'_> {
         }
         if self.diagnostics.len() == before {
             self.rules_fit(table, &sweep);
-            self.integrators_fit(table, &sweep, scene);
+            self.formulations_fit(table, &span, &sweep, scene);
         }
         (self.diagnostics.len() == before).then_some(sweep)
     }
 
-    /// Complains where an integrator meets a configuration that it cannot follow.
-    fn integrators_fit(&mut self, table: &SweepTable, sweep: &Sweep, scene: SceneKind) {
-        let Some(list) = &table.integrator else { return };
-        let moves = |method: Method| method.configuration_or(scene.configuration()) != Configuration::Frozen;
-        let unfit = |one: &crate::study::sweep::Combination| {
-            one.integrator == IntegratorKind::Implicit && moves(one.method)
-        };
-        if sweep.combinations().iter().any(unfit) {
+    /// Complains where a formulation meets an integrator that cannot solve it.
+    fn formulations_fit(&mut self, table: &SweepTable, span: &Range<usize>, sweep: &Sweep, scene: SceneKind) {
+        let refusal = |one: Combination| one.integrator.refuses_formulation(one.formulation);
+        if let Some(why) = sweep.combinations().into_iter().find_map(refusal) {
+            let place = table.formulation.as_ref().map(Spanned::span);
             self.complain(
-                list.span(),
-                "the implicit integrator takes frozen configurations only",
-                "leave it to scenes of small strain, and to methods without `configuration` or the prefix TL-",
+                place.unwrap_or(span.start..span.start + 1),
+                why,
+                "give each integrator a [[sweep]] block of its own, or leave `formulation` out",
             );
         }
-        if scene.has_waves() && sweep.integrator.contains(&IntegratorKind::Implicit) {
+        let still = |one: &Combination| one.formulation == Formulation::QuasiStatic;
+        if scene.has_waves() && sweep.combinations().iter().any(still) {
+            let place = table.formulation.as_ref().map(Spanned::span);
             self.complain(
-                list.span(),
-                format!("the implicit integrator leaves out inertia, which `{}` is about", scene.name()),
-                "take \"explicit\", or the scene \"terzaghi\"",
+                place.unwrap_or(span.start..span.start + 1),
+                format!("the quasi-static formulation leaves out the waves that `{}` is about", scene.name()),
+                "take \"v-w\" or \"u-p\", or the scene \"terzaghi\"",
             );
         }
     }
@@ -881,102 +944,6 @@ impl Checker<'_> {
             Some(word) => Some(references[self.word(word, "reference", &names)?]),
             None => Some(scene.references()[0]),
         }
-    }
-
-    /// What single cases must do.
-    fn case_expectation(
-        &mut self,
-        entry: &Spanned<ExpectCaseTable>,
-        scene: SceneKind,
-        references: &[ReferenceKind],
-    ) -> Option<CaseExpectation> {
-        let table = entry.get_ref();
-        let before = self.diagnostics.len();
-        let status = table.status.as_ref().and_then(|word| {
-            let mut names = vec!["ok"];
-            names.extend(FailureKind::ALL.map(FailureKind::name));
-            self.word(word, "status", &names).map(|index| names[index].to_owned())
-        });
-        let error = table.error.as_ref().and_then(|range| self.error_range(table, range, scene, references));
-        let bound = |c: &mut Self, typed: &Option<Spanned<f64>>, name: &str| {
-            typed.as_ref().map(|typed| c.positive(Some(typed), name, "", 1e-12))
-        };
-        let demand = CaseDemand {
-            status,
-            critical_step_within: bound(self, &table.critical_step_within, "critical_step_within"),
-            error,
-            solid_drift_below: bound(self, &table.solid_drift_below, "solid_drift_below"),
-            water_drift_below: bound(self, &table.water_drift_below, "water_drift_below"),
-        };
-        if demand == CaseDemand::default() && self.diagnostics.len() == before {
-            self.complain(
-                entry.span(),
-                "the expectation asks for nothing",
-                "add `status = \"ok\"`, `critical_step_within = 0.02` or `error = { below = 1e-2 }`",
-            );
-        }
-        let integrator = table.integrator.as_ref().and_then(|word| {
-            let names = IntegratorKind::ALL.map(IntegratorKind::name);
-            self.word(word, "integrator", &names).map(|index| IntegratorKind::ALL[index])
-        });
-        let selection = Selection {
-            method: table.method.as_ref().and_then(|typed| self.method(typed)),
-            integrator,
-            cells: self.count(table.cells.as_ref(), "cells", 1..=MOST_CELLS),
-            points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
-            drag: table.drag.as_ref().and_then(|word| self.drag(word)),
-            scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)),
-        };
-        let tiers = Tier::ALL.map(Tier::name);
-        let tier = table.tier.as_ref().map_or(Some(1), |word| self.word(word, "tier", &tiers))?;
-        let line = self.source.text[..entry.span().start.min(self.source.text.len())].lines().count().max(1);
-        (self.diagnostics.len() == before).then_some(CaseExpectation {
-            selection,
-            demand,
-            tier: Tier::ALL[tier],
-            line,
-        })
-    }
-
-    /// Bounds on one error of a case.
-    fn error_range(
-        &mut self,
-        table: &ExpectCaseTable,
-        range: &Spanned<RangeTable>,
-        scene: SceneKind,
-        references: &[ReferenceKind],
-    ) -> Option<ErrorRange> {
-        let quantity =
-            self.choice(table.quantity.as_ref(), "quantity", &Quantity::ALL.map(Quantity::name), 0)?;
-        let quantity = Quantity::ALL[quantity];
-        let at_surface = quantity == Quantity::Settlement;
-        let (usual_sample, usual_norm) =
-            if at_surface { (Sample::Surface, Norm::Relative) } else { (Sample::Points, Norm::L2) };
-        let place = |all: &[Sample]| all.iter().position(|one| *one == usual_sample).unwrap_or(0);
-        let usual = place(&Sample::ALL);
-        let sample = self.choice(table.sample.as_ref(), "sample", &Sample::ALL.map(Sample::name), usual)?;
-        let usual = Norm::ALL.iter().position(|one| *one == usual_norm).unwrap_or(0);
-        let norm = self.choice(table.norm.as_ref(), "norm", &Norm::ALL.map(Norm::name), usual)?;
-        let names: Vec<&str> = references.iter().map(|kind| kind.name()).collect();
-        let reference = match &table.reference {
-            Some(word) => references[self.word(word, "reference", &names)?],
-            None => scene.references()[0],
-        };
-        let Some(time_factor) = table.time_factor.as_ref().map(|typed| *typed.get_ref()) else {
-            self.complain(range.span(), "the error names no time factor", "add `time_factor = 0.1`");
-            return None;
-        };
-        Some(ErrorRange {
-            measure: Measure {
-                quantity,
-                sample: Sample::ALL[sample],
-                norm: Norm::ALL[norm],
-                reference: reference.name().to_owned(),
-                time_factor,
-            },
-            below: range.get_ref().below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
-            above: range.get_ref().above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
-        })
     }
 
     /// A bound at a level that is named in the words of its axis.

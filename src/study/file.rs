@@ -30,6 +30,7 @@ pub struct StudyFile {
     pub scene: Spanned<String>,
     #[serde(default)]
     pub column: ColumnTable,
+    pub layer: Option<Spanned<LayerTable>>,
     #[serde(default)]
     pub points: PointsTable,
     pub task: Typed<String>,
@@ -56,6 +57,7 @@ pub struct ColumnTable {
     pub height: Typed<f64>,
     pub width: Typed<f64>,
     pub load: Typed<f64>,
+    pub dimensions: Typed<i64>,
     pub loading_time: Typed<f64>,
 }
 
@@ -66,6 +68,24 @@ pub struct PointsTable {
     pub offset: Typed<f64>,
     pub jitter: Typed<f64>,
     pub filling: Typed<f64>,
+}
+
+impl ColumnTable {
+    /// Place of the first key that was typed.
+    pub fn typed(&self) -> Option<std::ops::Range<usize>> {
+        let numbers = [&self.height, &self.width, &self.load, &self.loading_time];
+        let numbers = numbers.into_iter().flatten().map(Spanned::span);
+        numbers.chain(self.dimensions.as_ref().map(Spanned::span)).min_by_key(|span| span.start)
+    }
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LayerTable {
+    pub length: Typed<f64>,
+    pub height: Typed<f64>,
+    pub base: Typed<String>,
+    pub load: Typed<f64>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -86,6 +106,7 @@ pub struct MaterialTable {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IntegratorTable {
+    pub formulation: Typed<String>,
     pub scheme: Typed<String>,
     pub drag: Typed<String>,
     pub flip: Typed<f64>,
@@ -110,6 +131,7 @@ pub struct TimingTable {
 pub struct SweepTable {
     pub method: TypedList<MethodEntry>,
     pub integrator: TypedList<String>,
+    pub formulation: TypedList<String>,
     pub cells: TypedList<i64>,
     pub points_per_cell: TypedList<i64>,
     pub time_step: TypedList<TimeStepTable>,

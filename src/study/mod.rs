@@ -11,7 +11,7 @@ mod sweep;
 
 pub use crate::solver::integrator::IntegratorKind;
 pub use case::{Case, Task, step_label};
-pub use check::{Study, Tier};
+pub use check::{Purpose, Study, Tier};
 pub use diagnostic::{Diagnostic, StudyError};
 pub use expectation::{Axis, Expectation, Measure, NEXT_FINER};
 pub use file::StudySource;

@@ -5,11 +5,10 @@ use super::check::{Study, Tier};
 use crate::assess::measure::{record_of, record_of_critical_step};
 use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Record, RecordStore, Status, StoreError, WallSample};
-use crate::scene::{column_parameters, column_problem};
-use crate::solver::critical::critical_step;
+use crate::scene::{SceneProblem, column_parameters};
 use crate::solver::limits;
 use crate::solver::outcome::FailureKind;
-use crate::solver::run::{Kernel, Schedule, TimeStepRule, run};
+use crate::solver::run::{Kernel, Schedule, TimeStepRule};
 use std::cell::Cell;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -246,7 +245,7 @@ pub fn run_case(
     if case.task == Task::Stability {
         return stability_of(case);
     }
-    let problem = column_problem(
+    let problem = SceneProblem::new(
         case.scene,
         &case.column,
         &case.material,
@@ -256,7 +255,7 @@ pub fn run_case(
     )?;
     let schedule = schedule_of(case, kernel);
     let start = Instant::now();
-    let outcome = run(problem, &schedule, observe);
+    let outcome = problem.run(&schedule, observe);
     let seconds = start.elapsed().as_secs_f64();
     let mut record = record_of(case, references, outcome)?;
     record.wall.push(WallSample { seconds, alone });
@@ -265,7 +264,7 @@ pub fn run_case(
 
 /// Predicts and observes the critical step of a case.
 fn stability_of(case: &Case) -> Result<Record, ExactError> {
-    let problem = column_problem(
+    let problem = SceneProblem::new(
         case.scene,
         &case.column,
         &case.material,
@@ -274,7 +273,7 @@ fn stability_of(case: &Case) -> Result<Record, ExactError> {
         case.points_per_cell,
     )?;
     let end = case.time_factors.last().map_or(0.0, |factor| factor * case.seconds_per_time_factor());
-    Ok(record_of_critical_step(case, critical_step(&problem, &case.settings, end, MOST_PROBE_STEPS)))
+    Ok(record_of_critical_step(case, problem.critical_step(&case.settings, end, MOST_PROBE_STEPS)))
 }
 
 fn schedule_of(case: &Case, kernel: Kernel) -> Schedule {
@@ -294,6 +293,7 @@ fn schedule_of(case: &Case, kernel: Kernel) -> Schedule {
         kernel,
         integrator: case.integrator,
         critical_step: None,
+        formulation: case.formulation,
     }
 }
 
@@ -314,8 +314,7 @@ pub fn estimated_updates(case: &Case) -> u64 {
             growth * end / (2.0 + (end / first).max(1.0).ln())
         }
     };
-    let points = (case.cells * case.points_per_cell) as f64;
-    (end / step * points).max(1.0) as u64
+    (end / step * case.expected_points() as f64).max(1.0) as u64
 }
 
 /// What timing a study took.

@@ -1,7 +1,7 @@
 //! Sweeps: lists of choices, multiplied out or tied to a path.
 
 use crate::solver::explicit::Drag;
-use crate::solver::integrator::IntegratorKind;
+use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
@@ -12,6 +12,8 @@ use crate::solver::scheme::Scheme;
 pub struct Sweep {
     pub method: Vec<Method>,
     pub integrator: Vec<IntegratorKind>,
+    /// Formulations; none where the integrator's own holds.
+    pub formulation: Vec<Option<Formulation>>,
     pub cells: Vec<usize>,
     pub points_per_cell: Vec<usize>,
     /// Step rules; none where the integrator's own holds.
@@ -31,7 +33,7 @@ pub struct Sweep {
 }
 
 /// Keys that a path can tie.
-pub const AXES: [&str; 15] = [
+pub const AXES: [&str; 16] = [
     "method",
     "integrator",
     "cells",
@@ -42,6 +44,7 @@ pub const AXES: [&str; 15] = [
     "mapping_back",
     "law",
     "continuity",
+    "formulation",
     "scheme",
     "porosity",
     "hydraulic_conductivity",
@@ -54,6 +57,7 @@ pub const AXES: [&str; 15] = [
 pub struct Combination {
     pub method: Method,
     pub integrator: IntegratorKind,
+    pub formulation: Formulation,
     pub cells: usize,
     pub points_per_cell: usize,
     pub time_step: TimeStepRule,
@@ -82,6 +86,7 @@ impl Sweep {
             self.mapping_back.len(),
             self.law.len(),
             self.continuity.len(),
+            self.formulation.len(),
             self.scheme.len(),
             self.porosity.len(),
             self.hydraulic_conductivity.len(),
@@ -133,11 +138,13 @@ impl Sweep {
                     mapping_back: self.mapping_back[at[7]],
                     law: self.law[at[8]],
                     continuity: self.continuity[at[9]],
-                    scheme: self.scheme[at[10]],
-                    porosity: self.porosity[at[11]],
-                    hydraulic_conductivity: self.hydraulic_conductivity[at[12]],
-                    water_bulk_modulus: self.water_bulk_modulus[at[13]],
-                    offset: self.offset[at[14]],
+                    formulation: self.formulation[at[10]]
+                        .unwrap_or_else(|| self.integrator[at[1]].default_formulation()),
+                    scheme: self.scheme[at[11]],
+                    porosity: self.porosity[at[12]],
+                    hydraulic_conductivity: self.hydraulic_conductivity[at[13]],
+                    water_bulk_modulus: self.water_bulk_modulus[at[14]],
+                    offset: self.offset[at[15]],
                 }
             })
             .collect()
@@ -165,6 +172,7 @@ mod tests {
             hydraulic_conductivity: vec![1e-4],
             water_bulk_modulus: vec![2.2e9],
             offset: vec![0.0],
+            formulation: vec![None],
             path: path.iter().map(|key| (*key).to_owned()).collect(),
         }
     }
