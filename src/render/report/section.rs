@@ -1,6 +1,6 @@
 //! The section of one study: what it asks, what was expected, figures, tables, checks.
 
-use super::{StudyResults, checks, convergence, profiles, stability, work};
+use super::{StudyResults, checks, convergence, precision, profiles, stability, work};
 use crate::exact::ExactError;
 use crate::render::page::{Block, Section};
 use crate::render::table::Mood;
@@ -27,6 +27,7 @@ pub fn of_study(results: &StudyResults<'_>) -> Result<Section, ExactError> {
     blocks.extend(stability::blocks(results));
     if is_solved {
         blocks.extend(work::blocks(results));
+        blocks.extend(precision::blocks(results));
         blocks.push(checks::block(results));
     }
     if !results.judgements.is_empty() {
