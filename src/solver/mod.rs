@@ -24,6 +24,7 @@ pub mod method;
 pub mod nodes;
 pub mod outcome;
 pub mod points;
+pub mod recovered;
 pub mod recovery;
 pub mod run;
 pub mod scheme;

@@ -93,6 +93,14 @@ impl Case {
         if self.material.continuity != Continuity::Conservative {
             parts.push("porosity gradient dropped".to_owned());
         }
+        let seed = Material::default();
+        if self.material.water_bulk_modulus != seed.water_bulk_modulus {
+            parts
+                .push(format!("K_w/E {:e}", self.material.water_bulk_modulus / self.material.youngs_modulus));
+        }
+        if self.material.poissons_ratio != seed.poissons_ratio {
+            parts.push(format!("ν {}", self.material.poissons_ratio));
+        }
         parts.join(", ")
     }
 

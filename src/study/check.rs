@@ -184,7 +184,13 @@ impl Checker<'_> {
                 let case = Case {
                     scene,
                     column,
-                    material: Material { law: one.law, continuity: one.continuity, ..material },
+                    material: Material {
+                        law: one.law,
+                        continuity: one.continuity,
+                        water_bulk_modulus: one.water_bulk_modulus,
+                        poissons_ratio: one.poissons_ratio,
+                        ..material
+                    },
                     method: one.method,
                     integrator: one.integrator,
                     settings: ExplicitSettings {
@@ -584,6 +590,18 @@ impl Checker<'_> {
                 &[soil.continuity],
                 Self::continuity,
             ),
+            water_bulk_modulus: self.list(
+                table.water_bulk_modulus.as_ref(),
+                "water_bulk_modulus",
+                &[soil.water_bulk_modulus],
+                |c, typed| Some(c.positive(Some(typed), "water_bulk_modulus", "Pa", 0.0)),
+            ),
+            poissons_ratio: self.list(
+                table.poissons_ratio.as_ref(),
+                "poissons_ratio",
+                &[soil.poissons_ratio],
+                |c, typed| Some(c.between(Some(typed), "poissons_ratio", -1.0, 0.5, 0.25)),
+            ),
             path: self.list(table.path.as_ref(), "path", &[], |c, word| {
                 c.word(word, "axis", &AXES).map(|index| AXES[index].to_owned())
             }),
@@ -709,11 +727,12 @@ impl Checker<'_> {
             }
         };
         let basis = pick(&table.basis, "basis", &["hat", "ugimp", "cpgimp"]);
-        let strain = pick(&table.strain, "strain", &["standard", "cmpm"]);
-        let pressure = pick(&table.pressure, "pressure", &["points", "sri"]);
+        let strain = pick(&table.strain, "strain", &StrainGradient::ALL.map(StrainGradient::name));
+        let pressure =
+            pick(&table.pressure, "pressure", &PressureIntegration::ALL.map(PressureIntegration::name));
         let recovery = match (&table.recovery, pressure) {
             (None, Some(0)) => Some(0),
-            (word, _) => pick(word, "recovery", &["constant", "patch"]),
+            (word, _) => pick(word, "recovery", &Recovery::ALL.map(Recovery::name)),
         };
         let configuration = match &table.configuration {
             Some(word) => {
@@ -721,11 +740,16 @@ impl Checker<'_> {
             }
             None => None,
         };
+        let (pressure, recovery) = (PressureIntegration::ALL[pressure?], Recovery::ALL[recovery?]);
+        if let (Some(why), Some(word)) = (recovery.refuses(pressure), &table.recovery) {
+            self.complain(word.span(), why, "leave the key out, or take another");
+            return None;
+        }
         Some(Method {
             basis: [Basis::Hat, Basis::Ugimp, Basis::Cpgimp][basis?],
-            strain: [StrainGradient::Standard, StrainGradient::Cmpm][strain?],
-            pressure: [PressureIntegration::Points, PressureIntegration::Sri][pressure?],
-            recovery: [Recovery::Constant, Recovery::Patch][recovery?],
+            strain: StrainGradient::ALL[strain?],
+            pressure,
+            recovery,
             configuration: configuration.map(|index| Configuration::ALL[index]),
         })
     }
@@ -824,6 +848,8 @@ impl Checker<'_> {
             points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
             law: table.law.as_ref().and_then(|word| self.law(word, scene)),
             continuity: table.continuity.as_ref().and_then(|word| self.continuity(word)),
+            water_bulk_modulus: table.water_bulk_modulus.as_ref().map(|typed| *typed.get_ref()),
+            poissons_ratio: table.poissons_ratio.as_ref().map(|typed| *typed.get_ref()),
             scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)),
             drag: table.drag.as_ref().and_then(|word| self.drag(word)),
             mapping_back: table.mapping_back.as_ref().map(|typed| *typed.get_ref()),

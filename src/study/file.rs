@@ -125,6 +125,8 @@ pub struct SweepTable {
     pub time_factors: TypedList<f64>,
     pub law: TypedList<String>,
     pub continuity: TypedList<String>,
+    pub water_bulk_modulus: TypedList<f64>,
+    pub poissons_ratio: TypedList<f64>,
     pub path: TypedList<String>,
     pub tier: Typed<String>,
 }
@@ -169,6 +171,8 @@ pub struct ExpectTable {
     pub points_per_cell: Typed<i64>,
     pub law: Typed<String>,
     pub continuity: Typed<String>,
+    pub water_bulk_modulus: Typed<f64>,
+    pub poissons_ratio: Typed<f64>,
     pub scheme: Typed<String>,
     pub drag: Typed<String>,
     pub mapping_back: Typed<bool>,

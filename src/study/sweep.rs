@@ -22,12 +22,15 @@ pub struct Sweep {
     pub mapping_back: Vec<bool>,
     pub law: Vec<Law>,
     pub continuity: Vec<Continuity>,
+    /// Pa.
+    pub water_bulk_modulus: Vec<f64>,
+    pub poissons_ratio: Vec<f64>,
     /// Axes that step together, by key.
     pub path: Vec<String>,
 }
 
 /// Keys that a path can tie.
-pub const AXES: [&str; 11] = [
+pub const AXES: [&str; 13] = [
     "method",
     "integrator",
     "cells",
@@ -39,6 +42,8 @@ pub const AXES: [&str; 11] = [
     "law",
     "continuity",
     "scheme",
+    "water_bulk_modulus",
+    "poissons_ratio",
 ];
 
 /// One combination of a sweep.
@@ -55,6 +60,8 @@ pub struct Combination {
     pub mapping_back: bool,
     pub law: Law,
     pub continuity: Continuity,
+    pub water_bulk_modulus: f64,
+    pub poissons_ratio: f64,
 }
 
 impl Sweep {
@@ -71,6 +78,8 @@ impl Sweep {
             self.law.len(),
             self.continuity.len(),
             self.scheme.len(),
+            self.water_bulk_modulus.len(),
+            self.poissons_ratio.len(),
         ]
     }
 
@@ -118,6 +127,8 @@ impl Sweep {
                     law: self.law[at[8]],
                     continuity: self.continuity[at[9]],
                     scheme: self.scheme[at[10]],
+                    water_bulk_modulus: self.water_bulk_modulus[at[11]],
+                    poissons_ratio: self.poissons_ratio[at[12]],
                 }
             })
             .collect()
@@ -141,6 +152,8 @@ mod tests {
             mapping_back: vec![true],
             law: vec![Law::Linear],
             continuity: vec![Continuity::Conservative],
+            water_bulk_modulus: vec![2.2e9],
+            poissons_ratio: vec![0.25],
             path: path.iter().map(|key| (*key).to_owned()).collect(),
         }
     }

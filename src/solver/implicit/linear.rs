@@ -12,7 +12,6 @@ use super::assembly::LinearSystem;
 use super::banded::{BandedLu, Singular};
 use crate::solver::body::{Body, ShapeFunction};
 use crate::solver::grid::Vector;
-use crate::solver::method::StrainGradient;
 
 /// `γ = 1 − 1/√2`: both stages have the same matrix and the method is L-stable.
 pub const SDIRK_GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
@@ -130,31 +129,12 @@ impl<const D: usize> LinearMarch<D> {
             unknowns.displacement.iter().map(|node| node.map(component)).collect()
         };
         let displacement = nodal(&self.state, self.system.scales.length);
-        let stride = *body.grid.node_stride();
-        for point in 0..body.points.len() {
-            let gradient = match body.method.strain {
-                StrainGradient::Standard => body.basis.gradient(&stride, point, &displacement),
-                StrainGradient::Cmpm => body.composite.gradient(&stride, point, &displacement),
-            };
-            let stress = body.stiffness.stress(&gradient);
-            let moved = body.basis.value(&stride, point, &displacement);
-            for i in 0..D {
-                for j in 0..D {
-                    body.points.effective_stress[point][i][j] += stress[i][j];
-                }
-                body.points.displacement[point][i] += moved[i];
-            }
-            let mut pressure = 0.0;
-            unknowns.visit_recovery(start, point, |site, weight| {
-                pressure += weight * self.state[unknowns.pressure[site]];
-            });
-            body.points.pressure[point] += pressure * self.system.scales.pressure;
-        }
-        for (total, change) in body.nodes.displacement.iter_mut().zip(&displacement) {
-            for d in 0..D {
-                total[d] += change[d];
-            }
-        }
+        let pressures: Vec<f64> = unknowns
+            .pressure
+            .iter()
+            .map(|unknown| self.system.scales.pressure * self.state[*unknown])
+            .collect();
+        body.change_points(&unknowns.rows, &displacement, &pressures, &displacement);
         body.nodes.solid_velocity = nodal(&self.increment, self.rate_scale * self.system.scales.length);
         body.surface_flux += self.surface_displacement() + self.outflow;
         body
