@@ -1,7 +1,7 @@
 //! Sweeps: lists of choices, multiplied out or tied to a path.
 
 use crate::solver::explicit::Drag;
-use crate::solver::integrator::IntegratorKind;
+use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
@@ -12,6 +12,8 @@ use crate::solver::scheme::Scheme;
 pub struct Sweep {
     pub method: Vec<Method>,
     pub integrator: Vec<IntegratorKind>,
+    /// Formulations; none where the integrator's own holds.
+    pub formulation: Vec<Option<Formulation>>,
     pub cells: Vec<usize>,
     pub points_per_cell: Vec<usize>,
     /// Step rules; none where the integrator's own holds.
@@ -30,7 +32,7 @@ pub struct Sweep {
 }
 
 /// Keys that a path can tie.
-pub const AXES: [&str; 13] = [
+pub const AXES: [&str; 14] = [
     "method",
     "integrator",
     "cells",
@@ -41,6 +43,7 @@ pub const AXES: [&str; 13] = [
     "mapping_back",
     "law",
     "continuity",
+    "formulation",
     "scheme",
     "water_bulk_modulus",
     "poissons_ratio",
@@ -51,6 +54,7 @@ pub const AXES: [&str; 13] = [
 pub struct Combination {
     pub method: Method,
     pub integrator: IntegratorKind,
+    pub formulation: Formulation,
     pub cells: usize,
     pub points_per_cell: usize,
     pub time_step: TimeStepRule,
@@ -77,6 +81,7 @@ impl Sweep {
             self.mapping_back.len(),
             self.law.len(),
             self.continuity.len(),
+            self.formulation.len(),
             self.scheme.len(),
             self.water_bulk_modulus.len(),
             self.poissons_ratio.len(),
@@ -126,9 +131,11 @@ impl Sweep {
                     mapping_back: self.mapping_back[at[7]],
                     law: self.law[at[8]],
                     continuity: self.continuity[at[9]],
-                    scheme: self.scheme[at[10]],
-                    water_bulk_modulus: self.water_bulk_modulus[at[11]],
-                    poissons_ratio: self.poissons_ratio[at[12]],
+                    formulation: self.formulation[at[10]]
+                        .unwrap_or_else(|| self.integrator[at[1]].default_formulation()),
+                    scheme: self.scheme[at[11]],
+                    water_bulk_modulus: self.water_bulk_modulus[at[12]],
+                    poissons_ratio: self.poissons_ratio[at[13]],
                 }
             })
             .collect()
@@ -154,6 +161,7 @@ mod tests {
             continuity: vec![Continuity::Conservative],
             water_bulk_modulus: vec![2.2e9],
             poissons_ratio: vec![0.25],
+            formulation: vec![None],
             path: path.iter().map(|key| (*key).to_owned()).collect(),
         }
     }

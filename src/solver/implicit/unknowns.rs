@@ -90,6 +90,11 @@ impl<const D: usize> Unknowns<D> {
         }
     }
 
+    /// Site of a cell or point, where it is one.
+    pub fn site_of(&self, place: usize) -> Option<usize> {
+        self.site_of_place[place]
+    }
+
     /// Visits the sites that a point's pressure comes from, with their weights.
     pub fn visit_recovery(&self, point: usize, mut visitor: impl FnMut(usize, f64)) {
         for (site, weight) in &self.rows.recovery[point] {
