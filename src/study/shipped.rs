@@ -17,6 +17,8 @@ pub fn shipped_studies() -> Vec<StudySource> {
         ("studies/dynamic-mode.toml", include_str!("../../studies/dynamic-mode.toml")),
         ("studies/standing-wave-mesh.toml", include_str!("../../studies/standing-wave-mesh.toml")),
         ("studies/standing-wave-step.toml", include_str!("../../studies/standing-wave-step.toml")),
+        ("studies/layer-locking.toml", include_str!("../../studies/layer-locking.toml")),
+        ("studies/layer-mesh.toml", include_str!("../../studies/layer-mesh.toml")),
         ("studies/large-strain-mesh.toml", include_str!("../../studies/large-strain-mesh.toml")),
         ("studies/large-strain-models.toml", include_str!("../../studies/large-strain-models.toml")),
         ("studies/large-strain-points.toml", include_str!("../../studies/large-strain-points.toml")),
