@@ -335,6 +335,7 @@ fn assemble_bands<const D: usize, const W: usize, S: ShapeFunction<W>>(
 ) {
     let stride = body.grid.node_stride();
     let modulus = body.material.oedometric_modulus();
+    let bulk = body.stiffness.lame + 2.0 / 3.0 * body.stiffness.shear;
     let volumetric = body.volumetric_rows();
     for point in 0..body.points.len() {
         let volume = body.points.volume(point);
@@ -354,7 +355,7 @@ fn assemble_bands<const D: usize, const W: usize, S: ShapeFunction<W>>(
             for entry in &strain {
                 if let Some(place) = place(entry.node) {
                     row.skeleton_stiffness[place] +=
-                        volume * gradient * modulus * (entry.gradient[0] + entry.dilation[0]);
+                        volume * gradient * (modulus * entry.gradient[0] + bulk * entry.dilation[0]);
                 }
             }
             for (site, share) in &volumetric.recovery[point] {

@@ -155,17 +155,24 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             self.recover_dilation_rates();
         }
         for point in 0..self.points.len() {
-            let mut gradient = self.pushed_forward(point, velocity_gradient(self, point));
-            if is_bbar {
-                let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
-                for d in 0..D {
-                    gradient[d][d] += (self.recovered.at_points[point] - trace) / D as f64;
-                }
-            }
-            let increment = gradient.map(|row| row.map(|rate| dt * rate));
+            let gradient = self.pushed_forward(point, velocity_gradient(self, point));
+            let mut increment = gradient.map(|row| row.map(|rate| dt * rate));
             let before = self.points.volume_ratio[point];
             if deforms {
                 self.deform(point, &increment);
+            }
+            let mut shared = 0.0;
+            if is_bbar {
+                // Of the kinematics only the volume goes the way of the water's.
+                let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
+                let dilation = dt * (self.recovered.at_points[point] - trace);
+                if deforms {
+                    self.points.volume_ratio[point] *= stretch_of(dilation);
+                }
+                for d in 0..D {
+                    increment[d][d] += dilation / D as f64;
+                }
+                shared = self.stiffness.shared_dilation_stress::<D>(dilation);
             }
             if deforms && D > 1 {
                 let stress = &mut self.points.effective_stress[point];
@@ -177,6 +184,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 for e in 0..D {
                     self.points.effective_stress[point][d][e] += modulus * stress[d][e];
                 }
+                self.points.effective_stress[point][d][d] += modulus * shared;
             }
         }
     }

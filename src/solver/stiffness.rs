@@ -112,7 +112,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                     let (mut displaced, mut unit) = ([[0.0; D]; D], [0.0; D]);
                     unit[e] = 1.0;
                     entry.add_to(&mut displaced, &unit);
-                    let stress = self.stiffness.stress(&displaced);
+                    let mut stress = self.stiffness.stress(&displaced);
+                    for d in 0..D {
+                        stress[d][d] += self.stiffness.shared_dilation_stress::<D>(entry.dilation[e]);
+                    }
                     for (row, force) in &forces {
                         let block = blocks.block(*row, entry.node);
                         for d in 0..D {

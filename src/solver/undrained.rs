@@ -142,8 +142,11 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     ) {
         let pressures = rows.at_points(site_pressures);
         for point in 0..self.points.len() {
-            let gradient = self.gradient_of(point, rows, strained);
-            let stress = self.stiffness.stress(&gradient);
+            let (gradient, dilation) = self.gradient_of(point, rows, strained);
+            let mut stress = self.stiffness.stress(&gradient);
+            for d in 0..D {
+                stress[d][d] += self.stiffness.shared_dilation_stress::<D>(dilation);
+            }
             let moved = self.basis.value(self.grid.node_stride(), point, displacements);
             self.points.pressure[point] += pressures[point];
             for d in 0..D {
@@ -166,12 +169,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// Gradient of a nodal field from which a point's effective stress takes its strain.
-    fn gradient_of(&self, point: usize, rows: &VolumetricRows<D>, field: &[Vector<D>]) -> Tensor<D> {
-        let mut gradient = [[0.0; D]; D];
+    /// Gradient of a nodal field from which a point's effective stress takes its strain, and the
+    /// dilation that B-bar put into it.
+    fn gradient_of(&self, point: usize, rows: &VolumetricRows<D>, field: &[Vector<D>]) -> (Tensor<D>, f64) {
+        let (mut gradient, mut dilation) = ([[0.0; D]; D], 0.0);
         for entry in self.strain_row(point, rows) {
-            entry.add_to(&mut gradient, &field[entry.node]);
+            let displacement = &field[entry.node];
+            entry.add_to(&mut gradient, displacement);
+            dilation += (0..D).map(|d| entry.dilation[d] * displacement[d]).sum::<f64>();
         }
-        gradient
+        (gradient, dilation)
     }
 }

@@ -163,7 +163,7 @@ fn mixture_entries<const D: usize, const W: usize, S: ShapeFunction<W>>(
                     for j in 0..D {
                         let Some(column) = unknowns.displacement[*other][j] else { continue };
                         let mut entry = lame * force[i] * strain[j] + shear * force[j] * strain[i];
-                        entry += (lame + 2.0 * shear / D as f64) * force[i] * dilation[j];
+                        entry += (lame + 2.0 / 3.0 * shear) * force[i] * dilation[j];
                         if i == j {
                             entry += shear * along;
                         }

@@ -116,13 +116,14 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
         let dilations = if is_bbar { rows.at_points(&rows.at_sites(&self.displacement)) } else { Vec::new() };
         for point in 0..self.anchor.len() {
             let mut gradient = self.body.strain_gradient(point, &self.displacement);
-            if let Some(dilation) = dilations.get(point) {
-                let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
+            let mut dilation = 0.0;
+            if let Some(volumetric) = dilations.get(point) {
+                dilation = volumetric - (0..D).map(|d| gradient[d][d]).sum::<f64>();
                 for d in 0..D {
-                    gradient[d][d] += (dilation - trace) / D as f64;
+                    gradient[d][d] += dilation / D as f64;
                 }
             }
-            self.strain_point(point, &gradient);
+            self.strain_point(point, &gradient, dilation);
             let mut change = 0.0;
             self.unknowns.visit_recovery(point, |site, weight| {
                 change += weight * increments[self.unknowns.pressure[site]];
@@ -135,7 +136,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
     }
 
     /// Deformation and effective stress of a point under a displacement gradient since the anchor.
-    fn strain_point(&mut self, point: usize, gradient: &Tensor<D>) {
+    fn strain_point(&mut self, point: usize, gradient: &Tensor<D>, dilation: f64) {
         let anchor = &self.anchor;
         let points = &mut self.body.points;
         let (mut strain, mut modulus) = (*gradient, 1.0);
@@ -151,7 +152,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
             modulus =
                 self.body.material.law.modulus_ratio(anchor.volume_ratio[point], points.volume_ratio[point]);
         }
-        let stress = self.body.stiffness.stress(&strain);
+        let mut stress = self.body.stiffness.stress(&strain);
+        for i in 0..D {
+            stress[i][i] += self.body.stiffness.shared_dilation_stress::<D>(dilation);
+        }
         for i in 0..D {
             for j in 0..D {
                 points.effective_stress[point][i][j] =
