@@ -6,6 +6,7 @@ mod convergence;
 mod findings;
 mod labels;
 mod layer;
+mod precision;
 mod profiles;
 mod section;
 mod work;
