@@ -22,6 +22,7 @@ fn both(scene: SceneKind, method: &str, load: f64, end: f64, drag: Drag) -> (Out
     let plane = Column { dimensions: 2, ..column };
     let method = Method::named(method).expect("a known method");
     let schedule = Schedule {
+        critical_step: None,
         outputs: vec![0.5 * end, end],
         history: vec![0.25 * end],
         rule: TimeStepRule::Seconds(1.2e-5),
@@ -80,7 +81,10 @@ fn the_paper_s_grid_is_its_column_at_small_strain_whatever_the_method() {
 fn the_paper_s_grid_is_its_column_at_200_kpa_whatever_the_method() {
     for method in Method::names() {
         let (column, plane) = both(SceneKind::XieLeo, &method, 2e5, 0.1, Drag::Implicit);
-        assert_same(&format!("xie-leo {method}"), &column, &plane, 1e-9);
+        // A plane's cell feels slopes of the pressure that a column's does not: its null space is
+        // smaller, and the filter another one where the points of a cell differ.
+        let tolerance = if method.ends_with("null-space") { 1e-3 } else { 1e-9 };
+        assert_same(&format!("xie-leo {method}"), &column, &plane, tolerance);
     }
 }
 
@@ -93,12 +97,13 @@ fn layer(method: &str, base: Base) -> Problem<2> {
 
 #[test]
 fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
-    for name in ["MPM", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"] {
+    for name in Method::names().iter().filter(|name| !name.starts_with(['T', 'u'])) {
         for (drag, flip, mapping_back) in
             [(Drag::Explicit, 1.0, true), (Drag::Implicit, 1.0, false), (Drag::Implicit, 0.99, true)]
         {
             let run_by = |kernel: Kernel| {
                 let schedule = Schedule {
+                    critical_step: None,
                     outputs: vec![0.0, 0.01],
                     history: vec![0.005],
                     rule: TimeStepRule::Seconds(1e-5),
@@ -137,6 +142,7 @@ fn the_predicted_step_of_a_plane_parts_stable_from_unstable_runs() {
         for mapping_back in [true, false] {
             for (share, stable) in [(0.98, true), (1.02, false)] {
                 let schedule = Schedule {
+                    critical_step: None,
                     outputs: vec![0.3],
                     history: Vec::new(),
                     rule: TimeStepRule::Stable(share),

@@ -4,9 +4,10 @@ use super::cells::Cells;
 use super::grid::{GHOST_LAYERS, Grid, Tensor, Vector};
 use super::material::{Continuity, Material, Stiffness};
 use super::memory::CellMemory;
-use super::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
+use super::method::{Basis, Configuration, Method, Recovery, StrainGradient};
 use super::nodes::{Nodes, Support};
 use super::points::Points;
+use super::recovered::Recovered;
 use super::recovery::PatchRows;
 use super::shape::{self, Row};
 use super::stencil::Stencils;
@@ -112,6 +113,22 @@ pub struct Problem<const D: usize> {
     pub pressure_scale: f64,
 }
 
+impl<const D: usize> Problem<D> {
+    /// The same problem with all loads, stresses and motions of its start times a factor.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.load *= factor;
+        self.pressure_scale *= factor;
+        let points = &mut self.points;
+        points.pressure.iter_mut().for_each(|pressure| *pressure *= factor);
+        points.effective_stress.iter_mut().flatten().flatten().for_each(|stress| *stress *= factor);
+        points.solid_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
+        points.water_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
+        self.initial_gradient.iter_mut().flatten().for_each(|gradient| *gradient *= factor);
+        self
+    }
+}
+
 /// The discretised body during a run.
 #[derive(Clone, Debug)]
 pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
@@ -145,6 +162,8 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     has_fixed_base: bool,
     /// `R` of the patch recovery.
     pub patch: PatchRows<D>,
+    /// Values on their way from the sites of `D` to the points, where a method needs them kept.
+    pub recovered: Recovered<D>,
     /// Mixture that passed the surface since the start, `∫ v_s + n(v_w − v_s) dt`, m.
     pub surface_flux: f64,
     shape_function: std::marker::PhantomData<S>,
@@ -170,9 +189,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let solid_cell_mass = (0..D).map(|_| grid.cell_size).product::<f64>()
             * (1.0 - material.porosity)
             * material.grain_density;
-        let rows_of = |strain| if method.strain == strain { count } else { 0 };
-        let composite_rows = rows_of(StrainGradient::Cmpm);
-        let ends_rows = rows_of(StrainGradient::CmpmEnds);
+        let between_ends = method.strain == StrainGradient::CmpmEnds;
+        let composite_rows = if method.strain.is_composite() && !between_ends { count } else { 0 };
+        let ends_rows = if between_ends { count } else { 0 };
         let patch_rows = if method.uses_patch() { count } else { 0 };
         let mut body = Self {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
@@ -188,6 +207,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             cell_memory: CellMemory::new(&grid),
             has_fixed_base: support.lower[D - 1],
             patch: PatchRows::with_points(patch_rows),
+            recovered: Recovered::of(&grid, count, &method),
             surface_flux: 0.0,
             grid,
             points,
@@ -454,7 +474,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 impl Method {
     /// Whether increments come back from the cells by a patch.
     pub fn uses_patch(&self) -> bool {
-        self.pressure == PressureIntegration::Sri && self.recovery == Recovery::Patch
+        self.pressure.is_by_cells() && self.recovery == Recovery::Patch
     }
 
     /// Whether the domains of the points follow the deformation.

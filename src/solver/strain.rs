@@ -18,8 +18,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     pub fn strain_gradient(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
         let stride = self.grid.node_stride();
         match self.method.strain {
-            StrainGradient::Standard => self.basis.gradient(stride, point, field),
-            StrainGradient::Cmpm => self.composite.gradient(stride, point, field),
+            StrainGradient::Standard | StrainGradient::Bbar => self.basis.gradient(stride, point, field),
+            StrainGradient::Cmpm | StrainGradient::CmpmBbar => self.composite.gradient(stride, point, field),
             StrainGradient::CmpmEnds => self.between_ends.gradient(stride, point, field),
         }
     }
@@ -29,8 +29,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let stride = self.grid.node_stride();
         let visitor = |node: usize, _: f64, gradient: &Vector<D>| node_visitor(node, gradient);
         match self.method.strain {
-            StrainGradient::Standard => self.basis.visit(stride, point, visitor),
-            StrainGradient::Cmpm => self.composite.visit(stride, point, visitor),
+            StrainGradient::Standard | StrainGradient::Bbar => self.basis.visit(stride, point, visitor),
+            StrainGradient::Cmpm | StrainGradient::CmpmBbar => self.composite.visit(stride, point, visitor),
             StrainGradient::CmpmEnds => self.between_ends.visit(stride, point, visitor),
         }
     }
@@ -40,8 +40,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     #[inline]
     pub fn carrying(&self, point: usize, field: &[Vector<D>], of_basis: Vector<D>) -> Vector<D> {
         match self.method.strain {
-            StrainGradient::Standard | StrainGradient::Cmpm => of_basis,
             StrainGradient::CmpmEnds => self.between_ends.value(self.grid.node_stride(), point, field),
+            _ => of_basis,
         }
     }
 
@@ -49,8 +49,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     #[inline]
     pub(super) fn build_strain_rows(&mut self, point: usize, cell: &[usize; D], place: &Vector<D>) {
         match self.method.strain {
-            StrainGradient::Standard => {}
-            StrainGradient::Cmpm => {
+            StrainGradient::Standard | StrainGradient::Bbar => {}
+            StrainGradient::Cmpm | StrainGradient::CmpmBbar => {
                 let rows = std::array::from_fn(|d| self.composite_row(cell, d, place[d], cell[d]));
                 self.composite.set(&self.grid, point, &rows);
             }

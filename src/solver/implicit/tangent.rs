@@ -90,9 +90,10 @@ fn felt_unknowns<const D: usize, const W: usize, S: ShapeFunction<W>>(
     let by_point: Vec<Vec<usize>> = (0..body.points.len())
         .map(|point| {
             let mut felt = Vec::new();
-            let mut strain = |node: usize| felt.extend(unknowns.displacement[node].into_iter().flatten());
-            body.visit_strain(point, |node, _| strain(node));
-            unknowns.visit_recovery(body, point, |site, _| felt.push(unknowns.pressure[site]));
+            for entry in body.strain_row(point, &unknowns.rows) {
+                felt.extend(unknowns.displacement[entry.node].into_iter().flatten());
+            }
+            unknowns.visit_recovery(point, |site, _| felt.push(unknowns.pressure[site]));
             felt
         })
         .collect();
@@ -115,7 +116,7 @@ fn felt_unknowns<const D: usize, const W: usize, S: ShapeFunction<W>>(
     // Porosity and deformation of a site: of its points.
     let site_of_point = |point: usize| match unknowns.integration {
         PressureIntegration::Points => Some(point),
-        PressureIntegration::Sri => unknowns.site_of(body.cells.of_point[point]),
+        PressureIntegration::Sri | PressureIntegration::Mean => unknowns.site_of(body.cells.of_point[point]),
     };
     for (point, felt) in by_point.iter().enumerate() {
         if let Some(site) = site_of_point(point) {
@@ -125,7 +126,7 @@ fn felt_unknowns<const D: usize, const W: usize, S: ShapeFunction<W>>(
     for site in 0..unknowns.sites.len() {
         let row = &mut rows[unknowns.pressure[site]];
         row.push(unknowns.pressure[site]);
-        unknowns.visit_divergence(body, site, |node, _| row.extend_from_slice(&by_node[node]));
+        unknowns.visit_divergence(site, |node, _| row.extend_from_slice(&by_node[node]));
         row.sort_unstable();
         row.dedup();
     }
