@@ -3,6 +3,7 @@ pub mod assess;
 pub mod cli;
 pub mod exact;
 pub mod golden;
+pub mod import;
 pub mod record;
 pub mod render;
 pub mod scene;

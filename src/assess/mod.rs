@@ -22,6 +22,8 @@ pub mod orders;
 pub mod oscillation;
 pub mod pareto;
 mod pattern_search;
+pub mod places;
+pub mod score;
 pub mod series;
 pub mod statistics;
 pub mod study_check;

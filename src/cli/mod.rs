@@ -7,11 +7,13 @@ mod check;
 mod exact;
 mod exit;
 mod list;
+mod output;
 mod overrides;
 mod plan;
 mod progress;
 mod report;
 mod run;
+mod score;
 mod solve;
 
 pub use exit::Exit;
@@ -41,6 +43,8 @@ enum Command {
     Exact(exact::Arguments),
     /// Solve one case and print its errors
     Solve(solve::Arguments),
+    /// Hold somebody else's result against exact solutions
+    Score(score::Arguments),
     /// List the cases of studies with their hashes
     Plan(plan::Arguments),
     /// List scenes, methods, references and shipped studies
@@ -65,6 +69,7 @@ pub fn main() -> ExitCode {
         Command::Accept(arguments) => accept::run(&arguments),
         Command::Exact(arguments) => exact::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),
+        Command::Score(arguments) => score::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::List => list::run(),
     };

@@ -8,6 +8,7 @@ pub mod measures;
 pub mod number;
 pub mod page;
 pub mod report;
+pub mod scores;
 mod script;
 #[cfg(test)]
 mod showcase;
