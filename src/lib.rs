@@ -7,5 +7,6 @@ pub mod import;
 pub mod record;
 pub mod render;
 pub mod scene;
+pub mod schema;
 pub mod solver;
 pub mod study;

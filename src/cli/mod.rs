@@ -4,15 +4,18 @@
 
 mod accept;
 mod check;
+mod completions;
 mod exact;
 mod exit;
 mod list;
+mod merge;
 mod output;
 mod overrides;
 mod plan;
 mod progress;
 mod report;
 mod run;
+mod schema;
 mod score;
 mod solve;
 
@@ -47,8 +50,14 @@ enum Command {
     Score(score::Arguments),
     /// List the cases of studies with their hashes
     Plan(plan::Arguments),
+    /// Bring the records of shards together, with the whole table of each study
+    Merge(merge::Arguments),
     /// List scenes, methods, references and shipped studies
     List,
+    /// Print the JSON Schema of study files, records or mappings
+    Schema(schema::Arguments),
+    /// Print the completions of a shell
+    Completions(completions::Arguments),
 }
 
 /// Parses the command line, runs the command, and turns its end into an exit code.
@@ -71,7 +80,10 @@ pub fn main() -> ExitCode {
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Score(arguments) => score::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
+        Command::Merge(arguments) => merge::run(&arguments),
         Command::List => list::run(),
+        Command::Schema(arguments) => schema::run(&arguments),
+        Command::Completions(arguments) => Ok(completions::run(&arguments)),
     };
     match result {
         Ok(exit) => exit.into(),

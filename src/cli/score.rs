@@ -17,10 +17,10 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// CSV files of one result; with --cells one file a mesh
-    #[arg(required = true, value_name = "RESULT.csv")]
+    #[arg(required_unless_present = "show_mapping", value_name = "RESULT.csv")]
     results: Vec<PathBuf>,
     /// Scene that the result is of, like `terzaghi`
-    #[arg(long)]
+    #[arg(long, required_unless_present = "show_mapping", default_value = "")]
     scene: String,
     /// What the columns mean; see --show-mapping. Where none is given, the columns are t, y, p, u_y
     #[arg(long, value_name = "FILE.toml")]

@@ -14,8 +14,10 @@ pub use check::{Study, Tier};
 pub use diagnostic::{Diagnostic, StudyError};
 pub use expectation::{Axis, Expectation, Measure};
 pub use file::StudySource;
+pub(crate) use file::{MethodTable, StudyFile};
 pub use runner::{
     Progress, RunError, RunOptions, RunReport, Shard, TimingReport, estimated_updates, run_case, run_study,
     time_study,
 };
 pub use shipped::shipped_studies;
+pub use sweep::AXES;
