@@ -59,6 +59,7 @@ impl Setup {
         .expect("a possible column");
         let seconds = self.column.height * self.column.height / self.soil.coefficient_of_consolidation();
         let schedule = Schedule {
+            integrator: oedometer::solver::integrator::IntegratorKind::Explicit,
             outputs: self.time_factors.iter().map(|factor| factor * seconds).collect(),
             history: Vec::new(),
             rule: self.rule,

@@ -86,7 +86,7 @@ pub fn step_rule(typed: &str) -> anyhow::Result<String> {
     match rule {
         Some((rule, value)) if value.parse::<f64>().is_ok() => Ok(format!("{{ {rule} = {} }}", float(value))),
         _ => Err(Ended::usage(format!(
-            "`{typed}` is no step rule: write stable=0.5, courant=0.5 or seconds=1e-6"
+            "`{typed}` is no step rule: write stable=0.5, courant=0.5, seconds=1e-6 or growth=0.05"
         ))),
     }
 }

@@ -37,9 +37,10 @@ pub struct Arguments {
     /// Points a cell and direction
     #[arg(long, default_value_t = 2, allow_negative_numbers = true)]
     points_per_cell: i64,
-    /// Step rule: stable=0.8, courant=0.5 or seconds=1e-6
-    #[arg(long, default_value = "stable=0.8", value_name = "RULE")]
-    time_step: String,
+    /// Step rule: stable=0.8, courant=0.5, seconds=1e-6 or growth=0.05 [default: stable=0.8, for
+    /// implicit integrators growth=0.05]
+    #[arg(long, value_name = "RULE")]
+    time_step: Option<String>,
     /// Time factors of the outputs, comma-separated
     ///
     /// [default: 0.05,0.1,0.2,0.5,1.0]
@@ -107,13 +108,16 @@ fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
             return Err(Ended::usage(format!("`{key}` has an option of its own: {option}")));
         }
     }
-    lines.study_with([
+    let mut sweep = vec![
         format!("method = [{}]", overrides::quoted(&arguments.method)),
         format!("integrator = [{}]", overrides::quoted(&arguments.integrator)),
         format!("cells = [{}]", arguments.cells),
         format!("points_per_cell = [{}]", arguments.points_per_cell),
-        format!("time_step = [{}]", overrides::step_rule(&arguments.time_step)?),
-    ])
+    ];
+    if let Some(rule) = &arguments.time_step {
+        sweep.push(format!("time_step = [{}]", overrides::step_rule(rule)?));
+    }
+    lines.study_with(sweep)
 }
 
 /// Keys of a sweep that `solve` takes as options.

@@ -151,6 +151,26 @@ impl<const D: usize> Cells<D> {
         divergence * grid.inverse_cell_size() * 2.0 / corners as f64
     }
 
+    /// Visits the nodes of that divergence with their coefficients, 1/m.
+    pub fn visit_centre_divergence(
+        &self,
+        grid: &Grid<D>,
+        cell: usize,
+        mut node_visitor: impl FnMut(usize, &Vector<D>),
+    ) {
+        let corners = 1_usize << D;
+        let coefficient = grid.inverse_cell_size() * 2.0 / corners as f64;
+        for corner in 0..corners {
+            let is_upper = |direction: usize| corner >> direction & 1 == 1;
+            let steps = (0..D).filter(|d| is_upper(*d)).map(|d| grid.node_stride()[d]);
+            let node = self.first_node[cell] + steps.sum::<usize>();
+            node_visitor(
+                node,
+                &std::array::from_fn(|d| if is_upper(d) { coefficient } else { -coefficient }),
+            );
+        }
+    }
+
     /// The same on the deformed configuration, for a field on the initial one: its gradient there
     /// times the cell's inverse deformation gradient.
     #[inline]

@@ -4,7 +4,8 @@
 //! centres: weights (`shape`, `stencil`), strain gradient (`stencil`), pressure divergence
 //! (`cells`) and recovery (`recovery`). A `body` joins them with points and nodes; `explicit` is
 //! the step of Zheng et al. (2021); `assembled` is the same step as one banded map where nothing
-//! moves; `run` drives either from output to output.
+//! moves; `run` drives either from output to output; `implicit` takes steps of any size on the same
+//! operators.
 //!
 //! Nothing here knows of studies, references or reports.
 
@@ -13,6 +14,8 @@ pub mod body;
 pub mod cells;
 pub mod explicit;
 pub mod grid;
+pub mod implicit;
+pub mod integrator;
 pub mod limits;
 pub mod material;
 pub mod method;

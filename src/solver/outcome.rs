@@ -13,6 +13,10 @@ pub enum FailureKind {
     PoresClosed,
     /// A point left the grid.
     LeftGrid,
+    /// The equations of an implicit step have no unique solution.
+    Singular,
+    /// The iterations of an implicit step did not come to an end.
+    NotConverged,
     /// The run was stopped from outside or ran out of its time.
     Stopped,
 }
@@ -24,6 +28,8 @@ impl FailureKind {
             Self::Unstable => "unstable",
             Self::PoresClosed => "pores-closed",
             Self::LeftGrid => "left-grid",
+            Self::Singular => "singular",
+            Self::NotConverged => "not-converged",
             Self::Stopped => "stopped",
         }
     }
@@ -62,6 +68,12 @@ pub struct Counters {
     pub steps: u64,
     /// Points times steps.
     pub point_updates: u64,
+    /// Matrices factored by an implicit integrator.
+    #[serde(default)]
+    pub factorisations: u64,
+    /// Iterations of an implicit integrator's nonlinear solves; a linear problem needs none.
+    #[serde(default)]
+    pub iterations: u64,
 }
 
 /// Step sizes of a run, s.

@@ -3,6 +3,9 @@
 use super::assembled::AssembledColumn;
 use super::body::{Body, Gimp, Hat, Problem, ShapeFunction};
 use super::explicit::ExplicitSettings;
+use super::implicit::drive;
+use super::implicit::steps::{StepLimit, steps_for};
+use super::integrator::IntegratorKind;
 use super::limits;
 use super::method::{Basis, Configuration};
 use super::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
@@ -32,6 +35,8 @@ pub enum TimeStepRule {
     Courant(f64),
     /// Seconds.
     Seconds(f64),
+    /// Grows with time, `max(Δt₀, α t)`; the number is `α`.
+    Growth(f64),
 }
 
 /// Kernel of the explicit step.
@@ -57,6 +62,8 @@ pub struct Schedule {
     pub settings: ExplicitSettings,
     /// Kernel of the step.
     pub kernel: Kernel,
+    /// Integrator.
+    pub integrator: IntegratorKind,
 }
 
 /// Told now and then how many steps are done, of how many; answers whether to go on.
@@ -66,9 +73,32 @@ pub type Observer<'a> = &'a dyn Fn(u64, u64) -> bool;
 /// named status, and what was finished before stays.
 pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
     match problem.method.basis {
-        Basis::Hat => Run::new(Body::<D, 2, Hat>::new, problem, schedule).solve(observer),
-        Basis::Ugimp | Basis::Cpgimp => Run::new(Body::<D, 3, Gimp>::new, problem, schedule).solve(observer),
+        Basis::Hat => solve(Body::<D, 2, Hat>::new, problem, schedule, observer),
+        Basis::Ugimp | Basis::Cpgimp => solve(Body::<D, 3, Gimp>::new, problem, schedule, observer),
     }
+}
+
+fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    discretise: impl Fn(Problem<D>) -> Body<D, W, S>,
+    problem: Problem<D>,
+    schedule: &Schedule,
+    observer: Observer<'_>,
+) -> Outcome {
+    match schedule.integrator {
+        IntegratorKind::Explicit => Run::new(discretise, problem, schedule).solve(observer),
+        IntegratorKind::Implicit => {
+            let sizes = implicit_sizes(&problem, schedule);
+            let limit = schedule.rule.limit(&problem, sizes.target, &schedule.outputs);
+            drive::run_linear(&discretise(problem), schedule, limit, sizes, observer)
+        }
+    }
+}
+
+/// Step sizes of an implicit run: what it is measured by is the formula, for its own operator has
+/// no limit.
+fn implicit_sizes<const D: usize>(problem: &Problem<D>, schedule: &Schedule) -> StepSizes {
+    let safe = limits::combined_limit(&problem.material, problem.grid.cell_size, schedule.settings.drag);
+    StepSizes { predicted_critical: safe, target: schedule.rule.step(problem, safe), largest: 0.0 }
 }
 
 /// Critical step, s, of the explicit integrator on a problem's initial configuration.
@@ -313,19 +343,27 @@ impl TimeStepRule {
                 share * problem.grid.cell_size / limits::fastest_wave_speed(soil, soil.porosity)
             }
             Self::Seconds(seconds) => *seconds,
+            Self::Growth(growth) => growth * diffusion_time(problem),
+        }
+    }
+
+    /// Limit of an implicit run's steps whose rule asks for steps of `target` seconds at first:
+    /// where they grow, the first ones resolve the first output as the later ones theirs.
+    fn limit<const D: usize>(&self, problem: &Problem<D>, target: f64, outputs: &[f64]) -> StepLimit {
+        match self {
+            Self::Stable(_) | Self::Courant(_) | Self::Seconds(_) => StepLimit::Constant(target),
+            Self::Growth(growth) => {
+                let first = outputs.iter().copied().find(|output| *output > 0.0);
+                let start = first.unwrap_or(f64::INFINITY).min(diffusion_time(problem));
+                StepLimit::Growing { first: growth * start, growth: *growth }
+            }
         }
     }
 }
 
-/// Equal steps of at most `step` that fill a duration; at least one.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "saturates, and that is the right end"
-)]
-fn steps_for(duration: f64, step: f64) -> u64 {
-    // A duration that is a whole number of steps up to round-off is that number.
-    ((duration / step) * (1.0 - 1e-12)).ceil().max(1.0) as u64
+/// Time, s, in which pressure diffuses through a cell, `h²/c_v`: nothing earlier is resolved.
+fn diffusion_time<const D: usize>(problem: &Problem<D>) -> f64 {
+    problem.grid.cell_size * problem.grid.cell_size / problem.material.coefficient_of_consolidation()
 }
 
 #[cfg(test)]
@@ -351,6 +389,7 @@ mod tests {
             rule: TimeStepRule::Stable(0.6),
             settings,
             kernel,
+            integrator: IntegratorKind::Explicit,
         }
     }
 

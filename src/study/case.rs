@@ -2,6 +2,7 @@
 
 use crate::scene::{Column, SceneKind};
 use crate::solver::explicit::{Drag, ExplicitSettings};
+use crate::solver::integrator::IntegratorKind;
 use crate::solver::material::{Continuity, Material};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
@@ -9,26 +10,6 @@ use serde::{Deserialize, Serialize};
 
 /// Hexadecimal digits of a case's hash: enough that a million cases do not meet.
 const HASH_DIGITS: usize = 16;
-
-/// Time integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum IntegratorKind {
-    /// The eight steps of Zheng et al. (2021).
-    Explicit,
-}
-
-impl IntegratorKind {
-    /// Every integrator.
-    pub const ALL: [Self; 1] = [Self::Explicit];
-
-    /// Name in study files and at the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Explicit => "explicit",
-        }
-    }
-}
 
 /// All inputs of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -123,6 +104,7 @@ pub fn step_label(rule: &TimeStepRule) -> String {
         TimeStepRule::Stable(share) => format!("stable={share}"),
         TimeStepRule::Courant(share) => format!("courant={share}"),
         TimeStepRule::Seconds(seconds) => format!("seconds={seconds:e}"),
+        TimeStepRule::Growth(growth) => format!("growth={growth}"),
     }
 }
 

@@ -1,6 +1,6 @@
 //! From what was typed to what will run: every value judged, every complaint at its place.
 
-use super::case::{Case, IntegratorKind};
+use super::case::Case;
 use super::diagnostic::{Diagnostic, StudyError, one_of};
 use super::expectation::{Axis, Expectation, Measure};
 use super::file::{
@@ -16,6 +16,7 @@ use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Quantity, Sample};
 use crate::scene::{Column, SceneKind, column_parameters};
 use crate::solver::explicit::{Drag, ExplicitSettings};
+use crate::solver::integrator::IntegratorKind;
 use crate::solver::material::{Continuity, Law, Material};
 use crate::solver::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
 use crate::solver::run::TimeStepRule;
@@ -24,8 +25,6 @@ use toml::Spanned;
 
 /// Time factors where a study names none.
 const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
-/// Share of the critical step where a sweep names no rule.
-const DEFAULT_SHARE: f64 = 0.8;
 /// Half-width of an order's band where an expectation names none.
 const DEFAULT_BAND: f64 = 0.1;
 /// Final strain `m_vl q` up to which small-strain theory is taken without a word.
@@ -473,12 +472,9 @@ impl Checker<'_> {
                 &[2],
                 |c, typed| c.count(Some(typed), "points_per_cell", 1..=MOST_POINTS),
             ),
-            time_step: self.list(
-                table.time_step.as_ref(),
-                "time_step",
-                &[TimeStepRule::Stable(DEFAULT_SHARE)],
-                Self::time_step,
-            ),
+            time_step: self.list(table.time_step.as_ref(), "time_step", &[None], |c, typed| {
+                c.time_step(typed).map(Some)
+            }),
             drag: self.list(table.drag.as_ref(), "drag", &[settings.drag], Self::drag),
             flip: self.list(table.flip.as_ref(), "flip", &[settings.flip], |c, typed| Some(c.flip(typed))),
             mapping_back: self.list(
@@ -505,7 +501,41 @@ impl Checker<'_> {
                 "give the axes of a path lists of one length",
             );
         }
+        if self.diagnostics.len() == before {
+            self.rules_fit(table, &sweep);
+            self.integrators_fit(table, &sweep, scene);
+        }
         (self.diagnostics.len() == before).then_some(sweep)
+    }
+
+    /// Complains where an integrator meets a configuration that it cannot follow.
+    fn integrators_fit(&mut self, table: &SweepTable, sweep: &Sweep, scene: SceneKind) {
+        let Some(list) = &table.integrator else { return };
+        let moves = |method: Method| method.configuration_or(scene.configuration()) != Configuration::Frozen;
+        let unfit = |one: &crate::study::sweep::Combination| {
+            one.integrator == IntegratorKind::Implicit && moves(one.method)
+        };
+        if sweep.combinations().iter().any(unfit) {
+            self.complain(
+                list.span(),
+                "the implicit integrator takes frozen configurations only",
+                "leave it to scenes of small strain, and to methods without `configuration` or the prefix TL-",
+            );
+        }
+    }
+
+    /// Complains where a step rule meets an integrator that cannot follow it.
+    fn rules_fit(&mut self, table: &SweepTable, sweep: &Sweep) {
+        let Some(list) = &table.time_step else { return };
+        let refused =
+            sweep.combinations().into_iter().find_map(|one| one.integrator.refuses_rule(one.time_step));
+        if let Some(why) = refused {
+            self.complain(
+                list.span(),
+                why,
+                "give each integrator a [[sweep]] block of its own, or tie both axes with `path`",
+            );
+        }
     }
 
     /// A list of choices, or the default where it is not given; empty lists are refused.
@@ -605,13 +635,14 @@ impl Checker<'_> {
             table.stable.as_ref().map(|value| (TimeStepRule::Stable(*value.get_ref()), value)),
             table.courant.as_ref().map(|value| (TimeStepRule::Courant(*value.get_ref()), value)),
             table.seconds.as_ref().map(|value| (TimeStepRule::Seconds(*value.get_ref()), value)),
+            table.growth.as_ref().map(|value| (TimeStepRule::Growth(*value.get_ref()), value)),
         ];
         let given: Vec<_> = given.into_iter().flatten().collect();
         let [(rule, value)] = given.as_slice() else {
             self.complain(
                 typed.span(),
                 format!("a time step by {} rules", given.len()),
-                "give exactly one: { stable = 0.5 }, { courant = 0.5 } or { seconds = 1e-6 }",
+                "give exactly one: { stable = 0.5 }, { courant = 0.5 }, { seconds = 1e-6 } or { growth = 0.05 }",
             );
             return None;
         };

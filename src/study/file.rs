@@ -112,6 +112,7 @@ pub struct TimeStepTable {
     pub stable: Typed<f64>,
     pub courant: Typed<f64>,
     pub seconds: Typed<f64>,
+    pub growth: Typed<f64>,
 }
 
 /// A method by name or by its choices.

@@ -9,7 +9,8 @@ mod runner;
 mod shipped;
 mod sweep;
 
-pub use case::{Case, IntegratorKind, step_label};
+pub use crate::solver::integrator::IntegratorKind;
+pub use case::{Case, step_label};
 pub use check::{Study, Tier};
 pub use diagnostic::{Diagnostic, StudyError};
 pub use expectation::{Axis, Expectation, Measure};

@@ -257,6 +257,7 @@ fn schedule_of(case: &Case, kernel: Kernel) -> Schedule {
         rule: case.time_step,
         settings: case.settings,
         kernel,
+        integrator: case.integrator,
     }
 }
 
@@ -272,6 +273,10 @@ pub fn estimated_updates(case: &Case) -> u64 {
             share * case.cell_size() / limits::fastest_wave_speed(&case.material, case.material.porosity)
         }
         TimeStepRule::Seconds(seconds) => seconds,
+        TimeStepRule::Growth(growth) => {
+            let first = parameters.time((case.cells as f64).powi(-2));
+            growth * end / (2.0 + (end / first).max(1.0).ln())
+        }
     };
     let points = (case.cells * case.points_per_cell) as f64;
     (end / step * points).max(1.0) as u64

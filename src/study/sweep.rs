@@ -1,7 +1,7 @@
 //! Sweeps: lists of choices, multiplied out or tied to a path.
 
-use super::case::IntegratorKind;
 use crate::solver::explicit::Drag;
+use crate::solver::integrator::IntegratorKind;
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
@@ -13,7 +13,8 @@ pub struct Sweep {
     pub integrator: Vec<IntegratorKind>,
     pub cells: Vec<usize>,
     pub points_per_cell: Vec<usize>,
-    pub time_step: Vec<TimeStepRule>,
+    /// Step rules; none where the integrator's own holds.
+    pub time_step: Vec<Option<TimeStepRule>>,
     pub drag: Vec<Drag>,
     pub flip: Vec<f64>,
     pub mapping_back: Vec<bool>,
@@ -105,7 +106,7 @@ impl Sweep {
                     integrator: self.integrator[at[1]],
                     cells: self.cells[at[2]],
                     points_per_cell: self.points_per_cell[at[3]],
-                    time_step: self.time_step[at[4]],
+                    time_step: self.time_step[at[4]].unwrap_or_else(|| self.integrator[at[1]].default_rule()),
                     drag: self.drag[at[5]],
                     flip: self.flip[at[6]],
                     mapping_back: self.mapping_back[at[7]],
@@ -127,11 +128,7 @@ mod tests {
             integrator: vec![IntegratorKind::Explicit],
             cells: vec![5, 10, 20],
             points_per_cell: vec![2],
-            time_step: vec![
-                TimeStepRule::Seconds(4e-6),
-                TimeStepRule::Seconds(2e-6),
-                TimeStepRule::Seconds(1e-6),
-            ],
+            time_step: [4e-6, 2e-6, 1e-6].map(|step| Some(TimeStepRule::Seconds(step))).to_vec(),
             drag: vec![Drag::Explicit],
             flip: vec![1.0],
             mapping_back: vec![true],
@@ -157,7 +154,7 @@ mod tests {
         for one in all {
             let place = [5, 10, 20].iter().position(|cells| *cells == one.cells);
             let steps = sweep(&[]).time_step;
-            assert_eq!(place.map(|place| steps[place]), Some(one.time_step));
+            assert_eq!(place.and_then(|place| steps[place]), Some(one.time_step));
         }
     }
 

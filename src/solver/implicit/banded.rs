@@ -1,0 +1,224 @@
+//! Banded matrices and their LU factorisation with partial pivoting.
+//!
+//! Unknowns ordered along the column keep every operator within a narrow band, so that factoring
+//! and solving are linear in the number of cells (Golub & Van Loan 2013, algorithm 4.3.1).
+
+/// A square matrix whose entries lie within `lower` diagonals below and `upper` above the main
+/// one, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Banded {
+    size: usize,
+    lower: usize,
+    upper: usize,
+    /// Entries a row: the band and room for what pivoting fills in.
+    width: usize,
+    /// Entry `(i, j)` at `i * width + j + lower − i`.
+    entries: Vec<f64>,
+}
+
+/// The matrix has no inverse to working precision: the row without a pivot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Singular {
+    /// The row.
+    pub row: usize,
+}
+
+impl Banded {
+    /// A matrix of zeros.
+    pub fn zeros(size: usize, lower: usize, upper: usize) -> Self {
+        let width = 2 * lower + upper + 1;
+        Self { size, lower, upper, width, entries: vec![0.0; size * width] }
+    }
+
+    /// Number of rows.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Diagonals with entries, the main one included.
+    pub fn bandwidth(&self) -> usize {
+        self.lower + self.upper + 1
+    }
+
+    /// Adds to an entry, which must lie within the band.
+    #[inline]
+    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+        debug_assert!(column + self.lower >= row && column <= row + self.upper);
+        self.entries[row * self.width + column + self.lower - row] += value;
+    }
+
+    /// `self ← fixed + factor · scaled`, all of one shape.
+    pub fn set_combination(&mut self, fixed: &Self, factor: f64, scaled: &Self) {
+        for ((entry, fixed), scaled) in self.entries.iter_mut().zip(&fixed.entries).zip(&scaled.entries) {
+            *entry = fixed + factor * scaled;
+        }
+    }
+
+    /// Sets every entry to zero.
+    pub fn clear(&mut self) {
+        self.entries.fill(0.0);
+    }
+}
+
+/// The factors of a banded matrix.
+#[derive(Clone, Debug)]
+pub struct BandedLu {
+    factors: Banded,
+    /// Row that took the place of each row.
+    pivots: Vec<usize>,
+    /// One over the diagonal of the upper factor.
+    per_diagonal: Vec<f64>,
+}
+
+impl BandedLu {
+    /// Factors of the unit matrix, with room for those of matrices of a shape.
+    pub fn of_shape(shape: &Banded) -> Self {
+        Self { factors: shape.clone(), pivots: vec![0; shape.size], per_diagonal: vec![1.0; shape.size] }
+    }
+
+    /// Factors `fixed + factor · scaled`; nothing is allocated.
+    ///
+    /// # Errors
+    /// [`Singular`] when a column has no pivot.
+    pub fn factor_combination(
+        &mut self,
+        fixed: &Banded,
+        factor: f64,
+        scaled: &Banded,
+    ) -> Result<(), Singular> {
+        self.factors.set_combination(fixed, factor, scaled);
+        self.eliminate()
+    }
+
+    /// Factors a matrix; nothing is allocated.
+    ///
+    /// # Errors
+    /// [`Singular`] when a column has no pivot.
+    pub fn factor(&mut self, matrix: &Banded) -> Result<(), Singular> {
+        self.factors.entries.copy_from_slice(&matrix.entries);
+        self.eliminate()
+    }
+
+    fn eliminate(&mut self) -> Result<(), Singular> {
+        let Banded { size, lower, width, .. } = self.factors;
+        let entries = &mut self.factors.entries;
+        for column in 0..size {
+            let last = (column + lower).min(size - 1);
+            let at = |row: usize| row * width + column + lower - row;
+            let mut pivot = column;
+            for row in column + 1..=last {
+                if entries[at(row)].abs() > entries[at(pivot)].abs() {
+                    pivot = row;
+                }
+            }
+            let value = entries[at(pivot)];
+            if value == 0.0 || !value.is_finite() {
+                return Err(Singular { row: column });
+            }
+            self.pivots[column] = pivot;
+            // Columns from this one to the last that a row below can reach.
+            let reach = (width - lower).min(size - column);
+            if pivot != column {
+                for k in 0..reach {
+                    entries.swap(at(column) + k, at(pivot) + k);
+                }
+            }
+            let per_value = 1.0 / value;
+            self.per_diagonal[column] = per_value;
+            let (above, below) = entries.split_at_mut((column + 1) * width);
+            let pivot_row = &above[column * width + lower..][1..reach];
+            for row in column + 1..=last {
+                let start = (row - column - 1) * width + column + lower - row;
+                let multiplier = below[start] * per_value;
+                below[start] = multiplier;
+                if multiplier != 0.0 {
+                    for (entry, above) in below[start + 1..start + reach].iter_mut().zip(pivot_row) {
+                        *entry -= multiplier * above;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Replaces a right-hand side by the solution; nothing is allocated.
+    pub fn solve(&self, values: &mut [f64]) {
+        let Banded { size, lower, width, ref entries, .. } = self.factors;
+        for column in 0..size {
+            values.swap(column, self.pivots[column]);
+            let value = values[column];
+            let last = (column + lower).min(size - 1);
+            for row in column + 1..=last {
+                values[row] -= entries[row * width + column + lower - row] * value;
+            }
+        }
+        for row in (0..size).rev() {
+            let reach = (width - lower).min(size - row);
+            let above = &entries[row * width + lower..][1..reach];
+            let mut sum = values[row];
+            for (entry, value) in above.iter().zip(&values[row + 1..]) {
+                sum -= entry * value;
+            }
+            values[row] = sum * self.per_diagonal[row];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn solutions_are_those_of_the_dense_matrix(
+            size in 1..24usize, lower in 0..5usize, upper in 0..5usize, seed in 0..1000u32,
+        ) {
+            let mut state = seed;
+            let mut random = || {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                f64::from(state >> 8) / f64::from(1 << 23) - 1.0
+            };
+            let mut banded = Banded::zeros(size, lower, upper);
+            let mut dense = DMatrix::zeros(size, size);
+            for row in 0..size {
+                for column in row.saturating_sub(lower)..(row + upper + 1).min(size) {
+                    // A weak diagonal makes rows change places.
+                    let value = random() * if row == column { 0.1 } else { 1.0 };
+                    banded.add(row, column, value);
+                    dense[(row, column)] = value;
+                }
+            }
+            let right = DVector::from_fn(size, |_, _| random());
+            let mut lu = BandedLu::of_shape(&banded);
+            // The dense factors say whether there is a solution worth comparing.
+            let svd = dense.clone().svd(false, false).singular_values;
+            prop_assume!(svd.min() > 1e-6 * svd.max());
+            prop_assert_eq!(lu.factor(&banded), Ok(()));
+            let mut solution = right.as_slice().to_vec();
+            lu.solve(&mut solution);
+            let residual = &dense * DVector::from_vec(solution) - right;
+            prop_assert!(residual.amax() < 1e-8, "{}", residual.amax());
+        }
+    }
+
+    #[test]
+    fn a_zero_diagonal_needs_the_pivot_and_a_zero_column_is_named() {
+        let mut saddle = Banded::zeros(2, 1, 1);
+        saddle.add(0, 1, 2.0);
+        saddle.add(1, 0, 4.0);
+        let mut lu = BandedLu::of_shape(&saddle);
+        assert_eq!(lu.factor(&saddle), Ok(()));
+        let mut values = [6.0, 8.0];
+        lu.solve(&mut values);
+        assert_eq!(values, [2.0, 3.0]);
+        let zero = Banded::zeros(2, 1, 1);
+        assert_eq!(lu.factor(&zero), Err(Singular { row: 0 }));
+        let mut combined = BandedLu::of_shape(&saddle);
+        assert_eq!(combined.factor_combination(&zero, 2.0, &saddle), Ok(()));
+        let mut values = [12.0, 16.0];
+        combined.solve(&mut values);
+        assert_eq!(values, [2.0, 3.0]);
+    }
+}
