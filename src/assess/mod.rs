@@ -25,6 +25,7 @@ mod pattern_search;
 pub mod places;
 pub mod score;
 pub mod series;
+pub mod soundness;
 pub mod statistics;
 pub mod study_check;
 pub mod summary;

@@ -47,7 +47,7 @@ pub struct SeriesSummary<'a> {
 }
 
 /// The judgement of one expectation of a study.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize)]
 pub struct Judgement {
     /// Line of the expectation in its file.
     pub line: usize,

@@ -5,9 +5,14 @@
 //! the tolerance is stale, not wrong.
 
 mod compare;
+mod gate;
+mod references;
 
 pub use compare::{Change, Difference, compare};
+pub use gate::{CaseChange, case_changes};
+pub use references::{REFERENCES, reference_values};
 
+use crate::exact::ExactError;
 use crate::record::{Provenance, Record, StoreError, write_whole};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -21,7 +26,10 @@ const RELATIVE_TOLERANCE: f64 = 1e-8;
 const ABSOLUTE_TOLERANCE: f64 = 1e-12;
 /// Where the tolerances come from.
 const BASIS: &str = "round-off: the point-wise and the assembled kernel, which differ in every rounding, agree to \
-                     better than a tenth of it over a million steps (solver::run::tests, `solve --point-wise`)";
+                     better than a tenth of it over a million steps (measured by `oedometer spread`)";
+/// Where those of the exact solutions come from.
+const REFERENCE_BASIS: &str = "the exact solutions are good to 1e-13 (against 30 digits in their tests); functions of \
+                               another platform's library may differ in the last digits";
 
 /// Golden values of a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,6 +49,9 @@ pub struct GoldenFile {
     pub basis: String,
     /// What made the values.
     pub provenance: Provenance,
+    /// Wall time of all cases together when the values were taken, s: it warns and never fails.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
     /// Signed errors and work counters by case and measure.
     pub values: BTreeMap<String, f64>,
 }
@@ -75,8 +86,22 @@ impl GoldenFile {
             absolute_tolerance: ABSOLUTE_TOLERANCE,
             basis: BASIS.to_owned(),
             provenance: Provenance::of_this_program(),
+            seconds: Some(seconds_of(records)),
             values: values_of(records),
         }
+    }
+
+    /// The present values of the exact solutions as golden, for a reason.
+    ///
+    /// # Errors
+    /// When a solution refuses its column: a fault of this program.
+    pub fn of_references(reason: &str) -> Result<Self, ExactError> {
+        Ok(Self {
+            basis: REFERENCE_BASIS.to_owned(),
+            seconds: None,
+            values: reference_values()?,
+            ..Self::of(REFERENCES, &[], reason)
+        })
     }
 
     /// Path of a study's golden file in a folder.
@@ -120,6 +145,11 @@ impl GoldenFile {
         write_whole(&path, (text + "\n").as_bytes())?;
         Ok(path)
     }
+}
+
+/// Wall time of the first run of every record together, s.
+pub fn seconds_of(records: &[Record]) -> f64 {
+    records.iter().filter_map(|record| record.wall.first()).map(|sample| sample.seconds).sum()
 }
 
 /// Every measured error and work counter of records, by name.

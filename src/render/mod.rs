@@ -1,5 +1,6 @@
 //! Tables, charts and pages out of plain data. Nothing here computes science, and nothing here
 //! knows a solver: the same description always gives the same bytes.
+pub mod annotations;
 pub mod chart;
 mod error;
 mod escape;
