@@ -7,6 +7,7 @@ mod check;
 mod completions;
 mod exact;
 mod exit;
+mod explain;
 mod list;
 mod merge;
 mod output;
@@ -18,6 +19,7 @@ mod run;
 mod schema;
 mod score;
 mod solve;
+mod spread;
 
 pub use exit::Exit;
 
@@ -54,6 +56,10 @@ enum Command {
     Merge(merge::Arguments),
     /// List scenes, methods, references and shipped studies
     List,
+    /// Say where the error of a case comes from and what changed
+    Explain(explain::Arguments),
+    /// Measure how far results scatter that should be equal
+    Spread(spread::Arguments),
     /// Print the JSON Schema of study files, records or mappings
     Schema(schema::Arguments),
     /// Print the completions of a shell
@@ -82,6 +88,8 @@ pub fn main() -> ExitCode {
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
         Command::List => list::run(),
+        Command::Explain(arguments) => explain::run(&arguments),
+        Command::Spread(arguments) => spread::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
         Command::Completions(arguments) => Ok(completions::run(&arguments)),
     };

@@ -13,7 +13,7 @@ pub use gate::{CaseChange, case_changes};
 pub use references::{REFERENCES, reference_values};
 
 use crate::exact::ExactError;
-use crate::record::{Provenance, Record, StoreError, write_whole};
+use crate::record::{ErrorRow, Provenance, Record, StoreError, write_whole};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ const SCHEMA: u32 = 1;
 /// Allowed relative change.
 const RELATIVE_TOLERANCE: f64 = 1e-8;
 /// Allowed absolute change of an error: round-off of a run of a million steps.
-const ABSOLUTE_TOLERANCE: f64 = 1e-12;
+pub const ABSOLUTE_TOLERANCE: f64 = 1e-12;
 /// Where the tolerances come from.
 const BASIS: &str = "round-off: the point-wise and the assembled kernel, which differ in every rounding, agree to \
                      better than a tenth of it over a million steps (measured by `oedometer spread`)";
@@ -152,6 +152,18 @@ pub fn seconds_of(records: &[Record]) -> f64 {
     records.iter().filter_map(|record| record.wall.first()).map(|sample| sample.seconds).sum()
 }
 
+/// Name of a measured error within its case.
+pub fn measure_name(row: &ErrorRow) -> String {
+    format!(
+        "{} {} {} {} T_v={}",
+        row.quantity.name(),
+        row.sample.name(),
+        row.norm,
+        row.reference,
+        row.time_factor
+    )
+}
+
 /// Every measured error and work counter of records, by name.
 pub fn values_of(records: &[Record]) -> BTreeMap<String, f64> {
     let mut values = BTreeMap::new();
@@ -160,15 +172,7 @@ pub fn values_of(records: &[Record]) -> BTreeMap<String, f64> {
         values.insert(format!("{label} | steps"), record.counters.steps as f64);
         values.insert(format!("{label} | point updates"), record.counters.point_updates as f64);
         for row in &record.errors {
-            let measure = format!(
-                "{} {} {} {} T_v={}",
-                row.quantity.name(),
-                row.sample.name(),
-                row.norm,
-                row.reference,
-                row.time_factor
-            );
-            values.insert(format!("{label} | {measure}"), row.value);
+            values.insert(format!("{label} | {}", measure_name(row)), row.value);
         }
         for balance in &record.balance {
             values.insert(

@@ -4,6 +4,7 @@ pub mod annotations;
 pub mod chart;
 mod error;
 mod escape;
+pub mod explanation;
 pub mod junit;
 pub mod measures;
 pub mod number;
@@ -13,6 +14,7 @@ pub mod scores;
 mod script;
 #[cfg(test)]
 mod showcase;
+pub mod spreads;
 pub mod table;
 pub mod verdicts;
 

@@ -181,7 +181,8 @@ pub fn judgements_table(title: &str, judgements: &[&Judgement]) -> Table {
     }
 }
 
-fn differences_table(differences: &[Difference]) -> Table {
+/// Values that differ from their golden ones.
+pub fn differences_table(differences: &[Difference]) -> Table {
     let value = |value: Option<f64>| {
         value.map_or(Cell::Missing("no value".to_owned()), |v| number::exact(v).as_str().into())
     };

@@ -340,6 +340,7 @@ impl<'de> VariantAccess<'de> for Variant<'_> {
 /// `toml::Spanned`, which asks for start, end and value under private names.
 mod toml_spanned {
     use super::{Error, Tracer};
+    use serde::de::value::BorrowedStrDeserializer;
     use serde::de::{DeserializeSeed, IntoDeserializer, MapAccess};
 
     /// Whether a struct is one.
@@ -358,7 +359,7 @@ mod toml_spanned {
 
         fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
             let Some(name) = self.names.get(self.next) else { return Ok(None) };
-            seed.deserialize((*name).into_deserializer()).map(Some)
+            seed.deserialize(BorrowedStrDeserializer::new(name)).map(Some)
         }
 
         fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Error> {

@@ -730,7 +730,8 @@ impl Checker<'_> {
             axis,
             demand,
             tier: Tier::ALL[tier?],
-            line: self.source.text[..entry.span().start.min(self.source.text.len())].lines().count().max(1),
+            line: self.source.text[..entry.span().start.min(self.source.text.len())].matches('\n').count()
+                + 1,
         };
         (self.diagnostics.len() == before).then_some(expectation)
     }
