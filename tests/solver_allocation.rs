@@ -64,8 +64,9 @@ fn a_step_allocates_nothing() {
             for (drag, flip, mapping_back, continuity) in [
                 (Drag::Explicit, 1.0, true, Continuity::Conservative),
                 (Drag::Implicit, 0.99, false, Continuity::ConstantPorosityGradient),
+                (Drag::Centred, 1.0, true, Continuity::Conservative),
             ] {
-                let settings = ExplicitSettings { drag, flip, mapping_back };
+                let settings = ExplicitSettings { drag, flip, mapping_back, ..ExplicitSettings::default() };
                 let problem = problem(&name, configuration, continuity);
                 let dt = 0.5 * predicted_critical_step(&problem, &settings);
                 let what = format!("{name} {configuration:?} {settings:?} {continuity:?}");

@@ -48,7 +48,7 @@ impl Setup {
 
     /// Runs to the last output, which every test here must reach.
     fn solve(&self) -> Outcome {
-        let problem = column_problem(
+        let problem = column_problem::<1>(
             self.scene,
             &self.column,
             &self.soil,
@@ -177,7 +177,7 @@ proptest! {
         mapping_back: bool,
     ) {
         let mut setup = Setup::of(name);
-        setup.settings = ExplicitSettings { drag: Drag::Implicit, flip, mapping_back };
+        setup.settings = ExplicitSettings { drag: Drag::Implicit, flip, mapping_back, ..ExplicitSettings::default() };
         let mut other = setup.clone();
         let factor = f64::from(power).exp2();
         other.column.load *= factor;

@@ -1,6 +1,7 @@
 //! From a run to its record: errors against every reference, start checks, balances, groups.
 
 use super::norms::{self, Norm};
+use crate::exact::cosine_layer::{LayerFields, LayerState};
 use crate::exact::{ExactError, Reference, ReferenceKind};
 use crate::record::{
     Balance, ErrorRow, Groups, HistoryRow, Provenance, Quantity, Record, ReferenceUse, SCHEMA, Sample,
@@ -9,8 +10,10 @@ use crate::record::{
 use crate::scene::{SceneKind, column_parameters};
 use crate::solver::limits;
 use crate::solver::outcome::{Outcome, RunStatus};
-use crate::solver::snapshot::{Samples, Snapshot};
+use crate::solver::snapshot::{PlaneSamples, Samples, Snapshot};
 use crate::study::Case;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// Norms of a field's error.
 const FIELD_NORMS: [Norm; 3] = [Norm::L1, Norm::L2, Norm::Linf];
@@ -93,14 +96,22 @@ fn snapshot_errors(
         (Sample::Nodes, &snapshot.nodes),
     ] {
         let exact = exact_samples(case, reference, time_factor, samples)?;
-        for (quantity, computed, exact, scale) in [
-            (Quantity::Pressure, &samples.pressure, &exact.pressure, load),
-            (Quantity::EffectiveStress, &samples.effective_stress, &exact.effective_stress, load),
-            (Quantity::Displacement, &samples.displacement, &exact.displacement, final_settlement),
+        let displacements = (displacement_components(samples), displacement_components(&exact));
+        let volumes = samples.volume.repeat(if samples.plane.is_some() { 2 } else { 1 });
+        for (quantity, computed, exact, volume, scale) in [
+            (Quantity::Pressure, &samples.pressure, &exact.pressure, &samples.volume, load),
+            (
+                Quantity::EffectiveStress,
+                &samples.effective_stress,
+                &exact.effective_stress,
+                &samples.volume,
+                load,
+            ),
+            (Quantity::Displacement, &displacements.0, &displacements.1, &volumes, final_settlement),
         ] {
             for norm in FIELD_NORMS {
-                let relative = norms::relative_error(norm, computed, exact, &samples.volume);
-                let absolute = norms::absolute_error(norm, computed, exact, &samples.volume);
+                let relative = norms::relative_error(norm, computed, exact, volume);
+                let absolute = norms::absolute_error(norm, computed, exact, volume);
                 if let (Ok(value), Ok(absolute)) = (relative, absolute) {
                     rows.push(ErrorRow {
                         time_factor,
@@ -142,6 +153,9 @@ pub fn exact_samples(
     samples: &Samples,
 ) -> Result<Samples, ExactError> {
     let depth = |height: f64| (1.0 - height / case.column.height).clamp(0.0, 1.0);
+    if let (Some(plane), Some(state)) = (&samples.plane, reference.plane_state(time_factor)?) {
+        return exact_plane_samples(case, &state, samples, plane);
+    }
     let mut exact = Samples { initial_height: samples.initial_height.clone(), ..Samples::default() };
     let displaced = samples.displacement_height.as_ref().unwrap_or(&samples.initial_height);
     for (height, displaced) in samples.initial_height.iter().zip(displaced) {
@@ -150,7 +164,55 @@ pub fn exact_samples(
         exact.effective_stress.push(fields.effective_stress);
         exact.displacement.push(reference.fields(time_factor, depth(*displaced))?.displacement);
     }
+    // A column strains vertically only.
+    exact.plane = samples.plane.as_ref().map(|plane| PlaneSamples {
+        horizontal_displacement: vec![0.0; plane.horizontal_displacement.len()],
+        ..plane.clone()
+    });
     Ok(exact)
+}
+
+/// The exact fields of a layer at the places of the samples: one evaluation a height.
+fn exact_plane_samples(
+    case: &Case,
+    state: &LayerState,
+    samples: &Samples,
+    plane: &PlaneSamples,
+) -> Result<Samples, ExactError> {
+    let mut amplitudes: BTreeMap<u64, LayerFields> = BTreeMap::new();
+    let mut fields_at = |distance: f64, height: f64| {
+        let height = height.clamp(0.0, case.column.height);
+        let found = match amplitudes.entry(height.to_bits()) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(new) => *new.insert(state.amplitudes(height)?),
+        };
+        Ok::<_, ExactError>(found.at(state.wave_number() * distance))
+    };
+    let mut exact = Samples { initial_height: samples.initial_height.clone(), ..Samples::default() };
+    for (distance, height) in plane.initial_distance.iter().zip(&samples.initial_height) {
+        let fields = fields_at(*distance, *height)?;
+        exact.pressure.push(fields.pressure);
+        exact.effective_stress.push(fields.effective_stress[1]);
+    }
+    let mut horizontal_displacement = Vec::with_capacity(samples.displacement.len());
+    let displaced_height = samples.displacement_height.as_ref().unwrap_or(&samples.initial_height);
+    let displaced_distance = plane.displacement_distance.as_ref().unwrap_or(&plane.initial_distance);
+    for (distance, height) in displaced_distance.iter().zip(displaced_height) {
+        let [horizontal, vertical] = fields_at(*distance, *height)?.displacement;
+        horizontal_displacement.push(horizontal);
+        exact.displacement.push(vertical);
+    }
+    exact.plane = Some(PlaneSamples { horizontal_displacement, ..plane.clone() });
+    Ok(exact)
+}
+
+/// Every component of the displacement in one list: its L2 norm is that of the vectors.
+fn displacement_components(samples: &Samples) -> Vec<f64> {
+    let mut components = samples.displacement.clone();
+    if let Some(plane) = &samples.plane {
+        components.extend(&plane.horizontal_displacement);
+    }
+    components
 }
 
 fn groups(case: &Case, step_over_limit: f64) -> Groups {
@@ -168,13 +230,17 @@ fn start_checks(case: &Case, references: &[Reference], start: &Snapshot) -> Resu
     let soil = &case.material;
     let load = case.column.load;
     let mut pressure_error: f64 = 0.0;
+    let mean_pressure = start.points.pressure.iter().sum::<f64>() / start.points.pressure.len() as f64;
     for (pressure, height) in start.points.pressure.iter().zip(&start.points.initial_height) {
         let expected = match case.scene {
             // Written out here, and not taken from the solver or the reference: this is the check.
             SceneKind::Terzaghi => {
                 load / (1.0 + soil.porosity * soil.oedometric_modulus() / soil.water_bulk_modulus)
             }
-            SceneKind::SingleMode | SceneKind::XieLeo => match references.first() {
+            // The solver's own equilibrium, and what it measures; only its mean is known: a cosine
+            // has none.
+            SceneKind::CosineLayer => *pressure - mean_pressure,
+            _ => match references.first() {
                 Some(own) => own.fields(0.0, 1.0 - height / case.column.height)?.pressure,
                 None => *pressure,
             },
@@ -183,8 +249,8 @@ fn start_checks(case: &Case, references: &[Reference], start: &Snapshot) -> Resu
     }
     Ok(StartChecks {
         points: start.points.pressure.len(),
-        points_expected: case.cells * case.points_per_cell,
-        volume_error: start.totals.volume / case.column.height - 1.0,
+        points_expected: case.expected_points(),
+        volume_error: start.totals.volume / case.column.volume() - 1.0,
         undrained_pressure_error: pressure_error,
         unbalanced_force: start.totals.unbalanced_force / load,
     })
@@ -197,7 +263,8 @@ fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) -> B
     let squares: f64 =
         stresses.map(|(stress, pressure)| ((stress - pressure + applied) / load).powi(2)).sum();
     let outflow = now.totals.surface_flux + now.settlement - start.settlement;
-    let excess = now.totals.surface_flux - now.totals.water_expansion;
+    let surface = case.column.volume() / case.column.height;
+    let excess = now.totals.surface_flux - now.totals.water_expansion / surface;
     Balance {
         time_factor,
         solid_mass_drift: now.totals.solid_mass / start.totals.solid_mass - 1.0,

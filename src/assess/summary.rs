@@ -13,7 +13,8 @@ use crate::exact::{Reference, ReferenceKind};
 use crate::record::{Quantity, Record, Sample};
 use crate::scene::{SceneKind, column_parameters};
 use crate::solver::method::{PressureIntegration, Recovery, StrainGradient};
-use crate::study::{Axis, Case, Expectation, Measure, Study, Tier};
+use crate::solver::snapshot::{Samples, Snapshot};
+use crate::study::{Axis, Case, Expectation, Measure, NEXT_FINER, Study, Tier};
 
 /// Errors up to this are round-off of a long run.
 const ROUND_OFF: f64 = 1e-12;
@@ -99,12 +100,15 @@ impl<'a> Path<'a> {
     /// are no levels of it; a level that should have an error and has none stays, empty.
     pub fn series(&self, measure: &Measure) -> ErrorSeries {
         let asked = |record: &&&Record| record.case.time_factors.contains(&measure.time_factor);
-        let levels = self
-            .records
-            .iter()
-            .filter(asked)
-            .map(|record| Level { size: level_size(record, self.axis), error: error_of(record, measure) });
-        ErrorSeries::new(levels.collect())
+        let records: Vec<&Record> = self.records.iter().filter(asked).copied().collect();
+        let level = |record: &Record, error| Level { size: level_size(record, self.axis), error };
+        let levels = if measure.reference == NEXT_FINER {
+            let neighbours = records.windows(2);
+            neighbours.map(|pair| level(pair[0], difference_of(pair[0], pair[1], measure))).collect()
+        } else {
+            records.iter().map(|record| level(record, error_of(record, measure))).collect()
+        };
+        ErrorSeries::new(levels)
     }
 
     /// The series with orders and class.
@@ -131,13 +135,13 @@ impl<'a> Path<'a> {
             formal_order: (self.axis == Axis::Cells).then(|| formal_order(case, measure)).flatten(),
             round_off: Some(ROUND_OFF),
             reference_accuracy: used.map(|used| used.tail_bound),
-            limiters: model_limiter(finest, measure).into_iter().chain(self.mesh_limiter()).collect(),
+            limiters: model_limiter(finest, measure).into_iter().chain(self.mesh_limiter(measure)).collect(),
         }
     }
 
     /// Along any other axis than its own the mesh is what is left of the error.
-    fn mesh_limiter(&self) -> Option<Limiter> {
-        (self.axis != Axis::Cells).then(|| Limiter {
+    fn mesh_limiter(&self, measure: &Measure) -> Option<Limiter> {
+        (self.axis != Axis::Cells && measure.reference != NEXT_FINER).then(|| Limiter {
             kind: LimiterKind::Mesh,
             name: "the mesh".to_owned(),
             magnitude: None,
@@ -170,6 +174,31 @@ fn error_of(record: &Record, measure: &Measure) -> Option<f64> {
     record
         .error(measure.quantity, measure.sample, measure.norm, &measure.reference, measure.time_factor)
         .map(|row| row.value.abs())
+}
+
+/// Difference of a run from the next finer one, whose places are the same.
+fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f64> {
+    let at = |record: &Record| {
+        let factors = &record.case.time_factors;
+        let index = factors.iter().position(|factor| *factor == measure.time_factor)?;
+        record.snapshots.get(index).cloned()
+    };
+    let (coarse, fine) = (at(record)?, at(finer)?);
+    if measure.quantity == Quantity::Settlement {
+        return Some((coarse.settlement / fine.settlement - 1.0).abs());
+    }
+    let samples = |snapshot: &Snapshot| match measure.sample {
+        Sample::Points => snapshot.points.clone(),
+        Sample::Centres => snapshot.centres.clone(),
+        Sample::Nodes | Sample::Surface => snapshot.nodes.clone(),
+    };
+    let (coarse, fine) = (samples(&coarse), samples(&fine));
+    let field = |samples: &Samples| match measure.quantity {
+        Quantity::Pressure => samples.pressure.clone(),
+        Quantity::EffectiveStress => samples.effective_stress.clone(),
+        Quantity::Displacement | Quantity::Settlement => samples.displacement.clone(),
+    };
+    relative_error(measure.norm, &field(&coarse), &field(&fine), &fine.volume).ok()
 }
 
 /// Order in the cell size that a method's operators promise at small strain, where they promise
@@ -287,6 +316,7 @@ fn selects(expectation: &Expectation, case: &Case) -> bool {
             || fits(expectation.points_per_cell, case.points_per_cell))
         && fits(expectation.law, case.material.law)
         && fits(expectation.continuity, case.material.continuity)
+        && fits(expectation.scheme, case.settings.scheme)
         && fits(expectation.drag, case.settings.drag)
         && fits(expectation.mapping_back, case.settings.mapping_back)
 }

@@ -2,8 +2,10 @@
 
 use super::exit::{Ended, Exit};
 use super::overrides::{self, StudyLines};
+use crate::exact::cosine_layer::LayerFields;
 use crate::exact::{ColumnParameters, Reference, ReferenceKind, consolidation};
 use crate::scene::{SceneKind, column_parameters};
+use crate::study::Purpose;
 use clap::ValueEnum;
 use std::io::Write;
 
@@ -33,6 +35,9 @@ pub struct Arguments {
     /// Lagrangian depths ζ below the drained surface, comma-separated
     #[arg(long, default_value = DEFAULT_DEPTHS, value_name = "LIST", allow_hyphen_values = true)]
     zeta: String,
+    /// Distances x/L from the crest of a layer's cosine load, comma-separated: adds columns
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    along: Option<String>,
     /// Set a dotted key of a study file, like material.porosity=0.45
     #[arg(long = "set", value_name = "KEY=VALUE")]
     assignments: Vec<String>,
@@ -49,6 +54,55 @@ struct Row {
     pressure_ratio: f64,
     settlement_ratio: f64,
     degree_of_consolidation: f64,
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    plane: Option<PlaneColumns>,
+}
+
+/// What `--along` adds: distance `x/L`, displacements over the height, effective stresses over the
+/// load.
+#[derive(serde::Serialize)]
+struct PlaneColumns {
+    xi: f64,
+    horizontal_displacement_ratio: f64,
+    vertical_displacement_ratio: f64,
+    effective_stress_ratio_xx: f64,
+    effective_stress_ratio_yy: f64,
+    effective_stress_ratio_xy: f64,
+}
+
+impl PlaneColumns {
+    const NAMES: [&str; 6] = [
+        "xi",
+        "horizontal_displacement_ratio",
+        "vertical_displacement_ratio",
+        "effective_stress_ratio_xx",
+        "effective_stress_ratio_yy",
+        "effective_stress_ratio_xy",
+    ];
+
+    fn of(xi: f64, fields: &LayerFields, parameters: &ColumnParameters) -> Self {
+        let [xx, yy, _, xy] = fields.effective_stress.map(|stress| stress / parameters.load);
+        let [horizontal, vertical] = fields.displacement.map(|component| component / parameters.height);
+        Self {
+            xi,
+            horizontal_displacement_ratio: horizontal,
+            vertical_displacement_ratio: vertical,
+            effective_stress_ratio_xx: xx,
+            effective_stress_ratio_yy: yy,
+            effective_stress_ratio_xy: xy,
+        }
+    }
+
+    fn values(&self) -> [f64; 6] {
+        [
+            self.xi,
+            self.horizontal_displacement_ratio,
+            self.vertical_displacement_ratio,
+            self.effective_stress_ratio_xx,
+            self.effective_stress_ratio_yy,
+            self.effective_stress_ratio_xy,
+        ]
+    }
 }
 
 /// Truncation at one time factor.
@@ -82,20 +136,40 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         Some(degrees) => time_factors_of(kind, &parameters, &overrides::numbers("--degree", degrees)?)?,
         None => overrides::numbers("--time-factor", &arguments.time_factor)?,
     };
+    let distances = match &arguments.along {
+        Some(_) if !matches!(kind, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible) => {
+            return Err(Ended::usage(format!(
+                "`--along` is of a layer: `{kind}` depends on the depth alone"
+            )));
+        }
+        Some(typed) => Some(overrides::numbers("--along", typed)?),
+        None => None,
+    };
     let reference = Reference::new(kind, &parameters, &time_factors)?;
     let mut rows = Vec::new();
     let mut accuracy = Vec::new();
     for time_factor in time_factors {
         let settlement = reference.settlement(time_factor)?;
         let degree = reference.degree_of_consolidation(time_factor)?;
+        let row = |zeta: f64, pressure: f64, plane: Option<PlaneColumns>| Row {
+            time_factor,
+            zeta,
+            pressure_ratio: pressure / parameters.load,
+            settlement_ratio: settlement / parameters.height,
+            degree_of_consolidation: degree,
+            plane,
+        };
+        let state = if distances.is_some() { reference.plane_state(time_factor)? } else { None };
         for zeta in &depths {
-            rows.push(Row {
-                time_factor,
-                zeta: *zeta,
-                pressure_ratio: reference.fields(time_factor, *zeta)?.pressure / parameters.load,
-                settlement_ratio: settlement / parameters.height,
-                degree_of_consolidation: degree,
-            });
+            let fields = reference.fields(time_factor, *zeta)?;
+            let (Some(state), Some(distances)) = (&state, &distances) else {
+                rows.push(row(*zeta, fields.pressure, None));
+                continue;
+            };
+            for xi in distances {
+                let at = state.fields(xi * parameters.length, (1.0 - zeta) * parameters.height)?;
+                rows.push(row(*zeta, at.pressure, Some(PlaneColumns::of(*xi, &at, &parameters))));
+            }
         }
         let truncation = reference.accuracy(time_factor)?;
         accuracy.push(Truncation { time_factor, terms: truncation.terms, tail_bound: truncation.tail_bound });
@@ -127,13 +201,14 @@ fn parameters_of(
 ) -> anyhow::Result<(ColumnParameters, ReferenceKind)> {
     let scene = match kind {
         ReferenceKind::XieLeo | ReferenceKind::LargeStrain(_) => SceneKind::XieLeo,
+        ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible => SceneKind::CosineLayer,
         _ => SceneKind::Terzaghi,
     };
     let mut lines = StudyLines::default();
     lines.give("title", "\"exact\"", "`exact`")?;
     lines.give("scene", &overrides::quoted(scene.name()), "the solution's name")?;
     lines.assign(assignments)?;
-    let study = lines.study_with(["method = [\"MPM\"]", "cells = [1]"].map(str::to_owned))?;
+    let study = lines.study_for(Purpose::Theory, ["method = [\"MPM\"]", "cells = [1]"].map(str::to_owned))?;
     let Some(planned) = study.planned.first() else {
         return Err(Ended::usage("the assignments leave no column"));
     };
@@ -170,17 +245,19 @@ fn time_factors_of(
 
 fn csv_of(rows: &[Row]) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record([
-        "time_factor",
-        "zeta",
-        "pressure_ratio",
-        "settlement_ratio",
-        "degree_of_consolidation",
-    ])?;
+    let mut names =
+        vec!["time_factor", "zeta", "pressure_ratio", "settlement_ratio", "degree_of_consolidation"];
+    if rows.iter().any(|row| row.plane.is_some()) {
+        names.extend(PlaneColumns::NAMES);
+    }
+    writer.write_record(names)?;
     for row in rows {
         let numbers = [row.pressure_ratio, row.settlement_ratio, row.degree_of_consolidation];
         let mut fields = vec![row.time_factor.to_string(), row.zeta.to_string()];
         fields.extend(numbers.map(|number| format!("{number:.16e}")));
+        if let Some(plane) = &row.plane {
+            fields.extend(plane.values().map(|number| format!("{number:.16e}")));
+        }
         writer.write_record(fields)?;
     }
     Ok(String::from_utf8(writer.into_inner()?)?)

@@ -2,7 +2,7 @@
 //! so that one checker judges both and its messages point at what was typed.
 
 use super::exit::Ended;
-use crate::study::{Study, StudySource};
+use crate::study::{Purpose, Study, StudySource};
 
 /// Turns `KEY=VALUE` into a line of TOML; a value that is no TOML is taken for a word.
 pub fn assignment(typed: &str) -> anyhow::Result<String> {
@@ -67,11 +67,20 @@ impl StudyLines {
     }
 
     /// The study with one sweep of these lines.
-    pub fn study_with(mut self, sweep: impl IntoIterator<Item = String>) -> anyhow::Result<Study> {
+    pub fn study_with(self, sweep: impl IntoIterator<Item = String>) -> anyhow::Result<Study> {
+        self.study_for(Purpose::Solving, sweep)
+    }
+
+    /// The same for a purpose.
+    pub fn study_for(
+        mut self,
+        purpose: Purpose,
+        sweep: impl IntoIterator<Item = String>,
+    ) -> anyhow::Result<Study> {
         self.lines.push("[[sweep]]".to_owned());
         self.lines.extend(sweep);
         let text = self.lines.join("\n") + "\n";
-        super::run::checked(&StudySource { name: "command line".to_owned(), text })
+        super::run::checked(&StudySource { name: "command line".to_owned(), text }, purpose)
     }
 }
 

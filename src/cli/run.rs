@@ -4,7 +4,7 @@ use super::exit::{Ended, Exit};
 use super::progress::StudyBar;
 use crate::record::{Provenance, Record, RecordStore, tidy_csv, write_whole};
 use crate::study::{
-    RunOptions, RunReport, Shard, Study, StudySource, Tier, run_study, shipped_studies, time_study,
+    Purpose, RunOptions, RunReport, Shard, Study, StudySource, Tier, run_study, shipped_studies, time_study,
 };
 use clap::ValueEnum;
 use std::path::{Path, PathBuf};
@@ -150,14 +150,14 @@ pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
             let text = std::fs::read_to_string(path).map_err(|error| {
                 Ended::usage(format!("cannot read the study {}: {error}", path.display()))
             })?;
-            checked(&StudySource { name: path.display().to_string(), text })
+            checked(&StudySource { name: path.display().to_string(), text }, Purpose::Solving)
         })
         .collect()
 }
 
 /// A study that can run; what is odd about it goes to standard error.
-pub fn checked(source: &StudySource) -> anyhow::Result<Study> {
-    let study = Study::check(source)?;
+pub fn checked(source: &StudySource, purpose: Purpose) -> anyhow::Result<Study> {
+    let study = Study::check_for(source, purpose)?;
     for warning in &study.warnings {
         eprintln!("{warning}");
     }

@@ -1,5 +1,6 @@
 //! The column and its material, as plain SI numbers.
 
+use super::cosine_layer::Base;
 use super::error::{ExactError, positive};
 
 /// A saturated column of soil on an impermeable base, drained and loaded at its top.
@@ -10,6 +11,10 @@ use super::error::{ExactError, positive};
 pub struct ColumnParameters {
     /// Initial height `H`, m.
     pub height: f64,
+    /// Length `L` along the layer, m; a column has none and ignores it.
+    pub length: f64,
+    /// How a layer rests on its base; a column ignores it.
+    pub base: Base,
     /// Load `q` on the top, compression positive, Pa.
     pub load: f64,
     /// Drained Young's modulus `E`, Pa.
@@ -28,12 +33,17 @@ pub struct ColumnParameters {
     pub hydraulic_conductivity: f64,
     /// Gravity in the drag, m/s².
     pub gravity: f64,
+    /// Time over which the load grows linearly, s; 0 where it acts at once. Only the column with
+    /// inertia heeds it.
+    pub loading_time: f64,
 }
 
 impl Default for ColumnParameters {
     fn default() -> Self {
         Self {
             height: 1.0,
+            length: 1.0,
+            base: Base::Rough,
             load: 1.0,
             youngs_modulus: 1.0e6,
             poissons_ratio: 0.25,
@@ -43,6 +53,7 @@ impl Default for ColumnParameters {
             water_bulk_modulus: 2.2e9,
             hydraulic_conductivity: 1.0e-4,
             gravity: 9.81,
+            loading_time: 0.0,
         }
     }
 }

@@ -3,8 +3,10 @@
 //! the other.
 
 mod column;
+mod problem;
 
 pub use column::{Column, column_parameters, column_problem};
+pub use problem::SceneProblem;
 
 use crate::exact::large_strain::{self, LargeStrainModel, SoilLaw, Water};
 use crate::exact::reference::ReferenceKind;
@@ -24,6 +26,15 @@ pub enum SceneKind {
     /// A column loaded at once and drained at its top, at large strain, from the undrained
     /// equilibrium.
     XieLeo,
+    /// A plane layer loaded at once by a cosine and drained at its top, at small strain, from the
+    /// undrained equilibrium.
+    CosineLayer,
+    /// A column at rest, loaded at once or over a time, with all its waves.
+    DynamicColumn,
+    /// The slowest mode of an unloaded column, with the inertia that it has.
+    DynamicSingleMode,
+    /// An undrained wave that stands in an unloaded column: smooth, and nothing but inertia.
+    StandingWave,
 }
 
 /// The large-strain reference of the default law; see [`SceneKind::reference_for`].
@@ -35,7 +46,15 @@ const LARGE_STRAIN: ReferenceKind = ReferenceKind::LargeStrain(LargeStrainModel 
 
 impl SceneKind {
     /// Every scene.
-    pub const ALL: [Self; 3] = [Self::Terzaghi, Self::SingleMode, Self::XieLeo];
+    pub const ALL: [Self; 7] = [
+        Self::Terzaghi,
+        Self::SingleMode,
+        Self::XieLeo,
+        Self::CosineLayer,
+        Self::DynamicColumn,
+        Self::DynamicSingleMode,
+        Self::StandingWave,
+    ];
 
     /// Name in study files and at the command line.
     pub fn name(self) -> &'static str {
@@ -43,6 +62,10 @@ impl SceneKind {
             Self::Terzaghi => "terzaghi",
             Self::SingleMode => "single-mode",
             Self::XieLeo => "xie-leo",
+            Self::CosineLayer => "cosine-layer",
+            Self::DynamicColumn => "dynamic-column",
+            Self::DynamicSingleMode => "dynamic-single-mode",
+            Self::StandingWave => "standing-wave",
         }
     }
 
@@ -57,6 +80,10 @@ impl SceneKind {
             Self::Terzaghi => "column under a sudden load, drained at its top, small strain",
             Self::SingleMode => "slowest consolidation mode, no load: smooth, for formal orders",
             Self::XieLeo => "column under a sudden load, drained at its top, large strain",
+            Self::CosineLayer => "plane layer under a cosine load, drained at its top: where locking shows",
+            Self::DynamicColumn => "column at rest under a sudden or growing load: waves and consolidation",
+            Self::DynamicSingleMode => "slowest consolidation mode with its inertia, no load: smooth",
+            Self::StandingWave => "undrained standing wave, no load: smooth, for the order in the step",
         }
     }
 
@@ -66,6 +93,10 @@ impl SceneKind {
             Self::Terzaghi => &[ReferenceKind::Terzaghi, ReferenceKind::TerzaghiIncompressible],
             Self::SingleMode => &[ReferenceKind::SingleMode],
             Self::XieLeo => &[LARGE_STRAIN, ReferenceKind::XieLeo],
+            Self::CosineLayer => &[ReferenceKind::CosineLayer, ReferenceKind::CosineLayerIncompressible],
+            Self::DynamicColumn => &[ReferenceKind::DynamicColumn, ReferenceKind::Terzaghi],
+            Self::DynamicSingleMode => &[ReferenceKind::DynamicSingleMode, ReferenceKind::SingleMode],
+            Self::StandingWave => &[ReferenceKind::StandingWave],
         }
     }
 
@@ -95,8 +126,8 @@ impl SceneKind {
     /// Law of the soil where a study names none.
     pub fn default_law(self) -> Law {
         match self {
-            Self::Terzaghi | Self::SingleMode => Law::Linear,
             Self::XieLeo => Law::LogLinear,
+            _ => Law::Linear,
         }
     }
 
@@ -106,7 +137,7 @@ impl SceneKind {
             Self::XieLeo => (law == Law::Linear).then_some(
                 "the law `linear` is of small strain: its conductivity ignores that the pores close",
             ),
-            Self::Terzaghi | Self::SingleMode => (law != Law::Linear).then_some(
+            _ => (law != Law::Linear).then_some(
                 "this scene is of small strain, where every law is linear: the one named would be ignored",
             ),
         }
@@ -114,10 +145,7 @@ impl SceneKind {
 
     /// Whether the scene's theory holds at small strain only.
     pub fn is_small_strain(self) -> bool {
-        match self {
-            Self::Terzaghi | Self::SingleMode => true,
-            Self::XieLeo => false,
-        }
+        self != Self::XieLeo
     }
 
     /// Why the scene cannot take a configuration, where it cannot.
@@ -129,23 +157,36 @@ impl SceneKind {
     /// Configuration of the weights where the method leaves it open: small strain moves nothing.
     pub fn configuration(self) -> Configuration {
         match self {
-            Self::Terzaghi | Self::SingleMode => Configuration::Frozen,
             Self::XieLeo => Configuration::Updated,
+            _ => Configuration::Frozen,
         }
+    }
+
+    /// Whether the problem is one of two dimensions only.
+    pub fn is_plane(self) -> bool {
+        self == Self::CosineLayer
+    }
+
+    /// Whether waves run in it.
+    pub fn has_waves(self) -> bool {
+        matches!(self, Self::DynamicColumn | Self::DynamicSingleMode | Self::StandingWave)
     }
 
     /// Whether a load acts, so that `σ' − p = −q` at rest.
     pub fn is_loaded(self) -> bool {
         match self {
-            Self::Terzaghi | Self::XieLeo => true,
-            Self::SingleMode => false,
+            Self::Terzaghi | Self::XieLeo | Self::DynamicColumn | Self::CosineLayer => true,
+            Self::SingleMode | Self::DynamicSingleMode | Self::StandingWave => false,
         }
     }
 
     /// Why a reference is not the scene's own, where it is a second one.
     pub fn model_difference(self, reference: ReferenceKind, soil: &Material) -> Option<&'static str> {
         match (self, reference) {
-            (Self::Terzaghi, ReferenceKind::TerzaghiIncompressible) => Some("the water's storage"),
+            (Self::Terzaghi, ReferenceKind::TerzaghiIncompressible)
+            | (Self::CosineLayer, ReferenceKind::CosineLayerIncompressible) => Some("the water's storage"),
+            (Self::DynamicColumn, ReferenceKind::Terzaghi)
+            | (Self::DynamicSingleMode, ReferenceKind::SingleMode) => Some("the inertia"),
             (Self::XieLeo, ReferenceKind::XieLeo) => {
                 Some(match (soil.continuity, soil.law == Law::PorosityDependent) {
                     (Continuity::Conservative, false) => "the water's storage",

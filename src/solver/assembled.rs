@@ -13,7 +13,7 @@
 //! a test holds the two together to round-off.
 
 use super::body::{Body, ShapeFunction};
-use super::explicit::{Drag, ExplicitSettings};
+use super::explicit::ExplicitSettings;
 use super::method::{PressureIntegration, Recovery, StrainGradient};
 
 /// Nodes that couple to one side: basis (1) + patch (1) + centre or composite (1).
@@ -31,6 +31,8 @@ pub struct AssembledColumn {
     moving: std::ops::Range<usize>,
     /// Nodes that span the loaded surface, with the weights there.
     surface: Vec<(usize, f64)>,
+    /// Nodes that carry the load, with the force of all else and of the whole load.
+    loaded: Vec<LoadedNode>,
     state: State,
 }
 
@@ -52,6 +54,14 @@ struct NodeRow {
     water_from_water_force: f64,
     water_from_relative: f64,
     water_from_mixture: f64,
+}
+
+/// A node that carries a part of the load.
+#[derive(Clone, Copy, Debug)]
+struct LoadedNode {
+    node: usize,
+    unloaded_force: f64,
+    load_force: f64,
 }
 
 /// Grid arrays with `REACH` empty places at both ends.
@@ -99,7 +109,8 @@ impl AssembledColumn {
         let is_free = |row: &NodeRow| row.free > 0.0;
         let first = rows.iter().position(is_free).unwrap_or(0);
         let end = rows.iter().rposition(is_free).map_or(first, |last| last + 1);
-        let mut column = Self { rows, moving: first..end, surface, state: State::zero(count) };
+        let mut column =
+            Self { rows, moving: first..end, surface, loaded: Vec::new(), state: State::zero(count) };
         column.read(body);
         Some(column)
     }
@@ -115,18 +126,29 @@ impl AssembledColumn {
         for (node, row) in self.rows.iter_mut().enumerate() {
             row.mixture_force = reference.mixture_force[node][0];
             row.water_force = reference.water_force[node][0];
+            let load_force = reference.external_force[node][0];
+            if load_force != 0.0 {
+                let unloaded_force = row.mixture_force - load_force;
+                self.loaded.push(LoadedNode { node, unloaded_force, load_force });
+            }
             state.solid_velocity[node + REACH] = reference.solid_velocity[node][0];
             state.water_velocity[node + REACH] = reference.water_velocity[node][0];
         }
     }
 
-    /// Fixes step size and drag. Call before `step`.
-    pub fn set_step(&mut self, dt: f64, settings: &ExplicitSettings) {
+    /// Lets a share of the load act that was there at the assembly.
+    pub fn set_load_share(&mut self, share: f64) {
+        for one in &self.loaded {
+            self.rows[one.node].mixture_force = one.unloaded_force + share * one.load_force;
+        }
+    }
+
+    /// Fixes the duration of a kick and the drag. Call before `step`.
+    pub fn set_step(&mut self, kick: f64, settings: &ExplicitSettings) {
         for row in &mut self.rows {
-            let implicit = match settings.drag {
-                Drag::Explicit => 0.0,
-                Drag::Implicit => dt * row.drag,
-            };
+            let decay =
+                || kick * row.drag * (1.0 + row.water_share) / row.water_inertia.max(f64::MIN_POSITIVE);
+            let implicit = settings.drag.implicit_weight(decay) * kick * row.drag;
             let inertia = row.water_inertia + implicit * (1.0 + row.water_share);
             let per_inertia = if inertia > 0.0 { row.free / inertia } else { 0.0 };
             row.water_from_water_force = per_inertia;
@@ -137,7 +159,12 @@ impl AssembledColumn {
 
     /// One step of `dt` seconds; nothing is allocated.
     pub fn step(&mut self, dt: f64, settings: &ExplicitSettings) {
-        self.forces_and_trial_velocities(dt);
+        self.kick_and_drift(dt, dt, settings);
+    }
+
+    /// One step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
+    pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
+        self.forces_and_trial_velocities(kick);
         let (flip, pic) = (settings.flip, 1.0 - settings.flip);
         let state = &mut self.state;
         for node in self.moving.clone() {
@@ -145,8 +172,8 @@ impl AssembledColumn {
             let at = node + REACH;
             let solid_rate = band(&row.projection, &state.solid_acceleration, node);
             let water_rate = band(&row.projection, &state.water_acceleration, node);
-            let mut solid = flip * (state.solid_velocity[at] + dt * solid_rate);
-            let mut water = flip * (state.water_velocity[at] + dt * water_rate);
+            let mut solid = flip * (state.solid_velocity[at] + kick * solid_rate);
+            let mut water = flip * (state.water_velocity[at] + kick * water_rate);
             if pic > 0.0 {
                 solid += pic * band(&row.projection, &state.solid_trial, node);
                 water += pic * band(&row.projection, &state.water_trial, node);
@@ -164,7 +191,7 @@ impl AssembledColumn {
         }
     }
 
-    fn forces_and_trial_velocities(&mut self, dt: f64) {
+    fn forces_and_trial_velocities(&mut self, kick: f64) {
         let state = &mut self.state;
         for node in self.moving.clone() {
             let row = &self.rows[node];
@@ -181,8 +208,8 @@ impl AssembledColumn {
                 row.free * (mixture_force * row.per_solid_mass - row.water_share * water_acceleration);
             state.water_acceleration[at] = water_acceleration;
             state.solid_acceleration[at] = solid_acceleration;
-            state.solid_trial[at] = solid + dt * solid_acceleration;
-            state.water_trial[at] = water + dt * water_acceleration;
+            state.solid_trial[at] = solid + kick * solid_acceleration;
+            state.water_trial[at] = water + kick * water_acceleration;
         }
     }
 
@@ -264,6 +291,7 @@ impl AssembledColumn {
             row.mixture_force = 0.0;
             row.water_force = 0.0;
         }
+        self.loaded.clear();
         self
     }
 

@@ -9,7 +9,7 @@ use super::points::Points;
 use super::recovery::PatchRows;
 use super::shape::{self, Row};
 use super::stencil::Stencils;
-use super::surface::LoadedSurface;
+use super::surface::{LoadShape, LoadedSurface};
 
 /// A basis as the compiler sees it: rows of `W` nodes a direction.
 pub trait ShapeFunction<const W: usize>: Clone {
@@ -58,6 +58,12 @@ pub struct Problem<const D: usize> {
     pub configuration: Configuration,
     /// Load on the surface, Pa.
     pub load: f64,
+    /// How the load varies along the surface.
+    pub load_shape: LoadShape,
+    /// Whether the body is to find its undrained equilibrium under the load before it starts.
+    pub undrained_start: bool,
+    /// Time over which the load grows linearly, s; 0 where it acts at once.
+    pub loading_time: f64,
     /// Displacement gradient of the start against the unloaded state.
     pub initial_gradient: Tensor<D>,
     /// Pressure that this problem is about, Pa: what leaves it a thousandfold has blown up.
@@ -101,7 +107,16 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// maps the points' velocities to the nodes.
     pub fn new(problem: Problem<D>) -> Self {
         let Problem {
-            grid, support, points, material, method, configuration, load, initial_gradient, ..
+            grid,
+            support,
+            points,
+            material,
+            method,
+            configuration,
+            load,
+            load_shape,
+            initial_gradient,
+            ..
         } = problem;
         let count = points.len();
         let solid_cell_mass = (0..D).map(|_| grid.cell_size).product::<f64>()
@@ -114,6 +129,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             cells: Cells::new(&grid, count),
             stiffness: material.stiffness(),
             surface: LoadedSurface::of(&points, load)
+                .shaped(load_shape, &points)
                 .stretching(configuration.moves_points() && !method.domains_follow()),
             basis: Stencils::with_points(count),
             composite: Stencils::with_points(composite_rows),
@@ -312,9 +328,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
         for node in 0..nodes.len() {
             for d in 0..D {
-                let free = nodes.free[node][d];
-                nodes.solid_velocity[node][d] *= free * nodes.per_solid_mass[node];
-                nodes.water_velocity[node][d] *= free * nodes.per_water_mass[node];
+                nodes.solid_velocity[node][d] *= nodes.free[node][d] * nodes.per_solid_mass[node];
+                nodes.water_velocity[node][d] *= nodes.water_free[node][d] * nodes.per_water_mass[node];
             }
         }
     }

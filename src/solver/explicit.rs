@@ -3,6 +3,7 @@
 use super::body::{Body, ShapeFunction};
 use super::grid::{Tensor, Vector};
 use super::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
+use super::scheme::Scheme;
 use serde::{Deserialize, Serialize};
 
 /// Time level at which the drag between skeleton and water is taken.
@@ -13,11 +14,16 @@ pub enum Drag {
     Explicit,
     /// New velocities, a 2 × 2 solve a node: no bound from the drag.
     Implicit,
+    /// The mean over the step: of second order in it, and no bound either.
+    Centred,
 }
 
 /// Choices of the explicit integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExplicitSettings {
+    /// Time levels of velocities and stresses.
+    #[serde(default, skip_serializing_if = "Scheme::is_paper")]
+    pub scheme: Scheme,
     /// Time level of the drag.
     pub drag: Drag,
     /// Share of the acceleration update (FLIP) in the points' velocities; the rest is
@@ -29,19 +35,24 @@ pub struct ExplicitSettings {
 }
 
 impl Default for ExplicitSettings {
-    /// The paper's: explicit drag, pure FLIP, mapping back.
+    /// The paper's: forward Euler, explicit drag, pure FLIP, mapping back.
     fn default() -> Self {
-        Self { drag: Drag::Explicit, flip: 1.0, mapping_back: true }
+        Self { scheme: Scheme::ForwardEuler, drag: Drag::Explicit, flip: 1.0, mapping_back: true }
     }
 }
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
-    /// One explicit step of `dt` seconds.
+    /// One explicit step of `dt` seconds, as the paper has it.
     pub fn explicit_step(&mut self, dt: f64, settings: &ExplicitSettings) {
+        self.kick_and_drift(dt, dt, settings);
+    }
+
+    /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
+    pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         self.reset_grid(settings); // (1)
-        self.nodal_accelerations(dt, settings.drag); // (2)
-        self.nodal_velocities(dt); // (3)
-        self.advance_points(dt, settings.flip); // (4)
+        self.nodal_accelerations(kick, settings.drag); // (2)
+        self.nodal_velocities(kick, dt); // (3)
+        self.advance_points(kick, dt, settings.flip); // (4)
         if settings.mapping_back {
             self.map_velocities(); // (5)
         }
@@ -59,7 +70,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// (2) Accelerations of the water, equation (1), then of the skeleton, equation (2).
-    fn nodal_accelerations(&mut self, dt: f64, drag: Drag) {
+    fn nodal_accelerations(&mut self, kick: f64, drag: Drag) {
         self.map_forces();
         let water_density = self.material.water_density;
         let nodes = &mut self.nodes;
@@ -72,37 +83,36 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             let per_solid_mass = nodes.per_solid_mass[node];
             let (water_inertia, drag_coefficient) = (water_density * nodes.volume[node], nodes.drag[node]);
             let water_share = nodes.water_mass[node] * per_solid_mass;
-            // The drag at the new velocities adds Δt D (a_w − a_s) with a_s from (2).
-            let implicit = match drag {
-                Drag::Explicit => 0.0,
-                Drag::Implicit => dt * drag_coefficient,
-            };
-            let per_inertia = 1.0 / (water_inertia + implicit * (1.0 + water_share));
+            // A share w of the drag at the new velocities adds w Δt D (a_w − a_s) with a_s from (2).
+            let decay = || kick * drag_coefficient * (1.0 + water_share) / water_inertia;
+            let implicit = drag.implicit_weight(decay) * kick * drag_coefficient;
             for d in 0..D {
+                let (free, water_free) = (nodes.free[node][d], nodes.water_free[node][d]);
+                let per_inertia = 1.0 / (water_inertia + implicit * (1.0 + free * water_share));
                 let relative = nodes.water_velocity[node][d] - nodes.solid_velocity[node][d];
-                let mixture = nodes.mixture_force[node][d] * per_solid_mass;
+                let mixture = free * nodes.mixture_force[node][d] * per_solid_mass;
                 let force = nodes.water_force[node][d] - drag_coefficient * relative + implicit * mixture;
-                let water = nodes.free[node][d] * force * per_inertia;
+                let water = water_free * force * per_inertia;
                 nodes.water_acceleration[node][d] = water;
-                nodes.solid_acceleration[node][d] = nodes.free[node][d] * (mixture - water_share * water);
+                nodes.solid_acceleration[node][d] = mixture - free * water_share * water;
             }
         }
     }
 
     /// (3) Nodal velocities by forward Euler.
-    fn nodal_velocities(&mut self, dt: f64) {
+    fn nodal_velocities(&mut self, kick: f64, dt: f64) {
         let nodes = &mut self.nodes;
         for node in 0..nodes.len() {
             for d in 0..D {
-                nodes.solid_velocity[node][d] += dt * nodes.solid_acceleration[node][d];
-                nodes.water_velocity[node][d] += dt * nodes.water_acceleration[node][d];
+                nodes.solid_velocity[node][d] += kick * nodes.solid_acceleration[node][d];
+                nodes.water_velocity[node][d] += kick * nodes.water_acceleration[node][d];
                 nodes.displacement[node][d] += dt * nodes.solid_velocity[node][d];
             }
         }
     }
 
     /// (4) Velocities and places of the points.
-    fn advance_points(&mut self, dt: f64, flip: f64) {
+    fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
         let nodes = &self.nodes;
         let moving = self.configuration.moves_points();
         let pic = 1.0 - flip;
@@ -114,9 +124,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             for d in 0..D {
                 let points = &mut self.points;
                 points.solid_velocity[point][d] =
-                    flip * (points.solid_velocity[point][d] + dt * solid_rate[d]) + pic * solid[d];
+                    flip * (points.solid_velocity[point][d] + kick * solid_rate[d]) + pic * solid[d];
                 points.water_velocity[point][d] =
-                    flip * (points.water_velocity[point][d] + dt * water_rate[d]) + pic * water[d];
+                    flip * (points.water_velocity[point][d] + kick * water_rate[d]) + pic * water[d];
                 points.displacement[point][d] += dt * solid[d];
                 if moving {
                     points.position[point][d] += dt * solid[d];
@@ -148,6 +158,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             if deforms {
                 self.deform(point, &increment);
             }
+            if deforms && D > 1 {
+                let stress = &mut self.points.effective_stress[point];
+                *stress = rotated(stress, &increment);
+            }
             let modulus = self.material.law.modulus_ratio(before, self.points.volume_ratio[point]);
             let stress = self.stiffness.stress(&increment);
             for d in 0..D {
@@ -160,7 +174,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
     #[inline]
-    fn deform(&mut self, point: usize, increment: &Tensor<D>) {
+    pub(super) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
         let stretch: Vector<D> = std::array::from_fn(|d| stretch_of(increment[d][d]));
         let points = &mut self.points;
         points.volume_ratio[point] *= stretch.iter().product::<f64>();
@@ -230,6 +244,29 @@ fn stretch_of(strain: f64) -> f64 {
     }
 }
 
+/// A stress turned with the material over a step of displacement gradient `A`: `Q σ Qᵀ` with the
+/// rotation `Q = (I − W/2)⁻¹(I + W/2)`, `W = skew A` (Hughes & Winget 1980). Together with the rate
+/// form it is Jaumann's stress rate, and exactly objective under a rigid rotation.
+#[inline]
+fn rotated<const D: usize>(stress: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
+    if D != 2 {
+        return *stress;
+    }
+    let half = 0.25 * (increment[1][0] - increment[0][1]);
+    let per = 1.0 / (1.0 + half * half);
+    let (cosine, sine) = ((1.0 - half * half) * per, 2.0 * half * per);
+    let turn: Tensor<D> = std::array::from_fn(|i| {
+        std::array::from_fn(|j| match (i, j) {
+            (0, 1) => -sine,
+            (1, 0) => sine,
+            _ => cosine,
+        })
+    });
+    let once: Tensor<D> =
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| turn[i][k] * stress[k][j]).sum()));
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| once[i][k] * turn[j][k]).sum()))
+}
+
 /// `F⁻¹ exp(−A)` for a step's strain `A`, to third order in it.
 #[inline]
 fn relaxed<const D: usize>(inverse: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
@@ -250,6 +287,23 @@ mod tests {
         for strain in [-0.3_f64, -9e-5, -1e-7, 0.0, 3e-6, 9.9e-5, 0.2] {
             assert!((stretch_of(strain) / strain.exp() - 1.0).abs() < 3e-16);
         }
+    }
+
+    #[test]
+    fn a_stress_turns_with_the_material_and_keeps_its_invariants() {
+        // A quarter turn in a thousand steps takes the stress along x to one along y.
+        let angle = std::f64::consts::FRAC_PI_2 / 1000.0;
+        let mut stress = [[5.0, 1.0], [1.0, -2.0]];
+        // Q with tan(θ/2) = w/2 turns by θ.
+        let spin = 2.0 * (0.5 * angle).tan();
+        for _ in 0..1000 {
+            stress = rotated(&stress, &[[0.0, -spin], [spin, 0.0]]);
+        }
+        for (got, exact) in stress.iter().flatten().zip([-2.0, -1.0, -1.0, 5.0]) {
+            assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
+        }
+        let stretched = rotated(&stress, &[[0.1, 0.3], [0.3, -0.2]]);
+        assert_eq!(stretched, stress, "a strain without spin turns nothing");
     }
 
     #[test]

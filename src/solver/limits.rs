@@ -35,7 +35,7 @@ pub fn drag_limit(soil: &Material) -> f64 {
 pub fn combined_limit(soil: &Material, cell_size: f64, drag: Drag) -> f64 {
     let wave = cell_size / fastest_wave_speed(soil, soil.porosity);
     match drag {
-        Drag::Implicit => wave,
+        Drag::Implicit | Drag::Centred => wave,
         Drag::Explicit => {
             let z = wave / (2.0 * drag_limit(soil));
             // Rationalised: the difference of two large numbers where the drag rules.

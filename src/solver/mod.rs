@@ -10,9 +10,11 @@
 //! Nothing here knows of studies, references or reports.
 
 pub mod assembled;
+pub mod assembled_plane;
 pub mod body;
 pub mod cells;
 pub mod explicit;
+pub mod frozen;
 pub mod grid;
 pub mod implicit;
 pub mod integrator;
@@ -24,8 +26,12 @@ pub mod outcome;
 pub mod points;
 pub mod recovery;
 pub mod run;
+pub mod scheme;
 pub mod shape;
 pub mod snapshot;
 pub mod stability;
 pub mod stencil;
+pub mod stiffness;
 pub mod surface;
+pub mod undrained;
+pub mod volumetric;

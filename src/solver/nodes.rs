@@ -41,10 +41,15 @@ pub struct Nodes<const D: usize> {
     pub flux: Vec<Vector<D>>,
     /// Displacement of the skeleton where the grid is frozen, m.
     pub displacement: Vec<Vector<D>>,
-    /// One where a component of the velocity is free, zero where it is fixed or nothing is there.
+    /// One where a component of the skeleton's velocity is free, zero where it is fixed or nothing
+    /// is there.
     pub free: Vec<Vector<D>>,
-    /// The supports alone.
+    /// The same for the water: it slides along a rough base.
+    pub water_free: Vec<Vector<D>>,
+    /// The skeleton's supports alone.
     supports: Vec<Vector<D>>,
+    /// The water's supports alone.
+    water_supports: Vec<Vector<D>>,
     mass_cut_off: f64,
 }
 
@@ -55,6 +60,8 @@ pub struct Support<const D: usize> {
     pub lower: [bool; D],
     /// Fixed at the upper face of a direction, and beyond it.
     pub upper: [bool; D],
+    /// Whether the skeleton sticks to the base: no displacement along it either.
+    pub rough_base: bool,
 }
 
 impl<const D: usize> Support<D> {
@@ -62,7 +69,13 @@ impl<const D: usize> Support<D> {
     pub fn oedometer() -> Self {
         let mut upper = [true; D];
         upper[D - 1] = false;
-        Self { lower: [true; D], upper }
+        Self { lower: [true; D], upper, rough_base: false }
+    }
+
+    /// The same on a base that the skeleton sticks to.
+    #[must_use]
+    pub fn on_rough_base(self) -> Self {
+        Self { rough_base: true, ..self }
     }
 }
 
@@ -72,7 +85,7 @@ impl<const D: usize> Nodes<D> {
     pub fn new(grid: &Grid<D>, support: &Support<D>, cell_mass: f64) -> Self {
         let count = grid.node_count();
         let tolerance = 1e-6 * grid.cell_size;
-        let supports: Vec<Vector<D>> = (0..count)
+        let water_supports: Vec<Vector<D>> = (0..count)
             .map(|node| {
                 let position = grid.node_position(node);
                 std::array::from_fn(|d| {
@@ -83,6 +96,12 @@ impl<const D: usize> Nodes<D> {
                 })
             })
             .collect();
+        let mut supports = water_supports.clone();
+        for node in (0..count).filter(|_| support.rough_base) {
+            if grid.node_position(node)[D - 1] < tolerance {
+                supports[node] = [0.0; D];
+            }
+        }
         let (scalars, vectors) = (vec![0.0; count], vec![[0.0; D]; count]);
         Self {
             solid_mass: scalars.clone(),
@@ -102,7 +121,9 @@ impl<const D: usize> Nodes<D> {
             flux: vectors.clone(),
             displacement: vectors,
             free: supports.clone(),
+            water_free: water_supports.clone(),
             supports,
+            water_supports,
             mass_cut_off: MASS_CUT_OFF * cell_mass,
         }
     }
@@ -135,11 +156,13 @@ impl<const D: usize> Nodes<D> {
                 self.per_solid_mass[node] = 1.0 / self.solid_mass[node];
                 self.per_water_mass[node] = 1.0 / self.water_mass[node];
                 self.free[node] = self.supports[node];
+                self.water_free[node] = self.water_supports[node];
             } else {
                 self.porosity[node] = 0.0;
                 self.per_solid_mass[node] = 0.0;
                 self.per_water_mass[node] = 0.0;
                 self.free[node] = [0.0; D];
+                self.water_free[node] = [0.0; D];
             }
         }
     }
@@ -166,6 +189,18 @@ mod tests {
         assert_eq!(at(1, 5), [0.0, 1.0]);
         assert_eq!(at(1, 10), [0.0, 1.0]);
         assert_eq!(nodes.free[grid.flat_node(&[2, 1])], [0.0, 0.0], "below the base");
+    }
+
+    #[test]
+    fn a_rough_base_holds_the_skeleton_and_lets_the_water_slide() {
+        let grid = Grid::new(0.1, [3, 3]);
+        let mut nodes = Nodes::new(&grid, &Support::oedometer().on_rough_base(), 1.0);
+        nodes.solid_mass.fill(1.0);
+        nodes.finish_masses();
+        let base = grid.flat_node(&[3, 2]);
+        assert_eq!((nodes.free[base], nodes.water_free[base]), ([0.0, 0.0], [1.0, 0.0]));
+        let above = grid.flat_node(&[3, 3]);
+        assert_eq!(nodes.free[above], [1.0, 1.0]);
     }
 
     #[test]

@@ -13,7 +13,7 @@ pub enum FailureKind {
     PoresClosed,
     /// A point left the grid.
     LeftGrid,
-    /// The equations of an implicit step have no unique solution.
+    /// A system of equations, of an implicit step or of a static start, has no unique solution.
     Singular,
     /// The iterations of an implicit step did not come to an end.
     NotConverged,

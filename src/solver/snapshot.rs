@@ -5,7 +5,8 @@ use super::grid::Vector;
 use super::points::Points;
 use serde::{Deserialize, Serialize};
 
-/// Fields at one kind of places. Vertical components: a column knows no others.
+/// Fields at one kind of places. Stresses and displacements are the vertical ones; in two
+/// dimensions the places along the layer and the horizontal displacements stand beside them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Samples {
     /// Initial height of each place above the base, m.
@@ -20,6 +21,20 @@ pub struct Samples {
     pub effective_stress: Vec<f64>,
     /// Vertical displacement of the skeleton, m, upward positive.
     pub displacement: Vec<f64>,
+    /// What a second dimension adds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plane: Option<PlaneSamples>,
+}
+
+/// What the samples of two dimensions have beside those of a column.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PlaneSamples {
+    /// Initial distance of each place along the layer, m.
+    pub initial_distance: Vec<f64>,
+    /// Initial distance of the places of the displacement, m, where they are not the same.
+    pub displacement_distance: Option<Vec<f64>>,
+    /// Horizontal displacement of the skeleton, m.
+    pub horizontal_displacement: Vec<f64>,
 }
 
 /// State at one time.
@@ -77,6 +92,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let points = &self.points;
         let count = points.len();
         let vertical = |field: &[Vector<D>]| field.iter().map(|vector| vector[D - 1]).collect();
+        let horizontal = |field: &[Vector<D>]| field.iter().map(|vector| vector[0]).collect();
         Samples {
             initial_height: vertical(&points.initial_position),
             displacement_height: None,
@@ -84,6 +100,11 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             pressure: points.pressure.clone(),
             effective_stress: points.effective_stress.iter().map(|stress| stress[D - 1][D - 1]).collect(),
             displacement: vertical(&points.displacement),
+            plane: (D > 1).then(|| PlaneSamples {
+                initial_distance: horizontal(&points.initial_position),
+                displacement_distance: None,
+                horizontal_displacement: horizontal(&points.displacement),
+            }),
         }
     }
 
@@ -93,7 +114,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             let cell = self.grid.flat_cell(&self.grid.cell_of(&self.points.position[point]));
             self.add_point(&mut means, cell, point, 1.0);
         }
-        means.finish()
+        means.finish(D)
     }
 
     fn sample_nodes(&self) -> Samples {
@@ -103,13 +124,19 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 self.add_point(&mut means, node, point, weight);
             });
         }
-        let mut samples = means.finish();
+        let mut samples = means.finish(D);
         if !self.configuration.moves_points() {
             // The nodes' own displacement is known, and better than any projection.
             let places = || (0..self.nodes.len()).filter(|node| means.volume[*node] > means.least_volume());
             samples.displacement = places().map(|node| self.nodes.displacement[node][D - 1]).collect();
             samples.displacement_height =
                 Some(places().map(|node| self.grid.node_position(node)[D - 1]).collect());
+            if let Some(plane) = &mut samples.plane {
+                plane.horizontal_displacement =
+                    places().map(|node| self.nodes.displacement[node][0]).collect();
+                plane.displacement_distance =
+                    Some(places().map(|node| self.grid.node_position(node)[0]).collect());
+            }
         }
         samples
     }
@@ -122,6 +149,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         means.pressure[place] += share * self.points.pressure[point];
         means.effective_stress[place] += share * self.points.effective_stress[point][D - 1][D - 1];
         means.displacement[place] += share * self.points.displacement[point][D - 1];
+        if D > 1 {
+            means.distance[place] += share * self.points.initial_position[point][0];
+            means.horizontal_displacement[place] += share * self.points.displacement[point][0];
+        }
     }
 
     fn totals(&self, start: &Points<D>) -> Totals {
@@ -172,6 +203,8 @@ struct Means {
     pressure: Vec<f64>,
     effective_stress: Vec<f64>,
     displacement: Vec<f64>,
+    distance: Vec<f64>,
+    horizontal_displacement: Vec<f64>,
 }
 
 impl Means {
@@ -182,7 +215,9 @@ impl Means {
             height: zero.clone(),
             pressure: zero.clone(),
             effective_stress: zero.clone(),
-            displacement: zero,
+            displacement: zero.clone(),
+            distance: zero.clone(),
+            horizontal_displacement: zero,
         }
     }
 
@@ -191,7 +226,7 @@ impl Means {
         1e-12 * self.volume.iter().copied().fold(0.0, f64::max)
     }
 
-    fn finish(&self) -> Samples {
+    fn finish(&self, dimensions: usize) -> Samples {
         let least = self.least_volume();
         let places: Vec<usize> = (0..self.volume.len()).filter(|place| self.volume[*place] > least).collect();
         let mean = |sum: &[f64]| places.iter().map(|place| sum[*place] / self.volume[*place]).collect();
@@ -202,6 +237,11 @@ impl Means {
             pressure: mean(&self.pressure),
             effective_stress: mean(&self.effective_stress),
             displacement: mean(&self.displacement),
+            plane: (dimensions > 1).then(|| PlaneSamples {
+                initial_distance: mean(&self.distance),
+                displacement_distance: None,
+                horizontal_displacement: mean(&self.horizontal_displacement),
+            }),
         }
     }
 }

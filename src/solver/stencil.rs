@@ -126,6 +126,18 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         gradient
     }
 
+    /// The nodes of a point's block with their gradients (1/m), where they are not zero: the
+    /// divergence at the point as a functional of a nodal field.
+    pub fn gradient_row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, Vector<D>)> {
+        let mut row = Vec::with_capacity(power(W, D));
+        self.visit(grid.node_stride(), point, |node, _, gradient| {
+            if *gradient != [0.0; D] {
+                row.push((node, *gradient));
+            }
+        });
+        row
+    }
+
     /// Divergence of a nodal vector field at the point.
     #[inline]
     pub fn divergence(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> f64 {

@@ -5,7 +5,30 @@ use super::nodes::Nodes;
 use super::points::Points;
 use super::shape;
 
-/// A uniform pressure on the upper outline of the material.
+/// How a load varies along the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum LoadShape {
+    /// The same everywhere.
+    #[default]
+    Uniform,
+    /// `cos(πx/L)` of the initial place `x` along the first direction.
+    Cosine {
+        /// Half a wave's length `L`, m.
+        length: f64,
+    },
+}
+
+impl LoadShape {
+    /// The shape at an initial distance along the surface, m.
+    fn at(self, distance: f64) -> f64 {
+        match self {
+            Self::Uniform => 1.0,
+            Self::Cosine { length } => (std::f64::consts::PI * distance / length).cos(),
+        }
+    }
+}
+
+/// A pressure on the upper outline of the material.
 ///
 /// It acts at the outer edge of the outermost points' domains and is spread with the hat weights
 /// there. Left on a node, it errs once the top cell empties; spread over the top point, it costs
@@ -14,11 +37,28 @@ use super::shape;
 pub struct LoadedSurface {
     /// Load `q`, Pa, compression positive, carried by the total stress.
     pub load: f64,
-    /// The points of the topmost row.
-    top_points: Vec<usize>,
+    /// Where it acts.
+    spots: Vec<Spot>,
+    /// Sum of the squares of the spots' shapes.
+    squares: f64,
     /// Whether the edge follows the volume of the points because their domains do not.
     stretches: bool,
 }
+
+/// One of the places where the load acts: a Gauss point of the outer edge of a topmost point's
+/// domain, so that the nodal forces of a load that varies are those of its integral with the hats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Spot {
+    /// The point.
+    point: usize,
+    /// Place along the edge, from −1 to 1.
+    along: f64,
+    /// Load over that of the surface.
+    shape: f64,
+}
+
+/// Gauss points of an edge: exact for the hats times a line.
+const EDGE_SPOTS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
 
 impl LoadedSurface {
     /// The surface of a lattice: the highest points of the initial configuration.
@@ -26,8 +66,24 @@ impl LoadedSurface {
         let height = |point: usize| points.initial_position[point][D - 1];
         let highest = (0..points.len()).map(height).fold(f64::NEG_INFINITY, f64::max);
         let tolerance = 1e-9 * highest.abs();
-        let top_points = (0..points.len()).filter(|point| height(*point) > highest - tolerance).collect();
-        Self { load, top_points, stretches: false }
+        let top_points = (0..points.len()).filter(|point| height(*point) > highest - tolerance);
+        // A column's edge is a point.
+        let places = if D == 1 { &[0.0][..] } else { &EDGE_SPOTS };
+        let spots: Vec<Spot> = top_points
+            .flat_map(|point| places.iter().map(move |along| Spot { point, along: *along, shape: 1.0 }))
+            .collect();
+        Self { load, squares: spots.len() as f64, spots, stretches: false }
+    }
+
+    /// The surface under a load that varies along it.
+    #[must_use]
+    pub fn shaped<const D: usize>(mut self, shape: LoadShape, points: &Points<D>) -> Self {
+        for spot in &mut self.spots {
+            let reach = spot.along * points.half_length[spot.point][0];
+            spot.shape = shape.at(points.initial_position[spot.point][0] + reach);
+        }
+        self.squares = self.spots.iter().map(|spot| spot.shape * spot.shape).sum();
+        self
     }
 
     /// The surface of points whose domains keep their length: the material's edge still follows.
@@ -36,51 +92,75 @@ impl LoadedSurface {
         Self { stretches, ..self }
     }
 
-    /// Middle of the upper edge of a point's share of the material.
+    /// Place of a spot on the upper edge of its point's share of the material.
     #[inline]
-    fn edge<const D: usize>(&self, points: &Points<D>, point: usize) -> Vector<D> {
+    fn place<const D: usize>(&self, points: &Points<D>, spot: &Spot) -> Vector<D> {
+        let point = spot.point;
         let mut place = points.position[point];
+        if D > 1 {
+            place[0] += spot.along * points.half_length[point][0];
+        }
         // An oedometer strains vertically only: its stretch is the volume ratio.
         let stretch = if self.stretches { points.volume_ratio[point] } else { 1.0 };
         place[D - 1] += stretch * points.half_length[point][D - 1];
         place
     }
 
-    /// Height of the surface now, mean over its width, m.
+    /// Height of the surface now, m, as much of it as has the load's shape: the mean over the
+    /// width under a uniform load.
     pub fn height<const D: usize>(&self, points: &Points<D>) -> f64 {
-        let sum: f64 = self.top_points.iter().map(|point| self.edge(points, *point)[D - 1]).sum();
-        sum / self.top_points.len() as f64
+        let sum: f64 = self.spots.iter().map(|spot| spot.shape * self.place(points, spot)[D - 1]).sum();
+        sum / self.squares
     }
 
     /// Puts the load on the nodes as the external force of the mixture.
     pub fn apply<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>, nodes: &mut Nodes<D>) {
         nodes.external_force.fill([0.0; D]);
-        for point in &self.top_points {
-            let width: f64 = points.half_length[*point][..D - 1].iter().map(|half| 2.0 * half).product();
-            let force = -self.load * width;
-            visit_hat(grid, &self.edge(points, *point), |node, weight| {
+        let share = if D == 1 { 1.0 } else { 1.0 / EDGE_SPOTS.len() as f64 };
+        for spot in &self.spots {
+            let half_length = &points.half_length[spot.point];
+            let width: f64 = half_length[..D - 1].iter().map(|half| 2.0 * half).product();
+            let force = -self.load * spot.shape * share * width;
+            visit_hat(grid, &self.place(points, spot), |node, weight| {
                 nodes.external_force[node][D - 1] += weight * force;
             });
         }
     }
 
-    /// Nodes that span the surface, with the weights of a mean over it.
+    /// Nodes that span the surface, with the weights of [`amplitude_of`](Self::amplitude_of).
     pub fn weights<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>) -> Vec<(usize, f64)> {
         let mut weights = Vec::new();
-        let share = 1.0 / self.top_points.len() as f64;
-        for point in &self.top_points {
-            visit_hat(grid, &self.edge(points, *point), |node, weight| weights.push((node, share * weight)));
+        for spot in &self.spots {
+            let share = spot.shape / self.squares;
+            visit_hat(grid, &self.place(points, spot), |node, weight| weights.push((node, share * weight)));
         }
         weights
+    }
+
+    /// Vertical component of a nodal vector field on the surface, as much of it as has the load's
+    /// shape: the mean under a uniform load, the amplitude of the cosine under a cosine.
+    pub fn amplitude_of<const D: usize>(
+        &self,
+        grid: &Grid<D>,
+        points: &Points<D>,
+        field: &[Vector<D>],
+    ) -> f64 {
+        let mut sum = 0.0;
+        for spot in &self.spots {
+            visit_hat(grid, &self.place(points, spot), |node, weight| {
+                sum += spot.shape * weight * field[node][D - 1];
+            });
+        }
+        sum / self.squares
     }
 
     /// Mean over the surface of a nodal vector field's vertical component.
     pub fn mean_of<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
         let mut sum = 0.0;
-        for point in &self.top_points {
-            visit_hat(grid, &self.edge(points, *point), |node, weight| sum += weight * field[node][D - 1]);
+        for spot in &self.spots {
+            visit_hat(grid, &self.place(points, spot), |node, weight| sum += weight * field[node][D - 1]);
         }
-        sum / self.top_points.len() as f64
+        sum / self.spots.len() as f64
     }
 }
 
@@ -126,6 +206,28 @@ mod tests {
         assert!((nodes.external_force[top][0] + 3.75).abs() < 1e-9);
         assert!((nodes.external_force[top - 1][0] + 1.25).abs() < 1e-9);
         assert!((surface.height(&points) - 0.975).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_cosine_load_has_no_resultant_and_its_own_amplitude() {
+        let grid = Grid::new(0.25, [4, 5]);
+        let points = Points::<2>::lattice(0.25, [4, 4], 2);
+        let surface = LoadedSurface::of(&points, 3.0).shaped(LoadShape::Cosine { length: 1.0 }, &points);
+        let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
+        surface.apply(&grid, &points, &mut nodes);
+        let force = |node: usize| nodes.external_force[node][1];
+        let total: f64 = (0..nodes.len()).map(force).sum();
+        assert!(total.abs() < 1e-12);
+        // ∫ q cos(πx) · cos(πx) dx = q/2, up to the hats' interpolation of the second cosine.
+        let moment: f64 = (0..nodes.len())
+            .map(|node| force(node) * (std::f64::consts::PI * grid.node_position(node)[0]).cos())
+            .sum();
+        assert!((moment / 1.5 + 1.0).abs() < 0.06, "{moment}");
+        let field: Vec<Vector<2>> = (0..nodes.len())
+            .map(|node| [0.0, 7.0 * (std::f64::consts::PI * grid.node_position(node)[0]).cos() + 2.0])
+            .collect();
+        assert!((surface.amplitude_of(&grid, &points, &field) / 7.0 - 1.0).abs() < 0.06);
+        assert!((surface.mean_of(&grid, &points, &field) - 2.0).abs() < 1e-12);
     }
 
     #[test]

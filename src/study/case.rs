@@ -49,6 +49,15 @@ impl Case {
         self.column.height / self.cells as f64
     }
 
+    /// Points there are to be: cells times points a cell, in every direction.
+    pub fn expected_points(&self) -> usize {
+        let along = self.cells * self.points_per_cell;
+        match self.column.dimensions {
+            1 => along,
+            _ => along * self.column.cells_across(self.cells).unwrap_or(1) * self.points_per_cell,
+        }
+    }
+
     /// Time, s, at which `T_v = 1`.
     pub fn seconds_per_time_factor(&self) -> f64 {
         self.column.height * self.column.height / self.material.coefficient_of_consolidation()
@@ -59,10 +68,14 @@ impl Case {
     pub fn variant(&self) -> String {
         let defaults = ExplicitSettings::default();
         let mut parts = Vec::new();
+        if self.settings.scheme != defaults.scheme {
+            parts.push(self.settings.scheme.name().to_owned());
+        }
         if self.settings.drag != defaults.drag {
             parts.push(match self.settings.drag {
                 Drag::Explicit => "explicit drag".to_owned(),
                 Drag::Implicit => "implicit drag".to_owned(),
+                Drag::Centred => "centred drag".to_owned(),
             });
         }
         if self.settings.flip != defaults.flip {
@@ -70,6 +83,9 @@ impl Case {
         }
         if self.settings.mapping_back != defaults.mapping_back {
             parts.push("no mapping back".to_owned());
+        }
+        if self.column.dimensions == 2 && !self.scene.is_plane() {
+            parts.push("two dimensions".to_owned());
         }
         if self.material.law != self.scene.default_law() {
             parts.push(format!("{} law", self.material.law.name()));

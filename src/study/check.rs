@@ -2,15 +2,16 @@
 
 use super::case::Case;
 use super::diagnostic::{Diagnostic, StudyError, one_of};
-use super::expectation::{Axis, Expectation, Measure};
+use super::expectation::{Axis, Expectation, Measure, NEXT_FINER};
 use super::file::{
-    ColumnTable, ExpectTable, IntegratorTable, LevelTable, MaterialTable, MethodEntry, MethodTable,
-    OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
+    ColumnTable, ExpectTable, IntegratorTable, LayerTable, LevelTable, MaterialTable, MethodEntry,
+    MethodTable, OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
 };
 use super::sweep::{AXES, Sweep};
 use crate::assess::class::Class;
 use crate::assess::expectation::{Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure};
 use crate::assess::norms::Norm;
+use crate::exact::cosine_layer::Base;
 use crate::exact::xie_leo::XieLeo;
 use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Quantity, Sample};
@@ -20,6 +21,7 @@ use crate::solver::integrator::IntegratorKind;
 use crate::solver::material::{Continuity, Law, Material};
 use crate::solver::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
 use crate::solver::run::TimeStepRule;
+use crate::solver::scheme::Scheme;
 use std::ops::{Range, RangeInclusive};
 use toml::Spanned;
 
@@ -98,8 +100,16 @@ impl Study {
     /// # Errors
     /// Every complaint with its place.
     pub fn check(source: &StudySource) -> Result<Self, StudyError> {
+        Self::check_for(source, Purpose::Solving)
+    }
+
+    /// Checks a study for a purpose.
+    ///
+    /// # Errors
+    /// Every complaint with its place.
+    pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
         let file = source.parse()?;
-        let mut checker = Checker { source, diagnostics: Vec::new(), column_height: None };
+        let mut checker = Checker { source, diagnostics: Vec::new(), column_height: None, purpose };
         let study = checker.study(&file);
         match study {
             Some(study) if checker.diagnostics.is_empty() => Ok(study),
@@ -113,12 +123,22 @@ impl Study {
     }
 }
 
+/// What a study is read for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Its cases are to be solved.
+    Solving,
+    /// Only its problem is wanted, for an exact solution: no grid has to fit it.
+    Theory,
+}
+
 /// Complaints as they come up; every method gives a usable value or none.
 struct Checker<'a> {
     source: &'a StudySource,
     diagnostics: Vec<Diagnostic>,
     /// Height by which the levels of expectations are sized, once it is known.
     column_height: Option<f64>,
+    purpose: Purpose,
 }
 
 impl Checker<'_> {
@@ -128,7 +148,7 @@ impl Checker<'_> {
 
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.scene(&file.scene)?;
-        let column = self.column(&file.column);
+        let column = self.geometry(file, scene);
         self.column_height = Some(column.height);
         let material = self.material(&file.material, scene);
         self.porosity_at_the_end(file, scene, &column, &material);
@@ -152,6 +172,9 @@ impl Checker<'_> {
         for block in &file.sweep {
             let table = block.get_ref();
             let Some(sweep) = self.sweep(table, block.span(), &settings, scene, &material) else { continue };
+            if self.purpose == Purpose::Solving {
+                self.cells_fill_the_width(table, &column);
+            }
             let time_factors = match &table.time_factors {
                 Some(list) => self.time_factors(list),
                 None => time_factors.clone(),
@@ -165,6 +188,7 @@ impl Checker<'_> {
                     method: one.method,
                     integrator: one.integrator,
                     settings: ExplicitSettings {
+                        scheme: one.scheme,
                         drag: one.drag,
                         flip: one.flip,
                         mapping_back: one.mapping_back,
@@ -209,12 +233,76 @@ impl Checker<'_> {
         Some(SceneKind::ALL[index])
     }
 
-    fn column(&mut self, table: &ColumnTable) -> Column {
-        let seed = Column::default();
+    /// The column's or the layer's table, whichever the scene is about; the other is refused.
+    fn geometry(&mut self, file: &StudyFile, scene: SceneKind) -> Column {
+        if scene.is_plane() {
+            if let Some(span) = file.column.typed() {
+                let name = scene.name();
+                self.complain(
+                    span,
+                    format!("the scene `{name}` has no [column]"),
+                    "its geometry and load stand in the table [layer]: length, height, base, load",
+                );
+            }
+            return self.layer(file.layer.as_ref().map(Spanned::get_ref));
+        }
+        if let Some(layer) = &file.layer {
+            self.complain(
+                layer.span(),
+                format!("the scene `{}` has no [layer]", scene.name()),
+                "its geometry and load stand in the table [column]: height, width, load, dimensions",
+            );
+        }
+        self.column(&file.column, scene)
+    }
+
+    fn layer(&mut self, table: Option<&LayerTable>) -> Column {
+        let seed = Column::layer();
+        let Some(table) = table else { return seed };
+        let base = table.base.as_ref().and_then(|word| self.word(word, "base", &Base::ALL.map(Base::name)));
         Column {
+            height: self.positive(table.height.as_ref(), "layer.height", "m", seed.height),
+            width: self.positive(table.length.as_ref(), "layer.length", "m", seed.width),
+            load: self.positive(table.load.as_ref(), "layer.load", "Pa", seed.load),
+            base: base.map_or(seed.base, |index| Some(Base::ALL[index])),
+            ..seed
+        }
+    }
+
+    fn column(&mut self, table: &ColumnTable, scene: SceneKind) -> Column {
+        let seed = Column::default();
+        if let Some(typed) = table.loading_time.as_ref().filter(|_| scene != SceneKind::DynamicColumn) {
+            self.complain(
+                typed.span(),
+                format!("the load of `{}` acts at once", scene.name()),
+                "a load that grows belongs to the scene \"dynamic-column\"",
+            );
+        }
+        Column {
+            dimensions: self
+                .count(table.dimensions.as_ref(), "column.dimensions", 1..=2)
+                .unwrap_or(seed.dimensions),
+            base: None,
             height: self.positive(table.height.as_ref(), "column.height", "m", seed.height),
             width: self.positive(table.width.as_ref(), "column.width", "m", seed.width),
             load: self.positive(table.load.as_ref(), "column.load", "Pa", seed.load),
+            loading_time: self.not_negative(table.loading_time.as_ref(), "column.loading_time", "s"),
+        }
+    }
+
+    /// Square cells must fill the width: their number over the height decides their size.
+    fn cells_fill_the_width(&mut self, table: &SweepTable, column: &Column) {
+        for typed in table.cells.iter().flat_map(Spanned::get_ref) {
+            let cells = usize::try_from(*typed.get_ref()).unwrap_or(0);
+            if cells == 0 || column.cells_across(cells).is_some() {
+                continue;
+            }
+            let size = column.height / cells as f64;
+            self.complain(
+                typed.span(),
+                format!("square cells of {size} m do not fill a width of {} m", column.width),
+                format!("a width of {size} m is one cell wide, or take a number of cells that divides it"),
+            );
         }
     }
 
@@ -365,6 +453,7 @@ impl Checker<'_> {
     fn settings(&mut self, table: &IntegratorTable) -> ExplicitSettings {
         let default = ExplicitSettings::default();
         ExplicitSettings {
+            scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)).unwrap_or(default.scheme),
             drag: table.drag.as_ref().and_then(|word| self.drag(word)).unwrap_or(default.drag),
             flip: table.flip.as_ref().map_or(default.flip, |flip| self.flip(flip)),
             mapping_back: table.mapping_back.as_ref().map_or(default.mapping_back, |typed| *typed.get_ref()),
@@ -372,8 +461,12 @@ impl Checker<'_> {
     }
 
     fn drag(&mut self, word: &Spanned<String>) -> Option<Drag> {
-        let index = self.word(word, "drag", &["explicit", "implicit"])?;
-        Some([Drag::Explicit, Drag::Implicit][index])
+        let index = self.word(word, "drag", &["explicit", "implicit", "centred"])?;
+        Some([Drag::Explicit, Drag::Implicit, Drag::Centred][index])
+    }
+
+    fn scheme(&mut self, word: &Spanned<String>) -> Option<Scheme> {
+        Some(Scheme::ALL[self.word(word, "scheme", &Scheme::ALL.map(Scheme::name))?])
     }
 
     fn flip(&mut self, typed: &Spanned<f64>) -> f64 {
@@ -475,6 +568,7 @@ impl Checker<'_> {
             time_step: self.list(table.time_step.as_ref(), "time_step", &[None], |c, typed| {
                 c.time_step(typed).map(Some)
             }),
+            scheme: self.list(table.scheme.as_ref(), "scheme", &[settings.scheme], Self::scheme),
             drag: self.list(table.drag.as_ref(), "drag", &[settings.drag], Self::drag),
             flip: self.list(table.flip.as_ref(), "flip", &[settings.flip], |c, typed| Some(c.flip(typed))),
             mapping_back: self.list(
@@ -520,6 +614,13 @@ impl Checker<'_> {
                 list.span(),
                 "the implicit integrator takes frozen configurations only",
                 "leave it to scenes of small strain, and to methods without `configuration` or the prefix TL-",
+            );
+        }
+        if scene.has_waves() && sweep.integrator.contains(&IntegratorKind::Implicit) {
+            self.complain(
+                list.span(),
+                format!("the implicit integrator leaves out inertia, which `{}` is about", scene.name()),
+                "take \"explicit\", or the scene \"terzaghi\"",
             );
         }
     }
@@ -680,12 +781,12 @@ impl Checker<'_> {
             self.complain(entry.span(), "the expectation names no time factor", "add `time_factor = 0.1`");
             return None;
         };
-        let names: Vec<&str> = references.iter().map(|kind| kind.name()).collect();
-        let reference = match &table.reference {
-            Some(word) => references[self.word(word, "reference", &names)?],
-            None => scene.references()[0],
-        };
         let axis = Axis::ALL[self.choice(table.axis.as_ref(), "axis", &Axis::ALL.map(Axis::name), 0)?];
+        let reference = if self.is_held_against_itself(table, axis)? {
+            None
+        } else {
+            Some(self.expected_reference(table, scene, references)?)
+        };
         let method = match &table.method {
             Some(typed) => Some(self.method(typed)?),
             None => None,
@@ -723,9 +824,16 @@ impl Checker<'_> {
             points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
             law: table.law.as_ref().and_then(|word| self.law(word, scene)),
             continuity: table.continuity.as_ref().and_then(|word| self.continuity(word)),
+            scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)),
             drag: table.drag.as_ref().and_then(|word| self.drag(word)),
             mapping_back: table.mapping_back.as_ref().map(|typed| *typed.get_ref()),
-            measure: Measure { quantity, sample, norm, reference: reference.name().to_owned(), time_factor },
+            measure: Measure {
+                quantity,
+                sample,
+                norm,
+                reference: reference.map_or(NEXT_FINER, |kind| kind.name()).to_owned(),
+                time_factor,
+            },
             reference,
             axis,
             demand,
@@ -734,6 +842,36 @@ impl Checker<'_> {
                 + 1,
         };
         (self.diagnostics.len() == before).then_some(expectation)
+    }
+
+    /// Whether an expectation holds a series against itself; none where its axis forbids it.
+    fn is_held_against_itself(&mut self, table: &ExpectTable, axis: Axis) -> Option<bool> {
+        let asked = table.reference.as_ref().filter(|word| word.get_ref() == NEXT_FINER);
+        match asked {
+            Some(word) if axis != Axis::TimeStep => {
+                self.complain(
+                    word.span(),
+                    "the next finer level has other places",
+                    "\"next-finer\" is for `axis = \"time_step\"`",
+                );
+                None
+            }
+            asked => Some(asked.is_some()),
+        }
+    }
+
+    /// The reference of an expectation, the scene's own where it names none.
+    fn expected_reference(
+        &mut self,
+        table: &ExpectTable,
+        scene: SceneKind,
+        references: &[ReferenceKind],
+    ) -> Option<ReferenceKind> {
+        let names: Vec<&str> = references.iter().map(|kind| kind.name()).collect();
+        match &table.reference {
+            Some(word) => Some(references[self.word(word, "reference", &names)?]),
+            None => Some(scene.references()[0]),
+        }
     }
 
     /// A bound at a level that is named in the words of its axis.
@@ -809,6 +947,19 @@ impl Checker<'_> {
                 typed.span(),
                 format!("`{name}` is {value} {unit}"),
                 format!("it must be positive and finite; the seed column has {default} {unit}"),
+            );
+        }
+        value
+    }
+
+    fn not_negative(&mut self, typed: Option<&Spanned<f64>>, name: &str, unit: &str) -> f64 {
+        let Some(typed) = typed else { return 0.0 };
+        let value = *typed.get_ref();
+        if !(value.is_finite() && value >= 0.0) {
+            self.complain(
+                typed.span(),
+                format!("`{name}` is {value} {unit}"),
+                "it must be 0 or positive, and finite",
             );
         }
         value

@@ -8,6 +8,7 @@ use crate::record::{Quantity, Sample};
 use crate::solver::explicit::Drag;
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
+use crate::solver::scheme::Scheme;
 use serde::{Deserialize, Serialize};
 
 /// What is refined along a series.
@@ -35,6 +36,10 @@ impl Axis {
         }
     }
 }
+
+/// The reference that is no other theory: the same run at the next finer level. Differences of
+/// neighbours have no floor but round-off, whatever the exact solution.
+pub const NEXT_FINER: &str = "next-finer";
 
 /// Which error of a run: what, where, in which norm, against which reference, when.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,14 +69,16 @@ pub struct Expectation {
     pub law: Option<Law>,
     /// Continuity of the water, where it is named.
     pub continuity: Option<Continuity>,
+    /// Scheme of the explicit step, where it is named.
+    pub scheme: Option<Scheme>,
     /// Drag, where it is named.
     pub drag: Option<Drag>,
     /// Mapping back, where it is named.
     pub mapping_back: Option<bool>,
     /// Which error.
     pub measure: Measure,
-    /// Reference, typed.
-    pub reference: ReferenceKind,
+    /// Reference, typed; none where a series is held against itself.
+    pub reference: Option<ReferenceKind>,
     /// Axis of the series.
     pub axis: Axis,
     /// What is wanted of the series.

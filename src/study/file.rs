@@ -30,6 +30,7 @@ pub struct StudyFile {
     pub scene: Spanned<String>,
     #[serde(default)]
     pub column: ColumnTable,
+    pub layer: Option<Spanned<LayerTable>>,
     #[serde(default)]
     pub material: MaterialTable,
     #[serde(default)]
@@ -49,6 +50,26 @@ pub struct StudyFile {
 pub struct ColumnTable {
     pub height: Typed<f64>,
     pub width: Typed<f64>,
+    pub load: Typed<f64>,
+    pub dimensions: Typed<i64>,
+    pub loading_time: Typed<f64>,
+}
+
+impl ColumnTable {
+    /// Place of the first key that was typed.
+    pub fn typed(&self) -> Option<std::ops::Range<usize>> {
+        let numbers = [&self.height, &self.width, &self.load, &self.loading_time];
+        let numbers = numbers.into_iter().flatten().map(Spanned::span);
+        numbers.chain(self.dimensions.as_ref().map(Spanned::span)).min_by_key(|span| span.start)
+    }
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LayerTable {
+    pub length: Typed<f64>,
+    pub height: Typed<f64>,
+    pub base: Typed<String>,
     pub load: Typed<f64>,
 }
 
@@ -70,6 +91,7 @@ pub struct MaterialTable {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IntegratorTable {
+    pub scheme: Typed<String>,
     pub drag: Typed<String>,
     pub flip: Typed<f64>,
     pub mapping_back: Typed<bool>,
@@ -96,6 +118,7 @@ pub struct SweepTable {
     pub cells: TypedList<i64>,
     pub points_per_cell: TypedList<i64>,
     pub time_step: TypedList<TimeStepTable>,
+    pub scheme: TypedList<String>,
     pub drag: TypedList<String>,
     pub flip: TypedList<f64>,
     pub mapping_back: TypedList<bool>,
@@ -146,6 +169,7 @@ pub struct ExpectTable {
     pub points_per_cell: Typed<i64>,
     pub law: Typed<String>,
     pub continuity: Typed<String>,
+    pub scheme: Typed<String>,
     pub drag: Typed<String>,
     pub mapping_back: Typed<bool>,
     pub order: Typed<OrderTable>,

@@ -11,9 +11,9 @@ mod sweep;
 
 pub use crate::solver::integrator::IntegratorKind;
 pub use case::{Case, step_label};
-pub use check::{Study, Tier};
+pub use check::{Purpose, Study, Tier};
 pub use diagnostic::{Diagnostic, StudyError};
-pub use expectation::{Axis, Expectation, Measure};
+pub use expectation::{Axis, Expectation, Measure, NEXT_FINER};
 pub use file::StudySource;
 pub(crate) use file::{MethodTable, StudyFile};
 pub use runner::{

@@ -5,9 +5,9 @@ use super::check::{Study, Tier};
 use crate::assess::measure::record_of;
 use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Record, RecordStore, Status, StoreError, WallSample};
-use crate::scene::{column_parameters, column_problem};
+use crate::scene::{SceneProblem, column_parameters};
 use crate::solver::limits;
-use crate::solver::run::{Kernel, Schedule, TimeStepRule, run};
+use crate::solver::run::{Kernel, Schedule, TimeStepRule};
 use std::cell::Cell;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -279,7 +279,7 @@ pub fn run_case(
     alone: bool,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
-    let problem = column_problem(
+    let problem = SceneProblem::new(
         case.scene,
         &case.column,
         &case.material,
@@ -289,7 +289,7 @@ pub fn run_case(
     )?;
     let schedule = schedule_of(case, kernel);
     let start = Instant::now();
-    let outcome = run(problem, &schedule, observe);
+    let outcome = problem.run(&schedule, observe);
     let seconds = start.elapsed().as_secs_f64();
     let mut record = record_of(case, references, outcome)?;
     record.wall.push(WallSample { seconds, alone });
@@ -332,8 +332,7 @@ pub fn estimated_updates(case: &Case) -> u64 {
             growth * end / (2.0 + (end / first).max(1.0).ln())
         }
     };
-    let points = (case.cells * case.points_per_cell) as f64;
-    (end / step * points).max(1.0) as u64
+    (end / step * case.expected_points() as f64).max(1.0) as u64
 }
 
 /// What timing a study took.

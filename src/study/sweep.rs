@@ -5,6 +5,7 @@ use crate::solver::integrator::IntegratorKind;
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
+use crate::solver::scheme::Scheme;
 
 /// One block of a study, checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +16,7 @@ pub struct Sweep {
     pub points_per_cell: Vec<usize>,
     /// Step rules; none where the integrator's own holds.
     pub time_step: Vec<Option<TimeStepRule>>,
+    pub scheme: Vec<Scheme>,
     pub drag: Vec<Drag>,
     pub flip: Vec<f64>,
     pub mapping_back: Vec<bool>,
@@ -25,7 +27,7 @@ pub struct Sweep {
 }
 
 /// Keys that a path can tie.
-pub const AXES: [&str; 10] = [
+pub const AXES: [&str; 11] = [
     "method",
     "integrator",
     "cells",
@@ -36,6 +38,7 @@ pub const AXES: [&str; 10] = [
     "mapping_back",
     "law",
     "continuity",
+    "scheme",
 ];
 
 /// One combination of a sweep.
@@ -46,6 +49,7 @@ pub struct Combination {
     pub cells: usize,
     pub points_per_cell: usize,
     pub time_step: TimeStepRule,
+    pub scheme: Scheme,
     pub drag: Drag,
     pub flip: f64,
     pub mapping_back: bool,
@@ -66,6 +70,7 @@ impl Sweep {
             self.mapping_back.len(),
             self.law.len(),
             self.continuity.len(),
+            self.scheme.len(),
         ]
     }
 
@@ -112,6 +117,7 @@ impl Sweep {
                     mapping_back: self.mapping_back[at[7]],
                     law: self.law[at[8]],
                     continuity: self.continuity[at[9]],
+                    scheme: self.scheme[at[10]],
                 }
             })
             .collect()
@@ -129,6 +135,7 @@ mod tests {
             cells: vec![5, 10, 20],
             points_per_cell: vec![2],
             time_step: [4e-6, 2e-6, 1e-6].map(|step| Some(TimeStepRule::Seconds(step))).to_vec(),
+            scheme: vec![Scheme::ForwardEuler],
             drag: vec![Drag::Explicit],
             flip: vec![1.0],
             mapping_back: vec![true],

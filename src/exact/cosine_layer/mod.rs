@@ -7,10 +7,10 @@ use core::f64::consts::PI;
 
 use nalgebra::Complex;
 
-use super::error::{ExactError, checked_time_factor, positive};
+use super::error::{ExactError, checked_depth, checked_time_factor, positive};
 use super::large_strain::Water;
 use super::parameters::ColumnParameters;
-use super::reference::Accuracy;
+use super::reference::{Accuracy, FieldValues};
 use elastic::{Constants, Local, Regime, Solution};
 
 /// `B T_v` from which on the slowest mode is below round-off, and the contour so near the origin
@@ -18,7 +18,10 @@ use elastic::{Constants, Local, Regime, Solution};
 const ENDED: f64 = 100.0;
 
 /// How the layer rests on its impermeable base.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "lowercase")]
 pub enum Base {
     /// No displacement.
     #[default]
@@ -28,6 +31,9 @@ pub enum Base {
 }
 
 impl Base {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Rough, Self::Smooth];
+
     /// Name in study files.
     pub const fn name(self) -> &'static str {
         match self {
@@ -67,6 +73,20 @@ pub struct LayerFields {
     pub pressure: f64,
     /// Effective stresses `σ'_xx`, `σ'_yy`, `σ'_zz`, `σ'_xy`, tension positive, Pa.
     pub effective_stress: [f64; 4],
+}
+
+impl LayerFields {
+    /// Fields at the phase `βx` of amplitudes.
+    #[must_use]
+    pub fn at(&self, phase: f64) -> Self {
+        let (sine, cosine) = (libm::sin(phase), libm::cos(phase));
+        let [xx, yy, zz, xy] = self.effective_stress;
+        Self {
+            displacement: [self.displacement[0] * sine, self.displacement[1] * cosine],
+            pressure: self.pressure * cosine,
+            effective_stress: [xx * cosine, yy * cosine, zz * cosine, xy * sine],
+        }
+    }
 }
 
 impl CosineLayer {
@@ -163,6 +183,29 @@ impl CosineLayer {
         Ok(-crest.displacement[1])
     }
 
+    /// Fields under the crest of the load, `x = 0`, at the depth `zeta` below the surface.
+    ///
+    /// # Errors
+    /// As for [`at`](Self::at), and when `zeta` is outside [0, 1].
+    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        let depth = checked_depth(zeta)?;
+        let crest = self.at(time_factor)?.amplitudes(self.constants.height * (1.0 - depth))?;
+        Ok(FieldValues {
+            pressure: crest.pressure,
+            effective_stress: crest.effective_stress[1],
+            displacement: crest.displacement[1],
+        })
+    }
+
+    /// Settlement under the crest over that at the drained end.
+    ///
+    /// # Errors
+    /// As for [`at`](Self::at).
+    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
+        let end = self.drained()?.amplitudes(self.constants.height)?;
+        Ok(self.settlement(time_factor)? / -end.displacement[1])
+    }
+
     /// Nodes of the contour, and the difference that a fourth fewer make to the pressure, over the
     /// load.
     ///
@@ -187,28 +230,40 @@ impl LayerState {
     /// # Errors
     /// When `y` is outside the layer or `x` not finite.
     pub fn fields(&self, x: f64, y: f64) -> Result<LayerFields, ExactError> {
+        if !x.is_finite() {
+            return Err(ExactError::NotFinite { quantity: "place along the layer", value: x });
+        }
+        Ok(self.amplitudes(y)?.at(self.constants.wave_number * x))
+    }
+
+    /// Amplitudes of the fields at `y` over the base, m: of `sin βx` in the horizontal displacement
+    /// and the shear stress, of `cos βx` in the others. They are what costs: a grid of places has
+    /// few heights.
+    ///
+    /// # Errors
+    /// When `y` is outside the layer.
+    pub fn amplitudes(&self, y: f64) -> Result<LayerFields, ExactError> {
         let height = self.constants.height;
         if !(0.0..=height).contains(&y) {
             return Err(ExactError::OutsideLayer { y, height });
         }
-        if !x.is_finite() {
-            return Err(ExactError::NotFinite { quantity: "place along the layer", value: x });
-        }
-        let beta = self.constants.wave_number;
-        let (sine, cosine) = (libm::sin(beta * x), libm::cos(beta * x));
         let mut sum = LayerFields::default();
         for (solution, weight) in &self.parts {
-            let local = solution.at(y);
-            let part = self.real_part(solution, &local, *weight);
-            sum.displacement[0] += part.displacement[0] * sine;
-            sum.displacement[1] += part.displacement[1] * cosine;
-            sum.pressure += part.pressure * cosine;
-            for (total, stress) in sum.effective_stress[..3].iter_mut().zip(part.effective_stress) {
-                *total += stress * cosine;
+            let part = self.real_part(solution, &solution.at(y), *weight);
+            sum.pressure += part.pressure;
+            for (total, value) in sum.displacement.iter_mut().zip(part.displacement) {
+                *total += value;
             }
-            sum.effective_stress[3] += part.effective_stress[3] * sine;
+            for (total, value) in sum.effective_stress.iter_mut().zip(part.effective_stress) {
+                *total += value;
+            }
         }
         Ok(sum)
+    }
+
+    /// Wave number `β = π/L` along the layer, 1/m.
+    pub fn wave_number(&self) -> f64 {
+        self.constants.wave_number
     }
 
     /// Amplitudes of one node of the contour.

@@ -28,6 +28,16 @@ pub enum Start {
     /// No load; let go from `p = σ' = p_0 sin(M_0 ζ)` with the velocities that
     /// [`SingleMode::velocities`](super::single_mode::SingleMode::velocities) has at `t = 0`.
     Mode,
+    /// No load; let go at rest from `u = U_w = −(p_0/(Q M_0/H)) sin(M_0 y/H)`: an undrained wave that
+    /// stands, `p = p_0 sin(M_0 ζ)` at first.
+    StandingWave,
+}
+
+impl Start {
+    /// Whether the column is let go without a load, and displacements count from there.
+    fn is_release(self) -> bool {
+        matches!(self, Self::Mode | Self::StandingWave)
+    }
 }
 
 /// Linear v–w column: fixed base, drained and loaded top (theory after Zienkiewicz et al. 1980).
@@ -117,7 +127,7 @@ impl DynamicColumn {
             state.pressure -= column.coupling_modulus() * amplitude.mixture * m * cosine;
         }
         let mut fields = self.assemble(&state);
-        if self.start == Start::Mode {
+        if self.start.is_release() {
             let sine = libm::sin(eigenvalue(0) * (1.0 - zeta));
             let [solid, water] = self.released().displacement;
             fields.solid.displacement -= solid * sine;
@@ -167,7 +177,7 @@ impl DynamicColumn {
     pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
         let end = match self.start {
             Start::Step | Start::Ramp { .. } => self.parameters.final_settlement(),
-            Start::Mode => self.released().displacement[0],
+            Start::Mode | Start::StandingWave => self.released().displacement[0],
         };
         Ok(self.settlement(time_factor)? / end)
     }

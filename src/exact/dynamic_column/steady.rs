@@ -19,7 +19,7 @@ pub fn steady(column: &ColumnParameters, start: Start, time: f64, y: f64) -> Ste
     let modulus = column.oedometric_modulus();
     let strain = -column.load / modulus;
     match start {
-        Start::Mode => Steady::default(),
+        Start::Mode | Start::StandingWave => Steady::default(),
         Start::Ramp { duration } if time <= duration => {
             // Steady growth: every height passes on the water that its base squeezes out.
             let height = column.height;

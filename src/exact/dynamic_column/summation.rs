@@ -32,14 +32,18 @@ impl DynamicColumn {
         match self.start {
             Start::Step => Drive::Step { force },
             Start::Ramp { duration } => Drive::Ramp { rate: force / duration },
-            Start::Mode => Drive::Release(self.released()),
+            Start::Mode | Start::StandingWave => Drive::Release(self.released()),
         }
     }
 
-    /// Coefficients of the slowest mode at the start of [`Start::Mode`].
+    /// Coefficients of the slowest mode where the column is let go.
     pub(super) fn released(&self) -> InitialState {
         let column = &self.parameters;
         let wave_number = self.wave_number(0);
+        if self.start == Start::StandingWave {
+            let together = -column.load / (column.coupling_modulus() * wave_number);
+            return InitialState { displacement: [together; 2], velocity: [0.0; 2] };
+        }
         let solid = column.load / (column.oedometric_modulus() * wave_number);
         let mixture = -column.load / (column.coupling_modulus() * wave_number);
         let discharge =
@@ -73,7 +77,7 @@ impl DynamicColumn {
     pub(super) fn snapshot(&self, time_factor: f64) -> Snapshot {
         let time = self.parameters.time(time_factor);
         let mut snapshot = Snapshot { time_factor, amplitudes: Vec::new(), tail: 0.0 };
-        if self.start == Start::Mode {
+        if self.start.is_release() {
             snapshot.amplitudes.push(self.amplitude(0, time));
             return snapshot;
         }
@@ -100,7 +104,7 @@ impl DynamicColumn {
         let front = self.amplitude(far, time).envelope * far as f64;
         match self.start {
             Start::Ramp { .. } => front * far as f64 / modes as f64,
-            Start::Step | Start::Mode => front,
+            Start::Step | Start::Mode | Start::StandingWave => front,
         }
     }
 }

@@ -124,6 +124,7 @@ fn velocities_are_the_displacements_rates() {
     for (start, time) in [
         (Start::Step, 0.5),
         (Start::Mode, 0.1),
+        (Start::StandingWave, 1.3e-3),
         (Start::Ramp { duration }, 0.15),
         (Start::Ramp { duration }, 0.4),
     ] {
@@ -204,6 +205,24 @@ fn released_mode_starts_like_the_single_mode() {
         let b = mode.fields(0.2, zeta).unwrap();
         assert!((a.pressure - b.pressure).abs() < 1e-4);
         assert!((a.displacement - b.displacement).abs() < 1e-5 * seed.final_settlement());
+    }
+}
+
+#[test]
+fn a_standing_wave_starts_at_rest_and_swings_with_the_undrained_period() {
+    // Hardly any water moves against the grains: k = 1e-9, and the period is 4H/√((E_oed + Q)/ρ).
+    let column = ColumnParameters { hydraulic_conductivity: 1e-9, load: 7.0, ..ColumnParameters::default() };
+    let wave = DynamicColumn::new(&column, Start::StandingWave, &[]).unwrap();
+    let start = wave.dynamic_fields(0.0, 0.4).unwrap();
+    assert!((start.solid.pressure / (7.0 * (0.4 * core::f64::consts::FRAC_PI_2).sin()) - 1.0).abs() < 1e-12);
+    assert!(start.solid.displacement.abs() < 1e-12 * wave.fields(1.0, 0.4).unwrap().displacement.abs());
+    assert!(start.velocities.solid.abs() + start.velocities.water.abs() < 1e-14);
+    let density = 0.7 * 2650.0 + 0.3 * 1000.0;
+    let speed = ((column.oedometric_modulus() + column.coupling_modulus()) / density).sqrt();
+    let period = column.time_factor(4.0 * column.height / speed);
+    let at = |periods: f64| wave.fields(periods * period, 1.0).unwrap().pressure / 7.0;
+    for (periods, pressure) in [(0.25, 0.0), (0.5, -1.0), (1.0, 1.0), (3.0, 1.0)] {
+        assert!((at(periods) - pressure).abs() < 1e-4, "{periods}: {}", at(periods));
     }
 }
 

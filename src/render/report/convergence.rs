@@ -10,7 +10,7 @@ use crate::render::chart::{
 };
 use crate::render::page::{Block, Figure, slug};
 use crate::render::table::{Cell, Column, Table};
-use crate::study::{Axis, Measure, step_label};
+use crate::study::{Axis, Measure, NEXT_FINER, step_label};
 
 /// Quantities of one figure, side by side.
 const PANELS: [(Quantity, Sample); 4] = [
@@ -32,7 +32,10 @@ pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
     let times = common_times(&all);
     let Some(shown) = times.get(times.len().saturating_sub(1) / 2).copied() else { return Vec::new() };
     let mut blocks = vec![Block::Heading(heading(axis).to_owned())];
-    let references: Vec<&str> = results.study.references.iter().map(|kind| kind.name()).collect();
+    let mut references: Vec<&str> = results.study.references.iter().map(|kind| kind.name()).collect();
+    if axis == Axis::TimeStep && results.asks_for(NEXT_FINER) {
+        references.insert(0, NEXT_FINER);
+    }
     let own = references.first().copied().unwrap_or_default();
     let figures = PANELS.map(|(quantity, sample)| figure(results, &all, axis, quantity, sample, own, shown));
     blocks.push(Block::Figures(figures.into_iter().flatten().collect()));
@@ -66,7 +69,7 @@ fn longest_paths<'a>(results: &StudyResults<'a>, axis: Axis) -> Vec<Path<'a>> {
 /// Whether the study expects to run into the difference of two models.
 fn floors_of_model(results: &StudyResults<'_>) -> bool {
     let own = results.study.references.first().copied();
-    results.study.expectations.iter().any(|one| Some(one.reference) != own)
+    results.study.expectations.iter().any(|one| one.reference.is_some() && one.reference != own)
 }
 
 fn common_times(all: &[Path<'_>]) -> Vec<f64> {
@@ -121,7 +124,7 @@ fn figure(
             summary.series.levels().iter().filter_map(|level| Some((level.size, level.error?))).collect();
         chart.series.push(Series::new(label.clone(), points).style(Style::LineAndMarkers));
     }
-    if axis == Axis::Cells {
+    if shows_orders(axis, reference) {
         add_triangles(&mut chart, &summaries, &labels.each);
     }
     let floor = summaries.iter().find_map(|summary| summary.classification.floor.clone());
@@ -150,6 +153,12 @@ fn figure(
     Some(Figure::new(name, chart, caption))
 }
 
+/// Whether a series along the axis is expected to fall with an order, and not to end in the mesh's
+/// error.
+fn shows_orders(axis: Axis, reference: &str) -> bool {
+    axis == Axis::Cells || axis == Axis::TimeStep && reference == NEXT_FINER
+}
+
 /// One triangle for each order that a series comes near.
 fn add_triangles(chart: &mut Chart, summaries: &[SeriesSummary<'_>], labels: &[String]) {
     for slope in [1.0, 2.0] {
@@ -168,7 +177,7 @@ fn captions(summaries: &[SeriesSummary<'_>]) -> String {
     for summary in summaries {
         let class = summary.classification.class.name().to_owned();
         let order = match (&summary.classification.order, summary.path.axis) {
-            (Some(order), Axis::Cells) => {
+            (Some(order), axis) if shows_orders(axis, &summary.measure.reference) => {
                 format!("{} (order {order:.2})", summary.path.records[0].case.method)
             }
             _ => summary.path.records[0].case.method.to_string(),
@@ -189,7 +198,7 @@ fn orders_table(all: &[Path<'_>], axis: Axis, reference: &str, time_factor: f64)
     let labels = labels::path_labels(all);
     let mut columns = vec![Column::text("method"), Column::text("error of")];
     columns.extend(levels.iter().map(|level| Column::number(level.clone())));
-    if axis == Axis::Cells {
+    if shows_orders(axis, reference) {
         columns.extend(["pair orders", "fit, 95 %", "finest 3"].map(Column::number));
     }
     if axis != Axis::PointsPerCell {
@@ -242,7 +251,7 @@ fn orders_row(
     });
     row.extend(errors);
     row.resize(2 + levels, Cell::Missing("not run".to_owned()));
-    if axis == Axis::Cells {
+    if shows_orders(axis, &measure.reference) {
         let pairs: Vec<String> = summary
             .pairs
             .iter()

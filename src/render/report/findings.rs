@@ -62,7 +62,7 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
                     quote(path, &measure, &mut floors)
                 });
                 // Against another theory than its own a run is quoted where that is the question.
-                if *reference == one.study.references[0] || asks_for(one, reference.name()) {
+                if *reference == one.study.references[0] || one.asks_for(reference.name()) {
                     let mut row: Vec<Cell> = vec![
                         one.study.name.as_str().into(),
                         Cell::Code(label.clone()),
@@ -104,11 +104,6 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
         mood: Some(if unmet == 0 { Mood::Pass } else { Mood::Fail }),
         blocks,
     }
-}
-
-/// Whether an expectation of the study is about a reference.
-fn asks_for(results: &StudyResults<'_>, reference: &str) -> bool {
-    results.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
 }
 
 /// Order and error of one series in a few characters; its floor, where there is one, is told at

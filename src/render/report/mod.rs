@@ -31,6 +31,11 @@ impl<'a> StudyResults<'a> {
         Self { study, records, judgements: judge_study(study, records, tier) }
     }
 
+    /// Whether an expectation of the study is about a reference.
+    fn asks_for(&self, reference: &str) -> bool {
+        self.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
+    }
+
     /// Whether every expectation is met.
     fn passes(&self) -> bool {
         self.judgements.iter().all(|judgement| judgement.verdict.pass)

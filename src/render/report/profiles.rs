@@ -61,7 +61,11 @@ fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, Exa
     let own = results.study.references[0];
     let mut chart = Chart::new(
         format!("Isochrones, {}", record.case.method),
-        ChartAxis::linear("excess pore pressure p/q (–)").between(0.0, 1.05),
+        if results.study.scene.has_waves() {
+            ChartAxis::linear("excess pore pressure p/q (–)")
+        } else {
+            ChartAxis::linear("excess pore pressure p/q (–)").between(0.0, 1.05)
+        },
         ChartAxis::linear("depth below the surface (H − Y)/H (–)").between(0.0, 1.0).inverted(),
     );
     chart.size = Size { width: 560.0, ..Size::default() };

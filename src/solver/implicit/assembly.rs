@@ -208,7 +208,8 @@ fn storage_entries<const D: usize, const W: usize, S: ShapeFunction<W>>(
         unknowns.visit_divergence(body, site, |node, divergence| {
             let flux_of_force = porosity_of_flux(body, unknowns, site, node) * mobility[node];
             for direction in 0..D {
-                if unknowns.displacement[node][direction].is_none() {
+                // Where the water is held, nothing flows; on a rough base it slides.
+                if body.nodes.water_free[node][direction] == 0.0 {
                     continue;
                 }
                 for (other, force) in &forces[node][direction] {
@@ -263,6 +264,8 @@ impl Start {
             for d in 0..D {
                 if let Some(row) = unknowns.displacement[node][d] {
                     residual[row] = nodes.mixture_force[node][d] / scales.force;
+                }
+                if nodes.water_free[node][d] > 0.0 {
                     outflow[node][d] = nodes.porosity[node] * mobility[node] * nodes.water_force[node][d];
                 }
             }
@@ -271,7 +274,7 @@ impl Start {
             let mut rate = 0.0;
             unknowns.visit_divergence(body, site, |node, divergence| {
                 let flux_of_force = porosity_of_flux(body, unknowns, site, node) * mobility[node];
-                for d in (0..D).filter(|d| unknowns.displacement[node][*d].is_some()) {
+                for d in (0..D).filter(|d| nodes.water_free[node][*d] > 0.0) {
                     rate += divergence[d] * flux_of_force * nodes.water_force[node][d];
                 }
             });

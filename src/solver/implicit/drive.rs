@@ -13,10 +13,11 @@ pub fn run_linear<const D: usize, const W: usize, S: ShapeFunction<W>>(
     schedule: &Schedule,
     limit: StepLimit,
     sizes: StepSizes,
+    start_failure: Option<Failure>,
     observer: Observer<'_>,
 ) -> Outcome {
     let march = LinearMarch::new(body);
-    let settled = -body.surface.mean_of(&body.grid, &body.points, &body.nodes.displacement);
+    let settled = -body.surface.amplitude_of(&body.grid, &body.points, &body.nodes.displacement);
     let mut run = LinearRun {
         counters: Counters { points: body.points.len(), nodes: body.nodes.len(), ..Counters::default() },
         body,
@@ -29,8 +30,11 @@ pub fn run_linear<const D: usize, const W: usize, S: ShapeFunction<W>>(
     };
     let start = run.snapshot();
     let mut snapshots = Vec::new();
-    let mut status = RunStatus::Ok;
+    let mut status = start_failure.map_or(RunStatus::Ok, RunStatus::Failed);
     for output in &schedule.outputs {
+        if status != RunStatus::Ok {
+            break;
+        }
         if let Err(failure) = run.advance_to(*output, limit, observer) {
             status = RunStatus::Failed(failure);
             break;

@@ -130,6 +130,9 @@ fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
         method: one.method,
         configuration: one.configuration,
         load: one.load,
+        load_shape: crate::solver::surface::LoadShape::Uniform,
+        undrained_start: false,
+        loading_time: 0.0,
         initial_gradient: [[0.0, 0.0], [0.0, strain]],
         pressure_scale: one.pressure_scale,
     }

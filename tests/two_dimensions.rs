@@ -1,0 +1,155 @@
+//! The paper's grid, 0.1 m × 1.0 m and one cell wide, against its column: one problem, two
+//! dimensions, one result.
+
+use oedometer::exact::cosine_layer::Base;
+use oedometer::scene::{Column, SceneKind, column_problem};
+use oedometer::solver::body::Problem;
+use oedometer::solver::explicit::{Drag, ExplicitSettings};
+use oedometer::solver::integrator::IntegratorKind;
+use oedometer::solver::material::Material;
+use oedometer::solver::method::Method;
+use oedometer::solver::outcome::{Outcome, RunStatus};
+use oedometer::solver::run::{Kernel, Schedule, TimeStepRule, run};
+use oedometer::solver::snapshot::Snapshot;
+
+const CELLS: usize = 10;
+const PER_CELL: usize = 2;
+
+/// Runs a scene in one and in two dimensions with the same steps.
+fn both(scene: SceneKind, method: &str, load: f64, end: f64, drag: Drag) -> (Outcome, Outcome) {
+    let soil = Material { law: scene.default_law(), ..Material::default() };
+    let column = Column { load, ..Column::default() };
+    let plane = Column { dimensions: 2, ..column };
+    let method = Method::named(method).expect("a known method");
+    let schedule = Schedule {
+        outputs: vec![0.5 * end, end],
+        history: vec![0.25 * end],
+        rule: TimeStepRule::Seconds(1.2e-5),
+        settings: ExplicitSettings { drag, ..ExplicitSettings::default() },
+        kernel: Kernel::PointWise,
+        integrator: IntegratorKind::Explicit,
+    };
+    let narrow = column_problem::<1>(scene, &column, &soil, method, CELLS, PER_CELL).expect("the seed");
+    let wide = column_problem::<2>(scene, &plane, &soil, method, CELLS, PER_CELL).expect("the seed");
+    (run(narrow, &schedule, &|_, _| true), run(wide, &schedule, &|_, _| true))
+}
+
+/// Largest difference of two fields over the largest value of the first, point by point: the plane
+/// has two points side by side for each of the column.
+fn difference(column: &[f64], plane: &[f64]) -> f64 {
+    assert_eq!(plane.len(), PER_CELL * column.len());
+    let scale = column.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
+    let pairs = plane.iter().enumerate().map(|(point, value)| (value, column[point / PER_CELL]));
+    pairs.fold(0.0, |worst: f64, (plane, column)| worst.max((plane - column).abs())) / scale
+}
+
+fn assert_same(what: &str, column: &Outcome, plane: &Outcome, tolerance: f64) {
+    assert_eq!(column.status, RunStatus::Ok, "{what}");
+    assert_eq!(plane.status, RunStatus::Ok, "{what}");
+    assert_eq!(column.counters.steps, plane.counters.steps, "{what}");
+    for (column, plane) in column.snapshots.iter().zip(&plane.snapshots) {
+        let fields: [fn(&Snapshot) -> &Vec<f64>; 3] = [
+            |snapshot| &snapshot.points.pressure,
+            |snapshot| &snapshot.points.effective_stress,
+            |snapshot| &snapshot.points.displacement,
+        ];
+        for field in fields {
+            let worst = difference(field(column), field(plane));
+            assert!(worst < tolerance, "{what} at {} s: {worst:e}", column.time);
+        }
+        let settled = (plane.settlement / column.settlement - 1.0).abs();
+        assert!(settled < tolerance, "{what}: settlement {settled:e}");
+        let sideways = plane.points.plane.as_ref().expect("two dimensions");
+        let drift = sideways.horizontal_displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+        assert!(drift < tolerance * column.settlement.abs(), "{what}: {drift:e} m sideways");
+    }
+}
+
+#[test]
+fn the_paper_s_grid_is_its_column_at_small_strain_whatever_the_method() {
+    for scene in [SceneKind::Terzaghi, SceneKind::SingleMode] {
+        for method in Method::names().iter().filter(|name| !name.starts_with("TL-")) {
+            let (column, plane) = both(scene, method, 1e3, 0.05, Drag::Explicit);
+            assert_same(&format!("{} {method}", scene.name()), &column, &plane, 1e-10);
+        }
+    }
+}
+
+#[test]
+fn the_paper_s_grid_is_its_column_at_200_kpa_whatever_the_method() {
+    for method in Method::names() {
+        let (column, plane) = both(SceneKind::XieLeo, &method, 2e5, 0.1, Drag::Implicit);
+        assert_same(&format!("xie-leo {method}"), &column, &plane, 1e-9);
+    }
+}
+
+/// The seed layer on 6 × 6 cells.
+fn layer(method: &str, base: Base) -> Problem<2> {
+    let (column, soil) = (Column { base: Some(base), ..Column::layer() }, Material::default());
+    let method = Method::named(method).expect("a known method");
+    column_problem(SceneKind::CosineLayer, &column, &soil, method, 6, PER_CELL).expect("the seed layer")
+}
+
+#[test]
+fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
+    for name in ["MPM", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"] {
+        for (drag, flip, mapping_back) in
+            [(Drag::Explicit, 1.0, true), (Drag::Implicit, 1.0, false), (Drag::Implicit, 0.99, true)]
+        {
+            let run_by = |kernel: Kernel| {
+                let schedule = Schedule {
+                    outputs: vec![0.0, 0.01],
+                    history: vec![0.005],
+                    rule: TimeStepRule::Seconds(1e-5),
+                    settings: ExplicitSettings { drag, flip, mapping_back, ..ExplicitSettings::default() },
+                    kernel,
+                    integrator: IntegratorKind::Explicit,
+                };
+                run(layer(name, Base::Rough), &schedule, &|_, _| true)
+            };
+            let (fast, plain) = (run_by(Kernel::Fastest), run_by(Kernel::PointWise));
+            assert_eq!(fast.status, RunStatus::Ok, "{name}");
+            assert_eq!(fast.counters, plain.counters);
+            let (fast, plain) = (&fast.snapshots[1], &plain.snapshots[1]);
+            let sideways =
+                |snapshot: &Snapshot| snapshot.nodes.plane.clone().expect("a plane").horizontal_displacement;
+            for (a, b) in [
+                (&fast.points.pressure, &plain.points.pressure),
+                (&fast.points.effective_stress, &plain.points.effective_stress),
+                (&fast.points.displacement, &plain.points.displacement),
+                (&sideways(fast), &sideways(plain)),
+                (&vec![fast.settlement], &vec![plain.settlement]),
+            ] {
+                let scale = b.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
+                for (x, y) in a.iter().zip(b) {
+                    assert!((x - y).abs() <= 1e-10 * scale, "{name} {drag:?} {flip}: {x} for {y}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_predicted_step_of_a_plane_parts_stable_from_unstable_runs() {
+    for name in ["GIMP", "GIMP-SRI", "GC-SRI-patch"] {
+        for mapping_back in [true, false] {
+            for (share, stable) in [(0.98, true), (1.02, false)] {
+                let schedule = Schedule {
+                    outputs: vec![0.3],
+                    history: Vec::new(),
+                    rule: TimeStepRule::Stable(share),
+                    settings: ExplicitSettings { mapping_back, ..ExplicitSettings::default() },
+                    kernel: Kernel::Fastest,
+                    integrator: IntegratorKind::Explicit,
+                };
+                let outcome = run(layer(name, Base::Smooth), &schedule, &|_, _| true);
+                let limit = outcome.step_sizes.predicted_critical;
+                assert_eq!(
+                    outcome.status == RunStatus::Ok,
+                    stable,
+                    "{name} {mapping_back} {share}: {limit:e}"
+                );
+            }
+        }
+    }
+}
