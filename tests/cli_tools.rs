@@ -2,6 +2,7 @@
 //! program, and the list of faults that `check` is held against.
 
 use assert_cmd::Command;
+use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -106,7 +107,7 @@ fn what_solve_computes_scores_as_solve_says() {
         let row = row.expect("a row");
         let zeta: f64 = row[1].parse().expect("a number");
         let pressure: f64 = row[2].parse().expect("a number");
-        text += &format!("8.175,0,{},{},0\n", 1.0 - zeta, 1.01 * pressure);
+        writeln!(text, "8.175,0,{},{},0", 1.0 - zeta, 1.01 * pressure).expect("a line");
     }
     fs::write(folder.path().join("result.csv"), text).expect("a file");
     let told = call(folder.path(), &["score", "result.csv", "--scene", "terzaghi", "--format", "csv"]);

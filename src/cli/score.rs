@@ -22,7 +22,7 @@ pub struct Arguments {
     /// Scene that the result is of, like `terzaghi`
     #[arg(long, required_unless_present = "show_mapping", default_value = "")]
     scene: String,
-    /// What the columns mean; see --show-mapping. Where none is given, the columns are t, y, p, u_y
+    /// What the columns mean; see --show-mapping. Where none is given, the columns are t, y, p, `u_y`
     #[arg(long, value_name = "FILE.toml")]
     mapping: Option<PathBuf>,
     /// Print the mapping that holds where none is given, as a start for one's own

@@ -47,9 +47,9 @@ impl Node {
         match self {
             Self::Optional(inner) | Self::List(inner) | Self::Map(inner) => inner.is_incomplete(),
             Self::Object(fields) => fields.iter().any(|field| field.node.is_incomplete()),
-            Self::OneOf(variants) => variants
-                .iter()
-                .any(|(_, held)| held.as_ref().is_some_and(|held| held.is_unseen_or_incomplete())),
+            Self::OneOf(variants) => {
+                variants.iter().any(|(_, held)| held.as_ref().is_some_and(Self::is_unseen_or_incomplete))
+            }
             _ => false,
         }
     }

@@ -195,7 +195,7 @@ impl<'de> Deserializer<'de> for Tracer<'_> {
         let Node::Object(fields) = self.node else {
             return Err(Error::custom("one type has two shapes"));
         };
-        visitor.visit_map(Fields { fields, names, next: 0, omitted: self.omitted })
+        visitor.visit_map(Fields { known: fields, names, next: 0, omitted: self.omitted })
     }
 
     fn deserialize_enum<V: Visitor<'de>>(
@@ -269,7 +269,7 @@ impl<'de> MapAccess<'de> for Entry<'_> {
 }
 
 struct Fields<'a> {
-    fields: &'a mut Vec<Field>,
+    known: &'a mut Vec<Field>,
     names: &'static [&'static str],
     next: usize,
     omitted: Option<Omission<'a>>,
@@ -290,7 +290,7 @@ impl<'de> MapAccess<'de> for Fields<'_> {
         let place = self.next;
         self.next += 1;
         let omitted = self.omitted.and_then(|omitted| omitted.below(place));
-        seed.deserialize(Tracer { node: &mut self.fields[place].node, omitted })
+        seed.deserialize(Tracer { node: &mut self.known[place].node, omitted })
     }
 }
 
@@ -299,7 +299,7 @@ struct Variant<'a> {
     held: &'a mut Option<Node>,
 }
 
-impl<'de, 'a> EnumAccess<'de> for Variant<'a> {
+impl<'de> EnumAccess<'de> for Variant<'_> {
     type Error = Error;
     type Variant = Self;
 
