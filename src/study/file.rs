@@ -176,6 +176,7 @@ pub struct ExpectTable {
     pub at: Typed<LevelTable>,
     pub class: Typed<String>,
     pub floor: Typed<FloorTable>,
+    pub oscillation: Typed<OscillationTable>,
     pub xfail: Typed<XfailTable>,
     pub tier: Typed<String>,
 }
@@ -203,6 +204,12 @@ pub struct LevelTable {
 pub struct FloorTable {
     pub above: Typed<f64>,
     pub below: Typed<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OscillationTable {
+    pub below: Spanned<f64>,
 }
 
 #[derive(Debug, Deserialize)]
