@@ -201,6 +201,21 @@ fn an_expectation_that_is_not_met_fails_everywhere_it_is_told() {
 }
 
 #[test]
+fn a_wiggle_is_measured_where_a_study_bounds_it() {
+    let asked = |bound: &str| {
+        let study = STUDY.replace("at = {", &format!("oscillation = {{ below = {bound} }}\nat = {{"));
+        Place::golden(&study, |_| {}).check(&["--format", "json"])
+    };
+    let told = asked("1e-6");
+    assert_eq!(told.code, 0, "constant recovery makes a staircase and no wiggle: {}", told.out);
+    let json: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
+    let checks = json[0]["judgements"][0]["verdict"]["checks"].as_array().expect("checks");
+    let wiggle = checks.iter().find(|check| check["name"] == "oscillation").expect("it is judged");
+    assert_eq!(wiggle["measured"], 0.0, "{wiggle}");
+    assert_eq!(asked("-1.0").code, 1, "and a bound that cannot be met is not");
+}
+
+#[test]
 fn a_known_failure_must_fail() {
     let known = STUDY
         .replace("order = { value = 1.0", "order = { value = 2.0")

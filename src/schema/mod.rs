@@ -12,8 +12,10 @@ use crate::exact::ReferenceKind;
 use crate::import::Mapping;
 use crate::record::{Quantity, Record, Sample};
 use crate::scene::SceneKind;
+use crate::solver::explicit::Drag;
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::{Configuration, Method};
+use crate::solver::scheme::Scheme;
 use crate::study::{Axis, IntegratorKind, MethodTable, StudyFile, Tier};
 use node::Language;
 use serde_json::{Value, json};
@@ -42,6 +44,8 @@ const KEYS: &[(&str, &str)] = &[
     ("gravity", "Gravity in the drag, m/s²."),
     ("continuity", "Form of the water's continuity."),
     ("drag", "Time level of the drag between the phases."),
+    ("scheme", "Time levels of velocities and stresses in the explicit step."),
+    ("oscillation", "Bound on the spurious wiggle of the profile."),
     ("flip", "Share of FLIP in the velocities of the points, 0 to 1."),
     ("mapping_back", "Whether stresses see velocities mapped back from the points."),
     ("time_factors", "Outputs T_v = c_v t/H², with the drained c_v."),
@@ -119,7 +123,8 @@ fn study_language() -> Result<Language, serde::de::value::Error> {
         ("scene", owned(SceneKind::ALL.map(SceneKind::name))),
         ("law", owned(Law::ALL.map(Law::name))),
         ("continuity", owned(Continuity::ALL.map(Continuity::name))),
-        ("drag", owned(["explicit", "implicit"])),
+        ("drag", shape_of::<Drag>()?.words()),
+        ("scheme", owned(Scheme::ALL.map(Scheme::name))),
         ("integrator", owned(IntegratorKind::ALL.map(IntegratorKind::name))),
         ("configuration", owned(Configuration::ALL.map(Configuration::name))),
         ("references", owned(ReferenceKind::ALL.iter().map(|kind| kind.name()))),

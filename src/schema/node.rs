@@ -54,6 +54,16 @@ impl Node {
         }
     }
 
+    /// Names of the variants that hold nothing.
+    pub fn words(&self) -> Vec<String> {
+        match self {
+            Self::OneOf(variants) => {
+                variants.iter().filter(|(_, held)| held.is_none()).map(|(name, _)| name.clone()).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
     fn is_unseen_or_incomplete(&self) -> bool {
         *self == Self::Unseen || self.is_incomplete()
     }
