@@ -37,6 +37,7 @@ fn case(method: &str, cells: usize, configuration: Configuration) -> Case {
         material: Material::default(),
         method: Method { configuration: Some(configuration), ..method },
         integrator: IntegratorKind::Explicit,
+        formulation: IntegratorKind::Explicit.default_formulation(),
         settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
         cells,
         points_per_cell: 2,

@@ -28,6 +28,7 @@ fn both(scene: SceneKind, method: &str, load: f64, end: f64, drag: Drag) -> (Out
         settings: ExplicitSettings { drag, ..ExplicitSettings::default() },
         kernel: Kernel::PointWise,
         integrator: IntegratorKind::Explicit,
+        formulation: IntegratorKind::Explicit.default_formulation(),
     };
     let narrow = column_problem::<1>(scene, &column, &soil, method, CELLS, PER_CELL).expect("the seed");
     let wide = column_problem::<2>(scene, &plane, &soil, method, CELLS, PER_CELL).expect("the seed");
@@ -104,6 +105,7 @@ fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
                     settings: ExplicitSettings { drag, flip, mapping_back, ..ExplicitSettings::default() },
                     kernel,
                     integrator: IntegratorKind::Explicit,
+                    formulation: IntegratorKind::Explicit.default_formulation(),
                 };
                 run(layer(name, Base::Rough), &schedule, &|_, _| true)
             };
@@ -141,6 +143,7 @@ fn the_predicted_step_of_a_plane_parts_stable_from_unstable_runs() {
                     settings: ExplicitSettings { mapping_back, ..ExplicitSettings::default() },
                     kernel: Kernel::Fastest,
                     integrator: IntegratorKind::Explicit,
+                    formulation: IntegratorKind::Explicit.default_formulation(),
                 };
                 let outcome = run(layer(name, Base::Smooth), &schedule, &|_, _| true);
                 let limit = outcome.step_sizes.predicted_critical;

@@ -40,6 +40,27 @@ impl IntegratorKind {
         }
     }
 
+    /// Formulation where none is given.
+    pub fn default_formulation(self) -> Formulation {
+        match self {
+            Self::Explicit => Formulation::VW,
+            Self::Implicit => Formulation::QuasiStatic,
+        }
+    }
+
+    /// Why a formulation is none for this integrator, where it is not.
+    pub fn refuses_formulation(self, formulation: Formulation) -> Option<&'static str> {
+        match (self, formulation) {
+            (Self::Explicit, Formulation::QuasiStatic) => {
+                Some("the explicit integrator goes from accelerations: it cannot leave them out")
+            }
+            (Self::Explicit, Formulation::UP) => {
+                Some("the explicit integrator has an acceleration of the water: it solves `v-w` only")
+            }
+            _ => None,
+        }
+    }
+
     /// Why a step rule is none for this integrator, where it is not.
     pub fn refuses_rule(self, rule: TimeStepRule) -> Option<&'static str> {
         match (self, rule) {
@@ -47,6 +68,35 @@ impl IntegratorKind {
                 Some("the explicit integrator cannot let its steps grow: its critical step bounds them")
             }
             _ => None,
+        }
+    }
+}
+
+/// Which accelerations the balances keep (theory, section 2: model only what a scene needs).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Formulation {
+    /// None: Biot's consolidation.
+    QuasiStatic,
+    /// That of the mixture; the water's relative to the skeleton is neglected, `a_w ≈ a_s`
+    /// (Zienkiewicz 1980).
+    #[serde(rename = "u-p")]
+    UP,
+    /// Both phases' own.
+    #[serde(rename = "v-w")]
+    VW,
+}
+
+impl Formulation {
+    /// Every formulation, the shortest first.
+    pub const ALL: [Self; 3] = [Self::QuasiStatic, Self::UP, Self::VW];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::QuasiStatic => "quasi-static",
+            Self::UP => "u-p",
+            Self::VW => "v-w",
         }
     }
 }

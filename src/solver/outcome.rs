@@ -74,6 +74,9 @@ pub struct Counters {
     /// Iterations of an implicit integrator's nonlinear solves; a linear problem needs none.
     #[serde(default)]
     pub iterations: u64,
+    /// Steps that an implicit integrator had to halve before its iterations came to an end.
+    #[serde(default)]
+    pub halved_steps: u64,
 }
 
 /// Step sizes of a run, s.

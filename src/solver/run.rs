@@ -5,9 +5,9 @@ use super::explicit::ExplicitSettings;
 use super::frozen::FrozenStep;
 use super::grid::Grid;
 use super::implicit::banded::Singular;
-use super::implicit::drive;
+use super::implicit::drive::{self, Plan};
 use super::implicit::steps::{StepLimit, steps_for};
-use super::integrator::IntegratorKind;
+use super::integrator::{Formulation, IntegratorKind};
 use super::limits;
 use super::method::{Basis, Configuration};
 use super::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
@@ -67,6 +67,8 @@ pub struct Schedule {
     pub kernel: Kernel,
     /// Integrator.
     pub integrator: IntegratorKind,
+    /// Accelerations that an implicit integrator keeps.
+    pub formulation: Formulation,
 }
 
 /// Told now and then how many steps are done, of how many; answers whether to go on.
@@ -91,11 +93,20 @@ fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
         IntegratorKind::Explicit => Run::new(discretise, problem, schedule).solve(observer),
         IntegratorKind::Implicit => {
             let sizes = implicit_sizes(&problem, schedule);
-            let limit = schedule.rule.limit(&problem, sizes.target, &schedule.outputs);
+            let plan = Plan {
+                schedule,
+                limit: schedule.rule.limit(&problem, sizes.target, &schedule.outputs),
+                sizes,
+                pressure_scale: problem.pressure_scale,
+                initial_height: LoadedSurface::of(&problem.points, problem.load)
+                    .shaped(problem.load_shape, &problem.points)
+                    .height(&problem.points),
+                loading_time: problem.loading_time,
+            };
             let undrained_start = problem.undrained_start;
             let mut body = discretise(problem);
             let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
-            drive::run_linear(&body, schedule, limit, sizes, start_failure.map(no_start), observer)
+            drive::solve(body, &plan, start_failure.map(no_start), observer)
         }
     }
 }
@@ -376,17 +387,23 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
     }
 
     fn find_lost_point(&self) -> Option<Failure> {
-        let points = &self.body.points;
-        let grains = 1.0 - self.body.material.porosity;
-        if let Some(point) = points.volume_ratio.iter().position(|ratio| *ratio <= grains) {
-            let ratio = points.volume_ratio[point];
-            let reason = format!("point {point} has J = {ratio:.4}, its grains alone fill {grains:.4}");
-            return Some(self.failure(FailureKind::PoresClosed, reason));
-        }
-        let outside = points.position.iter().position(|position| !self.body.grid.holds(position))?;
-        let reason = format!("point {outside} is at {:?} m", points.position[outside]);
-        Some(self.failure(FailureKind::LeftGrid, reason))
+        lost_point(&self.body).map(|(kind, reason)| self.failure(kind, reason))
     }
+}
+
+/// A point whose pores closed or that left the grid: by name, and in a sentence.
+pub fn lost_point<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    body: &Body<D, W, S>,
+) -> Option<(FailureKind, String)> {
+    let points = &body.points;
+    let grains = 1.0 - body.material.porosity;
+    if let Some(point) = points.volume_ratio.iter().position(|ratio| *ratio <= grains) {
+        let ratio = points.volume_ratio[point];
+        let reason = format!("point {point} has J = {ratio:.4}, its grains alone fill {grains:.4}");
+        return Some((FailureKind::PoresClosed, reason));
+    }
+    let outside = points.position.iter().position(|position| !body.grid.holds(position))?;
+    Some((FailureKind::LeftGrid, format!("point {outside} is at {:?} m", points.position[outside])))
 }
 
 /// Velocity, m/s, of an undrained wave or of Darcy's flow through one cell under the problem's
@@ -457,6 +474,7 @@ mod tests {
             settings,
             kernel,
             integrator: IntegratorKind::Explicit,
+            formulation: Formulation::VW,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::scene::{Column, SceneKind};
 use crate::solver::explicit::{Drag, ExplicitSettings};
-use crate::solver::integrator::IntegratorKind;
+use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Material};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
@@ -24,6 +24,8 @@ pub struct Case {
     pub method: Method,
     /// Integrator.
     pub integrator: IntegratorKind,
+    /// Accelerations that the balances keep.
+    pub formulation: Formulation,
     /// Choices of the explicit integrator.
     pub settings: ExplicitSettings,
     /// Cells over the height.
@@ -68,6 +70,9 @@ impl Case {
     pub fn variant(&self) -> String {
         let defaults = ExplicitSettings::default();
         let mut parts = Vec::new();
+        if self.formulation != self.integrator.default_formulation() {
+            parts.push(self.formulation.name().to_owned());
+        }
         if self.settings.scheme != defaults.scheme {
             parts.push(self.settings.scheme.name().to_owned());
         }
@@ -135,6 +140,7 @@ mod tests {
             material: Material::default(),
             method: Method::named("GC-SRI-patch").expect("the paper's method"),
             integrator: IntegratorKind::Explicit,
+            formulation: Formulation::VW,
             settings: ExplicitSettings::default(),
             cells: 10,
             points_per_cell: 2,

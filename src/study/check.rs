@@ -7,7 +7,7 @@ use super::file::{
     ColumnTable, ExpectTable, IntegratorTable, LayerTable, LevelTable, MaterialTable, MethodEntry,
     MethodTable, OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
 };
-use super::sweep::{AXES, Sweep};
+use super::sweep::{AXES, Combination, Sweep};
 use crate::assess::class::Class;
 use crate::assess::expectation::{Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure};
 use crate::assess::norms::Norm;
@@ -17,7 +17,7 @@ use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Quantity, Sample};
 use crate::scene::{Column, SceneKind, column_parameters};
 use crate::solver::explicit::{Drag, ExplicitSettings};
-use crate::solver::integrator::IntegratorKind;
+use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Law, Material};
 use crate::solver::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
 use crate::solver::run::TimeStepRule;
@@ -154,6 +154,8 @@ impl Checker<'_> {
         self.porosity_at_the_end(file, scene, &column, &material);
         let warnings = self.large_for_small_strain(file, scene, &column, &material).into_iter().collect();
         let settings = self.settings(&file.integrator);
+        let typed = file.integrator.formulation.as_ref().and_then(|word| self.formulation(word));
+        let formulation = typed.or(scene.has_waves().then_some(Formulation::VW));
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
@@ -171,7 +173,10 @@ impl Checker<'_> {
         let mut planned: Vec<PlannedCase> = Vec::new();
         for block in &file.sweep {
             let table = block.get_ref();
-            let Some(sweep) = self.sweep(table, block.span(), &settings, scene, &material) else { continue };
+            let Some(sweep) = self.sweep(table, block.span(), &settings, formulation, scene, &material)
+            else {
+                continue;
+            };
             if self.purpose == Purpose::Solving {
                 self.cells_fill_the_width(table, &column);
             }
@@ -187,6 +192,7 @@ impl Checker<'_> {
                     material: Material { law: one.law, continuity: one.continuity, ..material },
                     method: one.method,
                     integrator: one.integrator,
+                    formulation: one.formulation,
                     settings: ExplicitSettings {
                         scheme: one.scheme,
                         drag: one.drag,
@@ -460,6 +466,11 @@ impl Checker<'_> {
         }
     }
 
+    fn formulation(&mut self, word: &Spanned<String>) -> Option<Formulation> {
+        let index = self.word(word, "formulation", &Formulation::ALL.map(Formulation::name))?;
+        Some(Formulation::ALL[index])
+    }
+
     fn drag(&mut self, word: &Spanned<String>) -> Option<Drag> {
         let index = self.word(word, "drag", &["explicit", "implicit", "centred"])?;
         Some([Drag::Explicit, Drag::Implicit, Drag::Centred][index])
@@ -525,6 +536,7 @@ impl Checker<'_> {
         table: &SweepTable,
         span: Range<usize>,
         settings: &ExplicitSettings,
+        formulation: Option<Formulation>,
         scene: SceneKind,
         soil: &Material,
     ) -> Option<Sweep> {
@@ -556,6 +568,9 @@ impl Checker<'_> {
                     c.word(word, "integrator", &names).map(|index| IntegratorKind::ALL[index])
                 },
             ),
+            formulation: self.list(table.formulation.as_ref(), "formulation", &[formulation], |c, word| {
+                c.formulation(word).map(Some)
+            }),
             cells: self.list(table.cells.as_ref(), "cells", &[], |c, typed| {
                 c.count(Some(typed), "cells", 1..=MOST_CELLS)
             }),
@@ -597,30 +612,29 @@ impl Checker<'_> {
         }
         if self.diagnostics.len() == before {
             self.rules_fit(table, &sweep);
-            self.integrators_fit(table, &sweep, scene);
+            self.formulations_fit(table, &span, &sweep, scene);
         }
         (self.diagnostics.len() == before).then_some(sweep)
     }
 
-    /// Complains where an integrator meets a configuration that it cannot follow.
-    fn integrators_fit(&mut self, table: &SweepTable, sweep: &Sweep, scene: SceneKind) {
-        let Some(list) = &table.integrator else { return };
-        let moves = |method: Method| method.configuration_or(scene.configuration()) != Configuration::Frozen;
-        let unfit = |one: &crate::study::sweep::Combination| {
-            one.integrator == IntegratorKind::Implicit && moves(one.method)
-        };
-        if sweep.combinations().iter().any(unfit) {
+    /// Complains where a formulation meets an integrator that cannot solve it.
+    fn formulations_fit(&mut self, table: &SweepTable, span: &Range<usize>, sweep: &Sweep, scene: SceneKind) {
+        let refusal = |one: Combination| one.integrator.refuses_formulation(one.formulation);
+        if let Some(why) = sweep.combinations().into_iter().find_map(refusal) {
+            let place = table.formulation.as_ref().map(Spanned::span);
             self.complain(
-                list.span(),
-                "the implicit integrator takes frozen configurations only",
-                "leave it to scenes of small strain, and to methods without `configuration` or the prefix TL-",
+                place.unwrap_or(span.start..span.start + 1),
+                why,
+                "give each integrator a [[sweep]] block of its own, or leave `formulation` out",
             );
         }
-        if scene.has_waves() && sweep.integrator.contains(&IntegratorKind::Implicit) {
+        let still = |one: &Combination| one.formulation == Formulation::QuasiStatic;
+        if scene.has_waves() && sweep.combinations().iter().any(still) {
+            let place = table.formulation.as_ref().map(Spanned::span);
             self.complain(
-                list.span(),
-                format!("the implicit integrator leaves out inertia, which `{}` is about", scene.name()),
-                "take \"explicit\", or the scene \"terzaghi\"",
+                place.unwrap_or(span.start..span.start + 1),
+                format!("the quasi-static formulation leaves out the waves that `{}` is about", scene.name()),
+                "take \"v-w\" or \"u-p\", or the scene \"terzaghi\"",
             );
         }
     }

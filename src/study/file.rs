@@ -91,6 +91,7 @@ pub struct MaterialTable {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IntegratorTable {
+    pub formulation: Typed<String>,
     pub scheme: Typed<String>,
     pub drag: Typed<String>,
     pub flip: Typed<f64>,
@@ -115,6 +116,7 @@ pub struct TimingTable {
 pub struct SweepTable {
     pub method: TypedList<MethodEntry>,
     pub integrator: TypedList<String>,
+    pub formulation: TypedList<String>,
     pub cells: TypedList<i64>,
     pub points_per_cell: TypedList<i64>,
     pub time_step: TypedList<TimeStepTable>,

@@ -312,6 +312,7 @@ fn schedule_of(case: &Case, kernel: Kernel) -> Schedule {
         settings: case.settings,
         kernel,
         integrator: case.integrator,
+        formulation: case.formulation,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Sweeps: lists of choices, multiplied out or tied to a path.
 
 use crate::solver::explicit::Drag;
-use crate::solver::integrator::IntegratorKind;
+use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
@@ -12,6 +12,8 @@ use crate::solver::scheme::Scheme;
 pub struct Sweep {
     pub method: Vec<Method>,
     pub integrator: Vec<IntegratorKind>,
+    /// Formulations; none where the integrator's own holds.
+    pub formulation: Vec<Option<Formulation>>,
     pub cells: Vec<usize>,
     pub points_per_cell: Vec<usize>,
     /// Step rules; none where the integrator's own holds.
@@ -27,7 +29,7 @@ pub struct Sweep {
 }
 
 /// Keys that a path can tie.
-pub const AXES: [&str; 11] = [
+pub const AXES: [&str; 12] = [
     "method",
     "integrator",
     "cells",
@@ -38,6 +40,7 @@ pub const AXES: [&str; 11] = [
     "mapping_back",
     "law",
     "continuity",
+    "formulation",
     "scheme",
 ];
 
@@ -46,6 +49,7 @@ pub const AXES: [&str; 11] = [
 pub struct Combination {
     pub method: Method,
     pub integrator: IntegratorKind,
+    pub formulation: Formulation,
     pub cells: usize,
     pub points_per_cell: usize,
     pub time_step: TimeStepRule,
@@ -70,6 +74,7 @@ impl Sweep {
             self.mapping_back.len(),
             self.law.len(),
             self.continuity.len(),
+            self.formulation.len(),
             self.scheme.len(),
         ]
     }
@@ -117,7 +122,9 @@ impl Sweep {
                     mapping_back: self.mapping_back[at[7]],
                     law: self.law[at[8]],
                     continuity: self.continuity[at[9]],
-                    scheme: self.scheme[at[10]],
+                    formulation: self.formulation[at[10]]
+                        .unwrap_or_else(|| self.integrator[at[1]].default_formulation()),
+                    scheme: self.scheme[at[11]],
                 }
             })
             .collect()
@@ -141,6 +148,7 @@ mod tests {
             mapping_back: vec![true],
             law: vec![Law::Linear],
             continuity: vec![Continuity::Conservative],
+            formulation: vec![None],
             path: path.iter().map(|key| (*key).to_owned()).collect(),
         }
     }

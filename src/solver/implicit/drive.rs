@@ -1,62 +1,60 @@
 //! A run by an implicit integrator: from output to output, with snapshots and history.
 
 use super::linear::LinearMarch;
+use super::march::{March, StepFailure};
+use super::newton::NewtonMarch;
 use super::steps::StepLimit;
 use crate::solver::body::{Body, ShapeFunction};
+use crate::solver::integrator::Formulation;
+use crate::solver::method::Configuration;
 use crate::solver::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
+use crate::solver::points::Points;
 use crate::solver::run::{Observer, Schedule};
 use crate::solver::snapshot::Snapshot;
 
-/// Solves a frozen body, quasi-static.
-pub fn run_linear<const D: usize, const W: usize, S: ShapeFunction<W>>(
-    body: &Body<D, W, S>,
-    schedule: &Schedule,
-    limit: StepLimit,
-    sizes: StepSizes,
+/// What an implicit run needs beside its body.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan<'a> {
+    /// When to step and what to keep.
+    pub schedule: &'a Schedule,
+    /// How large the steps may be.
+    pub limit: StepLimit,
+    /// Step sizes as far as they are known before.
+    pub sizes: StepSizes,
+    /// Pressure that the problem is about, Pa.
+    pub pressure_scale: f64,
+    /// Height of the surface that settlements count from, m.
+    pub initial_height: f64,
+    /// Time over which the load grows to its full value, s.
+    pub loading_time: f64,
+}
+
+/// Solves a body: by one linear system where it is frozen and at rest, by Newton's iteration
+/// elsewhere.
+pub fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    body: Body<D, W, S>,
+    plan: &Plan<'_>,
     start_failure: Option<Failure>,
     observer: Observer<'_>,
 ) -> Outcome {
-    let march = LinearMarch::new(body);
-    let settled = -body.surface.amplitude_of(&body.grid, &body.points, &body.nodes.displacement);
-    let mut run = LinearRun {
-        counters: Counters { points: body.points.len(), nodes: body.nodes.len(), ..Counters::default() },
-        body,
-        march,
-        settled,
-        time: 0.0,
-        sizes,
-        history: History::of(&schedule.history),
-        expected: limit.expected_steps(schedule.outputs.last().copied().unwrap_or(0.0)),
-    };
-    let start = run.snapshot();
-    let mut snapshots = Vec::new();
-    let mut status = start_failure.map_or(RunStatus::Ok, RunStatus::Failed);
-    for output in &schedule.outputs {
-        if status != RunStatus::Ok {
-            break;
+    match (body.configuration, plan.schedule.formulation) {
+        (Configuration::Frozen, Formulation::QuasiStatic) => {
+            let start = body.points.clone();
+            MarchRun::new(LinearMarch::new(body), start, plan).solve(start_failure, observer)
         }
-        if let Err(failure) = run.advance_to(*output, limit, observer) {
-            status = RunStatus::Failed(failure);
-            break;
+        (_, formulation) => {
+            let start = body.points.clone();
+            let march = NewtonMarch::new(body, formulation, plan);
+            MarchRun::new(march, start, plan).solve(start_failure, observer)
         }
-        snapshots.push(run.snapshot());
-    }
-    run.counters.factorisations = run.march.factorisations;
-    Outcome {
-        status,
-        start,
-        snapshots,
-        history: run.history.noted,
-        counters: run.counters,
-        step_sizes: run.sizes,
     }
 }
 
-struct LinearRun<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
-    body: &'a Body<D, W, S>,
-    march: LinearMarch<D>,
-    /// Settlement of the start, m.
-    settled: f64,
+struct MarchRun<'a, const D: usize, M> {
+    march: M,
+    /// Points at the start.
+    start: Points<D>,
+    plan: &'a Plan<'a>,
     time: f64,
     sizes: StepSizes,
     counters: Counters,
@@ -64,50 +62,104 @@ struct LinearRun<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
     expected: u64,
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearRun<'_, D, W, S> {
-    fn advance_to(&mut self, output: f64, limit: StepLimit, observer: Observer<'_>) -> Result<(), Failure> {
+impl<'a, const D: usize, M> MarchRun<'a, D, M> {
+    fn new(march: M, start: Points<D>, plan: &'a Plan<'a>) -> Self {
+        let end = plan.schedule.outputs.last().copied().unwrap_or(0.0);
+        Self {
+            march,
+            time: 0.0,
+            sizes: plan.sizes,
+            counters: Counters { points: start.len(), ..Counters::default() },
+            history: History::of(&plan.schedule.history),
+            expected: plan.limit.expected_steps(end),
+            plan,
+            start,
+        }
+    }
+
+    fn solve<const W: usize, S: ShapeFunction<W>>(
+        mut self,
+        start_failure: Option<Failure>,
+        observer: Observer<'_>,
+    ) -> Outcome
+    where
+        M: March<D, W, S>,
+    {
+        let start = self.snapshot();
+        self.counters.nodes = self.march.body_now().nodes.len();
+        let mut snapshots = Vec::new();
+        let mut status = start_failure.map_or(RunStatus::Ok, RunStatus::Failed);
+        for output in &self.plan.schedule.outputs {
+            if status != RunStatus::Ok {
+                break;
+            }
+            if let Err(StepFailure { kind, reason }) = self.advance_to(*output, observer) {
+                status =
+                    RunStatus::Failed(Failure { kind, step: self.counters.steps, time: self.time, reason });
+                break;
+            }
+            snapshots.push(self.snapshot());
+        }
+        let work = self.march.work();
+        self.counters.factorisations = work.factorisations;
+        self.counters.iterations = work.iterations;
+        self.counters.halved_steps = work.halved_steps;
+        Outcome {
+            status,
+            start,
+            snapshots,
+            history: self.history.noted,
+            counters: self.counters,
+            step_sizes: self.sizes,
+        }
+    }
+
+    fn advance_to<const W: usize, S: ShapeFunction<W>>(
+        &mut self,
+        output: f64,
+        observer: Observer<'_>,
+    ) -> Result<(), StepFailure>
+    where
+        M: March<D, W, S>,
+    {
         while output - self.time > 1e-9 * output {
-            let segment = limit.segment(self.time, output);
+            let segment = self.plan.limit.segment(self.time, output);
             self.sizes.largest = self.sizes.largest.max(segment.dt);
-            self.march.set_step(segment.dt).map_err(|singular| {
-                let reason = format!(
-                    "the matrix of a step of {:.4e} s has no pivot in row {}",
-                    segment.dt, singular.row
-                );
-                self.failure(FailureKind::Singular, reason)
-            })?;
             let start = self.time;
             for step in 1..=segment.count {
-                let before = (self.time, self.settlement());
-                self.march.step();
+                let before = (self.time, self.march.settlement());
+                self.march.step(segment.dt)?;
                 self.time = start + step as f64 * segment.dt;
                 self.counters.steps += 1;
-                let velocity = -self.march.surface_velocity();
-                self.history.note(before, (self.time, self.settlement()), velocity);
-            }
-            self.counters.point_updates += segment.count * self.counters.points as u64;
-            if !self.march.is_finite() {
-                return Err(self.failure(FailureKind::Unstable, "an unknown is no number".to_owned()));
-            }
-            if !observer(self.counters.steps, self.expected) {
-                return Err(self.failure(FailureKind::Stopped, "stopped from outside".to_owned()));
+                self.counters.point_updates += self.counters.points as u64;
+                let after = (self.time, self.march.settlement());
+                if !after.1.is_finite() {
+                    let reason = format!("the settlement after a step of {:.3e} s is no number", segment.dt);
+                    return Err(StepFailure { kind: FailureKind::Unstable, reason });
+                }
+                self.history.note(before, after, self.march.settlement_rate());
+                self.march.lost_point().map_or(Ok(()), Err)?;
+                if self.counters.steps.is_multiple_of(WATCH_INTERVAL)
+                    && !observer(self.counters.steps, self.expected)
+                {
+                    let reason = "stopped from outside".to_owned();
+                    return Err(StepFailure { kind: FailureKind::Stopped, reason });
+                }
             }
         }
         Ok(())
     }
 
-    fn settlement(&self) -> f64 {
-        self.settled - self.march.surface_displacement()
-    }
-
-    fn snapshot(&self) -> Snapshot {
-        self.march.body_now(self.body).snapshot(self.time, self.settlement(), &self.body.points)
-    }
-
-    fn failure(&self, kind: FailureKind, reason: String) -> Failure {
-        Failure { kind, step: self.counters.steps, time: self.time, reason }
+    fn snapshot<const W: usize, S: ShapeFunction<W>>(&self) -> Snapshot
+    where
+        M: March<D, W, S>,
+    {
+        self.march.body_now().snapshot(self.time, self.march.settlement(), &self.start)
     }
 }
+
+/// Steps between two calls of the observer.
+const WATCH_INTERVAL: u64 = 16;
 
 /// The settlement at the times that are asked for, from within the steps.
 #[derive(Clone, Debug)]

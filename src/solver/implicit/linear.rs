@@ -9,10 +9,11 @@
 //! ever taken.
 
 use super::assembly::LinearSystem;
-use super::banded::{BandedLu, Singular};
+use super::banded::BandedLu;
+use super::march::{March, StepFailure, Work};
 use crate::solver::body::{Body, ShapeFunction};
 use crate::solver::grid::Vector;
-use crate::solver::method::StrainGradient;
+use crate::solver::outcome::FailureKind;
 
 /// `γ = 1 − 1/√2`: both stages have the same matrix and the method is L-stable.
 pub const SDIRK_GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
@@ -21,7 +22,11 @@ pub const SECOND_STAGE: f64 = (1.0 - SDIRK_GAMMA) / SDIRK_GAMMA;
 
 /// A frozen body on its way through time.
 #[derive(Clone, Debug)]
-pub struct LinearMarch<const D: usize> {
+pub struct LinearMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
+    /// The body at the start.
+    start: Body<D, W, S>,
+    /// Settlement of the start, m.
+    settled: f64,
     system: LinearSystem<D>,
     lu: BandedLu,
     /// Step size that the factors belong to, s.
@@ -35,16 +40,16 @@ pub struct LinearMarch<const D: usize> {
     rate_scale: f64,
     /// Relative flux that passed the surface, `∫ n (v_w − v_s) dt`, m.
     outflow: f64,
-    /// Times the matrix was factored.
-    pub factorisations: u64,
+    factorisations: u64,
 }
 
-impl<const D: usize> LinearMarch<D> {
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
     /// A body at its start.
-    pub fn new<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
-        let system = LinearSystem::of(body);
+    pub fn new(start: Body<D, W, S>) -> Self {
+        let system = LinearSystem::of(&start);
         let zero = vec![0.0; system.unknowns.count];
         Self {
+            settled: -start.surface.amplitude_of(&start.grid, &start.points, &start.nodes.displacement),
             lu: BandedLu::of_shape(&system.fixed),
             factored: None,
             state: zero.clone(),
@@ -54,26 +59,27 @@ impl<const D: usize> LinearMarch<D> {
             outflow: 0.0,
             factorisations: 0,
             system,
+            start,
         }
     }
 
     /// Factors the matrix of steps of `dt` seconds, where it is not that of the last ones.
-    ///
-    /// # Errors
-    /// [`Singular`] when the matrix has no inverse.
-    pub fn set_step(&mut self, dt: f64) -> Result<(), Singular> {
+    fn set_step(&mut self, dt: f64) -> Result<(), StepFailure> {
         if self.factored != Some(dt) {
             let system = &self.system;
-            self.lu.factor_combination(&system.fixed, SDIRK_GAMMA * dt, &system.proportional)?;
+            let factored = self.lu.factor_combination(&system.fixed, SDIRK_GAMMA * dt, &system.proportional);
+            factored.map_err(|singular| StepFailure {
+                kind: FailureKind::Singular,
+                reason: format!("the matrix of a step of {dt:.4e} s has no pivot in row {}", singular.row),
+            })?;
             self.factored = Some(dt);
             self.factorisations += 1;
         }
         Ok(())
     }
 
-    /// One step of the size last set; nothing is allocated.
-    pub fn step(&mut self) {
-        let Some(dt) = self.factored else { return };
+    /// Both stages of a step of the size last set; nothing is allocated.
+    fn take_stages(&mut self, dt: f64) {
         let stage = SDIRK_GAMMA * dt;
         let system = &self.system;
         let sites = &system.unknowns.pressure;
@@ -102,28 +108,36 @@ impl<const D: usize> LinearMarch<D> {
     }
 
     /// Vertical displacement of the loaded surface since the start, m.
-    pub fn surface_displacement(&self) -> f64 {
+    fn surface_displacement(&self) -> f64 {
         self.system.surface_displacement.product(0, &self.state)
     }
+}
 
-    /// Its rate at the end of the last step, m/s.
-    pub fn surface_velocity(&self) -> f64 {
-        self.rate_scale * self.system.surface_displacement.product(0, &self.increment)
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> March<D, W, S> for LinearMarch<D, W, S> {
+    fn step(&mut self, dt: f64) -> Result<(), StepFailure> {
+        self.set_step(dt)?;
+        self.take_stages(dt);
+        Ok(())
     }
 
-    /// Whether every unknown is a number.
-    pub fn is_finite(&self) -> bool {
-        self.state.iter().all(|value| value.is_finite())
+    fn settlement(&self) -> f64 {
+        self.settled - self.surface_displacement()
     }
 
-    /// Number of unknowns.
-    pub fn unknowns(&self) -> usize {
-        self.system.unknowns.count
+    fn settlement_rate(&self) -> f64 {
+        -self.rate_scale * self.system.surface_displacement.product(0, &self.increment)
     }
 
-    /// The body at the present state, from the body that was assembled.
-    pub fn body_now<const W: usize, S: ShapeFunction<W>>(&self, start: &Body<D, W, S>) -> Body<D, W, S> {
-        let mut body = start.clone();
+    fn lost_point(&self) -> Option<StepFailure> {
+        None
+    }
+
+    fn work(&self) -> Work {
+        Work { factorisations: self.factorisations, ..Work::default() }
+    }
+
+    fn body_now(&self) -> Body<D, W, S> {
+        let mut body = self.start.clone();
         let unknowns = &self.system.unknowns;
         let nodal = |values: &[f64], scale: f64| -> Vec<Vector<D>> {
             let component = |unknown: Option<usize>| unknown.map_or(0.0, |unknown| scale * values[unknown]);
@@ -132,11 +146,7 @@ impl<const D: usize> LinearMarch<D> {
         let displacement = nodal(&self.state, self.system.scales.length);
         let stride = *body.grid.node_stride();
         for point in 0..body.points.len() {
-            let gradient = match body.method.strain {
-                StrainGradient::Standard => body.basis.gradient(&stride, point, &displacement),
-                StrainGradient::Cmpm => body.composite.gradient(&stride, point, &displacement),
-            };
-            let stress = body.stiffness.stress(&gradient);
+            let stress = body.stiffness.stress(&body.strain_gradient(point, &displacement));
             let moved = body.basis.value(&stride, point, &displacement);
             for i in 0..D {
                 for j in 0..D {
@@ -145,7 +155,7 @@ impl<const D: usize> LinearMarch<D> {
                 body.points.displacement[point][i] += moved[i];
             }
             let mut pressure = 0.0;
-            unknowns.visit_recovery(start, point, |site, weight| {
+            unknowns.visit_recovery(&self.start, point, |site, weight| {
                 pressure += weight * self.state[unknowns.pressure[site]];
             });
             body.points.pressure[point] += pressure * self.system.scales.pressure;

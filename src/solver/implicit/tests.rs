@@ -1,14 +1,19 @@
 //! The implicit integrator against the explicit one, against itself and across dimensions.
 
+use super::drive::Plan;
+use super::linear::LinearMarch;
+use super::march::March;
+use super::newton::NewtonMarch;
+use super::steps::StepLimit;
 use crate::scene::{Column, SceneKind, column_problem};
-use crate::solver::body::Problem;
+use crate::solver::body::{Body, Gimp, Problem};
 use crate::solver::explicit::{Drag, ExplicitSettings};
 use crate::solver::grid::Grid;
-use crate::solver::integrator::IntegratorKind;
-use crate::solver::material::Material;
+use crate::solver::integrator::{Formulation, IntegratorKind};
+use crate::solver::material::{Continuity, Law, Material};
 use crate::solver::method::Method;
 use crate::solver::nodes::Support;
-use crate::solver::outcome::{Outcome, RunStatus};
+use crate::solver::outcome::{FailureKind, Outcome, RunStatus, StepSizes};
 use crate::solver::points::Points;
 use crate::solver::run::{Kernel, Schedule, TimeStepRule, run};
 
@@ -20,22 +25,38 @@ fn seed(method: &str, soil: &Material, cells: usize) -> Problem<1> {
         .expect("a possible column")
 }
 
-/// A run to time factors of the seed column.
+fn large_strain(method: &str, soil: &Material, cells: usize) -> Problem<1> {
+    let method = Method::named(method).expect("a known method");
+    let column = Column { load: 2e5, ..Column::default() };
+    column_problem(SceneKind::XieLeo, &column, soil, method, cells, 4).expect("a possible column")
+}
+
+fn schedule(
+    soil: &Material,
+    integrator: IntegratorKind,
+    rule: TimeStepRule,
+    time_factors: &[f64],
+) -> Schedule {
+    let per_factor = 1.0 / soil.coefficient_of_consolidation();
+    Schedule {
+        outputs: time_factors.iter().map(|factor| factor * per_factor).collect(),
+        history: Vec::new(),
+        rule,
+        settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
+        kernel: Kernel::Fastest,
+        formulation: integrator.default_formulation(),
+        integrator,
+    }
+}
+
+/// A run to time factors of a column of one metre.
 fn solve<const D: usize>(
     problem: Problem<D>,
     integrator: IntegratorKind,
     rule: TimeStepRule,
     time_factors: &[f64],
 ) -> Outcome {
-    let per_factor = 1.0 / problem.material.coefficient_of_consolidation();
-    let schedule = Schedule {
-        outputs: time_factors.iter().map(|factor| factor * per_factor).collect(),
-        history: Vec::new(),
-        rule,
-        settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
-        kernel: Kernel::Fastest,
-        integrator,
-    };
+    let schedule = schedule(&problem.material, integrator, rule, time_factors);
     let outcome = run(problem, &schedule, &|_, _| true);
     assert_eq!(outcome.status, RunStatus::Ok);
     outcome
@@ -114,6 +135,137 @@ fn a_run_factors_once_a_step_size() {
     assert!(counters.steps < 160 && counters.factorisations < 25, "{counters:?}");
 }
 
+#[test]
+fn newton_on_a_frozen_body_is_the_linear_system() {
+    for name in METHODS {
+        let body = || Body::<1, 3, Gimp>::new(seed(name, &Material::default(), 6));
+        if name == "MPM" {
+            continue;
+        }
+        let mut linear = LinearMarch::new(body());
+        let schedule =
+            schedule(&Material::default(), IntegratorKind::Implicit, TimeStepRule::Seconds(1.0), &[]);
+        let plan = Plan {
+            schedule: &schedule,
+            limit: StepLimit::Constant(1.0),
+            sizes: StepSizes::default(),
+            pressure_scale: 1.0,
+            initial_height: 1.0,
+            loading_time: 0.0,
+        };
+        let mut newton = NewtonMarch::new(body(), Formulation::QuasiStatic, &plan);
+        for dt in [0.05, 0.05, 0.1, 0.1, 0.3] {
+            linear.step(dt).expect("solvable");
+            newton.step(dt).expect("solvable");
+        }
+        let (one, other) = (linear.body_now(), newton.body_now());
+        assert!(difference(&other.points.pressure, &one.points.pressure) < 1e-9, "{name}");
+        assert!((linear.settlement() / newton.settlement() - 1.0).abs() < 1e-9, "{name}");
+        assert!((linear.settlement_rate() / newton.settlement_rate() - 1.0).abs() < 1e-6, "{name}");
+        assert!((one.surface_flux - other.surface_flux).abs() < 1e-8 * linear.settlement(), "{name}");
+    }
+}
+
+#[test]
+fn large_strain_ends_where_the_explicit_integrator_does() {
+    for (method, law, continuity) in [
+        ("TL-GC-SRI-patch", Law::LogLinear, Continuity::Conservative),
+        ("TL-GIMP", Law::PorosityDependent, Continuity::Conservative),
+        ("TL-GIMP-SRI-patch", Law::LogLinear, Continuity::ConstantPorosityGradient),
+        ("GIMP-SRI-patch", Law::Engineering, Continuity::Conservative),
+    ] {
+        let soil = Material { law, continuity, ..Material::default() };
+        let problem = || large_strain(method, &soil, 5);
+        let explicit = solve(problem(), IntegratorKind::Explicit, TimeStepRule::Stable(0.8), &[0.05])
+            .snapshots
+            .remove(0);
+        let fine = implicit(problem(), 0.01, &[0.05]).snapshots.remove(0);
+        // Points that move take the weights with them step by step, and so to first order only.
+        let tolerance = if method.starts_with("TL") { 3e-4 } else { 2e-3 };
+        for (a, b) in [
+            (&fine.points.pressure, &explicit.points.pressure),
+            (&fine.points.effective_stress, &explicit.points.effective_stress),
+            (&fine.points.displacement, &explicit.points.displacement),
+            (&fine.points.volume, &explicit.points.volume),
+            (&vec![fine.settlement], &vec![explicit.settlement]),
+        ] {
+            assert!(difference(a, b) < tolerance, "{method} {law:?}: {}", difference(a, b));
+        }
+        // Skeleton and water pass the surface in opposite directions: what is left is storage.
+        let flux = fine.totals.surface_flux - explicit.totals.surface_flux;
+        assert!(flux.abs() < 1e-5 * fine.settlement, "{method}: {}", flux / fine.settlement);
+    }
+}
+
+#[test]
+fn at_large_strain_too_the_error_in_time_falls_with_the_square_of_the_step() {
+    let pressure = |growth| {
+        implicit(large_strain("TL-GC-SRI-patch", &xie_leo_soil(), 6), growth, &[1.0])
+            .snapshots
+            .remove(0)
+            .points
+            .pressure
+    };
+    let exact = pressure(0.0005);
+    let errors = [0.08, 0.04, 0.02, 0.01, 0.005].map(|growth| difference(&pressure(growth), &exact));
+    let order = (errors[0] / errors[2]).log2() / 2.0;
+    assert!((order - 2.0).abs() < 0.2, "order {order}, {errors:?}");
+}
+
+fn xie_leo_soil() -> Material {
+    Material { law: Law::LogLinear, ..Material::default() }
+}
+
+#[test]
+fn a_fresh_tangent_converges_quadratically() {
+    // Steps of one size with a tangent each: three iterations a stage and not one more.
+    let outcome = implicit(large_strain("TL-GC-SRI-patch", &xie_leo_soil(), 8), 0.05, &[0.05, 0.5]);
+    let stages = 2 * outcome.counters.steps;
+    assert!(outcome.counters.iterations < 5 * stages, "{:?}", outcome.counters);
+    assert_eq!(outcome.counters.halved_steps, 0);
+}
+
+#[test]
+fn closing_pores_end_an_implicit_run_by_name() {
+    let mut problem = large_strain("TL-GIMP-SRI-patch", &xie_leo_soil(), 5);
+    problem.load *= 4.0;
+    let schedule =
+        schedule(&problem.material, IntegratorKind::Implicit, TimeStepRule::Growth(0.05), &[0.001, 2.0]);
+    let outcome = run(problem, &schedule, &|_, _| true);
+    let RunStatus::Failed(failure) = outcome.status else { panic!("not failed") };
+    assert_eq!(failure.kind, FailureKind::PoresClosed, "{}", failure.reason);
+    assert_eq!(outcome.snapshots.len(), 1, "what was finished stays");
+}
+
+#[test]
+fn inertia_makes_the_waves_that_the_explicit_integrator_makes() {
+    // A smooth pressure that nothing balances: waves run for milliseconds.
+    let problem = || {
+        let method = Method::named("GIMP-SRI-patch").expect("a known method");
+        let (column, soil) = (Column::default(), Material::default());
+        let mut problem =
+            column_problem(SceneKind::SingleMode, &column, &soil, method, 10, 2).expect("possible");
+        problem.points.effective_stress.fill([[0.0]]);
+        problem
+    };
+    let pressure = |integrator: IntegratorKind, formulation, rule| {
+        let mut schedule = schedule(&Material::default(), integrator, rule, &[5e-6, 1e-5, 2e-5]);
+        schedule.formulation = formulation;
+        let outcome = run(problem(), &schedule, &|_, _| true);
+        assert_eq!(outcome.status, RunStatus::Ok);
+        outcome.snapshots.into_iter().flat_map(|snapshot| snapshot.points.pressure).collect::<Vec<_>>()
+    };
+    let step = TimeStepRule::Seconds(2e-6);
+    let explicit = pressure(IntegratorKind::Explicit, Formulation::VW, step);
+    let inertial = pressure(IntegratorKind::Implicit, Formulation::VW, step);
+    assert!(difference(&inertial, &explicit) < 0.05, "{}", difference(&inertial, &explicit));
+    // Without the water's own acceleration the waves are those of the mixture: near, not the same.
+    let mixture = pressure(IntegratorKind::Implicit, Formulation::UP, step);
+    assert!(difference(&mixture, &explicit) < 0.3 && difference(&mixture, &inertial) > 1e-3);
+    let still = pressure(IntegratorKind::Implicit, Formulation::QuasiStatic, step);
+    assert!(difference(&still, &explicit) > 0.2, "no waves without inertia");
+}
+
 /// The seed column `across` cells wide in two dimensions, between rollers.
 fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
     let one = seed(method, &Material::default(), cells);
@@ -136,6 +288,32 @@ fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
         initial_gradient: [[0.0, 0.0], [0.0, strain]],
         pressure_scale: one.pressure_scale,
     }
+}
+
+#[test]
+fn a_plane_column_at_large_strain_is_the_column() {
+    let line = large_strain("TL-GIMP-SRI-patch", &xie_leo_soil(), 4);
+    let strain = line.initial_gradient[0][0];
+    let mut plane = plane_column("TL-GIMP-SRI-patch", 2, 4);
+    let lateral = xie_leo_soil().stiffness().stress(&[[0.0, 0.0], [0.0, strain]]);
+    plane.points = Points::lattice(line.grid.cell_size, [2, 4], 4);
+    plane.points.pressure.fill(line.points.pressure[0]);
+    plane.points.effective_stress.fill(lateral);
+    plane
+        .points
+        .effective_stress
+        .iter_mut()
+        .for_each(|stress| stress[1][1] = line.points.effective_stress[0][0][0]);
+    (plane.material, plane.load, plane.pressure_scale) = (line.material, line.load, line.pressure_scale);
+    plane.initial_gradient = [[0.0, 0.0], [0.0, strain]];
+    let rule = TimeStepRule::Growth(0.2);
+    let line = solve(line, IntegratorKind::Implicit, rule, &[0.1]).snapshots.remove(0);
+    let plane = solve(plane, IntegratorKind::Implicit, rule, &[0.1]).snapshots.remove(0);
+    // The plane's strain of a step is logarithmic to third order only.
+    let ratio = line.settlement / plane.settlement;
+    assert!((ratio - 1.0).abs() < 1e-4, "{ratio}");
+    let mean = |field: &[f64]| field.iter().sum::<f64>() / field.len() as f64;
+    assert!((mean(&line.points.pressure) / mean(&plane.points.pressure) - 1.0).abs() < 1e-4);
 }
 
 #[test]

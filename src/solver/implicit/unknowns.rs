@@ -77,6 +77,11 @@ impl<const D: usize> Unknowns<D> {
         Self { displacement, pressure, site_of_place, integration, count: sorted.len(), sites }
     }
 
+    /// Site of a cell or point, where it is one.
+    pub fn site_of(&self, place: usize) -> Option<usize> {
+        self.site_of_place[place]
+    }
+
     /// Visits the sites that a point's pressure comes from, with their weights.
     pub fn visit_recovery<const W: usize, S: ShapeFunction<W>>(
         &self,
