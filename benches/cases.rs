@@ -29,6 +29,34 @@ fn moving(bencher: Bencher, cells: usize) {
     bench_case(bencher, &case("GC-SRI-patch", cells, Configuration::Updated), Kernel::PointWise);
 }
 
+/// To `T_v` = 1 with steps that grow with time.
+#[divan::bench(args = [10, 80, 640], sample_count = 10)]
+fn implicit_frozen(bencher: Bencher, cells: usize) {
+    bench_case(bencher, &implicit_case("GC-SRI-patch", SceneKind::Terzaghi, cells), Kernel::Fastest);
+}
+
+#[divan::bench(args = ["TL-GC-SRI-patch", "GC-SRI-patch"], sample_count = 10)]
+fn implicit_large_strain(bencher: Bencher, method: &str) {
+    bench_case(bencher, &implicit_case(method, SceneKind::XieLeo, 10), Kernel::Fastest);
+}
+
+fn implicit_case(method: &str, scene: SceneKind, cells: usize) -> Case {
+    let method = Method::named(method).expect("a known method");
+    let is_large = scene == SceneKind::XieLeo;
+    Case {
+        scene,
+        method,
+        column: Column { load: if is_large { 2e5 } else { 1.0 }, ..Column::default() },
+        material: Material { law: scene.default_law(), ..Material::default() },
+        integrator: IntegratorKind::Implicit,
+        formulation: IntegratorKind::Implicit.default_formulation(),
+        points_per_cell: if is_large { 4 } else { 2 },
+        time_step: IntegratorKind::Implicit.default_rule(),
+        time_factors: vec![0.05, 0.2, 1.0],
+        ..case("GC-SRI-patch", cells, Configuration::Frozen)
+    }
+}
+
 fn case(method: &str, cells: usize, configuration: Configuration) -> Case {
     let method = Method::named(method).expect("a known method");
     Case {

@@ -10,9 +10,15 @@ use oedometer::scene::{Column, SceneKind, column_problem};
 use oedometer::solver::assembled::AssembledColumn;
 use oedometer::solver::body::{Body, Gimp, Hat, Problem, ShapeFunction};
 use oedometer::solver::explicit::ExplicitSettings;
+use oedometer::solver::implicit::drive::Plan;
+use oedometer::solver::implicit::linear::LinearMarch;
+use oedometer::solver::implicit::march::March;
+use oedometer::solver::implicit::steps::StepLimit;
+use oedometer::solver::integrator::IntegratorKind;
 use oedometer::solver::material::Material;
 use oedometer::solver::method::{Basis, Configuration, Method};
-use oedometer::solver::run::predicted_critical_step;
+use oedometer::solver::outcome::StepSizes;
+use oedometer::solver::run::{Kernel as StepKernel, Schedule, TimeStepRule, predicted_critical_step};
 use std::time::Instant;
 
 const METHODS: [&str; 5] = ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"];
@@ -67,6 +73,51 @@ fn build_operators<const C: usize>(bencher: Bencher, method: &str) {
             bencher.bench_local(|| body.build_operators());
         }
     }
+}
+
+/// One step of SDIRK2 on the frozen column: two solves of a banded system. What bounds it is the chain of the back substitution, one multiply-add after
+/// another, and not memory.
+#[divan::bench(args = METHODS, consts = CELLS)]
+fn implicit_step<const C: usize>(bencher: Bencher, method: &str) {
+    let problem = problem(method, C, Configuration::Frozen);
+    let schedule = Schedule {
+        outputs: Vec::new(),
+        history: Vec::new(),
+        rule: TimeStepRule::Seconds(0.01),
+        settings: ExplicitSettings::default(),
+        kernel: StepKernel::Fastest,
+        integrator: IntegratorKind::Implicit,
+        formulation: IntegratorKind::Implicit.default_formulation(),
+    };
+    let plan = Plan {
+        schedule: &schedule,
+        limit: StepLimit::Constant(0.01),
+        sizes: StepSizes::default(),
+        pressure_scale: 1.0,
+        initial_height: 1.0,
+        settlement_scale: 1e-6,
+        loading_time: 0.0,
+    };
+    match problem.method.basis {
+        Basis::Hat => bench_march(
+            bencher,
+            C * POINTS_PER_CELL,
+            LinearMarch::new(Body::<1, 2, Hat>::new(problem), &plan),
+        ),
+        _ => bench_march(
+            bencher,
+            C * POINTS_PER_CELL,
+            LinearMarch::new(Body::<1, 3, Gimp>::new(problem), &plan),
+        ),
+    }
+}
+
+fn bench_march<const W: usize, S: ShapeFunction<W>>(
+    bencher: Bencher,
+    points: usize,
+    mut march: impl March<1, W, S>,
+) {
+    bencher.counter(ItemsCount::new(points)).bench_local(|| march.step(black_box(0.01), f64::INFINITY));
 }
 
 /// Time factors on both sides of the switch between the image and the series form.

@@ -15,7 +15,7 @@ use crate::record::{Quantity, Record, Sample};
 use crate::scene::{SceneKind, column_parameters};
 use crate::solver::method::{PressureIntegration, Recovery, StrainGradient};
 use crate::solver::snapshot::{Samples, Snapshot};
-use crate::study::{Axis, Case, Expectation, Measure, NEXT_FINER, Study, Tier};
+use crate::study::{Axis, Case, Expectation, IntegratorKind, Measure, NEXT_FINER, Study, Tier, step_label};
 
 /// Errors up to this are round-off of a long run.
 const ROUND_OFF: f64 = 1e-12;
@@ -81,7 +81,11 @@ fn alike(a: &Case, b: &Case, axis: Axis) -> bool {
     let mut b = Case { time_factors: a.time_factors.clone(), ..b.clone() };
     match axis {
         Axis::Cells => b.cells = a.cells,
-        Axis::TimeStep => b.time_step = a.time_step,
+        // Rules of one kind are steps of one path; of different kinds they are different schemes.
+        Axis::TimeStep if std::mem::discriminant(&a.time_step) == std::mem::discriminant(&b.time_step) => {
+            b.time_step = a.time_step;
+        }
+        Axis::TimeStep => {}
         Axis::PointsPerCell => b.points_per_cell = a.points_per_cell,
     }
     *a == b
@@ -186,6 +190,11 @@ impl<'a> Path<'a> {
     pub fn parts(&self) -> Vec<String> {
         let case = &self.records[0].case;
         let mut parts = vec![case.method.to_string()];
+        if case.integrator != IntegratorKind::Explicit {
+            parts.push(case.integrator.name().to_owned());
+            // Steps of the explicit integrator go by its limit, and say little of the result.
+            parts.extend((self.axis != Axis::TimeStep).then(|| step_label(&case.time_step)));
+        }
         if self.axis != Axis::Cells {
             parts.push(format!("{} cells", case.cells));
         }
@@ -349,6 +358,7 @@ fn selects(expectation: &Expectation, case: &Case) -> bool {
         asked.is_none_or(|asked| asked == has)
     }
     fits(expectation.method, case.method)
+        && fits(expectation.integrator, case.integrator)
         && (expectation.axis == Axis::Cells || fits(expectation.cells, case.cells))
         && (expectation.axis == Axis::PointsPerCell
             || fits(expectation.points_per_cell, case.points_per_cell))

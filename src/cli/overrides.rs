@@ -95,7 +95,7 @@ pub fn step_rule(typed: &str) -> anyhow::Result<String> {
     match rule {
         Some((rule, value)) if value.parse::<f64>().is_ok() => Ok(format!("{{ {rule} = {} }}", float(value))),
         _ => Err(Ended::usage(format!(
-            "`{typed}` is no step rule: write stable=0.5, courant=0.5, seconds=1e-6 or growth=0.05"
+            "`{typed}` is no step rule: write stable=0.5, courant=0.5, seconds=1e-6, growth=0.05 or tolerance=1e-4"
         ))),
     }
 }

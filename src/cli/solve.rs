@@ -37,8 +37,8 @@ pub struct Arguments {
     /// Points a cell and direction
     #[arg(long, default_value_t = 2, allow_negative_numbers = true)]
     points_per_cell: i64,
-    /// Step rule: stable=0.8, courant=0.5, seconds=1e-6 or growth=0.05 [default: stable=0.8, for
-    /// implicit integrators growth=0.05]
+    /// Step rule: stable=0.8, courant=0.5, seconds=1e-6, growth=0.05 or tolerance=1e-4 [default:
+    /// stable=0.8; semi-implicit: stable=0.1; implicit: growth=0.05]
     #[arg(long, value_name = "RULE")]
     time_step: Option<String>,
     /// Time factors of the outputs, comma-separated
@@ -154,7 +154,7 @@ struct SolveJson<'a> {
     /// Work of an implicit integrator.
     factorisations: u64,
     iterations: u64,
-    halved_steps: u64,
+    rejected_steps: u64,
     wall_seconds: Option<f64>,
     measures: &'a [ErrorRow],
     groups: crate::record::Groups,
@@ -180,7 +180,7 @@ impl<'a> SolveJson<'a> {
             point_updates: record.counters.point_updates,
             factorisations: record.counters.factorisations,
             iterations: record.counters.iterations,
-            halved_steps: record.counters.halved_steps,
+            rejected_steps: record.counters.rejected_steps,
             wall_seconds: record.wall.first().map(|sample| sample.seconds),
             measures: &record.errors,
             groups: record.groups,

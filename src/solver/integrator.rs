@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 
 /// Share of the critical step where an explicit run names no rule.
 const DEFAULT_SHARE: f64 = 0.8;
+/// The same of a semi-implicit run: of first order in time, it needs a tenth of what it can stand.
+const SEMI_IMPLICIT_SHARE: f64 = 0.1;
 /// Growth of the steps where an implicit run names no rule: its error in time stays below a
 /// twentieth of that of ten cells in space.
 const DEFAULT_GROWTH: f64 = 0.05;
@@ -16,18 +18,22 @@ pub enum IntegratorKind {
     /// The eight steps of Zheng et al. (2021).
     #[default]
     Explicit,
-    /// SDIRK2, L-stable, without inertia.
+    /// Pressure and drag implicit, inertia kept, skeleton explicit: bounded by the skeleton's
+    /// waves and not by the water's.
+    SemiImplicit,
+    /// SDIRK2, L-stable.
     Implicit,
 }
 
 impl IntegratorKind {
     /// Every integrator.
-    pub const ALL: [Self; 2] = [Self::Explicit, Self::Implicit];
+    pub const ALL: [Self; 3] = [Self::Explicit, Self::SemiImplicit, Self::Implicit];
 
     /// Name in study files and at the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Explicit => "explicit",
+            Self::SemiImplicit => "semi-implicit",
             Self::Implicit => "implicit",
         }
     }
@@ -36,6 +42,7 @@ impl IntegratorKind {
     pub fn default_rule(self) -> TimeStepRule {
         match self {
             Self::Explicit => TimeStepRule::Stable(DEFAULT_SHARE),
+            Self::SemiImplicit => TimeStepRule::Stable(SEMI_IMPLICIT_SHARE),
             Self::Implicit => TimeStepRule::Growth(DEFAULT_GROWTH),
         }
     }
@@ -43,7 +50,7 @@ impl IntegratorKind {
     /// Formulation where none is given.
     pub fn default_formulation(self) -> Formulation {
         match self {
-            Self::Explicit => Formulation::VW,
+            Self::Explicit | Self::SemiImplicit => Formulation::VW,
             Self::Implicit => Formulation::QuasiStatic,
         }
     }
@@ -51,8 +58,8 @@ impl IntegratorKind {
     /// Why a formulation is none for this integrator, where it is not.
     pub fn refuses_formulation(self, formulation: Formulation) -> Option<&'static str> {
         match (self, formulation) {
-            (Self::Explicit, Formulation::QuasiStatic) => {
-                Some("the explicit integrator goes from accelerations: it cannot leave them out")
+            (Self::Explicit | Self::SemiImplicit, Formulation::QuasiStatic) => {
+                Some("an explicit skeleton goes by its accelerations: they cannot be left out")
             }
             (Self::Explicit, Formulation::UP) => {
                 Some("the explicit integrator has an acceleration of the water: it solves `v-w` only")
@@ -66,6 +73,9 @@ impl IntegratorKind {
         match (self, rule) {
             (Self::Explicit, TimeStepRule::Growth(_)) => {
                 Some("the explicit integrator cannot let its steps grow: its critical step bounds them")
+            }
+            (Self::Explicit | Self::SemiImplicit, TimeStepRule::Tolerance(_)) => {
+                Some("only the implicit integrator estimates its own error in time")
             }
             _ => None,
         }

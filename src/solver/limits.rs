@@ -44,6 +44,27 @@ pub fn combined_limit(soil: &Material, cell_size: f64, drag: Drag) -> f64 {
     }
 }
 
+/// Limit, s, of the semi-implicit integrator, by formula: `(c + √(c² + 4ω²))/ω²` with the
+/// frequency `ω² = 4 E_oed/(m h²)` of the shortest wave of the skeleton and its damping
+/// `c = γ_w/(k m)`.
+///
+/// Water that cannot be compressed moves against the skeleton, `n (v_w − v_s) = −v_s`, in one
+/// dimension: inertia `m = (1−n)ρ_s + (1−n)²/n ρ_w` and drag `γ_w/k` a volume, taken at the end of
+/// the step. In more dimensions shear moves both as one and nothing damps it.
+pub fn semi_implicit_limit(soil: &Material, cell_size: f64, dimensions: usize) -> f64 {
+    let n = soil.porosity;
+    let per_length = 2.0 / cell_size;
+    let inertia = (1.0 - n) * soil.grain_density + (1.0 - n) * (1.0 - n) / n * soil.water_density;
+    let square = soil.oedometric_modulus() / inertia * per_length * per_length;
+    let damping = soil.unit_weight_of_water() / (soil.hydraulic_conductivity * inertia);
+    let column = (damping + (damping * damping + 4.0 * square).sqrt()) / square;
+    if dimensions == 1 {
+        return column;
+    }
+    let density = (1.0 - n) * soil.grain_density + n * soil.water_density;
+    column.min(cell_size / (soil.oedometric_modulus() / density).sqrt())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -74,9 +74,10 @@ pub struct Counters {
     /// Iterations of an implicit integrator's nonlinear solves; a linear problem needs none.
     #[serde(default)]
     pub iterations: u64,
-    /// Steps that an implicit integrator had to halve before its iterations came to an end.
+    /// Steps that an implicit integrator took back, for their iterations came to no end or their
+    /// error was too large, and took again in smaller ones.
     #[serde(default)]
-    pub halved_steps: u64,
+    pub rejected_steps: u64,
 }
 
 /// Step sizes of a run, s.

@@ -25,6 +25,8 @@ const BLOW_UP: f64 = 1e3;
 /// Steps after which deforming points are given a new step size: the pores at the drained end
 /// close within a thousand.
 const STEP_RENEWAL: u64 = 256;
+/// Share of a semi-implicit run's critical step that growing steps end at.
+const LARGEST_SHARE: f64 = 0.8;
 /// Cells of the column on which the critical step is computed where the run has more.
 const STABILITY_CELLS: usize = 12;
 
@@ -40,6 +42,9 @@ pub enum TimeStepRule {
     Seconds(f64),
     /// Grows with time, `max(Δt₀, α t)`; the number is `α`.
     Growth(f64),
+    /// As large as an estimate of the error in time allows: the number bounds it, relative to the
+    /// load and to the settlement it makes.
+    Tolerance(f64),
 }
 
 /// Kernel of the explicit step.
@@ -91,16 +96,24 @@ fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
 ) -> Outcome {
     match schedule.integrator {
         IntegratorKind::Explicit => Run::new(discretise, problem, schedule).solve(observer),
-        IntegratorKind::Implicit => {
+        IntegratorKind::SemiImplicit | IntegratorKind::Implicit => {
             let sizes = implicit_sizes(&problem, schedule);
+            // Steps that grow must not outgrow what an explicit skeleton can stand.
+            let most = match schedule.integrator {
+                IntegratorKind::SemiImplicit => LARGEST_SHARE * sizes.predicted_critical,
+                _ => f64::INFINITY,
+            };
+            let initial_height = LoadedSurface::of(&problem.points, problem.load)
+                .shaped(problem.load_shape, &problem.points)
+                .height(&problem.points);
+            let strain = problem.pressure_scale / problem.material.oedometric_modulus();
             let plan = Plan {
                 schedule,
-                limit: schedule.rule.limit(&problem, sizes.target, &schedule.outputs),
+                limit: schedule.rule.limit(&problem, sizes.target, most, &schedule.outputs),
                 sizes,
                 pressure_scale: problem.pressure_scale,
-                initial_height: LoadedSurface::of(&problem.points, problem.load)
-                    .shaped(problem.load_shape, &problem.points)
-                    .height(&problem.points),
+                initial_height,
+                settlement_scale: strain * initial_height,
                 loading_time: problem.loading_time,
             };
             let undrained_start = problem.undrained_start;
@@ -117,10 +130,14 @@ fn no_start(singular: Singular) -> Failure {
     Failure { kind: FailureKind::Singular, step: 0, time: 0.0, reason }
 }
 
-/// Step sizes of an implicit run: what it is measured by is the formula, for its own operator has
-/// no limit.
+/// Step sizes of an implicit run. What it is measured by is a formula: of its own limit where the
+/// skeleton is explicit, of the explicit integrator's where there is none.
 fn implicit_sizes<const D: usize>(problem: &Problem<D>, schedule: &Schedule) -> StepSizes {
-    let safe = limits::combined_limit(&problem.material, problem.grid.cell_size, schedule.settings.drag);
+    let (soil, cell_size) = (&problem.material, problem.grid.cell_size);
+    let safe = match schedule.integrator {
+        IntegratorKind::SemiImplicit => limits::semi_implicit_limit(soil, cell_size, D),
+        _ => limits::combined_limit(soil, cell_size, schedule.settings.drag),
+    };
     StepSizes { predicted_critical: safe, target: schedule.rule.step(problem, safe), largest: 0.0 }
 }
 
@@ -427,19 +444,27 @@ impl TimeStepRule {
             }
             Self::Seconds(seconds) => *seconds,
             Self::Growth(growth) => growth * diffusion_time(problem),
+            Self::Tolerance(tolerance) => tolerance.sqrt().min(0.1) * diffusion_time(problem),
         }
     }
 
     /// Limit of an implicit run's steps whose rule asks for steps of `target` seconds at first:
     /// where they grow, the first ones resolve the first output as the later ones theirs.
-    fn limit<const D: usize>(&self, problem: &Problem<D>, target: f64, outputs: &[f64]) -> StepLimit {
+    fn limit<const D: usize>(
+        &self,
+        problem: &Problem<D>,
+        target: f64,
+        most: f64,
+        outputs: &[f64],
+    ) -> StepLimit {
         match self {
             Self::Stable(_) | Self::Courant(_) | Self::Seconds(_) => StepLimit::Constant(target),
             Self::Growth(growth) => {
                 let first = outputs.iter().copied().find(|output| *output > 0.0);
                 let start = first.unwrap_or(f64::INFINITY).min(diffusion_time(problem));
-                StepLimit::Growing { first: growth * start, growth: *growth }
+                StepLimit::Growing { first: growth * start, growth: *growth, most }
             }
+            Self::Tolerance(tolerance) => StepLimit::Tolerance { first: target, tolerance: *tolerance },
         }
     }
 }

@@ -126,6 +126,7 @@ pub fn step_label(rule: &TimeStepRule) -> String {
         TimeStepRule::Courant(share) => format!("courant={share}"),
         TimeStepRule::Seconds(seconds) => format!("seconds={seconds:e}"),
         TimeStepRule::Growth(growth) => format!("growth={growth}"),
+        TimeStepRule::Tolerance(tolerance) => format!("tolerance={tolerance:e}"),
     }
 }
 

@@ -466,6 +466,11 @@ impl Checker<'_> {
         }
     }
 
+    fn integrator(&mut self, word: &Spanned<String>) -> Option<IntegratorKind> {
+        let index = self.word(word, "integrator", &IntegratorKind::ALL.map(IntegratorKind::name))?;
+        Some(IntegratorKind::ALL[index])
+    }
+
     fn formulation(&mut self, word: &Spanned<String>) -> Option<Formulation> {
         let index = self.word(word, "formulation", &Formulation::ALL.map(Formulation::name))?;
         Some(Formulation::ALL[index])
@@ -563,10 +568,7 @@ impl Checker<'_> {
                 table.integrator.as_ref(),
                 "integrator",
                 &[IntegratorKind::Explicit],
-                |c, word| {
-                    let names = IntegratorKind::ALL.map(IntegratorKind::name);
-                    c.word(word, "integrator", &names).map(|index| IntegratorKind::ALL[index])
-                },
+                Self::integrator,
             ),
             formulation: self.list(table.formulation.as_ref(), "formulation", &[formulation], |c, word| {
                 c.formulation(word).map(Some)
@@ -751,13 +753,15 @@ impl Checker<'_> {
             table.courant.as_ref().map(|value| (TimeStepRule::Courant(*value.get_ref()), value)),
             table.seconds.as_ref().map(|value| (TimeStepRule::Seconds(*value.get_ref()), value)),
             table.growth.as_ref().map(|value| (TimeStepRule::Growth(*value.get_ref()), value)),
+            table.tolerance.as_ref().map(|value| (TimeStepRule::Tolerance(*value.get_ref()), value)),
         ];
         let given: Vec<_> = given.into_iter().flatten().collect();
         let [(rule, value)] = given.as_slice() else {
             self.complain(
                 typed.span(),
                 format!("a time step by {} rules", given.len()),
-                "give exactly one: { stable = 0.5 }, { courant = 0.5 }, { seconds = 1e-6 } or { growth = 0.05 }",
+                "give exactly one: { stable = 0.5 }, { courant = 0.5 }, { seconds = 1e-6 }, { growth = 0.05 } or \
+                 { tolerance = 1e-4 }",
             );
             return None;
         };
@@ -834,6 +838,7 @@ impl Checker<'_> {
         let tier = table.tier.as_ref().map_or(Some(1), |word| self.word(word, "tier", &tiers));
         let expectation = Expectation {
             method,
+            integrator: table.integrator.as_ref().and_then(|word| self.integrator(word)),
             cells: self.count(table.cells.as_ref(), "cells", 1..=MOST_CELLS),
             points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
             law: table.law.as_ref().and_then(|word| self.law(word, scene)),

@@ -6,6 +6,7 @@ use crate::assess::norms::Norm;
 use crate::exact::ReferenceKind;
 use crate::record::{Quantity, Sample};
 use crate::solver::explicit::Drag;
+use crate::solver::integrator::IntegratorKind;
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
 use crate::solver::scheme::Scheme;
@@ -61,6 +62,8 @@ pub struct Measure {
 pub struct Expectation {
     /// Method, where one is named.
     pub method: Option<Method>,
+    /// Integrator, where it is named.
+    pub integrator: Option<IntegratorKind>,
     /// Cells, where the axis is another.
     pub cells: Option<usize>,
     /// Points a cell, where they are named.

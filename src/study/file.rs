@@ -138,6 +138,7 @@ pub struct TimeStepTable {
     pub courant: Typed<f64>,
     pub seconds: Typed<f64>,
     pub growth: Typed<f64>,
+    pub tolerance: Typed<f64>,
 }
 
 /// A method by name or by its choices.
@@ -161,6 +162,7 @@ pub struct MethodTable {
 #[serde(deny_unknown_fields)]
 pub struct ExpectTable {
     pub method: Typed<MethodEntry>,
+    pub integrator: Typed<String>,
     pub quantity: Typed<String>,
     pub norm: Typed<String>,
     pub sample: Typed<String>,

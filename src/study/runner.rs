@@ -328,6 +328,7 @@ pub fn estimated_updates(case: &Case) -> u64 {
             share * case.cell_size() / limits::fastest_wave_speed(&case.material, case.material.porosity)
         }
         TimeStepRule::Seconds(seconds) => seconds,
+        TimeStepRule::Tolerance(tolerance) => end * tolerance.sqrt() / 20.0,
         TimeStepRule::Growth(growth) => {
             let first = parameters.time((case.cells as f64).powi(-2));
             growth * end / (2.0 + (end / first).max(1.0).ln())

@@ -10,6 +10,8 @@ pub fn shipped_studies() -> Vec<StudySource> {
         ("studies/terzaghi-points.toml", include_str!("../../studies/terzaghi-points.toml")),
         ("studies/terzaghi-time-step.toml", include_str!("../../studies/terzaghi-time-step.toml")),
         ("studies/terzaghi-methods.toml", include_str!("../../studies/terzaghi-methods.toml")),
+        ("studies/terzaghi-integrators.toml", include_str!("../../studies/terzaghi-integrators.toml")),
+        ("studies/work-precision.toml", include_str!("../../studies/work-precision.toml")),
         ("studies/terzaghi-moving.toml", include_str!("../../studies/terzaghi-moving.toml")),
         ("studies/single-mode.toml", include_str!("../../studies/single-mode.toml")),
         ("studies/dynamic-column.toml", include_str!("../../studies/dynamic-column.toml")),
@@ -18,6 +20,7 @@ pub fn shipped_studies() -> Vec<StudySource> {
         ("studies/standing-wave-mesh.toml", include_str!("../../studies/standing-wave-mesh.toml")),
         ("studies/standing-wave-step.toml", include_str!("../../studies/standing-wave-step.toml")),
         ("studies/large-strain-mesh.toml", include_str!("../../studies/large-strain-mesh.toml")),
+        ("studies/large-strain-implicit.toml", include_str!("../../studies/large-strain-implicit.toml")),
         ("studies/large-strain-models.toml", include_str!("../../studies/large-strain-models.toml")),
         ("studies/large-strain-points.toml", include_str!("../../studies/large-strain-points.toml")),
     ];

@@ -3,7 +3,7 @@
 use super::linear::LinearMarch;
 use super::march::{March, StepFailure};
 use super::newton::NewtonMarch;
-use super::steps::StepLimit;
+use super::steps::{StepLimit, steps_for};
 use crate::solver::body::{Body, ShapeFunction};
 use crate::solver::integrator::Formulation;
 use crate::solver::method::Configuration;
@@ -25,6 +25,8 @@ pub struct Plan<'a> {
     pub pressure_scale: f64,
     /// Height of the surface that settlements count from, m.
     pub initial_height: f64,
+    /// Settlement that the problem's pressure makes, m: what leaves it a thousandfold has blown up.
+    pub settlement_scale: f64,
     /// Time over which the load grows to its full value, s.
     pub loading_time: f64,
 }
@@ -37,16 +39,13 @@ pub fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
     start_failure: Option<Failure>,
     observer: Observer<'_>,
 ) -> Outcome {
-    match (body.configuration, plan.schedule.formulation) {
-        (Configuration::Frozen, Formulation::QuasiStatic) => {
-            let start = body.points.clone();
-            MarchRun::new(LinearMarch::new(body), start, plan).solve(start_failure, observer)
-        }
-        (_, formulation) => {
-            let start = body.points.clone();
-            let march = NewtonMarch::new(body, formulation, plan);
-            MarchRun::new(march, start, plan).solve(start_failure, observer)
-        }
+    let start = body.points.clone();
+    let is_linear =
+        body.configuration == Configuration::Frozen && plan.schedule.formulation == Formulation::QuasiStatic;
+    if is_linear {
+        MarchRun::new(LinearMarch::new(body, plan), start, plan).solve(start_failure, observer)
+    } else {
+        MarchRun::new(NewtonMarch::new(body, plan), start, plan).solve(start_failure, observer)
     }
 }
 
@@ -60,6 +59,8 @@ struct MarchRun<'a, const D: usize, M> {
     counters: Counters,
     history: History<'a>,
     expected: u64,
+    /// Size that the errors of the steps so far ask for, s.
+    adaptive_step: f64,
 }
 
 impl<'a, const D: usize, M> MarchRun<'a, D, M> {
@@ -72,6 +73,7 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
             counters: Counters { points: start.len(), ..Counters::default() },
             history: History::of(&plan.schedule.history),
             expected: plan.limit.expected_steps(end),
+            adaptive_step: plan.sizes.target,
             plan,
             start,
         }
@@ -103,7 +105,7 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
         let work = self.march.work();
         self.counters.factorisations = work.factorisations;
         self.counters.iterations = work.iterations;
-        self.counters.halved_steps = work.halved_steps;
+        self.counters.rejected_steps = work.rejected_steps;
         Outcome {
             status,
             start,
@@ -123,31 +125,84 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
         M: March<D, W, S>,
     {
         while output - self.time > 1e-9 * output {
-            let segment = self.plan.limit.segment(self.time, output);
-            self.sizes.largest = self.sizes.largest.max(segment.dt);
-            let start = self.time;
-            for step in 1..=segment.count {
-                let before = (self.time, self.march.settlement());
-                self.march.step(segment.dt)?;
-                self.time = start + step as f64 * segment.dt;
-                self.counters.steps += 1;
-                self.counters.point_updates += self.counters.points as u64;
-                let after = (self.time, self.march.settlement());
-                if !after.1.is_finite() {
-                    let reason = format!("the settlement after a step of {:.3e} s is no number", segment.dt);
-                    return Err(StepFailure { kind: FailureKind::Unstable, reason });
-                }
-                self.history.note(before, after, self.march.settlement_rate());
-                self.march.lost_point().map_or(Ok(()), Err)?;
-                if self.counters.steps.is_multiple_of(WATCH_INTERVAL)
-                    && !observer(self.counters.steps, self.expected)
-                {
-                    let reason = "stopped from outside".to_owned();
-                    return Err(StepFailure { kind: FailureKind::Stopped, reason });
+            match self.plan.limit {
+                StepLimit::Tolerance { tolerance, .. } => self.adapt_step(output, tolerance, observer)?,
+                limit => {
+                    let segment = limit.segment(self.time, output);
+                    let start = self.time;
+                    for step in 1..=segment.count {
+                        let end = start + step as f64 * segment.dt;
+                        self.take_step(segment.dt, end, f64::INFINITY, observer)?;
+                    }
                 }
             }
         }
         Ok(())
+    }
+
+    /// A step whose size follows the errors of those before it, changed only where that is worth
+    /// new factors.
+    fn adapt_step<const W: usize, S: ShapeFunction<W>>(
+        &mut self,
+        output: f64,
+        tolerance: f64,
+        observer: Observer<'_>,
+    ) -> Result<(), StepFailure>
+    where
+        M: March<D, W, S>,
+    {
+        let rest = output - self.time;
+        let left = steps_for(rest, self.adaptive_step);
+        let dt = if left <= 2 { rest / left as f64 } else { self.adaptive_step };
+        let end = if left == 1 { output } else { self.time + dt };
+        let error = self.take_step(dt, end, tolerance, observer)?;
+        let factor = SAFETY * (tolerance / error.max(1e-3 * tolerance)).sqrt();
+        if error > tolerance || factor < 1.0 {
+            self.adaptive_step = self.adaptive_step.min(dt * factor.max(SMALLEST_CHANGE));
+        } else if factor > WORTH_A_CHANGE {
+            self.adaptive_step = self.adaptive_step.max(dt * factor.min(LARGEST_CHANGE));
+        }
+        Ok(())
+    }
+
+    /// One step to the time `end`, with all that is noted of it; its estimated error.
+    fn take_step<const W: usize, S: ShapeFunction<W>>(
+        &mut self,
+        dt: f64,
+        end: f64,
+        most_error: f64,
+        observer: Observer<'_>,
+    ) -> Result<f64, StepFailure>
+    where
+        M: March<D, W, S>,
+    {
+        let before = (self.time, self.march.settlement());
+        let error = self.march.step(dt, most_error)?;
+        if error > most_error {
+            return Ok(error);
+        }
+        self.time = end;
+        self.sizes.largest = self.sizes.largest.max(dt);
+        self.counters.steps += 1;
+        self.counters.point_updates += self.counters.points as u64;
+        let after = (self.time, self.march.settlement());
+        let scale = self.plan.settlement_scale;
+        if !(after.1.is_finite() && after.1.abs() < BLOW_UP * scale) {
+            let reason = format!(
+                "a settlement of {:.3e} m after a step of {dt:.3e} s is more than {BLOW_UP:.0} times its scale of \
+                 {scale:.3e} m",
+                after.1
+            );
+            return Err(StepFailure { kind: FailureKind::Unstable, reason });
+        }
+        self.history.note(before, after, self.march.settlement_rate());
+        self.march.lost_point().map_or(Ok(()), Err)?;
+        if self.counters.steps.is_multiple_of(WATCH_INTERVAL) && !observer(self.counters.steps, self.expected)
+        {
+            let reason = "stopped from outside".to_owned();
+            return Err(StepFailure { kind: FailureKind::Stopped, reason });
+        }
+        Ok(error)
     }
 
     fn snapshot<const W: usize, S: ShapeFunction<W>>(&self) -> Snapshot
@@ -160,6 +215,16 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
 
 /// Steps between two calls of the observer.
 const WATCH_INTERVAL: u64 = 16;
+/// Settlements beyond this multiple of their scale have left.
+const BLOW_UP: f64 = 1e3;
+/// Share of the step that the estimate promises to be accurate enough.
+const SAFETY: f64 = 0.9;
+/// What a step may shrink to at once.
+const SMALLEST_CHANGE: f64 = 0.2;
+/// What it may grow to at once.
+const LARGEST_CHANGE: f64 = 4.0;
+/// Growth that is worth new factors.
+const WORTH_A_CHANGE: f64 = 1.4;
 
 /// The settlement at the times that are asked for, from within the steps.
 #[derive(Clone, Debug)]

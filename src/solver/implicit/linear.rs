@@ -10,7 +10,8 @@
 
 use super::assembly::LinearSystem;
 use super::banded::BandedLu;
-use super::march::{March, StepFailure, Work};
+use super::drive::Plan;
+use super::march::{ERROR_SHARE, ErrorScales, March, StepFailure, Work};
 use crate::solver::body::{Body, ShapeFunction};
 use crate::solver::grid::Vector;
 use crate::solver::outcome::FailureKind;
@@ -36,6 +37,12 @@ pub struct LinearMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
     /// `g − K x`.
     residual: Vec<f64>,
     increment: Vec<f64>,
+    /// Increment of the first stage.
+    first_increment: Vec<f64>,
+    /// State, residual and outflow at the start of the step, where it may be taken back.
+    before: (Vec<f64>, Vec<f64>, f64),
+    error_scales: ErrorScales,
+    rejected_steps: u64,
     /// Factor of the last increment that makes it the rate of `x`, 1/s: one over `γΔt`.
     rate_scale: f64,
     /// Relative flux that passed the surface, `∫ n (v_w − v_s) dt`, m.
@@ -45,7 +52,7 @@ pub struct LinearMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
     /// A body at its start.
-    pub fn new(start: Body<D, W, S>) -> Self {
+    pub fn new(start: Body<D, W, S>, plan: &Plan<'_>) -> Self {
         let system = LinearSystem::of(&start);
         let zero = vec![0.0; system.unknowns.count];
         Self {
@@ -54,6 +61,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
             factored: None,
             state: zero.clone(),
             residual: system.start_residual.clone(),
+            first_increment: zero.clone(),
+            before: (zero.clone(), zero.clone(), 0.0),
+            error_scales: ErrorScales::of(&system.scales, plan),
+            rejected_steps: 0,
             increment: zero,
             rate_scale: 0.0,
             outflow: 0.0,
@@ -90,6 +101,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
                 self.increment[*unknown] *= stage;
             }
             self.lu.solve(&mut self.increment);
+            if share == SECOND_STAGE {
+                self.first_increment.copy_from_slice(&self.increment);
+            }
             let outflow_rate = system.start_outflow
                 + system.surface_outflow.product(0, &self.state)
                 + system.surface_outflow.product(0, &self.increment);
@@ -114,10 +128,26 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
 }
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> March<D, W, S> for LinearMarch<D, W, S> {
-    fn step(&mut self, dt: f64) -> Result<(), StepFailure> {
+    fn step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure> {
         self.set_step(dt)?;
+        if most_error == f64::INFINITY {
+            self.take_stages(dt);
+            return Ok(0.0);
+        }
+        self.before.0.copy_from_slice(&self.state);
+        self.before.1.copy_from_slice(&self.residual);
+        self.before.2 = self.outflow;
         self.take_stages(dt);
-        Ok(())
+        let error = self.error_scales.largest(&self.system.unknowns, |unknown| {
+            ERROR_SHARE * (self.first_increment[unknown] - self.increment[unknown])
+        });
+        if error > most_error {
+            self.state.copy_from_slice(&self.before.0);
+            self.residual.copy_from_slice(&self.before.1);
+            self.outflow = self.before.2;
+            self.rejected_steps += 1;
+        }
+        Ok(error)
     }
 
     fn settlement(&self) -> f64 {
@@ -133,7 +163,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> March<D, W, S> for Lin
     }
 
     fn work(&self) -> Work {
-        Work { factorisations: self.factorisations, ..Work::default() }
+        Work { factorisations: self.factorisations, rejected_steps: self.rejected_steps, iterations: 0 }
     }
 
     fn body_now(&self) -> Body<D, W, S> {

@@ -1,5 +1,9 @@
 //! What every implicit integrator is to the run that drives it.
 
+use super::assembly::Scales;
+use super::drive::Plan;
+use super::linear::SDIRK_GAMMA;
+use super::unknowns::Unknowns;
 use crate::solver::body::{Body, ShapeFunction};
 use crate::solver::outcome::FailureKind;
 
@@ -19,17 +23,50 @@ pub struct Work {
     pub factorisations: u64,
     /// Newton iterations.
     pub iterations: u64,
-    /// Steps that had to be halved.
-    pub halved_steps: u64,
+    /// Steps that had to be taken again in smaller ones.
+    pub rejected_steps: u64,
+}
+
+/// Error of a step of SDIRK2 from the increments of its two stages: the difference to the solution
+/// of first order with the weights ½ and ½, `(½ − γ)/γ (z_1 − z_2)`.
+///
+/// It is of one order less than the step's own error, and so of the order of what the errors of
+/// steps that grow with time add up to.
+pub const ERROR_SHARE: f64 = (0.5 - SDIRK_GAMMA) / SDIRK_GAMMA;
+
+/// Sizes that errors of the scaled unknowns are relative to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ErrorScales {
+    /// Displacement of the surface that the load makes.
+    pub displacement: f64,
+    /// The load.
+    pub pressure: f64,
+}
+
+impl ErrorScales {
+    /// The scales of a problem.
+    pub fn of(scales: &Scales, plan: &Plan<'_>) -> Self {
+        let pressure = plan.pressure_scale / scales.pressure;
+        Self { displacement: pressure * plan.initial_height / scales.length, pressure }
+    }
+
+    /// Largest relative error, from one of each unknown.
+    pub fn largest<const D: usize>(&self, unknowns: &Unknowns<D>, error: impl Fn(usize) -> f64) -> f64 {
+        let nodal = unknowns.displacement.iter().flatten().flatten();
+        let largest = |most: f64, number: &usize| most.max(error(*number).abs());
+        let displacement = nodal.fold(0.0, largest) / self.displacement;
+        displacement.max(unknowns.pressure.iter().fold(0.0, largest) / self.pressure)
+    }
 }
 
 /// A body on its way through time.
 pub trait March<const D: usize, const W: usize, S: ShapeFunction<W>> {
-    /// Goes on by `dt` seconds.
+    /// Goes on by `dt` seconds, unless the error in time that the step is estimated to have is
+    /// larger than `most_error`: then it stays. The error, relative to the scales of the problem.
     ///
     /// # Errors
     /// [`StepFailure`] when the step's equations could not be solved.
-    fn step(&mut self, dt: f64) -> Result<(), StepFailure>;
+    fn step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure>;
 
     /// The body at the present state.
     fn body_now(&self) -> Body<D, W, S>;

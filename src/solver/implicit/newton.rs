@@ -1,13 +1,13 @@
-//! SDIRK2 with a Newton iteration a stage: for finite strain, and for bodies with inertia.
+//! A Newton iteration a stage: for finite strain, and for bodies with inertia.
 
 use super::banded::{Banded, BandedLu};
 use super::drive::Plan;
 use super::linear::{SDIRK_GAMMA, SECOND_STAGE};
-use super::march::{March, StepFailure, Work};
+use super::march::{ERROR_SHARE, ErrorScales, March, StepFailure, Work};
 use super::tangent::Pattern;
-use super::trial::{StageStart, Trial};
+use super::trial::{Skeleton, StageStart, Trial};
 use crate::solver::body::{Body, ShapeFunction};
-use crate::solver::integrator::Formulation;
+use crate::solver::integrator::IntegratorKind;
 use crate::solver::outcome::FailureKind;
 use crate::solver::run::lost_point;
 
@@ -44,6 +44,26 @@ impl Structure {
     }
 }
 
+/// Stages of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stages {
+    /// Two, of SDIRK2.
+    Sdirk,
+    /// One, of backward Euler for what is implicit.
+    Single,
+}
+
+impl Stages {
+    /// Of each stage: what it lasts for and where it ends, in steps, and the share of its increment
+    /// in the start of the next one, or in the step.
+    fn of_step(self) -> &'static [(f64, f64, f64)] {
+        match self {
+            Self::Sdirk => &[(SDIRK_GAMMA, SDIRK_GAMMA, SECOND_STAGE), (SDIRK_GAMMA, 1.0, 1.0)],
+            Self::Single => &[(1.0, 1.0, 1.0)],
+        }
+    }
+}
+
 /// A body on its way through time.
 #[derive(Clone, Debug)]
 pub struct NewtonMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
@@ -58,6 +78,8 @@ pub struct NewtonMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
     contraction: f64,
     /// Error that a stage may leave in the scaled unknowns.
     tolerance: f64,
+    error_scales: ErrorScales,
+    stages: Stages,
     start: StageStart<D>,
     /// Rate of the scaled unknowns at the end of the last step, 1/s.
     rate: Vec<f64>,
@@ -77,9 +99,11 @@ pub struct NewtonMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
     /// A body at its start.
-    pub fn new(body: Body<D, W, S>, formulation: Formulation, plan: &Plan<'_>) -> Self {
+    pub fn new(body: Body<D, W, S>, plan: &Plan<'_>) -> Self {
         let full_load = body.surface.load;
-        let trial = Trial::new(body, formulation);
+        let is_semi_implicit = plan.schedule.integrator == IntegratorKind::SemiImplicit;
+        let skeleton = if is_semi_implicit { Skeleton::Explicit } else { Skeleton::Implicit };
+        let trial = Trial::new(body, plan.schedule.formulation, skeleton);
         let pattern = Pattern::of(&trial.body, &trial.unknowns);
         let tangent = pattern.zeros();
         let zero = vec![0.0; trial.unknowns.count];
@@ -91,6 +115,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
             factored: None,
             contraction: SLOW,
             tolerance: TOLERANCE * plan.pressure_scale / trial.scales.pressure,
+            error_scales: ErrorScales::of(&trial.scales, plan),
+            stages: if is_semi_implicit { Stages::Single } else { Stages::Sdirk },
             start: StageStart::default(),
             rate: zero.clone(),
             state: zero.clone(),
@@ -107,30 +133,40 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
     }
 
     /// A step, in halves where the iteration does not come to an end.
-    fn step_within(&mut self, dt: f64, halvings: u32) -> Result<(), StepFailure> {
-        match self.try_step(dt) {
+    fn step_within(&mut self, dt: f64, halvings: u32, most_error: f64) -> Result<f64, StepFailure> {
+        match self.try_step(dt, most_error) {
             Err(_) if halvings > 0 => {
-                self.work.halved_steps += 1;
-                self.step_within(0.5 * dt, halvings - 1)?;
-                self.step_within(0.5 * dt, halvings - 1)
+                self.work.rejected_steps += 1;
+                self.step_within(0.5 * dt, halvings - 1, f64::INFINITY)?;
+                self.step_within(0.5 * dt, halvings - 1, f64::INFINITY)
             }
             done => done,
         }
     }
 
-    fn try_step(&mut self, dt: f64) -> Result<(), StepFailure> {
-        let stage = SDIRK_GAMMA * dt;
-        self.start_step(stage);
+    fn try_step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure> {
         let mut flux = 0.0;
-        for (share, end) in [(SECOND_STAGE, stage), (1.0, dt)] {
-            self.load_at(self.time + end);
+        let mut first = true;
+        for (duration, end, share) in self.stages.of_step() {
+            let stage = duration * dt;
+            if first {
+                self.start_step(stage);
+                first = false;
+            }
+            self.load_at(self.time + end * dt);
             self.solve_stage()?;
             let body = &self.trial.body;
             flux += share * stage * body.surface.mean_of(&body.grid, &body.points, &body.nodes.flux);
-            if share != 1.0 {
+            if *share != 1.0 {
                 self.start_second_stage();
             }
         }
+        let error = self.error();
+        if error > most_error {
+            self.work.rejected_steps += 1;
+            return Ok(error);
+        }
+        let stage = self.start.duration;
         for (rate, (end, start)) in self.rate.iter_mut().zip(self.state.iter().zip(&self.start.unknowns)) {
             *rate = (end - start) / stage;
         }
@@ -140,7 +176,18 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
         self.time += dt;
         self.trial.body.surface_flux += flux;
         self.follow_structure();
-        Ok(())
+        Ok(error)
+    }
+
+    /// Estimated error of the step whose stages were solved last.
+    fn error(&self) -> f64 {
+        if self.stages == Stages::Single {
+            return 0.0;
+        }
+        self.error_scales.largest(&self.trial.unknowns, |unknown| {
+            let start = self.start.unknowns[unknown];
+            ERROR_SHARE * (start / SECOND_STAGE - (self.state[unknown] - start))
+        })
     }
 
     /// The load at a time, where it grows.
@@ -272,8 +319,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
 }
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> March<D, W, S> for NewtonMarch<D, W, S> {
-    fn step(&mut self, dt: f64) -> Result<(), StepFailure> {
-        self.step_within(dt, MOST_HALVINGS)
+    fn step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure> {
+        // Smaller steps would hide that an explicit skeleton is beyond its limit.
+        let halvings = if self.stages == Stages::Single { 0 } else { MOST_HALVINGS };
+        self.step_within(dt, halvings, most_error)
     }
 
     fn body_now(&self) -> Body<D, W, S> {

@@ -23,6 +23,15 @@ pub enum StepLimit {
         first: f64,
         /// `α`.
         growth: f64,
+        /// What they may grow to, s.
+        most: f64,
+    },
+    /// What the estimate of the error allows.
+    Tolerance {
+        /// The first step, s.
+        first: f64,
+        /// Error that a step may have.
+        tolerance: f64,
     },
 }
 
@@ -32,12 +41,15 @@ impl StepLimit {
     pub fn segment(&self, time: f64, output: f64) -> Segment {
         let (size, end) = match *self {
             Self::Constant(size) => (size, output),
-            Self::Growing { first, growth } => {
-                let allowed = (growth * time).max(first);
+            // Of a size that the march goes on from by itself.
+            Self::Tolerance { first, .. } => (first, output),
+            Self::Growing { first, growth, most } => {
+                let allowed = (growth * time).max(first).min(most);
                 // A time that is a level's beginning up to round-off is in that level.
                 let level = ((allowed / first).ln() / LEVEL_RATIO.ln() + 1e-9).floor();
                 let size = first * LEVEL_RATIO.powf(level);
-                let grown = size * LEVEL_RATIO / growth;
+                let grown =
+                    if size * LEVEL_RATIO > most { f64::INFINITY } else { size * LEVEL_RATIO / growth };
                 // Not worth an end of its own where the output is a step away.
                 (size, if output < grown + size { output } else { grown })
             }
@@ -48,6 +60,9 @@ impl StepLimit {
 
     /// Steps from the start to `end`, without the outputs in between.
     pub fn expected_steps(&self, end: f64) -> u64 {
+        if let Self::Tolerance { tolerance, .. } = self {
+            return steps_for(10.0, tolerance.sqrt());
+        }
         let (mut time, mut steps) = (0.0, 0);
         while end - time > 1e-9 * end {
             let segment = self.segment(time, end);
@@ -79,7 +94,7 @@ mod tests {
         fn growing_steps_keep_to_their_limit_and_come_in_few_sizes(
             growth in 0.005..0.5_f64, first in 1e-6..1e-2_f64,
         ) {
-            let limit = StepLimit::Growing { first, growth };
+            let limit = StepLimit::Growing { first, growth, most: f64::INFINITY };
             let outputs = [0.05, 0.1, 1.0];
             let (mut time, mut sizes, mut steps) = (0.0, 0, 0);
             for output in outputs {

@@ -23,6 +23,15 @@ pub struct StageStart<const D: usize> {
     pub water_velocity: Vec<Vector<D>>,
 }
 
+/// Time level at which the effective stress acts in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Skeleton {
+    /// That of the anchored state.
+    Explicit,
+    /// That of the trial state.
+    Implicit,
+}
+
 /// A body that is moved to trial states about an anchored one.
 #[derive(Clone, Debug)]
 pub struct Trial<const D: usize, const W: usize, S: ShapeFunction<W>> {
@@ -34,6 +43,8 @@ pub struct Trial<const D: usize, const W: usize, S: ShapeFunction<W>> {
     pub scales: Scales,
     /// Terms of the balances.
     formulation: Formulation,
+    /// Time level of the effective stress.
+    skeleton: Skeleton,
     /// Points of the anchored state.
     anchor: Points<D>,
     /// Their deformation gradients.
@@ -49,7 +60,7 @@ pub struct Trial<const D: usize, const W: usize, S: ShapeFunction<W>> {
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
     /// A body anchored at its present state.
-    pub fn new(mut body: Body<D, W, S>, formulation: Formulation) -> Self {
+    pub fn new(mut body: Body<D, W, S>, formulation: Formulation, skeleton: Skeleton) -> Self {
         let moves_points = body.configuration.moves_points();
         if moves_points {
             body.points.inverse_deformation.fill(identity());
@@ -65,6 +76,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
             velocity: [body.nodes.solid_velocity.clone(), body.nodes.water_velocity.clone()],
             displacement: vec![[0.0; D]; body.nodes.len()],
             formulation,
+            skeleton,
             body,
         };
         trial.anchor_here();
@@ -163,6 +175,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
         residual: &mut [f64],
     ) -> Result<(), usize> {
         self.move_to(increments);
+        if self.skeleton == Skeleton::Explicit {
+            self.body.points.effective_stress.clone_from(&self.anchor.effective_stress);
+        }
         self.body.map_forces();
         self.momentum(increments, start, residual);
         self.body.nodal_flux();

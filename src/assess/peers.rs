@@ -1,0 +1,107 @@
+//! Other programs on the seed column, as they were measured: what users would run instead.
+//!
+//! Errors are relative L2 of the pore pressure against Terzaghi's solution for incompressible water,
+//! where each program samples best; times are CPU seconds of one thread of one machine under load.
+
+use super::work_precision::TimedRun;
+use crate::exact::ReferenceKind;
+use crate::record::{Quantity, Sample};
+
+use super::norms::Norm;
+
+/// Time factors of the comparison.
+pub const TIME_FACTORS: [f64; 3] = [0.05, 0.2, 1.0];
+
+/// Another program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peer {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is.
+    pub kind: &'static str,
+    /// Errors at the time factors, where they were measured.
+    pub errors: [Option<f64>; 3],
+    /// Seconds, where the run ended.
+    pub seconds: Option<f64>,
+}
+
+/// The programs that were measured.
+pub const PEERS: [Peer; 7] = [
+    Peer {
+        name: "geomechanics/mpm",
+        kind: "explicit two-phase MPM, cell centres; T_v = 1 not reached in 590 s",
+        errors: [Some(2.6e-3), Some(9e-4), None],
+        seconds: None,
+    },
+    Peer {
+        name: "geomechanics/mpm, semi-implicit",
+        kind: "projection, smoothing",
+        errors: [Some(7.8e-2), Some(4.5e-2), Some(1.8e-1)],
+        seconds: Some(16.6),
+    },
+    Peer {
+        name: "GeoTaichi",
+        kind: "explicit two-phase GIMP, 20 cells, to T_v = 0.05",
+        errors: [Some(3.0e-2), None, None],
+        seconds: Some(186.0),
+    },
+    Peer {
+        name: "Kratos Geo",
+        kind: "implicit FE, Q2–Q1, 10 cells",
+        errors: [Some(2.123e-3), Some(1.577e-3), Some(2.67e-4)],
+        seconds: Some(2.57),
+    },
+    Peer {
+        name: "OpenGeoSys",
+        kind: "implicit FE, Q2–Q1, 10 cells",
+        errors: [Some(2.123e-3), Some(1.577e-3), Some(2.67e-4)],
+        seconds: Some(1.67),
+    },
+    Peer {
+        name: "scikit-fem",
+        kind: "implicit FE, Q2–Q1, 10 cells",
+        errors: [Some(2.123e-3), Some(1.577e-3), Some(2.67e-4)],
+        seconds: Some(0.05),
+    },
+    Peer {
+        name: "OpenSees quadUP",
+        kind: "implicit FE",
+        errors: [Some(5.0e-3), Some(3.4e-3), Some(4.6e-3)],
+        seconds: Some(0.5),
+    },
+];
+
+/// Errors of a run as the peers' were measured, where it has them.
+pub fn comparable_errors(run: &TimedRun<'_>) -> [Option<f64>; 3] {
+    let reference = ReferenceKind::TerzaghiIncompressible.name();
+    TIME_FACTORS.map(|factor| {
+        let row = run.record.error(Quantity::Pressure, Sample::Points, Norm::L2, reference, factor);
+        row.map(|row| row.value.abs())
+    })
+}
+
+/// A peer beside the fastest run that is nowhere worse than it.
+#[derive(Clone, Debug)]
+pub struct Comparison<'a, 'b> {
+    /// The peer.
+    pub peer: Peer,
+    /// The run, and its errors; none where every run is somewhere worse.
+    pub ahead: Option<(&'b TimedRun<'a>, [Option<f64>; 3])>,
+}
+
+/// Each peer beside the first of the runs, the cheapest first, that is nowhere worse.
+pub fn compare<'a, 'b>(runs: &'b [TimedRun<'a>]) -> Vec<Comparison<'a, 'b>> {
+    PEERS
+        .iter()
+        .map(|peer| {
+            let ahead = runs.iter().map(|run| (run, comparable_errors(run))).find(|(_, errors)| {
+                peer.errors.iter().zip(errors).all(|(theirs, own)| match (theirs, own) {
+                    (Some(theirs), Some(own)) => own <= theirs,
+                    (None, _) => true,
+                    (Some(_), None) => false,
+                })
+            });
+            Comparison { peer: *peer, ahead }
+        })
+        .collect()
+}

@@ -1,0 +1,155 @@
+//! What an error costs: timed runs on one scale of error and wall time.
+
+use super::pareto::{CostLevel, CostPoint, Prediction, front, predict_next};
+use super::statistics::{Spread, noise_floor, paired_ratio, spread};
+use super::summary::{first_norm, paths};
+use crate::record::{Quantity, Record, Sample, Status};
+use crate::study::{Axis, Measure};
+
+/// Tolerances that are asked for.
+pub const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
+/// Ratio of the cell size of one more level.
+const REFINEMENT: f64 = 2.0;
+
+/// A timed run.
+#[derive(Clone, Debug)]
+pub struct TimedRun<'a> {
+    /// The run.
+    pub record: &'a Record,
+    /// Error of the pore pressure at the points, the worst of all outputs.
+    pub error: f64,
+    /// Wall time over the repeats, s.
+    pub wall: Spread,
+    /// Whether no other run is both cheaper and better.
+    pub on_front: bool,
+}
+
+/// The first way to a tolerance.
+#[derive(Clone, Debug)]
+pub struct Cheapest<'a> {
+    /// The tolerance.
+    pub tolerance: f64,
+    /// The run with the least wall time whose error is within it, where one is.
+    pub run: Option<TimedRun<'a>>,
+}
+
+/// One more level of a path over the mesh, as its last levels predict it.
+#[derive(Clone, Debug)]
+pub struct NextLevel {
+    /// What the path is.
+    pub label: String,
+    /// Wall time, s, and error of its finest level.
+    pub finest: CostPoint,
+    /// Wall time and error of the next.
+    pub next: Prediction,
+}
+
+/// Timed runs of one study.
+#[derive(Clone, Debug)]
+pub struct WorkPrecision<'a> {
+    /// Every run that was timed alone, the cheapest first.
+    pub runs: Vec<TimedRun<'a>>,
+    /// The first way to each tolerance.
+    pub cheapest: Vec<Cheapest<'a>>,
+    /// One more level of each path.
+    pub next_levels: Vec<NextLevel>,
+    /// How far from 1 the ratio of the same run against itself lay in this session, the median over
+    /// the runs; none for fewer than two repeats.
+    pub noise_floor: Option<f64>,
+}
+
+impl<'a> WorkPrecision<'a> {
+    /// Compares the timed runs among records by the error against a reference; none where fewer
+    /// than two were timed.
+    pub fn of(records: &'a [Record], reference: &str) -> Option<Self> {
+        let mut runs: Vec<_> = records.iter().filter_map(|record| timed(record, reference)).collect();
+        if runs.len() < 2 {
+            return None;
+        }
+        runs.sort_by(|a, b| a.wall.median.total_cmp(&b.wall.median));
+        let points: Vec<_> = runs.iter().map(TimedRun::point).collect();
+        for (run, on_front) in runs.iter_mut().zip(front(&points)) {
+            run.on_front = on_front;
+        }
+        let cheapest = TOLERANCES.map(|tolerance| Cheapest {
+            tolerance,
+            run: runs.iter().find(|run| run.error <= tolerance).cloned(),
+        });
+        Some(Self {
+            cheapest: cheapest.to_vec(),
+            next_levels: next_levels(records, reference),
+            noise_floor: session_noise(&runs),
+            runs,
+        })
+    }
+}
+
+impl TimedRun<'_> {
+    fn point(&self) -> CostPoint {
+        CostPoint { cost: self.wall.median, error: self.error }
+    }
+}
+
+fn timed<'a>(record: &'a Record, reference: &str) -> Option<TimedRun<'a>> {
+    let wall = spread(&record.wall_alone()).ok()?;
+    let error = worst_error(record, reference).filter(|_| record.status == Status::Ok)?;
+    Some(TimedRun { record, error, wall, on_front: false })
+}
+
+/// Error of the pore pressure at the points in its first norm, the worst of all outputs.
+pub fn worst_error(record: &Record, reference: &str) -> Option<f64> {
+    let errors = record.case.time_factors.iter().filter(|factor| **factor > 0.0).map(|factor| {
+        let measure = pressure(reference, *factor);
+        record
+            .error(measure.quantity, measure.sample, measure.norm, reference, *factor)
+            .map(|row| row.value.abs())
+    });
+    errors.collect::<Option<Vec<_>>>()?.into_iter().reduce(f64::max)
+}
+
+fn pressure(reference: &str, time_factor: f64) -> Measure {
+    Measure {
+        quantity: Quantity::Pressure,
+        sample: Sample::Points,
+        norm: first_norm(Quantity::Pressure),
+        reference: reference.to_owned(),
+        time_factor,
+    }
+}
+
+/// The same run against itself: rounds of even number against those of odd.
+fn session_noise(runs: &[TimedRun<'_>]) -> Option<f64> {
+    let floors: Vec<f64> = runs
+        .iter()
+        .filter_map(|run| {
+            let wall = run.record.wall_alone();
+            let half = wall.len() / 2;
+            let every_other =
+                |first: usize| wall.iter().skip(first).step_by(2).take(half).copied().collect::<Vec<_>>();
+            paired_ratio(&every_other(0), &every_other(1)).ok().map(|ratio| noise_floor(&ratio))
+        })
+        .collect();
+    super::statistics::median(&floors).ok()
+}
+
+fn next_levels(records: &[Record], reference: &str) -> Vec<NextLevel> {
+    let of_path = |path: super::summary::Path<'_>| {
+        let levels: Vec<CostLevel> = path
+            .records
+            .iter()
+            .filter_map(|record| {
+                let run = timed(record, reference)?;
+                Some(CostLevel { size: record.case.cell_size(), point: run.point() })
+            })
+            .collect();
+        let last = *path.records.last()?.case.time_factors.last()?;
+        let classification = path.summary(&pressure(reference, last)).classification;
+        let next = predict_next(&levels, &classification, REFINEMENT).ok()?;
+        Some(NextLevel { label: path.label(), finest: levels.last()?.point, next })
+    };
+    paths(records, Axis::Cells)
+        .into_iter()
+        .filter(|path| path.records.len() > 2)
+        .filter_map(of_path)
+        .collect()
+}
