@@ -124,22 +124,3 @@ fn the_convention_of_a_mapping_keeps_to_the_schema() {
     assert_eq!(breach(&schema, &value, "mapping"), None);
     assert_eq!(schema["required"], json!(["columns", "units", "sign", "position"]));
 }
-
-/// The committed schemas are what editors use; `OEDOMETER_UPDATE_SCHEMAS=1` renews them.
-#[test]
-fn the_committed_schemas_are_current() {
-    for (document, name) in
-        [(Document::Study, "study"), (Document::Record, "record"), (Document::Mapping, "mapping")]
-    {
-        let text =
-            serde_json::to_string_pretty(&schema_of(document).expect("a schema")).expect("JSON") + "\n";
-        let path =
-            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("schemas/{name}.schema.json"));
-        if std::env::var_os("OEDOMETER_UPDATE_SCHEMAS").is_some() {
-            std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
-            std::fs::write(&path, &text).expect("written");
-        }
-        let committed = std::fs::read_to_string(&path).unwrap_or_default();
-        assert!(committed == text, "{name}: `oedometer schema {name}` differs from {}", path.display());
-    }
-}
