@@ -7,6 +7,7 @@
 mod bend;
 mod cancelling;
 mod case;
+pub mod case_expectation;
 pub mod class;
 pub mod classify;
 pub mod curves;
@@ -29,6 +30,7 @@ pub mod score;
 pub mod series;
 pub mod soundness;
 pub mod spread;
+pub mod stability_map;
 pub mod statistics;
 pub mod study_check;
 pub mod summary;

@@ -76,8 +76,14 @@ impl StudyCheck {
             records.iter().flat_map(of_record).collect::<Vec<_>>()
         };
         Self {
-            failed_cases: notes(&|record| failure_sentence(record).into_iter().collect()),
-            unsound: notes(&soundness::complaints),
+            failed_cases: notes(&|record| {
+                failure_sentence(record).filter(|_| !study.foresees(record)).into_iter().collect()
+            }),
+            // What a run that failed leaves behind is no result to complain of.
+            unsound: notes(&|record| match record.status {
+                Status::Ok => soundness::complaints(record),
+                Status::Failed(_) => Vec::new(),
+            }),
             judgements: judge_study(study, records, tier),
             warnings: slow.into_iter().collect(),
             ..Self::of_values(&study.name, &values_of(records), golden)

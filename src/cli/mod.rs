@@ -20,6 +20,7 @@ mod schema;
 mod score;
 mod solve;
 mod spread;
+mod stability;
 
 pub use exit::Exit;
 
@@ -50,6 +51,8 @@ enum Command {
     Solve(solve::Arguments),
     /// Hold somebody else's result against exact solutions
     Score(score::Arguments),
+    /// Predict and observe the critical time step
+    Stability(stability::Arguments),
     /// List the cases of studies with their hashes
     Plan(plan::Arguments),
     /// Bring the records of shards together, with the whole table of each study
@@ -85,6 +88,7 @@ pub fn main() -> ExitCode {
         Command::Exact(arguments) => exact::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Score(arguments) => score::run(&arguments),
+        Command::Stability(arguments) => stability::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
         Command::List => list::run(),

@@ -15,6 +15,7 @@ mod script;
 #[cfg(test)]
 mod showcase;
 pub mod spreads;
+pub mod stability;
 pub mod table;
 pub mod verdicts;
 
