@@ -13,7 +13,6 @@ use super::verdict::{Verdict, judge};
 use crate::exact::{Reference, ReferenceKind};
 use crate::record::{Quantity, Record, Sample};
 use crate::scene::{SceneKind, column_parameters};
-use crate::solver::method::{PressureIntegration, Recovery, StrainGradient};
 use crate::solver::snapshot::{Samples, Snapshot};
 use crate::study::{Axis, Case, Expectation, IntegratorKind, Measure, NEXT_FINER, Study, Tier, step_label};
 
@@ -141,6 +140,7 @@ impl<'a> Path<'a> {
             round_off: Some(ROUND_OFF),
             reference_accuracy: used.map(|used| used.tail_bound),
             limiters: model_limiter(finest, measure).into_iter().chain(self.mesh_limiter(measure)).collect(),
+            mobility: self.mobility(measure),
         }
     }
 
@@ -174,6 +174,21 @@ impl<'a> Path<'a> {
             Quantity::Settlement => return None,
         };
         oscillation(computed, &exact, per_cell).ok()?.reversal
+    }
+
+    /// Settlement over the exact one at each level, for the errors of displacements: a locked body
+    /// has hardly any.
+    fn mobility(&self, measure: &Measure) -> Vec<f64> {
+        if !matches!(measure.quantity, Quantity::Displacement | Quantity::Settlement) {
+            return Vec::new();
+        }
+        let settlement = |record: &&Record| {
+            let (sample, norm) = (Sample::Surface, Norm::Relative);
+            let row =
+                record.error(Quantity::Settlement, sample, norm, &measure.reference, measure.time_factor)?;
+            Some(1.0 + row.value)
+        };
+        self.records.iter().filter_map(settlement).collect()
     }
 
     /// Along any other axis than its own the mesh is what is left of the error.
@@ -249,10 +264,8 @@ fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
     let method = &case.method;
     let by_points = |second: bool| if second { 2.0 } else { 1.0 };
     match (measure.quantity, measure.sample) {
-        (Quantity::Pressure, Sample::Points) => {
-            Some(by_points(method.pressure == PressureIntegration::Sri && method.recovery == Recovery::Patch))
-        }
-        (Quantity::EffectiveStress, Sample::Points) => Some(by_points(method.strain == StrainGradient::Cmpm)),
+        (Quantity::Pressure, Sample::Points) => Some(by_points(method.uses_patch())),
+        (Quantity::EffectiveStress, Sample::Points) => Some(by_points(method.strain.is_composite())),
         (Quantity::Pressure | Quantity::EffectiveStress, Sample::Centres)
         | (Quantity::Settlement, _)
         | (Quantity::Displacement, Sample::Nodes) => Some(2.0),
@@ -371,6 +384,8 @@ fn selects(expectation: &Expectation, case: &Case) -> bool {
             || fits(expectation.points_per_cell, case.points_per_cell))
         && fits(expectation.law, case.material.law)
         && fits(expectation.continuity, case.material.continuity)
+        && fits(expectation.water_bulk_modulus, case.material.water_bulk_modulus)
+        && fits(expectation.poissons_ratio, case.material.poissons_ratio)
         && fits(expectation.scheme, case.settings.scheme)
         && fits(expectation.drag, case.settings.drag)
         && fits(expectation.mapping_back, case.settings.mapping_back)
