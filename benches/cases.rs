@@ -60,6 +60,7 @@ fn implicit_case(method: &str, scene: SceneKind, cells: usize) -> Case {
 fn case(method: &str, cells: usize, configuration: Configuration) -> Case {
     let method = Method::named(method).expect("a known method");
     Case {
+        task: oedometer::study::Task::Solve,
         scene: SceneKind::Terzaghi,
         column: Column::default(),
         material: Material::default(),

@@ -81,6 +81,7 @@ fn build_operators<const C: usize>(bencher: Bencher, method: &str) {
 fn implicit_step<const C: usize>(bencher: Bencher, method: &str) {
     let problem = problem(method, C, Configuration::Frozen);
     let schedule = Schedule {
+        critical_step: None,
         outputs: Vec::new(),
         history: Vec::new(),
         rule: TimeStepRule::Seconds(0.01),

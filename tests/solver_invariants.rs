@@ -60,6 +60,7 @@ impl Setup {
         let seconds = self.column.height * self.column.height / self.soil.coefficient_of_consolidation();
         let schedule = Schedule {
             integrator: oedometer::solver::integrator::IntegratorKind::Explicit,
+            critical_step: None,
             formulation: oedometer::solver::integrator::Formulation::VW,
             outputs: self.time_factors.iter().map(|factor| factor * seconds).collect(),
             history: Vec::new(),

@@ -22,6 +22,7 @@ fn both(scene: SceneKind, method: &str, load: f64, end: f64, drag: Drag) -> (Out
     let plane = Column { dimensions: 2, ..column };
     let method = Method::named(method).expect("a known method");
     let schedule = Schedule {
+        critical_step: None,
         outputs: vec![0.5 * end, end],
         history: vec![0.25 * end],
         rule: TimeStepRule::Seconds(1.2e-5),
@@ -99,6 +100,7 @@ fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
         {
             let run_by = |kernel: Kernel| {
                 let schedule = Schedule {
+                    critical_step: None,
                     outputs: vec![0.0, 0.01],
                     history: vec![0.005],
                     rule: TimeStepRule::Seconds(1e-5),
@@ -137,6 +139,7 @@ fn the_predicted_step_of_a_plane_parts_stable_from_unstable_runs() {
         for mapping_back in [true, false] {
             for (share, stable) in [(0.98, true), (1.02, false)] {
                 let schedule = Schedule {
+                    critical_step: None,
                     outputs: vec![0.3],
                     history: Vec::new(),
                     rule: TimeStepRule::Stable(share),

@@ -8,8 +8,9 @@ use crate::record::{
     StartChecks, Status,
 };
 use crate::scene::{SceneKind, column_parameters};
+use crate::solver::critical::CriticalStep;
 use crate::solver::limits;
-use crate::solver::outcome::{Outcome, RunStatus};
+use crate::solver::outcome::{Counters, Outcome, RunStatus, StepSizes};
 use crate::solver::snapshot::{PlaneSamples, Samples, Snapshot};
 use crate::study::Case;
 use std::collections::BTreeMap;
@@ -62,6 +63,7 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
         counters: outcome.counters,
         step_sizes: outcome.step_sizes,
         wall: Vec::new(),
+        stability: None,
         groups: groups(case, outcome.step_sizes.largest / outcome.step_sizes.predicted_critical),
         start: Some(start_checks(case, &references, &outcome.start)?),
         balance,
@@ -70,7 +72,40 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
         references: references.iter().map(|one| reference_use(case, one)).collect::<Result<_, _>>()?,
         snapshots: outcome.snapshots,
         provenance: Provenance::of_this_program(),
+        digest: String::new(),
     })
+}
+
+/// The record of a case whose critical step was searched.
+pub fn record_of_critical_step(case: &Case, found: CriticalStep) -> Record {
+    let share = found.observed.map_or(1.0, |observed| observed / found.predicted);
+    Record {
+        schema: SCHEMA,
+        hash: case.hash(),
+        case: case.clone(),
+        status: Status::Ok,
+        counters: Counters {
+            points: case.cells * case.points_per_cell,
+            steps: found.probes.iter().map(|probe| probe.steps).sum(),
+            ..Counters::default()
+        },
+        step_sizes: StepSizes {
+            predicted_critical: found.predicted,
+            target: found.predicted,
+            largest: found.observed.unwrap_or(found.predicted),
+        },
+        wall: Vec::new(),
+        groups: groups(case, share),
+        start: None,
+        balance: Vec::new(),
+        errors: Vec::new(),
+        history: Vec::new(),
+        references: Vec::new(),
+        snapshots: Vec::new(),
+        stability: Some(found),
+        provenance: Provenance::of_this_program(),
+        digest: String::new(),
+    }
 }
 
 /// Time factor by which every column is consolidated to round-off.

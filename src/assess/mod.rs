@@ -7,6 +7,7 @@
 mod bend;
 mod cancelling;
 mod case;
+pub mod case_expectation;
 pub mod class;
 pub mod classify;
 pub mod curves;
@@ -24,6 +25,7 @@ pub mod pareto;
 mod pattern_search;
 pub mod peers;
 pub mod series;
+pub mod stability_map;
 pub mod statistics;
 pub mod study_check;
 pub mod summary;

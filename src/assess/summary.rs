@@ -274,6 +274,13 @@ pub fn judge_study(study: &Study, records: &[Record], tier: Tier) -> Vec<Judgeme
         .iter()
         .filter(|expectation| expectation.tier <= tier)
         .flat_map(|expectation| judge_expectation(expectation, records))
+        .chain(
+            study
+                .case_expectations
+                .iter()
+                .filter(|expectation| expectation.tier <= tier)
+                .flat_map(|expectation| expectation.judge(records)),
+        )
         .collect()
 }
 

@@ -13,6 +13,7 @@ mod progress;
 mod report;
 mod run;
 mod solve;
+mod stability;
 
 pub use exit::Exit;
 
@@ -41,6 +42,8 @@ enum Command {
     Exact(exact::Arguments),
     /// Solve one case and print its errors
     Solve(solve::Arguments),
+    /// Predict and observe the critical time step
+    Stability(stability::Arguments),
     /// List the cases of studies with their hashes
     Plan(plan::Arguments),
     /// List scenes, methods, references and shipped studies
@@ -65,6 +68,7 @@ pub fn main() -> ExitCode {
         Command::Accept(arguments) => accept::run(&arguments),
         Command::Exact(arguments) => exact::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),
+        Command::Stability(arguments) => stability::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::List => list::run(),
     };

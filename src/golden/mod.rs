@@ -129,6 +129,11 @@ pub fn values_of(records: &[Record]) -> BTreeMap<String, f64> {
         let label = record.case.label();
         values.insert(format!("{label} | steps"), record.counters.steps as f64);
         values.insert(format!("{label} | point updates"), record.counters.point_updates as f64);
+        if let Some(found) = &record.stability {
+            values.insert(format!("{label} | predicted critical step"), found.predicted);
+            let observed = found.observed.unwrap_or(-1.0);
+            values.insert(format!("{label} | observed critical step"), observed);
+        }
         for row in &record.errors {
             let measure = format!(
                 "{} {} {} {} T_v={}",

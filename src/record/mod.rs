@@ -12,11 +12,14 @@ pub use store::{RecordStore, StoreError, write_whole};
 pub use tidy::tidy_csv;
 
 use crate::assess::norms::Norm;
-use crate::solver::outcome::{Counters, Failure, StepSizes};
+use crate::solver::critical::CriticalStep;
+use crate::solver::outcome::{Counters, Failure, FailureKind, StepSizes};
 use crate::solver::snapshot::Snapshot;
 use crate::study::Case;
 use serde::{Deserialize, Serialize};
 
+/// Hexadecimal digits of a record's digest.
+const DIGEST_DIGITS: usize = 32;
 /// Version of the record's layout.
 pub const SCHEMA: u32 = 1;
 
@@ -89,6 +92,11 @@ pub enum Status {
 }
 
 impl Status {
+    /// Whether the time was over before the case was.
+    pub fn is_late(&self) -> bool {
+        matches!(self, Self::Failed(failure) if failure.kind == FailureKind::TimedOut)
+    }
+
     /// `ok`, or the failure's name.
     pub fn name(&self) -> String {
         match self {
@@ -212,6 +220,9 @@ pub struct Record {
     /// day and the record does not.
     #[serde(skip)]
     pub wall: Vec<WallSample>,
+    /// The critical step, where that was the question.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stability: Option<CriticalStep>,
     /// Dimensionless groups.
     pub groups: Groups,
     /// Start checks, where the start was reached.
@@ -228,9 +239,20 @@ pub struct Record {
     pub snapshots: Vec<Snapshot>,
     /// What made this record.
     pub provenance: Provenance,
+    /// Hash over all the rest, on disk only: a record with another one was damaged.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub digest: String,
 }
 
 impl Record {
+    /// Hash over everything but itself.
+    fn content_digest(&self) -> String {
+        let content = Self { digest: String::new(), ..self.clone() };
+        // Serialising plain numbers and words cannot fail; were it to, an empty text still hashes.
+        let text = serde_json::to_string(&content).unwrap_or_default();
+        blake3::hash(text.as_bytes()).to_hex()[..DIGEST_DIGITS].to_owned()
+    }
+
     /// The error of a quantity, where it was measured.
     pub fn error(
         &self,

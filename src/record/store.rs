@@ -57,12 +57,14 @@ impl RecordStore {
 
     /// The finished record of a case, if there is one that this very program made.
     ///
-    /// A record that cannot be read, is of another layout, of another case or of other sources is
-    /// as good as none: the case is run again.
+    /// A record that cannot be read, was damaged, is of another layout, of another case or of other sources is
+    /// as good as none, and so is one that ran out of its time: the case is run again.
     pub fn finished(&self, case: &Case) -> Option<Record> {
         let own = Provenance::of_this_program();
         self.kept(case).filter(|record| {
-            record.provenance.sources == own.sources && record.provenance.profile == own.profile
+            record.provenance.sources == own.sources
+                && record.provenance.profile == own.profile
+                && !record.status.is_late()
         })
     }
 
@@ -73,7 +75,9 @@ impl RecordStore {
         // Without readable wall times the case is done all the same, only not timed.
         let wall = fs::read_to_string(self.path(&record.hash, WALL)).ok();
         record.wall = wall.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
-        (record.schema == SCHEMA && record.case == *case).then_some(record)
+        let digest = std::mem::take(&mut record.digest);
+        let is_whole = digest == record.content_digest();
+        (is_whole && record.schema == SCHEMA && record.case == *case).then_some(record)
     }
 
     /// Whether a record of this hash is on disk.
@@ -88,7 +92,8 @@ impl RecordStore {
     /// When the file system refuses.
     pub fn write(&self, record: &Record) -> Result<(), StoreError> {
         self.write_wall(record)?;
-        write_json(&self.path(&record.hash, RECORD), record)
+        let signed = Record { digest: record.content_digest(), ..record.clone() };
+        write_json(&self.path(&record.hash, RECORD), &signed)
     }
 
     /// Writes the wall times of a record alone.

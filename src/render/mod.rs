@@ -11,6 +11,7 @@ pub mod report;
 mod script;
 #[cfg(test)]
 mod showcase;
+pub mod stability;
 pub mod table;
 pub mod verdicts;
 

@@ -1,6 +1,6 @@
 //! Columns and layers drained at their top: the lattice of points and its start.
 
-use super::SceneKind;
+use super::{Arrangement, SceneKind};
 use crate::exact::cosine_layer::Base;
 use crate::exact::dynamic_column::{DynamicColumn, Start};
 use crate::exact::single_mode::SingleMode;
@@ -36,6 +36,9 @@ pub struct Column {
     /// Time over which the load grows linearly, s; 0 where it acts at once.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub loading_time: f64,
+    /// Where the points lie in their cells.
+    #[serde(default, skip_serializing_if = "Arrangement::is_regular")]
+    pub points: Arrangement,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
@@ -58,7 +61,15 @@ const WIDTH_TOLERANCE: f64 = 1e-9;
 impl Default for Column {
     /// The seed column under 1 Pa, in one dimension.
     fn default() -> Self {
-        Self { height: 1.0, width: 0.1, load: 1.0, dimensions: 1, base: None, loading_time: 0.0 }
+        Self {
+            height: 1.0,
+            width: 0.1,
+            load: 1.0,
+            dimensions: 1,
+            base: None,
+            loading_time: 0.0,
+            points: Arrangement::default(),
+        }
     }
 }
 
@@ -118,10 +129,11 @@ pub fn column_problem<const D: usize>(
     cells: usize,
     points_per_cell: usize,
 ) -> Result<Problem<D>, ExactError> {
-    let cell_size = column.height / cells as f64;
+    let cell_size = column.points.cell_size(column.height, cells);
     let mut extent = [column.cells_across(cells).unwrap_or(1); D];
     extent[D - 1] = cells;
     let mut points = Points::lattice(cell_size, extent, points_per_cell);
+    column.points.arrange(&mut points, cell_size, cells);
     let (load, vertical_gradient) = match scene {
         SceneKind::Terzaghi => (column.load, start_undrained(&mut points, soil, column.load)),
         SceneKind::StandingWave => {

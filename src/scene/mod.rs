@@ -2,9 +2,11 @@
 //! that hold for it. It knows the exact solutions and the solver, and makes a problem for one from
 //! the other.
 
+mod arrangement;
 mod column;
 mod problem;
 
+pub use arrangement::Arrangement;
 pub use column::{Column, column_parameters, column_problem};
 pub use problem::SceneProblem;
 

@@ -4,6 +4,8 @@
 use super::{Column, SceneKind, column_problem};
 use crate::exact::ExactError;
 use crate::solver::body::Problem;
+use crate::solver::critical::{CriticalStep, critical_step};
+use crate::solver::explicit::ExplicitSettings;
 use crate::solver::material::Material;
 use crate::solver::method::Method;
 use crate::solver::outcome::Outcome;
@@ -37,6 +39,15 @@ impl SceneProblem {
         } else {
             Self::Plane(column_problem(scene, column, soil, method, cells, points_per_cell)?)
         })
+    }
+
+    /// Predicts and observes its critical step, with runs beside it up to `end` seconds or
+    /// `most_steps` steps.
+    pub fn critical_step(&self, settings: &ExplicitSettings, end: f64, most_steps: u64) -> CriticalStep {
+        match self {
+            Self::Column(problem) => critical_step(problem, settings, end, most_steps),
+            Self::Plane(problem) => critical_step(problem, settings, end, most_steps),
+        }
     }
 
     /// Solves it.

@@ -70,6 +70,22 @@ pub struct Problem<const D: usize> {
     pub pressure_scale: f64,
 }
 
+impl<const D: usize> Problem<D> {
+    /// The same problem with all loads, stresses and motions of its start times a factor.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.load *= factor;
+        self.pressure_scale *= factor;
+        let points = &mut self.points;
+        points.pressure.iter_mut().for_each(|pressure| *pressure *= factor);
+        points.effective_stress.iter_mut().flatten().flatten().for_each(|stress| *stress *= factor);
+        points.solid_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
+        points.water_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
+        self.initial_gradient.iter_mut().flatten().for_each(|gradient| *gradient *= factor);
+        self
+    }
+}
+
 /// The discretised body during a run.
 #[derive(Clone, Debug)]
 pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {

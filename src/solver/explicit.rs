@@ -18,6 +18,20 @@ pub enum Drag {
     Centred,
 }
 
+impl Drag {
+    /// Every choice, in the order of the documentation.
+    pub const ALL: [Self; 3] = [Self::Explicit, Self::Implicit, Self::Centred];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Explicit => "explicit",
+            Self::Implicit => "implicit",
+            Self::Centred => "centred",
+        }
+    }
+}
+
 /// Choices of the explicit integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExplicitSettings {

@@ -17,11 +17,24 @@ pub enum FailureKind {
     Singular,
     /// The iterations of an implicit step did not come to an end.
     NotConverged,
-    /// The run was stopped from outside or ran out of its time.
+    /// The run was stopped from outside.
     Stopped,
+    /// The run took longer than its study allows.
+    TimedOut,
 }
 
 impl FailureKind {
+    /// Every failure.
+    pub const ALL: [Self; 7] = [
+        Self::Unstable,
+        Self::PoresClosed,
+        Self::LeftGrid,
+        Self::Singular,
+        Self::NotConverged,
+        Self::Stopped,
+        Self::TimedOut,
+    ];
+
     /// Name in records and tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -31,6 +44,7 @@ impl FailureKind {
             Self::Singular => "singular",
             Self::NotConverged => "not-converged",
             Self::Stopped => "stopped",
+            Self::TimedOut => "timed-out",
         }
     }
 }
@@ -44,6 +58,9 @@ pub struct Failure {
     pub step: u64,
     /// Time at which it was seen, s.
     pub time: f64,
+    /// Growth a step of the largest velocity when it was last finite.
+    #[serde(default)]
+    pub growth: Option<f64>,
     /// A sentence with the numbers.
     pub reason: String,
 }

@@ -3,7 +3,6 @@
 use super::body::{Body, Gimp, Hat, Problem, ShapeFunction};
 use super::explicit::ExplicitSettings;
 use super::frozen::FrozenStep;
-use super::grid::Grid;
 use super::implicit::banded::Singular;
 use super::implicit::drive::{self, Plan};
 use super::implicit::steps::{StepLimit, steps_for};
@@ -12,9 +11,9 @@ use super::limits;
 use super::method::{Basis, Configuration};
 use super::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
 use super::points::Points;
+pub use super::prediction::predicted_critical_step;
 use super::scheme::Rhythm;
 use super::snapshot::Snapshot;
-use super::stability;
 use super::surface::LoadedSurface;
 use serde::{Deserialize, Serialize};
 
@@ -27,8 +26,6 @@ const BLOW_UP: f64 = 1e3;
 const STEP_RENEWAL: u64 = 256;
 /// Share of a semi-implicit run's critical step that growing steps end at.
 const LARGEST_SHARE: f64 = 0.8;
-/// Cells of the column on which the critical step is computed where the run has more.
-const STABILITY_CELLS: usize = 12;
 
 /// How the time step is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -72,6 +69,8 @@ pub struct Schedule {
     pub kernel: Kernel,
     /// Integrator.
     pub integrator: IntegratorKind,
+    /// Critical step, s, where it is known already.
+    pub critical_step: Option<f64>,
     /// Accelerations that an implicit integrator keeps.
     pub formulation: Formulation,
 }
@@ -127,7 +126,7 @@ fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
 /// The end of a run that has no undrained start.
 fn no_start(singular: Singular) -> Failure {
     let reason = format!("the undrained start has no pivot in row {}: nothing holds the body", singular.row);
-    Failure { kind: FailureKind::Singular, step: 0, time: 0.0, reason }
+    Failure { kind: FailureKind::Singular, step: 0, time: 0.0, growth: None, reason }
 }
 
 /// Step sizes of an implicit run. What it is measured by is a formula: of its own limit where the
@@ -139,43 +138,6 @@ fn implicit_sizes<const D: usize>(problem: &Problem<D>, schedule: &Schedule) -> 
         _ => limits::combined_limit(soil, cell_size, schedule.settings.drag),
     };
     StepSizes { predicted_critical: safe, target: schedule.rule.step(problem, safe), largest: 0.0 }
-}
-
-/// Critical step, s, of the explicit integrator on a problem's initial configuration.
-///
-/// Computed on the problem's own operators; a long column is cut to twelve cells, which moves
-/// the limit by less than a percent, a wide layer to six by six.
-pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
-    let safe = limits::combined_limit(&problem.material, problem.grid.cell_size, settings.drag);
-    let problem = cut_problem(problem);
-    let frozen = match problem.method.basis {
-        Basis::Hat => FrozenStep::new(&Body::<D, 2, Hat>::new(problem)),
-        Basis::Ugimp | Basis::Cpgimp => FrozenStep::new(&Body::<D, 3, Gimp>::new(problem)),
-    };
-    match frozen {
-        FrozenStep::Column(column) => stability::critical_step(&column, settings, safe),
-        FrozenStep::Plane(plane) => stability::critical_step_of_plane(&plane, settings, safe),
-    }
-}
-
-/// The problem on its lowest cells only, with the load on their top.
-fn cut_problem<const D: usize>(problem: &Problem<D>) -> Problem<D> {
-    let mut cut = problem.clone();
-    let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
-    let most = if is_narrow { STABILITY_CELLS } else { STABILITY_CELLS / 2 };
-    let extent = most as f64 * problem.grid.cell_size;
-    let is_kept = |point: &usize| problem.points.position[*point].iter().all(|place| *place < extent);
-    let keep: Vec<usize> = (0..cut.points.len()).filter(is_kept).collect();
-    if keep.len() < cut.points.len() {
-        cut.points = cut.points.select(&keep);
-        // The sides stay held; the top stays free.
-        let mut cells = problem.grid.cells;
-        for across in &mut cells[..D - 1] {
-            *across = (*across).min(most);
-        }
-        cut.grid = Grid::new(problem.grid.cell_size, cells);
-    }
-    cut
 }
 
 struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
@@ -196,6 +158,9 @@ struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
     snapshots: Vec<Snapshot>,
     history: Vec<HistoryPoint>,
     time: f64,
+    /// Largest velocity at the last look, m/s, and its growth a step since the one before.
+    watched_velocity: f64,
+    growth: Option<f64>,
     failure: Option<Failure>,
 }
 
@@ -205,7 +170,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         problem: Problem<D>,
         schedule: &'a Schedule,
     ) -> Self {
-        let critical = predicted_critical_step(&problem, &schedule.settings);
+        let critical =
+            schedule.critical_step.unwrap_or_else(|| predicted_critical_step(&problem, &schedule.settings));
         let target = schedule.rule.step(&problem, critical);
         let velocity_scale = velocity_scale(&problem);
         let (load, loading_time) = (problem.load, problem.loading_time);
@@ -238,6 +204,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             snapshots: Vec::new(),
             history: Vec::new(),
             time: 0.0,
+            watched_velocity: 0.0,
+            growth: None,
             failure: start_failure.map(no_start),
         };
         if loading_time > 0.0 {
@@ -302,7 +270,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let mut kick = f64::NAN;
         let mut done = 0;
         while done < count && self.failure.is_none() {
-            let some = WATCH_INTERVAL.min(count - done).min(self.steps_to_history(dt));
+            let some = self.steps_to_look().min(count - done).min(self.steps_to_history(dt));
             for step in done..done + some {
                 let now = start + step as f64 * dt;
                 if self.load_share < 1.0 {
@@ -325,6 +293,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             self.counters.steps += some;
             self.counters.point_updates += some * self.counters.points as u64;
             self.note_history();
+            self.watch(some);
             self.failure = self.find_failure();
             if self.failure.is_none() && !go_on(self.counters.steps) {
                 self.failure = Some(self.failure(FailureKind::Stopped, "stopped from outside".to_owned()));
@@ -382,14 +351,30 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
     }
 
     fn failure(&self, kind: FailureKind, reason: String) -> Failure {
-        Failure { kind, step: self.counters.steps, time: self.time, reason }
+        Failure { kind, step: self.counters.steps, time: self.time, growth: self.growth, reason }
     }
 
-    fn find_failure(&self) -> Option<Failure> {
+    /// Steps to the next look: at first it comes after 1, 2, 4 steps and so on, for what grows fast
+    /// is soon beyond all numbers.
+    fn steps_to_look(&self) -> u64 {
+        let done = self.counters.steps;
+        if done >= WATCH_INTERVAL { WATCH_INTERVAL } else { ((done + 1).next_power_of_two() - done).max(1) }
+    }
+
+    /// Looks at the largest velocity after some steps.
+    fn watch(&mut self, steps: u64) {
         let velocity = match &self.frozen {
             Some(frozen) => frozen.largest_velocity(),
             None => self.body.largest_velocity(),
         };
+        if velocity.is_finite() && self.watched_velocity > 0.0 && velocity > 0.0 {
+            self.growth = Some((velocity / self.watched_velocity).powf(1.0 / steps as f64));
+        }
+        self.watched_velocity = velocity;
+    }
+
+    fn find_failure(&self) -> Option<Failure> {
+        let velocity = self.watched_velocity;
         if velocity > BLOW_UP * self.velocity_scale {
             let reason = format!(
                 "a nodal velocity of {velocity:.3e} m/s is more than {BLOW_UP:.0} times its scale of {:.3e} m/s; the step \
@@ -499,6 +484,7 @@ mod tests {
             settings,
             kernel,
             integrator: IntegratorKind::Explicit,
+            critical_step: None,
             formulation: Formulation::VW,
         }
     }

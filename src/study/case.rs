@@ -1,6 +1,6 @@
 //! A case: everything that decides a run, as plain data with an identity.
 
-use crate::scene::{Column, SceneKind};
+use crate::scene::{Arrangement, Column, SceneKind};
 use crate::solver::explicit::{Drag, ExplicitSettings};
 use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Material};
@@ -11,9 +11,41 @@ use serde::{Deserialize, Serialize};
 /// Hexadecimal digits of a case's hash: enough that a million cases do not meet.
 const HASH_DIGITS: usize = 16;
 
+/// What is done with a case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Task {
+    /// It is solved, and held against the references of its scene.
+    #[default]
+    Solve,
+    /// Its critical step is predicted and observed.
+    Stability,
+}
+
+impl Task {
+    /// Every task.
+    pub const ALL: [Self; 2] = [Self::Solve, Self::Stability];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Solve => "solve",
+            Self::Stability => "stability",
+        }
+    }
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+    fn is_solve(&self) -> bool {
+        *self == Self::Solve
+    }
+}
+
 /// All inputs of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Case {
+    /// What is done with it.
+    #[serde(default, skip_serializing_if = "Task::is_solve")]
+    pub task: Task,
     /// Physical problem.
     pub scene: SceneKind,
     /// Geometry and load.
@@ -48,7 +80,7 @@ impl Case {
 
     /// Cell size, m.
     pub fn cell_size(&self) -> f64 {
-        self.column.height / self.cells as f64
+        self.column.points.cell_size(self.column.height, self.cells)
     }
 
     /// Points there are to be: cells times points a cell, in every direction.
@@ -98,22 +130,62 @@ impl Case {
         if self.material.continuity != Continuity::Conservative {
             parts.push("porosity gradient dropped".to_owned());
         }
+        parts.extend(self.arrangement());
+        if self.task == Task::Stability {
+            parts.extend(self.departure_from_the_seed());
+        }
         parts.join(", ")
+    }
+
+    /// Where the points lie, where that is not the regular lattice.
+    fn arrangement(&self) -> Vec<String> {
+        let (points, regular) = (&self.column.points, Arrangement::default());
+        [
+            (points.offset, regular.offset, "points shifted by"),
+            (points.jitter, regular.jitter, "points jittered by"),
+            (points.filling, regular.filling, "top cell filled to"),
+        ]
+        .into_iter()
+        .filter(|(value, usual, _)| value != usual)
+        .map(|(value, _, what)| format!("{what} {value}"))
+        .collect()
+    }
+
+    /// Parameters that maps of the critical step sweep, where they are not the seed's.
+    fn departure_from_the_seed(&self) -> Vec<String> {
+        let (soil, seed) = (&self.material, Material::default());
+        [
+            (soil.hydraulic_conductivity, seed.hydraulic_conductivity, "k ="),
+            (soil.water_bulk_modulus, seed.water_bulk_modulus, "K_w ="),
+            (soil.porosity, seed.porosity, "n ="),
+        ]
+        .into_iter()
+        .filter(|(value, usual, _)| value != usual)
+        .map(|(value, _, what)| format!("{what} {value:e}"))
+        .collect()
     }
 
     /// Words by which a person knows the case within its study.
     pub fn label(&self) -> String {
+        self.label_with(&step_label(&self.time_step))
+    }
+
+    /// The same for a case whose step is the question.
+    pub fn label_without_step(&self) -> String {
+        self.label_with("")
+    }
+
+    fn label_with(&self, step: &str) -> String {
         let mut label = format!(
-            "{} {} cells={} points={} {}",
+            "{} {} cells={} points={} {step}",
             self.method,
             self.integrator.name(),
             self.cells,
             self.points_per_cell,
-            step_label(&self.time_step)
         );
         let variant = self.variant();
         if !variant.is_empty() {
-            label = format!("{label} ({variant})");
+            label = format!("{} ({variant})", label.trim_end());
         }
         label
     }
@@ -136,6 +208,7 @@ mod tests {
 
     fn seed() -> Case {
         Case {
+            task: Task::Solve,
             scene: SceneKind::Terzaghi,
             column: Column::default(),
             material: Material::default(),

@@ -1,6 +1,8 @@
 //! From what was typed to what will run: every value judged, every complaint at its place.
 
-use super::case::Case;
+mod case;
+
+use super::case::{Case, Task};
 use super::diagnostic::{Diagnostic, StudyError, one_of};
 use super::expectation::{Axis, Expectation, Measure, NEXT_FINER};
 use super::file::{
@@ -8,14 +10,15 @@ use super::file::{
     MethodTable, OutputTable, StudyFile, StudySource, SweepTable, TimeStepTable,
 };
 use super::sweep::{AXES, Combination, Sweep};
+use crate::assess::case_expectation::CaseExpectation;
 use crate::assess::class::Class;
 use crate::assess::expectation::{Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure};
 use crate::assess::norms::Norm;
 use crate::exact::cosine_layer::Base;
 use crate::exact::xie_leo::XieLeo;
 use crate::exact::{ExactError, ReferenceKind};
-use crate::record::{Quantity, Sample};
-use crate::scene::{Column, SceneKind, column_parameters};
+use crate::record::{Quantity, Record, Sample};
+use crate::scene::{Arrangement, Column, SceneKind, column_parameters};
 use crate::solver::explicit::{Drag, ExplicitSettings};
 use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Law, Material};
@@ -27,6 +30,8 @@ use toml::Spanned;
 
 /// Time factors where a study names none.
 const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
+/// Longest wall time of a case, s, where a study names none.
+const DEFAULT_CASE_SECONDS: f64 = 3600.0;
 /// Half-width of an order's band where an expectation names none.
 const DEFAULT_BAND: f64 = 0.1;
 /// Final strain `m_vl q` up to which small-strain theory is taken without a word.
@@ -88,6 +93,10 @@ pub struct Study {
     pub planned: Vec<PlannedCase>,
     /// What it expects of its results.
     pub expectations: Vec<Expectation>,
+    /// What it expects of single cases.
+    pub case_expectations: Vec<CaseExpectation>,
+    /// Longest wall time of a case, s.
+    pub case_seconds: f64,
     /// Times each case is run alone for its wall time; 0 where it is not timed.
     pub timing_repeats: usize,
     /// What is odd and runs all the same, as a person reads it.
@@ -117,6 +126,11 @@ impl Study {
         }
     }
 
+    /// Whether an expectation says that a record is to end as it did.
+    pub fn foresees(&self, record: &Record) -> bool {
+        self.case_expectations.iter().any(|expectation| expectation.foresees(record))
+    }
+
     /// The cases of a tier.
     pub fn cases(&self, tier: Tier) -> Vec<&Case> {
         self.planned.iter().filter(|planned| planned.tier <= tier).map(|planned| &planned.case).collect()
@@ -130,6 +144,52 @@ pub enum Purpose {
     Solving,
     /// Only its problem is wanted, for an exact solution: no grid has to fit it.
     Theory,
+}
+
+/// What the cases of a study share where a sweep does not say otherwise.
+#[derive(Clone, Copy)]
+struct Common {
+    task: Task,
+    scene: SceneKind,
+    column: Column,
+    soil: Material,
+    settings: ExplicitSettings,
+    formulation: Option<Formulation>,
+}
+
+impl Common {
+    /// The case of one combination of a sweep.
+    fn case_of(&self, one: &Combination, time_factors: &[f64]) -> Case {
+        Case {
+            task: self.task,
+            scene: self.scene,
+            column: Column {
+                points: Arrangement { offset: one.offset, ..self.column.points },
+                ..self.column
+            },
+            material: Material {
+                law: one.law,
+                continuity: one.continuity,
+                hydraulic_conductivity: one.hydraulic_conductivity,
+                water_bulk_modulus: one.water_bulk_modulus,
+                porosity: one.porosity,
+                ..self.soil
+            },
+            method: one.method,
+            integrator: one.integrator,
+            formulation: one.formulation,
+            settings: ExplicitSettings {
+                scheme: one.scheme,
+                drag: one.drag,
+                flip: one.flip,
+                mapping_back: one.mapping_back,
+            },
+            cells: one.cells,
+            points_per_cell: one.points_per_cell,
+            time_step: one.time_step,
+            time_factors: time_factors.to_vec(),
+        }
+    }
 }
 
 /// Complaints as they come up; every method gives a usable value or none.
@@ -148,14 +208,16 @@ impl Checker<'_> {
 
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.scene(&file.scene)?;
-        let column = self.geometry(file, scene);
+        let column = Column { points: self.arrangement(&file.points), ..self.geometry(file, scene) };
         self.column_height = Some(column.height);
         let material = self.material(&file.material, scene);
         self.porosity_at_the_end(file, scene, &column, &material);
         let warnings = self.large_for_small_strain(file, scene, &column, &material).into_iter().collect();
+        let task = self.task(file)?;
         let settings = self.settings(&file.integrator);
         let typed = file.integrator.formulation.as_ref().and_then(|word| self.formulation(word));
         let formulation = typed.or(scene.has_waves().then_some(Formulation::VW));
+        let common = Common { task, scene, column, soil: material, settings, formulation };
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
@@ -173,10 +235,7 @@ impl Checker<'_> {
         let mut planned: Vec<PlannedCase> = Vec::new();
         for block in &file.sweep {
             let table = block.get_ref();
-            let Some(sweep) = self.sweep(table, block.span(), &settings, formulation, scene, &material)
-            else {
-                continue;
-            };
+            let Some(sweep) = self.sweep(table, block.span(), &common) else { continue };
             if self.purpose == Purpose::Solving {
                 self.cells_fill_the_width(table, &column);
             }
@@ -186,24 +245,7 @@ impl Checker<'_> {
             };
             let tier = self.tier(table);
             for one in sweep.combinations() {
-                let case = Case {
-                    scene,
-                    column,
-                    material: Material { law: one.law, continuity: one.continuity, ..material },
-                    method: one.method,
-                    integrator: one.integrator,
-                    formulation: one.formulation,
-                    settings: ExplicitSettings {
-                        scheme: one.scheme,
-                        drag: one.drag,
-                        flip: one.flip,
-                        mapping_back: one.mapping_back,
-                    },
-                    cells: one.cells,
-                    points_per_cell: one.points_per_cell,
-                    time_step: one.time_step,
-                    time_factors: time_factors.clone(),
-                };
+                let case = common.case_of(&one, &time_factors);
                 match planned.iter_mut().find(|other| other.case == case) {
                     Some(other) => other.tier = other.tier.min(tier),
                     None => planned.push(PlannedCase { case, tier }),
@@ -212,6 +254,9 @@ impl Checker<'_> {
         }
         let expectations =
             file.expect.iter().filter_map(|entry| self.expectation(entry, scene, &references)).collect();
+        let case_expectations = self.case_expectations(file, scene, &references);
+        let case_seconds =
+            self.positive(file.case_seconds.as_ref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
         let timing_repeats =
             self.count(file.timing.repeats.as_ref(), "timing.repeats", 0..=1000).unwrap_or(0);
         Some(Study {
@@ -222,6 +267,8 @@ impl Checker<'_> {
             references,
             planned,
             expectations,
+            case_expectations,
+            case_seconds,
             timing_repeats,
             warnings,
         })
@@ -293,6 +340,7 @@ impl Checker<'_> {
             width: self.positive(table.width.as_ref(), "column.width", "m", seed.width),
             load: self.positive(table.load.as_ref(), "column.load", "Pa", seed.load),
             loading_time: self.not_negative(table.loading_time.as_ref(), "column.loading_time", "s"),
+            points: Arrangement::default(),
         }
     }
 
@@ -477,8 +525,7 @@ impl Checker<'_> {
     }
 
     fn drag(&mut self, word: &Spanned<String>) -> Option<Drag> {
-        let index = self.word(word, "drag", &["explicit", "implicit", "centred"])?;
-        Some([Drag::Explicit, Drag::Implicit, Drag::Centred][index])
+        Some(Drag::ALL[self.word(word, "drag", &Drag::ALL.map(Drag::name))?])
     }
 
     fn scheme(&mut self, word: &Spanned<String>) -> Option<Scheme> {
@@ -536,15 +583,8 @@ impl Checker<'_> {
         index.map_or(Tier::default(), |index| Tier::ALL[index])
     }
 
-    fn sweep(
-        &mut self,
-        table: &SweepTable,
-        span: Range<usize>,
-        settings: &ExplicitSettings,
-        formulation: Option<Formulation>,
-        scene: SceneKind,
-        soil: &Material,
-    ) -> Option<Sweep> {
+    fn sweep(&mut self, table: &SweepTable, span: Range<usize>, common: &Common) -> Option<Sweep> {
+        let Common { scene, column, soil, settings, formulation, .. } = *common;
         let before = self.diagnostics.len();
         if table.method.is_none() {
             self.complain(
@@ -595,6 +635,25 @@ impl Checker<'_> {
                 |_, typed| Some(*typed.get_ref()),
             ),
             law: self.list(table.law.as_ref(), "law", &[soil.law], |c, word| c.law(word, scene)),
+            porosity: self.list(table.porosity.as_ref(), "porosity", &[soil.porosity], |c, typed| {
+                Some(c.between(Some(typed), "porosity", 0.0, 1.0, soil.porosity))
+            }),
+            hydraulic_conductivity: self.list(
+                table.hydraulic_conductivity.as_ref(),
+                "hydraulic_conductivity",
+                &[soil.hydraulic_conductivity],
+                |c, typed| {
+                    let usual = soil.hydraulic_conductivity;
+                    Some(c.positive(Some(typed), "hydraulic_conductivity", "m/s", usual))
+                },
+            ),
+            water_bulk_modulus: self.list(
+                table.water_bulk_modulus.as_ref(),
+                "water_bulk_modulus",
+                &[soil.water_bulk_modulus],
+                |c, typed| Some(c.positive(Some(typed), "water_bulk_modulus", "Pa", soil.water_bulk_modulus)),
+            ),
+            offset: self.list(table.offset.as_ref(), "offset", &[column.points.offset], Self::offset),
             continuity: self.list(
                 table.continuity.as_ref(),
                 "continuity",

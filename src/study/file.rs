@@ -32,6 +32,10 @@ pub struct StudyFile {
     pub column: ColumnTable,
     pub layer: Option<Spanned<LayerTable>>,
     #[serde(default)]
+    pub points: PointsTable,
+    pub task: Typed<String>,
+    pub case_seconds: Typed<f64>,
+    #[serde(default)]
     pub material: MaterialTable,
     #[serde(default)]
     pub integrator: IntegratorTable,
@@ -41,6 +45,8 @@ pub struct StudyFile {
     pub sweep: Vec<Spanned<SweepTable>>,
     #[serde(default)]
     pub expect: Vec<Spanned<ExpectTable>>,
+    #[serde(default)]
+    pub expect_case: Vec<Spanned<ExpectCaseTable>>,
     #[serde(default)]
     pub timing: TimingTable,
 }
@@ -53,6 +59,15 @@ pub struct ColumnTable {
     pub load: Typed<f64>,
     pub dimensions: Typed<i64>,
     pub loading_time: Typed<f64>,
+}
+
+/// Where the points lie in their cells.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointsTable {
+    pub offset: Typed<f64>,
+    pub jitter: Typed<f64>,
+    pub filling: Typed<f64>,
 }
 
 impl ColumnTable {
@@ -127,6 +142,10 @@ pub struct SweepTable {
     pub time_factors: TypedList<f64>,
     pub law: TypedList<String>,
     pub continuity: TypedList<String>,
+    pub porosity: TypedList<f64>,
+    pub hydraulic_conductivity: TypedList<f64>,
+    pub water_bulk_modulus: TypedList<f64>,
+    pub offset: TypedList<f64>,
     pub path: TypedList<String>,
     pub tier: Typed<String>,
 }
@@ -182,6 +201,36 @@ pub struct ExpectTable {
     pub floor: Typed<FloorTable>,
     pub xfail: Typed<XfailTable>,
     pub tier: Typed<String>,
+}
+
+/// What single cases must do.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExpectCaseTable {
+    pub method: Typed<MethodEntry>,
+    pub integrator: Typed<String>,
+    pub cells: Typed<i64>,
+    pub points_per_cell: Typed<i64>,
+    pub drag: Typed<String>,
+    pub scheme: Typed<String>,
+    pub status: Typed<String>,
+    pub critical_step_within: Typed<f64>,
+    pub solid_drift_below: Typed<f64>,
+    pub water_drift_below: Typed<f64>,
+    pub error: Typed<RangeTable>,
+    pub quantity: Typed<String>,
+    pub norm: Typed<String>,
+    pub sample: Typed<String>,
+    pub time_factor: Typed<f64>,
+    pub reference: Typed<String>,
+    pub tier: Typed<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RangeTable {
+    pub below: Typed<f64>,
+    pub above: Typed<f64>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -10,7 +10,7 @@ mod shipped;
 mod sweep;
 
 pub use crate::solver::integrator::IntegratorKind;
-pub use case::{Case, step_label};
+pub use case::{Case, Task, step_label};
 pub use check::{Purpose, Study, Tier};
 pub use diagnostic::{Diagnostic, StudyError};
 pub use expectation::{Axis, Expectation, Measure, NEXT_FINER};

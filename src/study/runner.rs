@@ -1,20 +1,25 @@
 //! Runs the cases of a study: in parallel, resumable, every finished case on disk at once.
 
-use super::case::Case;
+use super::case::{Case, Task};
 use super::check::{Study, Tier};
-use crate::assess::measure::record_of;
+use crate::assess::measure::{record_of, record_of_critical_step};
 use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Record, RecordStore, Status, StoreError, WallSample};
 use crate::scene::{SceneProblem, column_parameters};
 use crate::solver::limits;
+use crate::solver::outcome::FailureKind;
 use crate::solver::run::{Kernel, Schedule, TimeStepRule};
 use std::cell::Cell;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Points of the settlement curve of a run.
 const HISTORY_POINTS: usize = 48;
+/// No limit on a case's time is longer than this, s: a century.
+const MOST_SECONDS: f64 = 3e9;
+/// Steps after which a run at a share of the critical step has shown that it is clean.
+const MOST_PROBE_STEPS: u64 = 1_000_000;
 /// First time factor of the settlement curve.
 const HISTORY_START: f64 = 1e-3;
 
@@ -175,6 +180,7 @@ fn run_and_keep(
 ) -> Result<Record, RunError> {
     let estimate = estimated_updates(case);
     let told = Cell::new(0);
+    let deadline = Instant::now() + Duration::from_secs_f64(study.case_seconds.min(MOST_SECONDS));
     let observe = |done: u64, expected: u64| {
         let now = u64::try_from(u128::from(estimate) * u128::from(done) / u128::from(expected.max(1)))
             .unwrap_or(estimate)
@@ -183,14 +189,14 @@ fn run_and_keep(
             tell(Progress::Advanced(now - told.get()));
             told.set(now);
         }
-        true
+        Instant::now() < deadline
     };
     let solved = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
         run_case(case, &study.references, Kernel::Fastest, alone, &observe)
     }));
     tell(Progress::Advanced(estimate - told.get()));
     let record = match solved {
-        Ok(Ok(record)) => record,
+        Ok(Ok(record)) => named_if_late(record, study.case_seconds),
         Ok(Err(source)) => return Err(RunError::Case { label: case.label(), source }),
         Err(_) => return Err(RunError::Crashed { label: case.label() }),
     };
@@ -214,6 +220,17 @@ fn run_and_keep(
     Ok(record)
 }
 
+/// The record of a case that was stopped because its time was over says so.
+fn named_if_late(mut record: Record, seconds: f64) -> Record {
+    if let Status::Failed(failure) = &mut record.status
+        && failure.kind == FailureKind::Stopped
+    {
+        failure.kind = FailureKind::TimedOut;
+        failure.reason = format!("it took longer than the {seconds} s that its study allows a case");
+    }
+    record
+}
+
 /// Runs one case; `alone` says whether nothing else competes for the cores meanwhile.
 ///
 /// # Errors
@@ -225,6 +242,9 @@ pub fn run_case(
     alone: bool,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
+    if case.task == Task::Stability {
+        return stability_of(case);
+    }
     let problem = SceneProblem::new(
         case.scene,
         &case.column,
@@ -240,6 +260,20 @@ pub fn run_case(
     let mut record = record_of(case, references, outcome)?;
     record.wall.push(WallSample { seconds, alone });
     Ok(record)
+}
+
+/// Predicts and observes the critical step of a case.
+fn stability_of(case: &Case) -> Result<Record, ExactError> {
+    let problem = SceneProblem::new(
+        case.scene,
+        &case.column,
+        &case.material,
+        case.method,
+        case.cells,
+        case.points_per_cell,
+    )?;
+    let end = case.time_factors.last().map_or(0.0, |factor| factor * case.seconds_per_time_factor());
+    Ok(record_of_critical_step(case, problem.critical_step(&case.settings, end, MOST_PROBE_STEPS)))
 }
 
 fn schedule_of(case: &Case, kernel: Kernel) -> Schedule {
@@ -258,6 +292,7 @@ fn schedule_of(case: &Case, kernel: Kernel) -> Schedule {
         settings: case.settings,
         kernel,
         integrator: case.integrator,
+        critical_step: None,
         formulation: case.formulation,
     }
 }

@@ -24,12 +24,16 @@ pub struct Sweep {
     pub mapping_back: Vec<bool>,
     pub law: Vec<Law>,
     pub continuity: Vec<Continuity>,
+    pub porosity: Vec<f64>,
+    pub hydraulic_conductivity: Vec<f64>,
+    pub water_bulk_modulus: Vec<f64>,
+    pub offset: Vec<f64>,
     /// Axes that step together, by key.
     pub path: Vec<String>,
 }
 
 /// Keys that a path can tie.
-pub const AXES: [&str; 12] = [
+pub const AXES: [&str; 16] = [
     "method",
     "integrator",
     "cells",
@@ -42,6 +46,10 @@ pub const AXES: [&str; 12] = [
     "continuity",
     "formulation",
     "scheme",
+    "porosity",
+    "hydraulic_conductivity",
+    "water_bulk_modulus",
+    "offset",
 ];
 
 /// One combination of a sweep.
@@ -59,6 +67,10 @@ pub struct Combination {
     pub mapping_back: bool,
     pub law: Law,
     pub continuity: Continuity,
+    pub porosity: f64,
+    pub hydraulic_conductivity: f64,
+    pub water_bulk_modulus: f64,
+    pub offset: f64,
 }
 
 impl Sweep {
@@ -76,6 +88,10 @@ impl Sweep {
             self.continuity.len(),
             self.formulation.len(),
             self.scheme.len(),
+            self.porosity.len(),
+            self.hydraulic_conductivity.len(),
+            self.water_bulk_modulus.len(),
+            self.offset.len(),
         ]
     }
 
@@ -125,6 +141,10 @@ impl Sweep {
                     formulation: self.formulation[at[10]]
                         .unwrap_or_else(|| self.integrator[at[1]].default_formulation()),
                     scheme: self.scheme[at[11]],
+                    porosity: self.porosity[at[12]],
+                    hydraulic_conductivity: self.hydraulic_conductivity[at[13]],
+                    water_bulk_modulus: self.water_bulk_modulus[at[14]],
+                    offset: self.offset[at[15]],
                 }
             })
             .collect()
@@ -148,6 +168,10 @@ mod tests {
             mapping_back: vec![true],
             law: vec![Law::Linear],
             continuity: vec![Continuity::Conservative],
+            porosity: vec![0.3],
+            hydraulic_conductivity: vec![1e-4],
+            water_bulk_modulus: vec![2.2e9],
+            offset: vec![0.0],
             formulation: vec![None],
             path: path.iter().map(|key| (*key).to_owned()).collect(),
         }

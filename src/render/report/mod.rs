@@ -8,6 +8,8 @@ mod labels;
 mod precision;
 mod profiles;
 mod section;
+mod stability;
+mod survival;
 mod work;
 
 use super::page::Page;
@@ -52,6 +54,7 @@ pub fn page_of(results: &[StudyResults<'_>]) -> Result<Page, ExactError> {
     for one in results {
         sections.push(section::of_study(one)?);
     }
+    sections.extend(survival::section(results));
     sections.push(appendix::section(results));
     Ok(Page {
         title: "Convergence report".to_owned(),

@@ -1,6 +1,6 @@
 //! The section of one study: what it asks, what was expected, figures, tables, checks.
 
-use super::{StudyResults, checks, convergence, precision, profiles, work};
+use super::{StudyResults, checks, convergence, precision, profiles, stability, work};
 use crate::exact::ExactError;
 use crate::render::page::{Block, Section};
 use crate::render::table::Mood;
@@ -23,9 +23,13 @@ pub fn of_study(results: &StudyResults<'_>) -> Result<Section, ExactError> {
     for axis in Axis::ALL {
         blocks.extend(convergence::blocks(results, axis));
     }
-    blocks.extend(work::blocks(results));
-    blocks.extend(precision::blocks(results));
-    blocks.push(checks::block(results));
+    let is_solved = results.records.iter().any(|record| record.stability.is_none());
+    blocks.extend(stability::blocks(results));
+    if is_solved {
+        blocks.extend(work::blocks(results));
+        blocks.extend(precision::blocks(results));
+        blocks.push(checks::block(results));
+    }
     if !results.judgements.is_empty() {
         let all: Vec<_> = results.judgements.iter().collect();
         blocks.push(Block::Details {

@@ -96,8 +96,13 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
                 break;
             }
             if let Err(StepFailure { kind, reason }) = self.advance_to(*output, observer) {
-                status =
-                    RunStatus::Failed(Failure { kind, step: self.counters.steps, time: self.time, reason });
+                status = RunStatus::Failed(Failure {
+                    kind,
+                    step: self.counters.steps,
+                    time: self.time,
+                    growth: None,
+                    reason,
+                });
                 break;
             }
             snapshots.push(self.snapshot());

@@ -39,6 +39,7 @@ fn schedule(
 ) -> Schedule {
     let per_factor = 1.0 / soil.coefficient_of_consolidation();
     Schedule {
+        critical_step: None,
         outputs: time_factors.iter().map(|factor| factor * per_factor).collect(),
         history: Vec::new(),
         rule,

@@ -1,0 +1,212 @@
+//! What a study expects of single cases: how they end, where their critical step lies, how large an
+//! error or a drift may be. Hard cases are judged by this, not by series.
+
+use super::class::{Class, Classification};
+use super::summary::Judgement;
+use super::verdict::{Check, Outcome, Verdict};
+use crate::record::{Record, Status};
+use crate::solver::explicit::Drag;
+use crate::solver::integrator::IntegratorKind;
+use crate::solver::method::Method;
+use crate::solver::scheme::Scheme;
+use crate::study::{Measure, Tier};
+
+/// Which cases of a study an expectation is about; what is not named fits every case.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Selection {
+    /// Method.
+    pub method: Option<Method>,
+    /// Integrator.
+    pub integrator: Option<IntegratorKind>,
+    /// Cells over the height.
+    pub cells: Option<usize>,
+    /// Points a cell.
+    pub points_per_cell: Option<usize>,
+    /// Time level of the drag.
+    pub drag: Option<Drag>,
+    /// Scheme of the explicit step.
+    pub scheme: Option<Scheme>,
+}
+
+/// Bounds on one error of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ErrorRange {
+    /// Which error.
+    pub measure: Measure,
+    /// It must be smaller than this.
+    pub below: f64,
+    /// It must be at least this.
+    pub above: f64,
+}
+
+/// What is wanted of a case; everything asked is judged.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CaseDemand {
+    /// Name of its end: `ok`, or a failure's.
+    pub status: Option<String>,
+    /// Largest relative difference of the observed from the predicted critical step.
+    pub critical_step_within: Option<f64>,
+    /// Bounds on an error.
+    pub error: Option<ErrorRange>,
+    /// Largest drift of the mass of solids at any output, relative.
+    pub solid_drift_below: Option<f64>,
+    /// Largest imbalance of the water at any output, over what left.
+    pub water_drift_below: Option<f64>,
+}
+
+/// An expectation of single cases.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseExpectation {
+    /// Which cases.
+    pub selection: Selection,
+    /// What of each.
+    pub demand: CaseDemand,
+    /// Smallest tier whose cases can answer it.
+    pub tier: Tier,
+    /// The file's line, for messages.
+    pub line: usize,
+}
+
+impl Selection {
+    fn fits(&self, record: &Record) -> bool {
+        fn fit<T: PartialEq>(asked: Option<&T>, has: &T) -> bool {
+            asked.is_none_or(|asked| asked == has)
+        }
+        let case = &record.case;
+        fit(self.method.as_ref(), &case.method)
+            && fit(self.integrator.as_ref(), &case.integrator)
+            && fit(self.cells.as_ref(), &case.cells)
+            && fit(self.points_per_cell.as_ref(), &case.points_per_cell)
+            && fit(self.drag.as_ref(), &case.settings.drag)
+            && fit(self.scheme.as_ref(), &case.settings.scheme)
+    }
+}
+
+impl CaseExpectation {
+    /// Whether it says how a record is to end.
+    pub fn foresees(&self, record: &Record) -> bool {
+        self.selection.fits(record)
+            && self.demand.status.as_ref().is_some_and(|status| *status == record.status.name())
+    }
+
+    /// One judgement a case that it selects; where it selects none, one that fails.
+    pub fn judge(&self, records: &[Record]) -> Vec<Judgement> {
+        let selected: Vec<&Record> = records.iter().filter(|record| self.selection.fits(record)).collect();
+        if selected.is_empty() {
+            let check = check("cases", false, None, "no case is selected".to_owned());
+            return vec![self.judgement("any case".to_owned(), vec![check])];
+        }
+        selected
+            .iter()
+            .map(|record| self.judgement(record.case.label(), self.demand.checks(record)))
+            .collect()
+    }
+
+    fn judgement(&self, subject: String, checks: Vec<Check>) -> Judgement {
+        let pass = checks.iter().all(|check| check.pass);
+        let told: Vec<&str> =
+            checks.iter().filter(|check| pass || !check.pass).map(|check| check.reason.as_str()).collect();
+        let classification = Classification {
+            class: Class::NotEvaluable,
+            reason: "a case is no series".to_owned(),
+            advice: None,
+            order: None,
+            floor: None,
+        };
+        let outcome = if pass { Outcome::Passed } else { Outcome::Failed };
+        let verdict = Verdict { pass, outcome, reason: told.join("; "), classification, checks };
+        Judgement { line: self.line, subject, verdict }
+    }
+}
+
+impl CaseDemand {
+    /// Everything asked, judged; comparisons are written so that NaN fails.
+    fn checks(&self, record: &Record) -> Vec<Check> {
+        let mut checks = Vec::new();
+        checks.extend(self.status.as_ref().map(|wanted| status_found(wanted, record)));
+        checks.extend(self.critical_step_within.map(|within| critical_step_found(within, record)));
+        checks.extend(self.error.as_ref().map(|range| error_found(range, record)));
+        let worst = |of: fn(&crate::record::Balance) -> f64| {
+            record.balance.iter().map(|balance| of(balance).abs()).reduce(f64::max)
+        };
+        checks
+            .extend(self.solid_drift_below.map(|below| {
+                drift_found("mass of solids", worst(|balance| balance.solid_mass_drift), below)
+            }));
+        checks.extend(
+            self.water_drift_below
+                .map(|below| drift_found("water", worst(|balance| balance.water_imbalance), below)),
+        );
+        checks
+    }
+}
+
+fn check(name: &str, pass: bool, measured: Option<f64>, reason: String) -> Check {
+    Check { name: name.to_owned(), pass, measured: measured.filter(|value| value.is_finite()), reason }
+}
+
+fn status_found(wanted: &str, record: &Record) -> Check {
+    let found = record.status.name();
+    let how = match &record.status {
+        Status::Ok => String::new(),
+        Status::Failed(failure) => {
+            format!(" at step {}, t = {:.3e} s: {}", failure.step, failure.time, failure.reason)
+        }
+    };
+    let pass = found == wanted;
+    let instead = if pass { String::new() } else { format!(" instead of {wanted}") };
+    check("status", pass, None, format!("{found}{instead}{how}"))
+}
+
+fn critical_step_found(within: f64, record: &Record) -> Check {
+    let Some(found) = &record.stability else {
+        return check("critical step", false, None, "the critical step was not searched".to_owned());
+    };
+    let Some(deviation) = found.deviation() else {
+        return check("critical step", false, None, "no step was observed to leave".to_owned());
+    };
+    let clean = found.probes_agree();
+    let probes: Vec<String> = found
+        .probes
+        .iter()
+        .map(|probe| match &probe.failure {
+            None => format!("{} runs {} steps", probe.share, probe.steps),
+            Some(failure) => format!("{} is {} at step {}", probe.share, failure.kind.name(), failure.step),
+        })
+        .collect();
+    let reason = format!(
+        "observed {:+.2} % of the predicted {:.4e} s, {} % allowed; {}",
+        100.0 * deviation,
+        found.predicted,
+        100.0 * within,
+        probes.join(", ")
+    );
+    check("critical step", deviation.abs() <= within && clean, Some(deviation), reason)
+}
+
+fn error_found(range: &ErrorRange, record: &Record) -> Check {
+    let measure = &range.measure;
+    let row =
+        record.error(measure.quantity, measure.sample, measure.norm, &measure.reference, measure.time_factor);
+    let Some(error) = row.map(|row| row.value.abs()) else {
+        return check("error", false, None, format!("no error at T_v = {}", measure.time_factor));
+    };
+    let pass = error < range.below && error >= range.above;
+    let reason = format!(
+        "{} {} {} at T_v = {}: {error:.3e} in {:.1e} … {:.1e}",
+        measure.quantity.name(),
+        measure.norm,
+        measure.sample.name(),
+        measure.time_factor,
+        range.above,
+        range.below
+    );
+    check("error", pass, Some(error), reason)
+}
+
+fn drift_found(what: &str, found: Option<f64>, below: f64) -> Check {
+    let Some(drift) = found else {
+        return check("drift", false, None, format!("no balance of the {what}"));
+    };
+    check("drift", drift < below, Some(drift), format!("{what}: drift {drift:.1e}, below {below:.0e}"))
+}

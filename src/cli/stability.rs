@@ -1,0 +1,147 @@
+//! `oedometer stability`: the critical step of a case, predicted and observed.
+
+use super::exit::Exit;
+use super::overrides::{self, StudyLines};
+use super::run::jobs_of;
+use crate::record::Record;
+use crate::render::stability;
+use crate::solver::critical::CriticalStep;
+use crate::study::{RunOptions, Tier, run_study};
+use clap::ValueEnum;
+use std::io::Write;
+
+/// Difference of observed from predicted step up to which they agree.
+const AGREEMENT: f64 = 0.02;
+
+/// Output format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people.
+    Table,
+    /// One row a case.
+    Csv,
+    /// Everything.
+    Json,
+}
+
+/// Arguments of `stability`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Scene, like `terzaghi`
+    scene: String,
+    /// Methods by name, comma-separated
+    #[arg(long, default_value = "GC-SRI-patch", value_name = "LIST")]
+    method: String,
+    /// Numbers of cells over the height, comma-separated
+    #[arg(long, default_value = "8", value_name = "LIST")]
+    cells: String,
+    /// Numbers of points a cell, comma-separated
+    #[arg(long, default_value = "2", value_name = "LIST")]
+    points_per_cell: String,
+    /// End of the runs beside the limit, as a time factor; a million steps at most
+    #[arg(long, default_value_t = 0.05)]
+    time_factor: f64,
+    /// Set a dotted key of a study file, like `integrator.drag=implicit` or `integrator.flip=0.99`
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    assignments: Vec<String>,
+    /// Output format
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+}
+
+/// Predicts, observes and prints; the verdict is that both agree within 2 %, that 0.97 of the
+/// predicted step runs clean and that 1.03 of it leaves with a name.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    let mut lines = StudyLines::default();
+    lines.give("title", "\"stability\"", "`stability`")?;
+    lines.give("scene", &overrides::quoted(&arguments.scene), "the scene's name")?;
+    lines.give("task", "\"stability\"", "`stability`")?;
+    lines.give("output.time_factors", &format!("[{:?}]", arguments.time_factor), "`--time-factor`")?;
+    lines.assign(&arguments.assignments)?;
+    let methods: Vec<String> =
+        arguments.method.split(',').map(|name| overrides::quoted(name.trim())).collect();
+    let study = lines.study_with([
+        format!("method = [{}]", methods.join(", ")),
+        format!("cells = [{}]", arguments.cells),
+        format!("points_per_cell = [{}]", arguments.points_per_cell),
+    ])?;
+    let options = RunOptions { jobs: jobs_of(None), tier: Tier::Full, shard: None, resume: false };
+    let mut report = run_study(&study, &options, None, &|_| {});
+    if let Some(error) = report.errors.pop() {
+        return Err(error.into());
+    }
+    let mut out = std::io::stdout().lock();
+    match arguments.format {
+        Format::Table => writeln!(out, "{}", stability::table_of(&report.records).to_text()?)?,
+        Format::Csv => out.write_all(csv_of(&report.records)?.as_bytes())?,
+        Format::Json => {
+            let rows: Vec<_> = report.records.iter().map(StabilityJson::of).collect();
+            writeln!(out, "{}", serde_json::to_string_pretty(&rows)?)?;
+        }
+    }
+    let agree = report.records.iter().filter_map(|record| record.stability.as_ref()).all(|found| {
+        found.deviation().is_some_and(|deviation| deviation.abs() <= AGREEMENT) && found.probes_agree()
+    });
+    Ok(if agree { Exit::Pass } else { Exit::VerdictFailed })
+}
+
+#[derive(serde::Serialize)]
+struct StabilityJson<'a> {
+    label: String,
+    deviation: Option<f64>,
+    stability: Option<&'a CriticalStep>,
+    case: &'a crate::study::Case,
+}
+
+impl<'a> StabilityJson<'a> {
+    fn of(record: &'a Record) -> Self {
+        Self {
+            label: record.case.label(),
+            deviation: record.stability.as_ref().and_then(CriticalStep::deviation),
+            stability: record.stability.as_ref(),
+            case: &record.case,
+        }
+    }
+}
+
+fn csv_of(records: &[Record]) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record([
+        "method",
+        "cells",
+        "points_per_cell",
+        "predicted_seconds",
+        "observed_seconds",
+        "wave_limit_seconds",
+        "drag_limit_seconds",
+        "combined_limit_seconds",
+        "share",
+        "status",
+        "steps",
+        "predicted_growth",
+        "observed_growth",
+    ])?;
+    for record in records {
+        let Some(found) = &record.stability else { continue };
+        for probe in &found.probes {
+            let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
+            let failure = probe.failure.as_ref();
+            writer.write_record([
+                record.case.method.to_string(),
+                record.case.cells.to_string(),
+                record.case.points_per_cell.to_string(),
+                format!("{:e}", found.predicted),
+                number(found.observed),
+                format!("{:e}", found.wave_limit),
+                format!("{:e}", found.drag_limit),
+                format!("{:e}", found.combined_limit),
+                probe.share.to_string(),
+                failure.map_or("ok", |failure| failure.kind.name()).to_owned(),
+                probe.steps.to_string(),
+                number(probe.predicted_growth),
+                number(failure.and_then(|failure| failure.growth)),
+            ])?;
+        }
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}

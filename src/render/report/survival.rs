@@ -1,0 +1,106 @@
+//! What each method survives: how every hard case ended, with its error where it has one.
+
+use super::StudyResults;
+use crate::assess::summary::first_norm;
+use crate::record::{Quantity, Record, Sample, Status};
+use crate::render::number;
+use crate::render::page::{Block, Section};
+use crate::render::table::{Cell, Column, Mood, Table};
+use crate::study::IntegratorKind;
+
+/// One table over the studies that say how their cases are to end; none where there are none.
+pub fn section(results: &[StudyResults<'_>]) -> Option<Section> {
+    let hard: Vec<&StudyResults<'_>> = results.iter().filter(|one| is_hard(one)).collect();
+    if hard.is_empty() {
+        return None;
+    }
+    let mut methods: Vec<String> = Vec::new();
+    for record in hard.iter().flat_map(|one| one.records) {
+        let name = runner_of(record);
+        if !methods.contains(&name) {
+            methods.push(name);
+        }
+    }
+    let mut columns = vec![Column::text("hard case"), Column::text("mesh")];
+    columns.extend(methods.iter().map(|method| Column::text(method.clone())));
+    let mut rows = Vec::new();
+    for one in &hard {
+        let mut setups: Vec<String> = Vec::new();
+        for record in one.records {
+            let setup = setup_of(record);
+            if !setups.contains(&setup) {
+                setups.push(setup);
+            }
+        }
+        for setup in setups {
+            let mut row: Vec<Cell> = vec![one.study.title.as_str().into(), setup.as_str().into()];
+            row.extend(methods.iter().map(|method| {
+                let of_setup = |record: &&Record| setup_of(record) == setup && runner_of(record) == *method;
+                one.records.iter().find(of_setup).map_or(Cell::Missing("not tried".to_owned()), end_of)
+            }));
+            rows.push(row);
+        }
+    }
+    let table = Table {
+        title: "How each case ended".to_owned(),
+        columns,
+        rows,
+        notes: vec![
+            "a number is the relative L_2 error of the pressure at the points at the last output; ✗ with the name of \
+             the failure and its step. What each study expects stands in its own section."
+                .to_owned(),
+        ],
+    };
+    let moods = hard.iter().all(|one| one.passes());
+    Some(Section {
+        heading: "What each method survives".to_owned(),
+        id: "survival".to_owned(),
+        mood: Some(if moods { Mood::Pass } else { Mood::Fail }),
+        blocks: vec![
+            Block::Paragraph(
+                "Every case ends in a state with a name: all outputs reached, or the failure with its step, its time \
+                 and the growth that was seen. Nothing that is not a number enters a record."
+                    .to_owned(),
+            ),
+            Block::Table(table),
+        ],
+    })
+}
+
+fn is_hard(results: &StudyResults<'_>) -> bool {
+    results.study.case_expectations.iter().any(|one| one.demand.status.is_some())
+}
+
+/// Method, with the integrator where it is not the explicit one.
+fn runner_of(record: &Record) -> String {
+    let case = &record.case;
+    if case.integrator == IntegratorKind::Explicit {
+        case.method.to_string()
+    } else {
+        format!("{}, {}", case.method, case.integrator.name())
+    }
+}
+
+fn setup_of(record: &Record) -> String {
+    let case = &record.case;
+    let variant = case.variant();
+    let comma = if variant.is_empty() { "" } else { ", " };
+    format!("{} cells, {} points{comma}{variant}", case.cells, case.points_per_cell)
+}
+
+fn end_of(record: &Record) -> Cell {
+    match &record.status {
+        Status::Failed(failure) => {
+            Cell::Verdict(Mood::Fail, format!("{} at step {}", failure.kind.name(), failure.step))
+        }
+        Status::Ok => {
+            let error =
+                record.references.first().zip(record.case.time_factors.last()).and_then(|(own, at)| {
+                    let norm = first_norm(Quantity::Pressure);
+                    record.error(Quantity::Pressure, Sample::Points, norm, &own.name, *at)
+                });
+            let words = error.map_or("ran".to_owned(), |row| number::error(row.value));
+            Cell::Verdict(Mood::Pass, words)
+        }
+    }
+}

@@ -1,0 +1,296 @@
+//! Faults around a run: killed, out of space, two at once, damaged records, a clock that jumps.
+//! Nothing finished is lost, and nothing wrong is taken for a result.
+
+use proptest::prelude::*;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// Cases of some milliseconds each: a kill falls before, into, between and behind them.
+const STUDY: &str = r#"title = "Short cases"
+scene = "terzaghi"
+
+[output]
+time_factors = [0.005]
+
+[[sweep]]
+method = ["MPM", "GIMP-SRI-patch", "GC-SRI-patch"]
+cells = [3, 4, 5]
+time_step = [{ stable = 0.4 }]
+"#;
+
+/// Moments of the kills, spread over a run.
+const KILLS: u32 = 50;
+
+fn program() -> Command {
+    Command::new(assert_cmd::cargo::cargo_bin("oedometer"))
+}
+
+fn folder_with_study() -> TempDir {
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("short.toml"), STUDY).expect("a file");
+    folder
+}
+
+fn run_in(folder: &Path, arguments: &[&str]) -> (i32, String) {
+    let output = program().current_dir(folder).args(arguments).output().expect("it starts");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!told.contains("panicked"), "{told}");
+    (output.status.code().expect("it ends by itself"), told)
+}
+
+/// Every file of the results but wall times, which differ from day to day.
+fn results(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    fn collect(folder: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) {
+        for entry in fs::read_dir(folder).expect("a folder").flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                collect(&path, files);
+            } else if path.file_name().is_some_and(|name| name != "wall.json") {
+                files.insert(path.clone(), fs::read(&path).expect("a file"));
+            }
+        }
+    }
+    let mut files = BTreeMap::new();
+    collect(folder, &mut files);
+    files
+        .into_iter()
+        .map(|(path, bytes)| (path.strip_prefix(folder).expect("within").to_owned(), bytes))
+        .collect()
+}
+
+fn whole_run() -> (BTreeMap<PathBuf, Vec<u8>>, Duration) {
+    let folder = folder_with_study();
+    let start = Instant::now();
+    assert_eq!(run_in(folder.path(), &["run", "short.toml", "--out", "out"]).0, 0);
+    (results(&folder.path().join("out")), start.elapsed())
+}
+
+#[test]
+fn a_run_killed_at_any_moment_resumes_to_the_same_bytes() {
+    let (expected, duration) = whole_run();
+    let mut interrupted = 0;
+    for kill in 0..KILLS {
+        let folder = folder_with_study();
+        let mut child = program()
+            .current_dir(folder.path())
+            .args(["run", "short.toml", "--out", "out", "--jobs", "2"])
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("it starts");
+        // Golden-ratio moments: spread evenly, and never in step with the cases.
+        std::thread::sleep(duration.mul_f64((f64::from(kill) * 0.618_033_988_75).fract()));
+        child.kill().expect("SIGKILL");
+        let ended = child.wait().expect("it is over");
+        interrupted += u32::from(!ended.success());
+        assert_eq!(run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]).0, 0);
+        let mut found = results(&folder.path().join("out"));
+        // What a kill left half written has a name of its own, and is nobody's result.
+        found.retain(|path, _| !path.to_string_lossy().ends_with(".part"));
+        assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>(), "kill {kill}");
+        assert!(found == expected, "other bytes after kill {kill}");
+    }
+    assert!(interrupted >= KILLS / 2, "only {interrupted} of {KILLS} runs were interrupted");
+}
+
+#[test]
+fn two_runs_in_one_folder_leave_the_same_bytes_as_one() {
+    let (expected, _) = whole_run();
+    let folder = folder_with_study();
+    let start = || {
+        program()
+            .current_dir(folder.path())
+            .args(["run", "short.toml", "--out", "out"])
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("it starts")
+    };
+    let both = [start(), start()];
+    for mut one in both {
+        assert!(one.wait().expect("it is over").success());
+    }
+    assert!(results(&folder.path().join("out")) == expected);
+}
+
+/// Runs under a limit on the size of any file, which is what a full disk looks like to a writer.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_and_leaves_no_half_record() {
+    let (expected, _) = whole_run();
+    let folder = folder_with_study();
+    let binary = assert_cmd::cargo::cargo_bin("oedometer");
+    // Blocks of 1024 bytes; a record has more, its wall times fewer.
+    let script = format!("trap '' XFSZ; ulimit -f 2; exec {} run short.toml --out out", binary.display());
+    let output =
+        Command::new("bash").current_dir(folder.path()).args(["-c", &script]).output().expect("bash");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(3), "{told}");
+    assert!(told.contains("cannot write") && !told.contains("panicked"), "{told}");
+    let left = results(&folder.path().join("out"));
+    assert!(left.keys().all(|path| !path.to_string_lossy().ends_with("record.json")), "{:?}", left.keys());
+    // There is room again.
+    assert_eq!(run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]).0, 0);
+    assert!(results(&folder.path().join("out")) == expected);
+}
+
+#[test]
+fn an_unwritable_folder_is_told_in_a_sentence() {
+    let folder = folder_with_study();
+    fs::write(folder.path().join("out"), "a file where the folder should be").expect("a file");
+    let (code, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out"]);
+    assert_eq!(code, 3, "{told}");
+    assert!(told.contains("cannot make the folder"), "{told}");
+}
+
+#[test]
+fn a_clock_that_jumps_changes_no_result() {
+    let (expected, _) = whole_run();
+    let folder = folder_with_study();
+    assert_eq!(run_in(folder.path(), &["run", "short.toml", "--out", "out"]).0, 0);
+    // Records from the future and from long ago are taken up alike: nothing looks at dates.
+    let cases = folder.path().join("out/short/cases");
+    for (i, case) in fs::read_dir(cases).expect("cases").flatten().enumerate() {
+        let record = fs::File::options().write(true).open(case.path().join("record.json")).expect("a record");
+        let jump = Duration::from_secs(3_000_000_000);
+        let now = std::time::SystemTime::now();
+        let time = if i % 2 == 0 { now + jump } else { std::time::UNIX_EPOCH + Duration::from_secs(1) };
+        record.set_modified(time).expect("a date");
+    }
+    let (code, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]);
+    assert!(code == 0 && told.contains("9 from disk"), "{told}");
+    assert!(results(&folder.path().join("out")) == expected);
+}
+
+/// The record of one case with its file.
+fn one_record() -> (TempDir, PathBuf, Vec<u8>) {
+    let folder = TempDir::new().expect("a folder");
+    let study = STUDY
+        .replace("[3, 4, 5]", "[3]")
+        .replace("[\"MPM\", \"GIMP-SRI-patch\", \"GC-SRI-patch\"]", "[\"MPM\"]");
+    fs::write(folder.path().join("short.toml"), study).expect("a file");
+    assert_eq!(run_in(folder.path(), &["run", "short.toml", "--out", "out"]).0, 0);
+    let case =
+        fs::read_dir(folder.path().join("out/short/cases")).expect("cases").flatten().next().expect("one");
+    let file = case.path().join("record.json");
+    let bytes = fs::read(&file).expect("a record");
+    (folder, file, bytes)
+}
+
+#[test]
+fn a_damaged_record_is_run_again_to_the_same_bytes() {
+    let (folder, file, sound) = one_record();
+    let middle = sound.len() / 2;
+    let cut = sound[..middle].to_vec();
+    let mut flipped = sound.clone();
+    flipped[middle] = b'#';
+    let mut zeroed = sound.clone();
+    zeroed[middle..middle + 512].fill(0);
+    let other_case = String::from_utf8_lossy(&sound).replace("\"cells\": 3", "\"cells\": 4").into_bytes();
+    let no_number =
+        String::from_utf8_lossy(&sound).replacen("\"value\": ", "\"value\": NaN, \"v\": ", 1).into_bytes();
+    for damaged in [cut, flipped, zeroed, other_case, no_number, Vec::new()] {
+        fs::write(&file, &damaged).expect("a file");
+        let (code, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]);
+        assert!(code == 0 && told.contains("0 from disk"), "{told}");
+        assert_eq!(fs::read(&file).expect("a record"), sound);
+    }
+}
+
+#[test]
+fn a_record_that_was_tampered_with_is_not_taken_up() {
+    // One digit of one result, in a file that is sound JSON and of the right case.
+    let (folder, file, sound) = one_record();
+    let text = String::from_utf8(sound.clone()).expect("words");
+    let place = text.find("\"pressure\": [").expect("a field") + 40;
+    let digit = text[place..].find(|letter: char| letter.is_ascii_digit()).expect("a digit") + place;
+    let mut tampered = text.into_bytes();
+    tampered[digit] = if tampered[digit] == b'7' { b'3' } else { b'7' };
+    fs::write(&file, &tampered).expect("a file");
+    let (code, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]);
+    assert!(code == 0 && told.contains("0 from disk"), "{told}");
+    assert_eq!(fs::read(&file).expect("a record"), sound);
+}
+
+#[test]
+fn a_case_that_takes_too_long_ends_with_a_name_and_is_tried_again() {
+    let folder = TempDir::new().expect("a folder");
+    let study = format!("case_seconds = 1e-3\n{}", STUDY.replace("[0.005]", "[5.0]"));
+    fs::write(folder.path().join("short.toml"), study).expect("a file");
+    let (code, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out"]);
+    assert_eq!(code, 3, "{told}");
+    assert!(told.contains("timed-out") && told.contains("0.001 s that its study allows"), "{told}");
+    let (_, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]);
+    assert!(told.contains("0 from disk"), "{told}");
+}
+
+/// A study with a piece cut out, doubled or overwritten.
+fn mangled() -> impl Strategy<Value = String> {
+    let whole = include_str!("../studies/hard-strain.toml");
+    (
+        0..whole.len(),
+        0..60_usize,
+        prop::sample::select(vec!["", "[", "]", "\"", "=", "-1", "1e999", "nan", "\n[[sweep]]\n", "é", "{}"]),
+    )
+        .prop_map(move |(start, length, put)| {
+            let edge =
+                |at: usize| (at..=whole.len()).find(|at| whole.is_char_boundary(*at)).unwrap_or(whole.len());
+            let (from, to) = (edge(start), edge((start + length).min(whole.len())));
+            format!("{}{put}{}", &whole[..from], &whole[to..])
+        })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(600))]
+
+    #[test]
+    fn a_mangled_study_is_taken_or_refused_with_a_place_and_never_panics(text in mangled()) {
+        let source = oedometer::study::StudySource { name: "mangled.toml".to_owned(), text };
+        if let Err(error) = oedometer::study::Study::check(&source) {
+            let told = error.to_string();
+            prop_assert!(told.contains("mangled.toml") || told.contains("error"), "{told}");
+            prop_assert!(told.len() > 20, "a sentence: {told}");
+        }
+    }
+
+    #[test]
+    fn any_text_is_refused_with_words(text in "\\PC{0,200}") {
+        let source = oedometer::study::StudySource { name: "any.toml".to_owned(), text };
+        let refused = oedometer::study::Study::check(&source);
+        prop_assert!(refused.is_err_and(|error| error.to_string().len() > 20));
+    }
+}
+
+#[test]
+fn any_damage_to_a_record_leaves_it_whole_or_unread() {
+    use oedometer::record::RecordStore;
+    let (folder, file, sound) = one_record();
+    let text = String::from_utf8(sound.clone()).expect("words");
+    let mut record: oedometer::record::Record = serde_json::from_str(&text).expect("a record");
+    record.digest.clear();
+    let store = RecordStore::new(&folder.path().join("out"), "short");
+    let mut seed = 7_u64;
+    for _ in 0..400 {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let mut damaged = sound.clone();
+        let at = usize::try_from(seed >> 33).expect("small") % damaged.len();
+        damaged[at] ^= 1 << (seed >> 29 & 7);
+        if damaged == sound {
+            continue;
+        }
+        fs::write(&file, &damaged).expect("a file");
+        // Another program's record is not taken up by this library either: only damage is looked at.
+        if let Some(read) = store.kept(&record.case) {
+            assert_same(&read, &record, at);
+        }
+    }
+}
+
+/// What was read is the record to the last number, or the damage went unseen.
+fn assert_same(read: &oedometer::record::Record, record: &oedometer::record::Record, at: usize) {
+    let mut read = read.clone();
+    read.wall.clone_from(&record.wall);
+    assert!(read == *record, "a flipped bit at byte {at} was taken for a result");
+}
