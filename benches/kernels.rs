@@ -1,13 +1,15 @@
 //! Kernels: one step by method, operators built anew, and the exact series.
 //!
 //! `cargo bench --bench kernels` ends with a table of nanoseconds per point and step, the unit in
-//! which the bar is set: at most 20 for `GC-SRI-patch` in one dimension with frozen weights.
+//! which the bar is set: at most 20 for `GC-SRI-patch` in one dimension with frozen weights, at most
+//! 150 in two.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use oedometer::exact::consolidation;
 use oedometer::scene::{Column, SceneKind, column_problem};
 use oedometer::solver::assembled::AssembledColumn;
+use oedometer::solver::assembled_plane::AssembledPlane;
 use oedometer::solver::body::{Body, Gimp, Hat, Problem, ShapeFunction};
 use oedometer::solver::explicit::ExplicitSettings;
 use oedometer::solver::implicit::drive::Plan;
@@ -28,6 +30,10 @@ const POINTS_PER_CELL: usize = 2;
 const STEPS: usize = 256;
 /// Rounds of the table; its figure is their median.
 const ROUNDS: usize = 31;
+/// Cells over the height and length of the layer.
+const PLANE_CELLS: [usize; 2] = [8, 32];
+const PLANE_STEPS: usize = 32;
+const PLANE_ROUNDS: usize = 15;
 
 /// A way to take a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +47,7 @@ fn main() {
     divan::main();
     if std::env::args().all(|argument| argument != "--test" && argument != "--list") {
         print_table();
+        print_plane_table();
     }
 }
 
@@ -191,6 +198,50 @@ fn print_table() {
             println!("{method:<16}{cells:>6}{point_wise:>12.1}{assembled:>12.1}{moving:>12.1}");
         }
     }
+}
+
+/// The same for the seed layer: the assembled and the point-wise step in two dimensions.
+fn print_plane_table() {
+    println!(
+        "\nns per point and step, two dimensions, frozen, {POINTS_PER_CELL} × {POINTS_PER_CELL} points a cell"
+    );
+    println!("{:<16}{:>6}{:>12}{:>12}", "method", "cells", "point-wise", "assembled");
+    for method in ["GIMP", "GIMP-SRI-patch", "GC-SRI-patch", "GC-Bbar-patch"] {
+        for cells in PLANE_CELLS {
+            let [point_wise, assembled] = plane_medians(method, cells);
+            println!("{method:<16}{cells:>6}{point_wise:>12.1}{assembled:>12.1}");
+        }
+    }
+}
+
+fn plane_medians(name: &str, cells: usize) -> [f64; 2] {
+    let method = Method::named(name).expect("a known method");
+    let (column, soil) = (Column::layer(), Material::default());
+    let problem = column_problem::<2>(SceneKind::CosineLayer, &column, &soil, method, cells, POINTS_PER_CELL)
+        .expect("the seed layer");
+    let settings = ExplicitSettings::default();
+    let dt = 0.5 * predicted_critical_step(&problem, &settings);
+    let mut body = Body::<2, 3, Gimp>::new(problem);
+    let mut plane = AssembledPlane::new(&body);
+    plane.set_step(dt, &settings);
+    let points = body.points.len();
+    let mut samples = [const { Vec::new() }; 2];
+    for _ in 0..PLANE_ROUNDS {
+        let start = Instant::now();
+        for _ in 0..PLANE_STEPS {
+            body.explicit_step(black_box(dt), &settings);
+        }
+        samples[0].push(start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        for _ in 0..PLANE_STEPS {
+            plane.step(black_box(dt), &settings);
+        }
+        samples[1].push(start.elapsed().as_secs_f64());
+    }
+    samples.map(|mut samples| {
+        samples.sort_by(f64::total_cmp);
+        1e9 * samples[PLANE_ROUNDS / 2] / (PLANE_STEPS * points) as f64
+    })
 }
 
 /// The kernels take turns, so that what drifts on the machine meets each alike.

@@ -82,6 +82,20 @@ fn the_error_of_reduced_integration_does_not_depend_on_the_water_s_stiffness() {
 }
 
 #[test]
+fn a_nearly_incompressible_skeleton_locks_all_but_b_bar() {
+    let at = |method: &str, ratio: f64| {
+        three(&start(method, 8, 2200.0, &format!("material.poissons_ratio = {ratio}")))[0]
+    };
+    for method in ["GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GIMP-SRI-nodal", "GIMP-mean", "GIMP-null-space"] {
+        assert!(at(method, 0.4999) > 0.5, "{method}: {}", at(method, 0.4999));
+    }
+    for method in ["GIMP-Bbar", "GIMP-Bbar-patch", "GC-Bbar-patch"] {
+        let (soft, stiff) = (at(method, 0.25), at(method, 0.4999));
+        assert!(stiff < 0.02 && (stiff / soft - 1.0).abs() < 0.05, "{method}: {soft} and {stiff}");
+    }
+}
+
+#[test]
 fn the_start_is_in_equilibrium_and_has_no_mean_pressure() {
     for base in ["rough", "smooth"] {
         for method in ["GIMP-SRI-patch", "GC-SRI-patch"] {

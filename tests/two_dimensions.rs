@@ -81,7 +81,10 @@ fn the_paper_s_grid_is_its_column_at_small_strain_whatever_the_method() {
 fn the_paper_s_grid_is_its_column_at_200_kpa_whatever_the_method() {
     for method in Method::names() {
         let (column, plane) = both(SceneKind::XieLeo, &method, 2e5, 0.1, Drag::Implicit);
-        assert_same(&format!("xie-leo {method}"), &column, &plane, 1e-9);
+        // A plane's cell feels slopes of the pressure that a column's does not: its null space is
+        // smaller, and the filter another one where the points of a cell differ.
+        let tolerance = if method.ends_with("null-space") { 1e-3 } else { 1e-9 };
+        assert_same(&format!("xie-leo {method}"), &column, &plane, tolerance);
     }
 }
 
@@ -94,7 +97,7 @@ fn layer(method: &str, base: Base) -> Problem<2> {
 
 #[test]
 fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
-    for name in ["MPM", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"] {
+    for name in Method::names().iter().filter(|name| !name.starts_with(['T', 'u'])) {
         for (drag, flip, mapping_back) in
             [(Drag::Explicit, 1.0, true), (Drag::Implicit, 1.0, false), (Drag::Implicit, 0.99, true)]
         {

@@ -28,6 +28,8 @@ pub enum Class {
     Exact,
     /// A term of lower order than the formal one governs the fine levels.
     Contaminated,
+    /// The body hardly moves: its cells cannot keep their volume and deform (volumetric locking).
+    Locked,
     /// Nothing can be said: levels are missing, not finite, too few or too close.
     NotEvaluable,
 }
@@ -36,13 +38,13 @@ pub enum Class {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
     "unknown class `{0}`: one of asymptotic, pre-asymptotic, floor-limited, oscillatory, \
-     divergent, superconvergent, exact, contaminated, not-evaluable"
+     divergent, superconvergent, exact, contaminated, locked, not-evaluable"
 )]
 pub struct UnknownClass(pub String);
 
 impl Class {
     /// Every class, in the order of documentation.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Asymptotic,
         Self::PreAsymptotic,
         Self::FloorLimited,
@@ -51,6 +53,7 @@ impl Class {
         Self::Superconvergent,
         Self::Exact,
         Self::Contaminated,
+        Self::Locked,
         Self::NotEvaluable,
     ];
 
@@ -65,6 +68,7 @@ impl Class {
             Self::Superconvergent => "superconvergent",
             Self::Exact => "exact",
             Self::Contaminated => "contaminated",
+            Self::Locked => "locked",
             Self::NotEvaluable => "not-evaluable",
         }
     }
@@ -95,6 +99,8 @@ pub struct Context {
     pub reference_accuracy: Option<f64>,
     /// What might put a floor under the errors.
     pub limiters: Vec<Limiter>,
+    /// Displacement over the exact one at each level, coarse to fine, where it is known.
+    pub mobility: Vec<f64>,
 }
 
 /// The class of a series, and why.

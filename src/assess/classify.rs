@@ -28,7 +28,10 @@ const PLATEAU: f64 = 1.5;
 
 /// The class of a series, with its reason.
 pub fn classify(series: &ErrorSeries, context: &Context) -> Classification {
-    let found = wrong_context(context).or_else(|| exact(series, context)).or_else(|| not_evaluable(series));
+    let found = wrong_context(context)
+        .or_else(|| exact(series, context))
+        .or_else(|| not_evaluable(series))
+        .or_else(|| locked(context));
     if let Some(found) = found {
         return found;
     }
@@ -53,6 +56,24 @@ fn wrong_context(context: &Context) -> Option<Classification> {
             let accuracy = context.reference_accuracy.filter(|value| *value != 0.0);
             wrong("reference accuracy", accuracy, 0.0)
         })
+}
+
+/// A body that reaches less than this share of its displacement on the finest mesh is locked.
+const LEAST_MOBILITY: f64 = 0.5;
+
+/// A body that gives way less than half of what it should on every mesh: whatever its errors do
+/// under refinement, they are those of a body at a standstill.
+fn locked(context: &Context) -> Option<Classification> {
+    if context.mobility.is_empty() || !context.mobility.iter().all(|share| *share < LEAST_MOBILITY) {
+        return None;
+    }
+    let shares: Vec<String> =
+        context.mobility.iter().map(|share| format!("{:.1} %", 100.0 * share)).collect();
+    Some(advised(
+        Class::Locked,
+        format!("the body reaches {} of its displacement: volumetric locking", shares.join(", ")),
+        "take the divergence at the cell centres, for the skeleton too where that is what is incompressible",
+    ))
 }
 
 fn exact(series: &ErrorSeries, context: &Context) -> Option<Classification> {

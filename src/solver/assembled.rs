@@ -14,7 +14,6 @@
 
 use super::body::{Body, ShapeFunction};
 use super::explicit::ExplicitSettings;
-use super::method::{PressureIntegration, Recovery, StrainGradient};
 
 /// Nodes that couple to one side: basis (1) + patch (1) + centre or composite (1).
 const REACH: usize = 3;
@@ -257,37 +256,9 @@ impl AssembledColumn {
         let strained = inner(&self.state.strain_displacement);
         let flux = inner(&self.state.flux_displacement);
         let moved = inner(&self.state.displacement);
-        let stride = *body.grid.node_stride();
-        for cell in 0..body.cells.pressure_increment.len() {
-            if body.cells.is_occupied(cell) {
-                let coupling = body.material.water_bulk_modulus / body.cells.porosity[cell];
-                body.cells.pressure_increment[cell] =
-                    -coupling * body.cells.centre_divergence(&body.grid, cell, &flux);
-            }
-        }
-        for point in 0..body.points.len() {
-            let gradient = match body.method.strain {
-                StrainGradient::Standard => body.basis.gradient(&stride, point, &strained),
-                StrainGradient::Cmpm => body.composite.gradient(&stride, point, &strained),
-            };
-            body.points.effective_stress[point][0][0] += body.stiffness.stress(&gradient)[0][0];
-            body.points.pressure[point] += match (body.method.pressure, body.method.recovery) {
-                (PressureIntegration::Points, _) => {
-                    let porosity = body.material.porosity_at(body.points.volume_ratio[point]);
-                    -body.material.water_bulk_modulus / porosity
-                        * body.basis.divergence(&stride, point, &flux)
-                }
-                (PressureIntegration::Sri, Recovery::Constant) => {
-                    body.cells.pressure_increment[body.cells.of_point[point]]
-                }
-                (PressureIntegration::Sri, Recovery::Patch) => {
-                    body.patch.value(&body.grid, point, &body.cells.pressure_increment)
-                }
-            };
-            body.points.displacement[point][0] += body.basis.value(&stride, point, &moved)[0];
-        }
+        let rows = body.volumetric_rows();
+        body.displace_points(&rows, &strained, &flux, &moved);
         for node in 0..body.nodes.len() {
-            body.nodes.displacement[node][0] += moved[node][0];
             body.nodes.solid_velocity[node][0] = self.state.solid_velocity[node + REACH];
             body.nodes.water_velocity[node][0] = self.state.water_velocity[node + REACH];
         }
@@ -395,68 +366,42 @@ fn assemble_bands<const D: usize, const W: usize, S: ShapeFunction<W>>(
 ) {
     let stride = body.grid.node_stride();
     let modulus = body.material.oedometric_modulus();
-    let mut unit = vec![[0.0; D]; body.nodes.len()];
+    let bulk = body.stiffness.lame + 2.0 / 3.0 * body.stiffness.shear;
+    let volumetric = body.volumetric_rows();
     for point in 0..body.points.len() {
         let volume = body.points.volume(point);
         let solid =
             body.points.initial_volume[point] * (1.0 - body.material.porosity) * body.material.grain_density;
+        let strain = body.strain_row(point, &volumetric);
         let mut touched = [(0, 0.0, 0.0); 4];
         let mut count = 0;
         body.basis.visit(stride, point, |node, weight, gradient| {
             touched[count] = (node, weight, gradient[0]);
             count += 1;
         });
-        let nearest = touched[0].0;
-        // Every node within reach of the point, tried with a unit displacement.
-        for column in nearest.saturating_sub(REACH)..(nearest + W + REACH).min(body.nodes.len()) {
-            unit[column] = [1.0; D];
-            let strain = match body.method.strain {
-                StrainGradient::Standard => body.basis.gradient(stride, point, &unit),
-                StrainGradient::Cmpm => body.composite.gradient(stride, point, &unit),
-            }[0][0];
-            let pressure = pressure_of(body, point, &unit);
-            let value = body.basis.value(stride, point, &unit)[0];
-            unit[column] = [0.0; D];
-            if strain == 0.0 && pressure == 0.0 && value == 0.0 {
-                continue;
-            }
-            for (node, weight, gradient) in &touched[..count] {
-                if column + REACH < *node || column > node + REACH {
-                    continue;
+        for (node, weight, gradient) in &touched[..count] {
+            // A weight that is round-off may reach further than the band; its row is at rest.
+            let place = |column: usize| (column + REACH).checked_sub(*node).filter(|place| *place < BAND);
+            let row = &mut rows[*node];
+            for entry in &strain {
+                if let Some(place) = place(entry.node) {
+                    row.skeleton_stiffness[place] +=
+                        volume * gradient * (modulus * entry.gradient[0] + bulk * entry.dilation[0]);
                 }
-                let place = column + REACH - node;
-                let row = &mut rows[*node];
-                row.skeleton_stiffness[place] += volume * gradient * modulus * strain;
-                row.pressure_stiffness[place] -= volume * gradient * pressure;
-                row.projection[place] += row.free * weight * solid * value * row.per_solid_mass;
             }
-        }
-    }
-}
-
-/// Pressure at a point under a flux displacement of the nodes.
-fn pressure_of<const D: usize, const W: usize, S: ShapeFunction<W>>(
-    body: &Body<D, W, S>,
-    point: usize,
-    flux: &[[f64; D]],
-) -> f64 {
-    let at_cell = |cell: usize| {
-        if body.cells.is_occupied(cell) {
-            let coupling = body.material.water_bulk_modulus / body.cells.porosity[cell];
-            -coupling * body.cells.centre_divergence(&body.grid, cell, flux)
-        } else {
-            0.0
-        }
-    };
-    match (body.method.pressure, body.method.recovery) {
-        (PressureIntegration::Points, _) => {
-            let porosity = body.material.porosity_at(body.points.volume_ratio[point]);
-            -body.material.water_bulk_modulus / porosity
-                * body.basis.divergence(body.grid.node_stride(), point, flux)
-        }
-        (PressureIntegration::Sri, Recovery::Constant) => at_cell(body.cells.of_point[point]),
-        (PressureIntegration::Sri, Recovery::Patch) => {
-            body.patch.entries(&body.grid, point).map(|(cell, weight)| weight * at_cell(cell)).sum()
+            for (site, share) in &volumetric.recovery[point] {
+                for (column, coefficient) in &volumetric.divergence[*site] {
+                    if let Some(place) = place(*column) {
+                        row.pressure_stiffness[place] +=
+                            volume * gradient * share * volumetric.coupling[*site] * coefficient[0];
+                    }
+                }
+            }
+            for (column, value, _) in &touched[..count] {
+                if let Some(place) = place(*column) {
+                    row.projection[place] += row.free * weight * solid * value * row.per_solid_mass;
+                }
+            }
         }
     }
 }

@@ -118,7 +118,7 @@ impl<const D: usize> AssembledPlane<D> {
                 forces[row].push((site, force.map(|component| rows.coupling[site] * component)));
             }
         }
-        let skeleton = body.skeleton_stiffness();
+        let skeleton = body.skeleton_stiffness(&rows);
         let projection = projection(body);
         let mut plane = Self {
             constants: nodes.iter().map(|node| NodeConstants::of(body, *node)).collect(),

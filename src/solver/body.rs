@@ -3,9 +3,10 @@
 use super::cells::Cells;
 use super::grid::{Grid, Tensor, Vector};
 use super::material::{Continuity, Material, Stiffness};
-use super::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
+use super::method::{Basis, Configuration, Method, Recovery};
 use super::nodes::{Nodes, Support};
 use super::points::Points;
+use super::recovered::Recovered;
 use super::recovery::PatchRows;
 use super::shape::{self, Row};
 use super::stencil::Stencils;
@@ -113,6 +114,8 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     pub composite: Stencils<D, 4>,
     /// `R` of the patch recovery.
     pub patch: PatchRows<D>,
+    /// Values on their way from the sites of `D` to the points, where a method needs them kept.
+    pub recovered: Recovered<D>,
     /// Mixture that passed the surface since the start, `∫ v_s + n(v_w − v_s) dt`, m.
     pub surface_flux: f64,
     shape_function: std::marker::PhantomData<S>,
@@ -138,7 +141,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let solid_cell_mass = (0..D).map(|_| grid.cell_size).product::<f64>()
             * (1.0 - material.porosity)
             * material.grain_density;
-        let composite_rows = if method.strain == StrainGradient::Cmpm { count } else { 0 };
+        let composite_rows = if method.strain.is_composite() { count } else { 0 };
         let patch_rows = if method.uses_patch() { count } else { 0 };
         let mut body = Self {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
@@ -150,6 +153,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             basis: Stencils::with_points(count),
             composite: Stencils::with_points(composite_rows),
             patch: PatchRows::with_points(patch_rows),
+            recovered: Recovered::of(&grid, count, &method),
             surface_flux: 0.0,
             grid,
             points,
@@ -261,7 +265,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// the surface there.
     pub fn build_operators(&mut self) {
         self.cells.locate(&self.grid, &self.points, self.material.porosity);
-        if self.method.strain == StrainGradient::Cmpm {
+        if self.method.strain.is_composite() {
             self.cells.find_reached(&self.grid, &self.points);
         }
         let per_cell = self.grid.inverse_cell_size();
@@ -271,7 +275,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             let place = self.grid.held_in_cells(position);
             let rows = std::array::from_fn(|d| S::row(place[d], cell[d], half[d] * per_cell));
             self.basis.set(&self.grid, point, &rows);
-            if self.method.strain == StrainGradient::Cmpm {
+            if self.method.strain.is_composite() {
                 let home = self.grid.flat_cell(&cell);
                 let rows = std::array::from_fn(|d| {
                     let stride = self.grid.cell_stride()[d];
@@ -421,7 +425,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 impl Method {
     /// Whether increments come back from the cells by a patch.
     pub fn uses_patch(&self) -> bool {
-        self.pressure == PressureIntegration::Sri && self.recovery == Recovery::Patch
+        self.pressure.is_by_cells() && self.recovery == Recovery::Patch
     }
 
     /// Whether the domains of the points follow the deformation.

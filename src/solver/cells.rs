@@ -126,6 +126,18 @@ impl<const D: usize> Cells<D> {
         self.point_count[cell] > 0
     }
 
+    /// Current volume of a cell's points, m^D.
+    #[inline]
+    pub fn volume(&self, cell: usize) -> f64 {
+        self.volume[cell]
+    }
+
+    /// Lowest node of a cell.
+    #[inline]
+    pub fn first_node(&self, cell: usize) -> usize {
+        self.first_node[cell]
+    }
+
     /// Occupied cells in index order.
     pub fn occupied(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.point_count.len()).filter(|cell| self.is_occupied(*cell))

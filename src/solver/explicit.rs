@@ -153,10 +153,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// domain.
     fn update_effective_stress(&mut self, dt: f64) {
         match self.method.strain {
-            StrainGradient::Standard => self.stress_from(dt, |body, point| {
+            StrainGradient::Standard | StrainGradient::Bbar => self.stress_from(dt, |body, point| {
                 body.basis.gradient(body.grid.node_stride(), point, &body.nodes.solid_velocity)
             }),
-            StrainGradient::Cmpm => self.stress_from(dt, |body, point| {
+            StrainGradient::Cmpm | StrainGradient::CmpmBbar => self.stress_from(dt, |body, point| {
                 body.composite.gradient(body.grid.node_stride(), point, &body.nodes.solid_velocity)
             }),
         }
@@ -164,13 +164,29 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     #[inline]
     fn stress_from(&mut self, dt: f64, velocity_gradient: impl Fn(&Self, usize) -> Tensor<D>) {
-        let deforms = self.configuration.deforms();
+        let (deforms, is_bbar) = (self.configuration.deforms(), self.method.strain.is_bbar());
+        if is_bbar {
+            self.recover_dilation_rates();
+        }
         for point in 0..self.points.len() {
             let gradient = self.pushed_forward(point, velocity_gradient(self, point));
-            let increment = gradient.map(|row| row.map(|rate| dt * rate));
+            let mut increment = gradient.map(|row| row.map(|rate| dt * rate));
             let before = self.points.volume_ratio[point];
             if deforms {
                 self.deform(point, &increment);
+            }
+            let mut shared = 0.0;
+            if is_bbar {
+                // Of the kinematics only the volume goes the way of the water's.
+                let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
+                let dilation = dt * (self.recovered.at_points[point] - trace);
+                if deforms {
+                    self.points.volume_ratio[point] *= stretch_of(dilation);
+                }
+                for d in 0..D {
+                    increment[d][d] += dilation / D as f64;
+                }
+                shared = self.stiffness.shared_dilation_stress::<D>(dilation);
             }
             if deforms && D > 1 {
                 let stress = &mut self.points.effective_stress[point];
@@ -182,6 +198,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 for e in 0..D {
                     self.points.effective_stress[point][d][e] += modulus * stress[d][e];
                 }
+                self.points.effective_stress[point][d][d] += modulus * shared;
             }
         }
     }
@@ -211,15 +228,31 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         self.nodal_flux();
         self.surface_flux += dt * self.surface.mean_of(&self.grid, &self.points, &self.nodes.flux);
         match (self.method.pressure, self.method.recovery) {
-            (PressureIntegration::Points, _) => self.pressure_at_points(dt),
-            (PressureIntegration::Sri, Recovery::Constant) => {
-                self.pressure_increments_at_centres(dt);
+            (PressureIntegration::Points, Recovery::NullSpace) => {
+                for point in 0..self.points.len() {
+                    self.recovered.at_points[point] = dt * self.pressure_rate_at(point);
+                }
+                self.recover();
+                self.add_recovered_pressures();
+            }
+            (PressureIntegration::Points, _) => {
+                for point in 0..self.points.len() {
+                    self.points.pressure[point] += dt * self.pressure_rate_at(point);
+                }
+            }
+            (_, Recovery::Constant | Recovery::NullSpace) => {
+                self.pressure_increments_of_cells(dt);
                 for point in 0..self.points.len() {
                     self.points.pressure[point] += self.cells.pressure_increment[self.cells.of_point[point]];
                 }
             }
-            (PressureIntegration::Sri, Recovery::Patch) => {
-                self.pressure_increments_at_centres(dt);
+            (_, Recovery::Nodal) => {
+                self.pressure_increments_of_cells(dt);
+                self.recover();
+                self.add_recovered_pressures();
+            }
+            (_, Recovery::Patch) => {
+                self.pressure_increments_of_cells(dt);
                 for point in 0..self.points.len() {
                     self.points.pressure[point] +=
                         self.patch.value(&self.grid, point, &self.cells.pressure_increment);
@@ -228,11 +261,29 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    fn pressure_at_points(&mut self, dt: f64) {
-        for point in 0..self.points.len() {
-            let porosity = self.material.porosity_at(self.points.volume_ratio[point]);
-            let rate = self.volume_rate(porosity, |field| self.divergence_at_point(point, field));
-            self.points.pressure[point] -= dt * self.material.water_bulk_modulus / porosity * rate;
+    /// Rate of a point's pressure by its own divergence, Pa/s.
+    #[inline]
+    fn pressure_rate_at(&self, point: usize) -> f64 {
+        let porosity = self.material.porosity_at(self.points.volume_ratio[point]);
+        let rate = self.volume_rate(porosity, |field| self.divergence_at_point(point, field));
+        -self.material.water_bulk_modulus / porosity * rate
+    }
+
+    fn add_recovered_pressures(&mut self) {
+        for (pressure, increment) in self.points.pressure.iter_mut().zip(&self.recovered.at_points) {
+            *pressure += increment;
+        }
+    }
+
+    fn pressure_increments_of_cells(&mut self, dt: f64) {
+        if self.method.pressure == PressureIntegration::Mean {
+            self.average_over_cells(|body, point| {
+                let porosity = body.cells.porosity[body.cells.of_point[point]];
+                let rate = body.volume_rate(porosity, |field| body.divergence_at_point(point, field));
+                -dt * body.material.water_bulk_modulus / porosity * rate
+            });
+        } else {
+            self.pressure_increments_at_centres(dt);
         }
     }
 

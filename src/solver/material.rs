@@ -197,6 +197,14 @@ impl Stiffness {
         }
         stress
     }
+
+    /// Normal stress that the gradient `(b/D) I` of B-bar lacks: the volume `b` that B-bar adds to a
+    /// strain is shared by three directions, `b/3` each (Hughes 1980, Eq. 12), in whatever dimension
+    /// the problem is solved.
+    #[inline]
+    pub fn shared_dilation_stress<const D: usize>(&self, dilation: f64) -> f64 {
+        2.0 * self.shear * dilation * (1.0 / 3.0 - 1.0 / D as f64)
+    }
 }
 
 #[cfg(test)]

@@ -17,12 +17,45 @@ pub enum Basis {
 
 /// Gradient from which the effective stress takes its strain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum StrainGradient {
     /// The gradient of the basis.
     Standard,
     /// Lagrange interpolant through the nodes of the cell and of its neighbours.
     Cmpm,
+    /// The gradient of the basis with its trace replaced by the method's own volumetric rate, the
+    /// one that drives the pressure: B-bar by cells (Hughes 1980), in the rate form F-bar (de Souza
+    /// Neto et al. 1996; Coombs et al. 2018 for material points).
+    Bbar,
+    /// The composite gradient with its trace replaced so.
+    CmpmBbar,
+}
+
+impl StrainGradient {
+    /// Every choice.
+    pub const ALL: [Self; 4] = [Self::Standard, Self::Cmpm, Self::Bbar, Self::CmpmBbar];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Standard => "standard",
+            Self::Cmpm => "cmpm",
+            Self::Bbar => "bbar",
+            Self::CmpmBbar => "cmpm-bbar",
+        }
+    }
+
+    /// Whether the Lagrange interpolant is taken.
+    #[inline]
+    pub fn is_composite(self) -> bool {
+        matches!(self, Self::Cmpm | Self::CmpmBbar)
+    }
+
+    /// Whether the skeleton's volumetric strain goes the way of the water's.
+    #[inline]
+    pub fn is_bbar(self) -> bool {
+        matches!(self, Self::Bbar | Self::CmpmBbar)
+    }
 }
 
 /// Where the divergence that drives the pore pressure is taken.
@@ -33,16 +66,69 @@ pub enum PressureIntegration {
     Points,
     /// At the cell centres: selective reduced integration.
     Sri,
+    /// Mean over the points of a cell, weighted with their volumes: strain smoothing by cells (Mast,
+    /// Mackenzie-Helnwein, Arduino, Miller & Shin 2012).
+    Mean,
+}
+
+impl PressureIntegration {
+    /// Every choice.
+    pub const ALL: [Self; 3] = [Self::Points, Self::Sri, Self::Mean];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Points => "points",
+            Self::Sri => "sri",
+            Self::Mean => "mean",
+        }
+    }
+
+    /// Whether there is one value a cell.
+    #[inline]
+    pub fn is_by_cells(self) -> bool {
+        self != Self::Points
+    }
 }
 
 /// How pressure increments come back from the cell centres to the points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum Recovery {
     /// Each point takes its cell's increment.
     Constant,
     /// Moving least squares over the surrounding block of cells (MLSA).
     Patch,
+    /// Means at the nodes of their cells, interpolated to the points: nodal averaging of the
+    /// volumetric rate (Detournay & Dzik 2006; Jassim, Stolle & Vermeer 2013).
+    Nodal,
+    /// Of values at the points, without the part that no nodal force feels: null-space filter by
+    /// cells (Gritton & Berzins 2017; Tran & Sołowski 2019).
+    NullSpace,
+}
+
+impl Recovery {
+    /// Every choice.
+    pub const ALL: [Self; 4] = [Self::Constant, Self::Patch, Self::Nodal, Self::NullSpace];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::Patch => "patch",
+            Self::Nodal => "nodal",
+            Self::NullSpace => "null-space",
+        }
+    }
+
+    /// Why a recovery does not go with a place of the divergence, where it does not.
+    pub fn refuses(self, pressure: PressureIntegration) -> Option<&'static str> {
+        match (self, pressure.is_by_cells()) {
+            (Self::NullSpace, true) => Some("a single value in a cell has no null space"),
+            (Self::Patch | Self::Nodal, false) => Some("values at the points need no recovery from cells"),
+            _ => None,
+        }
+    }
 }
 
 /// Configuration on which weights are built.
@@ -99,13 +185,25 @@ pub struct Method {
     pub configuration: Option<Configuration>,
 }
 
-/// The paper's ladder of methods, without prefixes: one line a method.
-const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 5] = [
+/// The paper's ladder of methods and mitigations beside it, without prefixes: one line a method.
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 11] = [
     ("MPM", Basis::Hat, StrainGradient::Standard, PressureIntegration::Points, Recovery::Constant),
     ("GIMP", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Points, Recovery::Constant),
     ("GIMP-SRI", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Constant),
     ("GIMP-SRI-patch", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Patch),
     ("GC-SRI-patch", Basis::Cpgimp, StrainGradient::Cmpm, PressureIntegration::Sri, Recovery::Patch),
+    (
+        "GIMP-null-space",
+        Basis::Cpgimp,
+        StrainGradient::Standard,
+        PressureIntegration::Points,
+        Recovery::NullSpace,
+    ),
+    ("GIMP-mean", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Mean, Recovery::Constant),
+    ("GIMP-SRI-nodal", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Nodal),
+    ("GIMP-Bbar", Basis::Cpgimp, StrainGradient::Bbar, PressureIntegration::Sri, Recovery::Constant),
+    ("GIMP-Bbar-patch", Basis::Cpgimp, StrainGradient::Bbar, PressureIntegration::Sri, Recovery::Patch),
+    ("GC-Bbar-patch", Basis::Cpgimp, StrainGradient::CmpmBbar, PressureIntegration::Sri, Recovery::Patch),
 ];
 
 /// Prefix of the names of methods with weights on the initial configuration.
@@ -144,10 +242,10 @@ impl Method {
 
     /// The operators in the words of a study file: `basis+strain+pressure+recovery`.
     pub fn choices(&self) -> String {
-        let choices = format!("{}+{}+{}", word(self.basis), word(self.strain), word(self.pressure));
-        match self.pressure {
-            PressureIntegration::Points => choices,
-            PressureIntegration::Sri => format!("{choices}+{}", word(self.recovery)),
+        let choices = format!("{}+{}+{}", word(self.basis), self.strain.name(), self.pressure.name());
+        match (self.pressure, self.recovery) {
+            (PressureIntegration::Points, Recovery::Constant) => choices,
+            _ => format!("{choices}+{}", self.recovery.name()),
         }
     }
 

@@ -26,6 +26,7 @@ pub mod nodes;
 pub mod outcome;
 pub mod points;
 pub mod prediction;
+pub mod recovered;
 pub mod recovery;
 pub mod run;
 pub mod scheme;

@@ -70,7 +70,7 @@ impl<const D: usize> UndrainedSystem<D> {
     /// When it is singular: a body that nothing holds.
     pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Result<Self, Singular> {
         let rows = body.volumetric_rows();
-        let mut stiffness = body.skeleton_stiffness();
+        let mut stiffness = body.skeleton_stiffness(&rows);
         stiffness.add(&body.pressure_stiffness(&rows));
         let unknowns = FreeComponents::of(&body.nodes.free);
         let matrix = unknowns.banded(&stiffness);
@@ -128,10 +128,25 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         for (value, coupling) in pressures.iter_mut().zip(&rows.coupling) {
             *value *= -coupling;
         }
-        let pressures = rows.at_points(&pressures);
+        self.change_points(rows, strained, &pressures, displacements);
+    }
+
+    /// Displaces nodes and points by a field, strains the skeleton by another and changes the
+    /// pressures by those of the sites, Pa.
+    pub fn change_points(
+        &mut self,
+        rows: &VolumetricRows<D>,
+        strained: &[Vector<D>],
+        site_pressures: &[f64],
+        displacements: &[Vector<D>],
+    ) {
+        let pressures = rows.at_points(site_pressures);
         for point in 0..self.points.len() {
-            let gradient = self.gradient_of(point, strained);
-            let stress = self.stiffness.stress(&gradient);
+            let (gradient, dilation) = self.gradient_of(point, rows, strained);
+            let mut stress = self.stiffness.stress(&gradient);
+            for d in 0..D {
+                stress[d][d] += self.stiffness.shared_dilation_stress::<D>(dilation);
+            }
             let moved = self.basis.value(self.grid.node_stride(), point, displacements);
             self.points.pressure[point] += pressures[point];
             for d in 0..D {
@@ -154,16 +169,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// Gradient of a nodal field from which a point's effective stress takes its strain.
-    fn gradient_of(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        let mut gradient = [[0.0; D]; D];
-        for (node, coefficients) in self.strain_row(point) {
-            for d in 0..D {
-                for e in 0..D {
-                    gradient[d][e] += field[node][d] * coefficients[e];
-                }
-            }
+    /// Gradient of a nodal field from which a point's effective stress takes its strain, and the
+    /// dilation that B-bar put into it.
+    fn gradient_of(&self, point: usize, rows: &VolumetricRows<D>, field: &[Vector<D>]) -> (Tensor<D>, f64) {
+        let (mut gradient, mut dilation) = ([[0.0; D]; D], 0.0);
+        for entry in self.strain_row(point, rows) {
+            let displacement = &field[entry.node];
+            entry.add_to(&mut gradient, displacement);
+            dilation += (0..D).map(|d| entry.dilation[d] * displacement[d]).sum::<f64>();
         }
-        gradient
+        (gradient, dilation)
     }
 }

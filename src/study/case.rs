@@ -131,6 +131,14 @@ impl Case {
             parts.push("porosity gradient dropped".to_owned());
         }
         parts.extend(self.arrangement());
+        let seed = Material::default();
+        if self.scene.is_plane() && self.material.water_bulk_modulus != seed.water_bulk_modulus {
+            parts
+                .push(format!("K_w/E {:e}", self.material.water_bulk_modulus / self.material.youngs_modulus));
+        }
+        if self.scene.is_plane() && self.material.poissons_ratio != seed.poissons_ratio {
+            parts.push(format!("ν {}", self.material.poissons_ratio));
+        }
         if self.task == Task::Stability {
             parts.extend(self.departure_from_the_seed());
         }

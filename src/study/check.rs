@@ -173,6 +173,7 @@ impl Common {
                 hydraulic_conductivity: one.hydraulic_conductivity,
                 water_bulk_modulus: one.water_bulk_modulus,
                 porosity: one.porosity,
+                poissons_ratio: one.poissons_ratio,
                 ..self.soil
             },
             method: one.method,
@@ -660,6 +661,12 @@ impl Checker<'_> {
                 &[soil.continuity],
                 Self::continuity,
             ),
+            poissons_ratio: self.list(
+                table.poissons_ratio.as_ref(),
+                "poissons_ratio",
+                &[soil.poissons_ratio],
+                |c, typed| Some(c.between(Some(typed), "poissons_ratio", -1.0, 0.5, 0.25)),
+            ),
             path: self.list(table.path.as_ref(), "path", &[], |c, word| {
                 c.word(word, "axis", &AXES).map(|index| AXES[index].to_owned())
             }),
@@ -784,11 +791,12 @@ impl Checker<'_> {
             }
         };
         let basis = pick(&table.basis, "basis", &["hat", "ugimp", "cpgimp"]);
-        let strain = pick(&table.strain, "strain", &["standard", "cmpm"]);
-        let pressure = pick(&table.pressure, "pressure", &["points", "sri"]);
+        let strain = pick(&table.strain, "strain", &StrainGradient::ALL.map(StrainGradient::name));
+        let pressure =
+            pick(&table.pressure, "pressure", &PressureIntegration::ALL.map(PressureIntegration::name));
         let recovery = match (&table.recovery, pressure) {
             (None, Some(0)) => Some(0),
-            (word, _) => pick(word, "recovery", &["constant", "patch"]),
+            (word, _) => pick(word, "recovery", &Recovery::ALL.map(Recovery::name)),
         };
         let configuration = match &table.configuration {
             Some(word) => {
@@ -796,11 +804,16 @@ impl Checker<'_> {
             }
             None => None,
         };
+        let (pressure, recovery) = (PressureIntegration::ALL[pressure?], Recovery::ALL[recovery?]);
+        if let (Some(why), Some(word)) = (recovery.refuses(pressure), &table.recovery) {
+            self.complain(word.span(), why, "leave the key out, or take another");
+            return None;
+        }
         Some(Method {
             basis: [Basis::Hat, Basis::Ugimp, Basis::Cpgimp][basis?],
-            strain: [StrainGradient::Standard, StrainGradient::Cmpm][strain?],
-            pressure: [PressureIntegration::Points, PressureIntegration::Sri][pressure?],
-            recovery: [Recovery::Constant, Recovery::Patch][recovery?],
+            strain: StrainGradient::ALL[strain?],
+            pressure,
+            recovery,
             configuration: configuration.map(|index| Configuration::ALL[index]),
         })
     }
@@ -884,7 +897,7 @@ impl Checker<'_> {
                 above: floor.get_ref().above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
                 below: floor.get_ref().below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
             }),
-            oscillation_below: None,
+            oscillation_below: table.oscillation.as_ref().map(|bound| *bound.get_ref().below.get_ref()),
             xfail: table.xfail.as_ref().map(|known| KnownFailure {
                 strict: known.get_ref().strict.as_ref().is_none_or(|typed| *typed.get_ref()),
                 reason: known.get_ref().reason.get_ref().clone(),
@@ -902,6 +915,8 @@ impl Checker<'_> {
             points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
             law: table.law.as_ref().and_then(|word| self.law(word, scene)),
             continuity: table.continuity.as_ref().and_then(|word| self.continuity(word)),
+            water_bulk_modulus: table.water_bulk_modulus.as_ref().map(|typed| *typed.get_ref()),
+            poissons_ratio: table.poissons_ratio.as_ref().map(|typed| *typed.get_ref()),
             scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)),
             drag: table.drag.as_ref().and_then(|word| self.drag(word)),
             mapping_back: table.mapping_back.as_ref().map(|typed| *typed.get_ref()),
@@ -916,7 +931,8 @@ impl Checker<'_> {
             axis,
             demand,
             tier: Tier::ALL[tier?],
-            line: self.source.text[..entry.span().start.min(self.source.text.len())].lines().count().max(1),
+            line: self.source.text[..entry.span().start.min(self.source.text.len())].matches('\n').count()
+                + 1,
         };
         (self.diagnostics.len() == before).then_some(expectation)
     }

@@ -72,6 +72,10 @@ pub struct Expectation {
     pub law: Option<Law>,
     /// Continuity of the water, where it is named.
     pub continuity: Option<Continuity>,
+    /// Bulk modulus of the water, Pa, where it is named.
+    pub water_bulk_modulus: Option<f64>,
+    /// Poisson's ratio, where it is named.
+    pub poissons_ratio: Option<f64>,
     /// Scheme of the explicit step, where it is named.
     pub scheme: Option<Scheme>,
     /// Drag, where it is named.

@@ -28,12 +28,13 @@ pub struct Sweep {
     pub hydraulic_conductivity: Vec<f64>,
     pub water_bulk_modulus: Vec<f64>,
     pub offset: Vec<f64>,
+    pub poissons_ratio: Vec<f64>,
     /// Axes that step together, by key.
     pub path: Vec<String>,
 }
 
 /// Keys that a path can tie.
-pub const AXES: [&str; 16] = [
+pub const AXES: [&str; 17] = [
     "method",
     "integrator",
     "cells",
@@ -50,6 +51,7 @@ pub const AXES: [&str; 16] = [
     "hydraulic_conductivity",
     "water_bulk_modulus",
     "offset",
+    "poissons_ratio",
 ];
 
 /// One combination of a sweep.
@@ -71,6 +73,7 @@ pub struct Combination {
     pub hydraulic_conductivity: f64,
     pub water_bulk_modulus: f64,
     pub offset: f64,
+    pub poissons_ratio: f64,
 }
 
 impl Sweep {
@@ -92,6 +95,7 @@ impl Sweep {
             self.hydraulic_conductivity.len(),
             self.water_bulk_modulus.len(),
             self.offset.len(),
+            self.poissons_ratio.len(),
         ]
     }
 
@@ -145,6 +149,7 @@ impl Sweep {
                     hydraulic_conductivity: self.hydraulic_conductivity[at[13]],
                     water_bulk_modulus: self.water_bulk_modulus[at[14]],
                     offset: self.offset[at[15]],
+                    poissons_ratio: self.poissons_ratio[at[16]],
                 }
             })
             .collect()
@@ -172,6 +177,7 @@ mod tests {
             hydraulic_conductivity: vec![1e-4],
             water_bulk_modulus: vec![2.2e9],
             offset: vec![0.0],
+            poissons_ratio: vec![0.25],
             formulation: vec![None],
             path: path.iter().map(|key| (*key).to_owned()).collect(),
         }

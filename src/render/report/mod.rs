@@ -5,6 +5,7 @@ mod checks;
 mod convergence;
 mod findings;
 mod labels;
+mod layer;
 mod precision;
 mod profiles;
 mod section;

@@ -1,6 +1,6 @@
 //! The section of one study: what it asks, what was expected, figures, tables, checks.
 
-use super::{StudyResults, checks, convergence, precision, profiles, stability, work};
+use super::{StudyResults, checks, convergence, layer, precision, profiles, stability, work};
 use crate::exact::ExactError;
 use crate::render::page::{Block, Section};
 use crate::render::table::Mood;
@@ -19,6 +19,7 @@ pub fn of_study(results: &StudyResults<'_>) -> Result<Section, ExactError> {
             format!("{met} of {} expectations are met.", results.judgements.len()),
         ));
     }
+    blocks.extend(layer::blocks(results)?);
     blocks.extend(profiles::blocks(results)?);
     for axis in Axis::ALL {
         blocks.extend(convergence::blocks(results, axis));

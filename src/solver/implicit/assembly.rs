@@ -13,9 +13,8 @@ use super::banded::Banded;
 use super::sparse::{SparseRows, accumulate};
 use super::unknowns::Unknowns;
 use crate::solver::body::{Body, ShapeFunction};
-use crate::solver::grid::Vector;
 use crate::solver::material::Continuity;
-use crate::solver::method::StrainGradient;
+use crate::solver::stiffness::StrainEntry;
 
 /// Scales that make the unknowns and the equations pure numbers of like size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,7 +111,7 @@ fn pressure_forces<const D: usize, const W: usize, S: ShapeFunction<W>>(
     for point in 0..body.points.len() {
         let volume = body.points.volume(point);
         body.basis.visit(body.grid.node_stride(), point, |node, _, gradient| {
-            unknowns.visit_recovery(body, point, |site, weight| {
+            unknowns.visit_recovery(point, |site, weight| {
                 for direction in (0..D).filter(|d| gradient[*d] != 0.0) {
                     accumulate(&mut forces[node][direction], site, volume * weight * gradient[direction]);
                 }
@@ -153,23 +152,18 @@ fn mixture_entries<const D: usize, const W: usize, S: ShapeFunction<W>>(
 ) {
     let stride = body.grid.node_stride();
     let (lame, shear) = (body.stiffness.lame, body.stiffness.shear);
-    let mut straining: Vec<(usize, Vector<D>)> = Vec::new();
     for point in 0..body.points.len() {
-        straining.clear();
-        let mut keep = |node: usize, _: f64, gradient: &Vector<D>| straining.push((node, *gradient));
-        match body.method.strain {
-            StrainGradient::Standard => body.basis.visit(stride, point, &mut keep),
-            StrainGradient::Cmpm => body.composite.visit(stride, point, &mut keep),
-        }
+        let straining = body.strain_row(point, &unknowns.rows);
         let factor = body.points.volume(point) * scales.length / scales.force;
         body.basis.visit(stride, point, |node, _, force| {
             for i in 0..D {
                 let Some(row) = unknowns.displacement[node][i] else { continue };
-                for (other, strain) in &straining {
+                for StrainEntry { node: other, gradient: strain, dilation } in &straining {
                     let along: f64 = (0..D).map(|d| force[d] * strain[d]).sum();
                     for j in 0..D {
                         let Some(column) = unknowns.displacement[*other][j] else { continue };
                         let mut entry = lame * force[i] * strain[j] + shear * force[j] * strain[i];
+                        entry += (lame + 2.0 / 3.0 * shear) * force[i] * dilation[j];
                         if i == j {
                             entry += shear * along;
                         }
@@ -205,7 +199,7 @@ fn storage_entries<const D: usize, const W: usize, S: ShapeFunction<W>>(
         for (column, value) in capacity.row(site) {
             visitor((row, column, value, 0.0));
         }
-        unknowns.visit_divergence(body, site, |node, divergence| {
+        unknowns.visit_divergence(site, |node, divergence| {
             let flux_of_force = porosity_of_flux(body, unknowns, site, node) * mobility[node];
             for direction in 0..D {
                 // Where the water is held, nothing flows; on a rough base it slides.
@@ -230,7 +224,7 @@ fn capacity_rows<const D: usize, const W: usize, S: ShapeFunction<W>>(
     for site in 0..unknowns.sites.len() {
         let storage = unknowns.porosity(body, site) / body.material.water_bulk_modulus;
         let mut row = vec![(unknowns.pressure[site], storage * scales.pressure)];
-        unknowns.visit_divergence(body, site, |node, divergence| {
+        unknowns.visit_divergence(site, |node, divergence| {
             for direction in 0..D {
                 if let Some(column) = unknowns.displacement[node][direction] {
                     accumulate(&mut row, column, divergence[direction] * scales.length);
@@ -272,7 +266,7 @@ impl Start {
         }
         for site in 0..unknowns.sites.len() {
             let mut rate = 0.0;
-            unknowns.visit_divergence(body, site, |node, divergence| {
+            unknowns.visit_divergence(site, |node, divergence| {
                 let flux_of_force = porosity_of_flux(body, unknowns, site, node) * mobility[node];
                 for d in (0..D).filter(|d| nodes.water_free[node][*d] > 0.0) {
                     rate += divergence[d] * flux_of_force * nodes.water_force[node][d];

@@ -174,27 +174,12 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> March<D, W, S> for Lin
             unknowns.displacement.iter().map(|node| node.map(component)).collect()
         };
         let displacement = nodal(&self.state, self.system.scales.length);
-        let stride = *body.grid.node_stride();
-        for point in 0..body.points.len() {
-            let stress = body.stiffness.stress(&body.strain_gradient(point, &displacement));
-            let moved = body.basis.value(&stride, point, &displacement);
-            for i in 0..D {
-                for j in 0..D {
-                    body.points.effective_stress[point][i][j] += stress[i][j];
-                }
-                body.points.displacement[point][i] += moved[i];
-            }
-            let mut pressure = 0.0;
-            unknowns.visit_recovery(&self.start, point, |site, weight| {
-                pressure += weight * self.state[unknowns.pressure[site]];
-            });
-            body.points.pressure[point] += pressure * self.system.scales.pressure;
-        }
-        for (total, change) in body.nodes.displacement.iter_mut().zip(&displacement) {
-            for d in 0..D {
-                total[d] += change[d];
-            }
-        }
+        let pressures: Vec<f64> = unknowns
+            .pressure
+            .iter()
+            .map(|unknown| self.system.scales.pressure * self.state[*unknown])
+            .collect();
+        body.change_points(&unknowns.rows, &displacement, &pressures, &displacement);
         body.nodes.solid_velocity = nodal(&self.increment, self.rate_scale * self.system.scales.length);
         body.surface_flux += self.surface_displacement() + self.outflow;
         body

@@ -8,7 +8,7 @@
 use super::banded::Banded;
 use super::unknowns::Unknowns;
 use crate::solver::body::{Body, ShapeFunction};
-use crate::solver::method::{PressureIntegration, StrainGradient};
+use crate::solver::method::PressureIntegration;
 
 /// Difference by which a scaled unknown is moved: the square root of the round-off leaves eight
 /// digits of a tangent whose unknowns are strains.
@@ -90,12 +90,10 @@ fn felt_unknowns<const D: usize, const W: usize, S: ShapeFunction<W>>(
     let by_point: Vec<Vec<usize>> = (0..body.points.len())
         .map(|point| {
             let mut felt = Vec::new();
-            let mut strain = |node: usize| felt.extend(unknowns.displacement[node].into_iter().flatten());
-            match body.method.strain {
-                StrainGradient::Standard => body.basis.visit(stride, point, |node, _, _| strain(node)),
-                StrainGradient::Cmpm => body.composite.visit(stride, point, |node, _, _| strain(node)),
+            for entry in body.strain_row(point, &unknowns.rows) {
+                felt.extend(unknowns.displacement[entry.node].into_iter().flatten());
             }
-            unknowns.visit_recovery(body, point, |site, _| felt.push(unknowns.pressure[site]));
+            unknowns.visit_recovery(point, |site, _| felt.push(unknowns.pressure[site]));
             felt
         })
         .collect();
@@ -118,7 +116,7 @@ fn felt_unknowns<const D: usize, const W: usize, S: ShapeFunction<W>>(
     // Porosity and deformation of a site: of its points.
     let site_of_point = |point: usize| match unknowns.integration {
         PressureIntegration::Points => Some(point),
-        PressureIntegration::Sri => unknowns.site_of(body.cells.of_point[point]),
+        PressureIntegration::Sri | PressureIntegration::Mean => unknowns.site_of(body.cells.of_point[point]),
     };
     for (point, felt) in by_point.iter().enumerate() {
         if let Some(site) = site_of_point(point) {
@@ -128,7 +126,7 @@ fn felt_unknowns<const D: usize, const W: usize, S: ShapeFunction<W>>(
     for site in 0..unknowns.sites.len() {
         let row = &mut rows[unknowns.pressure[site]];
         row.push(unknowns.pressure[site]);
-        unknowns.visit_divergence(body, site, |node, _| row.extend_from_slice(&by_node[node]));
+        unknowns.visit_divergence(site, |node, _| row.extend_from_slice(&by_node[node]));
         row.sort_unstable();
         row.dedup();
     }

@@ -123,11 +123,21 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
             *nodal =
                 numbers.map(|number| number.map_or(0.0, |number| self.scales.length * increments[number]));
         }
+        let rows = &self.unknowns.rows;
+        let is_bbar = self.body.method.strain.is_bbar();
+        let dilations = if is_bbar { rows.at_points(&rows.at_sites(&self.displacement)) } else { Vec::new() };
         for point in 0..self.anchor.len() {
-            let gradient = self.body.strain_gradient(point, &self.displacement);
-            self.strain_point(point, &gradient);
+            let mut gradient = self.body.strain_gradient(point, &self.displacement);
+            let mut dilation = 0.0;
+            if let Some(volumetric) = dilations.get(point) {
+                dilation = volumetric - (0..D).map(|d| gradient[d][d]).sum::<f64>();
+                for d in 0..D {
+                    gradient[d][d] += dilation / D as f64;
+                }
+            }
+            self.strain_point(point, &gradient, dilation);
             let mut change = 0.0;
-            self.unknowns.visit_recovery(&self.body, point, |site, weight| {
+            self.unknowns.visit_recovery(point, |site, weight| {
                 change += weight * increments[self.unknowns.pressure[site]];
             });
             self.body.points.pressure[point] = self.anchor.pressure[point] + self.scales.pressure * change;
@@ -138,7 +148,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
     }
 
     /// Deformation and effective stress of a point under a displacement gradient since the anchor.
-    fn strain_point(&mut self, point: usize, gradient: &Tensor<D>) {
+    fn strain_point(&mut self, point: usize, gradient: &Tensor<D>, dilation: f64) {
         let anchor = &self.anchor;
         let points = &mut self.body.points;
         let (mut strain, mut modulus) = (*gradient, 1.0);
@@ -154,7 +164,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
             modulus =
                 self.body.material.law.modulus_ratio(anchor.volume_ratio[point], points.volume_ratio[point]);
         }
-        let stress = self.body.stiffness.stress(&strain);
+        let mut stress = self.body.stiffness.stress(&strain);
+        for i in 0..D {
+            stress[i][i] += self.body.stiffness.shared_dilation_stress::<D>(dilation);
+        }
         for i in 0..D {
             for j in 0..D {
                 points.effective_stress[point][i][j] =
@@ -237,6 +250,12 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
     /// What is left of the mixture's volume at each site.
     fn storage(&self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
         let body = &self.body;
+        let mean = |cell: usize, field: &[Vector<D>]| -> f64 {
+            let members = (0..body.points.len()).filter(|point| body.cells.of_point[*point] == cell);
+            let parts =
+                members.map(|point| body.points.volume(point) * body.divergence_at_point(point, field));
+            parts.sum::<f64>() / body.cells.volume(cell)
+        };
         for (site, place) in self.unknowns.sites.iter().enumerate() {
             let number = self.unknowns.pressure[site];
             let porosity = self.unknowns.porosity(body, site);
@@ -247,6 +266,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
                 PressureIntegration::Sri => {
                     body.volume_rate(porosity, |field| body.divergence_at_centre(*place, field))
                 }
+                PressureIntegration::Mean => body.volume_rate(porosity, |field| mean(*place, field)),
             };
             let stored = porosity / body.material.water_bulk_modulus
                 * self.scales.pressure
@@ -333,8 +353,12 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     #[inline]
     pub fn strain_gradient(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
         match self.method.strain {
-            StrainGradient::Standard => self.basis.gradient(self.grid.node_stride(), point, field),
-            StrainGradient::Cmpm => self.composite.gradient(self.grid.node_stride(), point, field),
+            StrainGradient::Standard | StrainGradient::Bbar => {
+                self.basis.gradient(self.grid.node_stride(), point, field)
+            }
+            StrainGradient::Cmpm | StrainGradient::CmpmBbar => {
+                self.composite.gradient(self.grid.node_stride(), point, field)
+            }
         }
     }
 }

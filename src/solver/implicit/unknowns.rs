@@ -3,7 +3,8 @@
 
 use crate::solver::body::{Body, ShapeFunction};
 use crate::solver::grid::Vector;
-use crate::solver::method::{PressureIntegration, Recovery};
+use crate::solver::method::PressureIntegration;
+use crate::solver::volumetric::VolumetricRows;
 
 /// Numbering of the unknowns. Neighbours in space are neighbours in number, along the longest
 /// direction of the grid: that keeps the band of the matrices narrow.
@@ -17,6 +18,8 @@ pub struct Unknowns<const D: usize> {
     pub pressure: Vec<usize>,
     /// Site of each cell or point, where it is one.
     site_of_place: Vec<Option<usize>>,
+    /// `D` and `R` of the method.
+    pub rows: VolumetricRows<D>,
     /// Where the sites are.
     pub integration: PressureIntegration,
     /// Number of unknowns.
@@ -36,7 +39,9 @@ impl<const D: usize> Unknowns<D> {
         let integration = body.method.pressure;
         let (sites, places): (Vec<usize>, usize) = match integration {
             PressureIntegration::Points => ((0..body.points.len()).collect(), body.points.len()),
-            PressureIntegration::Sri => (body.cells.occupied().collect(), body.grid.cell_count()),
+            PressureIntegration::Sri | PressureIntegration::Mean => {
+                (body.cells.occupied().collect(), body.grid.cell_count())
+            }
         };
         let mut site_of_place = vec![None; places];
         for (site, place) in sites.iter().enumerate() {
@@ -44,7 +49,7 @@ impl<const D: usize> Unknowns<D> {
         }
         let site_position = |site: usize| match integration {
             PressureIntegration::Points => body.points.position[sites[site]],
-            PressureIntegration::Sri => body.grid.cell_centre(sites[site]),
+            PressureIntegration::Sri | PressureIntegration::Mean => body.grid.cell_centre(sites[site]),
         };
         let mut sorted: Vec<(Vector<D>, Kind)> = Vec::new();
         for node in 0..body.nodes.len() {
@@ -74,7 +79,15 @@ impl<const D: usize> Unknowns<D> {
                 Kind::Pressure { site } => pressure[site] = number,
             }
         }
-        Self { displacement, pressure, site_of_place, integration, count: sorted.len(), sites }
+        Self {
+            displacement,
+            pressure,
+            rows: body.volumetric_rows(),
+            site_of_place,
+            integration,
+            count: sorted.len(),
+            sites,
+        }
     }
 
     /// Site of a cell or point, where it is one.
@@ -83,45 +96,16 @@ impl<const D: usize> Unknowns<D> {
     }
 
     /// Visits the sites that a point's pressure comes from, with their weights.
-    pub fn visit_recovery<const W: usize, S: ShapeFunction<W>>(
-        &self,
-        body: &Body<D, W, S>,
-        point: usize,
-        mut visitor: impl FnMut(usize, f64),
-    ) {
-        match (self.integration, body.method.recovery) {
-            (PressureIntegration::Points, _) => visitor(point, 1.0),
-            (PressureIntegration::Sri, Recovery::Constant) => {
-                if let Some(site) = self.site_of_place[body.cells.of_point[point]] {
-                    visitor(site, 1.0);
-                }
-            }
-            (PressureIntegration::Sri, Recovery::Patch) => {
-                for (cell, weight) in body.patch.entries(&body.grid, point) {
-                    if let Some(site) = self.site_of_place[cell] {
-                        visitor(site, weight);
-                    }
-                }
-            }
+    pub fn visit_recovery(&self, point: usize, mut visitor: impl FnMut(usize, f64)) {
+        for (site, weight) in &self.rows.recovery[point] {
+            visitor(*site, *weight);
         }
     }
 
     /// Visits the nodes of a site's divergence with its coefficients, 1/m.
-    pub fn visit_divergence<const W: usize, S: ShapeFunction<W>>(
-        &self,
-        body: &Body<D, W, S>,
-        site: usize,
-        mut visitor: impl FnMut(usize, &Vector<D>),
-    ) {
-        match self.integration {
-            PressureIntegration::Points => {
-                body.basis.visit(body.grid.node_stride(), self.sites[site], |node, _, gradient| {
-                    visitor(node, gradient);
-                });
-            }
-            PressureIntegration::Sri => {
-                body.cells.visit_centre_divergence(&body.grid, self.sites[site], visitor);
-            }
+    pub fn visit_divergence(&self, site: usize, mut visitor: impl FnMut(usize, &Vector<D>)) {
+        for (node, coefficients) in &self.rows.divergence[site] {
+            visitor(*node, coefficients);
         }
     }
 
@@ -130,7 +114,7 @@ impl<const D: usize> Unknowns<D> {
         let place = self.sites[site];
         match self.integration {
             PressureIntegration::Points => body.material.porosity_at(body.points.volume_ratio[place]),
-            PressureIntegration::Sri => body.cells.porosity[place],
+            PressureIntegration::Sri | PressureIntegration::Mean => body.cells.porosity[place],
         }
     }
 }

@@ -1,0 +1,185 @@
+//! What a plane layer shows: pressure fields beside the exact one, and the ranking of the methods.
+
+use super::StudyResults;
+use crate::assess::class::Class;
+use crate::assess::locking::{Standing, standings};
+use crate::assess::plane_field::PlaneField;
+use crate::exact::ExactError;
+use crate::record::{Record, Status};
+use crate::render::chart::{Axis, Chart, Colours, Field, Range, Scale, Size};
+use crate::render::page::{Block, Figure, slug};
+use crate::render::table::{Cell, Column, Mood, Table};
+use crate::solver::material::Material;
+
+/// Cells over the height of the runs whose fields are drawn.
+const SHOWN_CELLS: usize = 8;
+
+/// Fields and ranking of a study of a layer; nothing for a column's.
+pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
+    if !results.study.scene.is_plane() {
+        return Ok(Vec::new());
+    }
+    let mut blocks = Vec::new();
+    let shown = shown_records(results.records);
+    if let Some(first) = shown.first() {
+        blocks.push(Block::Heading(format!("Pressure at the points, {SHOWN_CELLS} cells over the height")));
+        let time_factor = first.case.time_factors[0];
+        let mut figures = Vec::new();
+        if let Some(field) = PlaneField::of(first, time_factor)? {
+            figures.push(figure(results, "Exact", &field, &field.exact, time_factor, None));
+        }
+        for record in shown {
+            if let Some(field) = PlaneField::of(record, time_factor)? {
+                let name = record.case.method.to_string();
+                let index = field.oscillation_index();
+                figures.push(figure(results, &name, &field, &field.computed, time_factor, Some(index)));
+            }
+        }
+        blocks.push(Block::Figures(figures));
+    }
+    let standings = standings(results.study, results.records)?;
+    // One row says nothing about who stands where; nor do rows without a start.
+    if standings.iter().filter(|one| one.displacement.is_some()).count() > 1 {
+        blocks.push(Block::Heading("Who stands incompressibility".to_owned()));
+        blocks.push(Block::List(verdicts(&standings)));
+        blocks.push(Block::Table(table(&standings)));
+    }
+    Ok(blocks)
+}
+
+/// The first sound run of each method on the shown mesh, in the undisturbed soil.
+fn shown_records(records: &[Record]) -> Vec<&Record> {
+    let seed = Material::default();
+    let mut shown: Vec<&Record> = Vec::new();
+    for record in records {
+        let case = &record.case;
+        if case.cells == SHOWN_CELLS
+            && record.status == Status::Ok
+            && case.material.water_bulk_modulus == seed.water_bulk_modulus
+            && case.material.poissons_ratio == seed.poissons_ratio
+            && shown.iter().all(|other| other.case.method != case.method)
+        {
+            shown.push(record);
+        }
+    }
+    shown
+}
+
+fn figure(
+    results: &StudyResults<'_>,
+    name: &str,
+    field: &PlaneField,
+    values: &[f64],
+    time_factor: f64,
+    oscillation: Option<f64>,
+) -> Figure {
+    let mut chart =
+        Chart::new(name.to_owned(), Axis::linear("x/H (–)"), Axis::linear("height above the base y/H (–)"));
+    chart.field = Some(Field {
+        label: "p/q (–)".to_owned(),
+        x_edges: field.x_edges.clone(),
+        y_edges: field.y_edges.clone(),
+        values: values.to_vec(),
+        colours: Colours::Diverging(0.0),
+        scale: Scale::Linear,
+        range: Range::Auto,
+    });
+    chart.size = Size { width: 380.0, plot_height: 240.0, equal_units: true };
+    let caption = match oscillation {
+        None => format!("Theory at T_v = {time_factor}."),
+        Some(index) => format!("{name} at T_v = {time_factor}: oscillation index {index:.2}."),
+    };
+    Figure::new(slug(&format!("{}-field-{name}", results.study.name)), chart, caption)
+}
+
+/// The findings in sentences, each from the numbers.
+fn verdicts(standings: &[Standing]) -> Vec<String> {
+    let names = |is: &dyn Fn(&Standing) -> bool| -> String {
+        let found: Vec<String> =
+            standings.iter().filter(|one| is(one)).map(|one| one.method.to_string()).collect();
+        if found.is_empty() { "none".to_owned() } else { found.join(", ") }
+    };
+    vec![
+        format!(
+            "**Locked under the water's incompressibility** (less than half of the displacement on every mesh): {}.",
+            names(&|one| one.class == Some(Class::Locked))
+        ),
+        format!(
+            "**Displacement error independent of the water's stiffness** (within 2 % from K_w/E = 10³ on, and not \
+             locked): {}.",
+            names(&|one| one.spread.is_some_and(|spread| spread < 0.02) && one.class != Some(Class::Locked))
+        ),
+        format!(
+            "**Holds where the skeleton is nearly incompressible too** (no more than twice its error at ν = 0.25): {}.",
+            names(&|one| {
+                one.class != Some(Class::Locked)
+                    && one
+                        .stiff_skeleton
+                        .zip(one.displacement)
+                        .is_some_and(|(stiff, plain)| stiff < 2.0 * plain)
+            })
+        ),
+    ]
+}
+
+fn table(standings: &[Standing]) -> Table {
+    let missing = || Cell::Missing("not measured, or of no meaning for a locked body".to_owned());
+    let error = |value: Option<f64>| value.map_or_else(missing, Cell::Error);
+    let order = |value: Option<f64>| value.map_or_else(missing, Cell::Order);
+    let number = |value: Option<f64>| value.map_or_else(missing, Cell::Number);
+    let rows = standings
+        .iter()
+        .map(|one| {
+            let class = match one.class {
+                Some(Class::Locked) => Cell::Verdict(Mood::Fail, Class::Locked.name().to_owned()),
+                Some(class) => Cell::Text(class.name().to_owned()),
+                None => missing(),
+            };
+            vec![
+                Cell::Code(one.method.to_string()),
+                Cell::Number(one.rank),
+                class,
+                error(one.displacement),
+                order(one.displacement_order),
+                error(one.pressure),
+                order(one.pressure_order),
+                error(one.consolidated),
+                number(one.oscillation),
+                one.spread.map_or_else(missing, Cell::Percent),
+                error(one.stiff_skeleton),
+                number(one.critical_step),
+                one.seconds.map_or_else(missing, Cell::Seconds),
+            ]
+        })
+        .collect();
+    Table {
+        title: "Methods by their mean rank".to_owned(),
+        columns: vec![
+            Column::text("method"),
+            Column::number("mean rank"),
+            Column::text("class"),
+            Column::number("u at T_v = 0"),
+            Column::number("order"),
+            Column::number("p at T_v = 0"),
+            Column::number("order"),
+            Column::number("p at the last output"),
+            Column::number("oscillation"),
+            Column::number("spread over K_w"),
+            Column::number("u at the largest ν"),
+            Column::number("explicit limit").unit("h/c"),
+            Column::number("implicit run"),
+        ],
+        rows,
+        notes: vec![
+            "u: relative L2 error of the nodal displacement; p: of the pressure at the points; both against Biot's \
+             exact solution on the finest mesh that every method ran. Oscillation: total variation of the pressure \
+             over the exact one's, minus one. Spread: of the displacement error over K_w/E from 10³ on."
+                .to_owned(),
+            "B-bar (Hughes 1980; by cells in the material point method: Coombs et al. 2018) sends the skeleton's \
+             volumetric strain the way of the water's; mean: cell means of the points' divergence (Mast et al. \
+             2012); nodal: averages at the nodes (Detournay & Dzik 2006); null-space: filter by cells (Gritton & \
+             Berzins 2017; Tran & Sołowski 2019)."
+                .to_owned(),
+        ],
+    }
+}
