@@ -8,6 +8,9 @@ use crate::render::page::{Block, Section};
 use crate::render::table::{Cell, Column, Mood, Table};
 use crate::study::IntegratorKind;
 
+/// An error as large as the answer: the run went on, and its result is none.
+const MEANINGLESS: f64 = 1.0;
+
 /// One table over the studies that say how their cases are to end; none where there are none.
 pub fn section(results: &[StudyResults<'_>]) -> Option<Section> {
     let hard: Vec<&StudyResults<'_>> = results.iter().filter(|one| is_hard(one)).collect();
@@ -46,8 +49,8 @@ pub fn section(results: &[StudyResults<'_>]) -> Option<Section> {
         columns,
         rows,
         notes: vec![
-            "a number is the relative L_2 error of the pressure at the points at the last output; ✗ with the name of \
-             the failure and its step. What each study expects stands in its own section."
+            "a number is the relative L_2 error of the pressure at the points at the last output, ✗ where it is as large \
+             as the answer; ✗ with the name of a failure and its step. What each study expects stands in its own section."
                 .to_owned(),
         ],
     };
@@ -99,8 +102,11 @@ fn end_of(record: &Record) -> Cell {
                     let norm = first_norm(Quantity::Pressure);
                     record.error(Quantity::Pressure, Sample::Points, norm, &own.name, *at)
                 });
-            let words = error.map_or("ran".to_owned(), |row| number::error(row.value));
-            Cell::Verdict(Mood::Pass, words)
+            match error.map(|row| row.value) {
+                None => Cell::Verdict(Mood::Pass, "ran".to_owned()),
+                Some(value) if value < MEANINGLESS => Cell::Verdict(Mood::Pass, number::error(value)),
+                Some(value) => Cell::Verdict(Mood::Fail, format!("ran, error {}", number::error(value))),
+            }
         }
     }
 }
