@@ -37,19 +37,22 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
             errors.extend(snapshot_errors(case, reference, *time_factor, snapshot)?);
         }
     }
-    let balance = case
-        .time_factors
-        .iter()
-        .zip(&outcome.snapshots)
-        .map(|(time_factor, snapshot)| balance(case, *time_factor, &outcome.start, snapshot))
-        .collect();
     let final_settlement = references.first().map_or(Ok(f64::NAN), |own| own.settlement(LONG_AFTER))?;
-    let history = outcome
+    let history: Vec<HistoryRow> = outcome
         .history
         .iter()
         .map(|point| HistoryRow {
             time_factor: parameters.time_factor(point.time),
             degree_of_consolidation: point.settlement / final_settlement,
+        })
+        .collect();
+    let balance = case
+        .time_factors
+        .iter()
+        .zip(&outcome.snapshots)
+        .map(|(time_factor, snapshot)| Balance {
+            settlement_curve_gap: curve_gap(&history, *time_factor, snapshot.settlement / final_settlement),
+            ..balance(case, *time_factor, &outcome.start, snapshot)
         })
         .collect();
     Ok(Record {
@@ -308,7 +311,29 @@ fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) -> B
         } else {
             (squares / now.points.pressure.len() as f64).sqrt()
         },
+        settlement_curve_gap: 0.0,
     }
+}
+
+/// How far the settlement at an output lies from the settlement curve, beyond what interpolation
+/// explains: the curve is taken cubic in `ln T_v` through its four nearest rows, and allowed its
+/// distance from the straight line.
+fn curve_gap(curve: &[HistoryRow], time_factor: f64, degree: f64) -> f64 {
+    let after = curve.partition_point(|row| row.time_factor <= time_factor);
+    if after == 0 || after == curve.len() {
+        return 0.0;
+    }
+    let through = |rows: &[HistoryRow]| -> f64 {
+        let at = |row: &HistoryRow| (row.time_factor / time_factor).ln();
+        let lagrange = |row: &HistoryRow| -> f64 {
+            let others = rows.iter().filter(|other| other.time_factor != row.time_factor);
+            others.map(|other| at(other) / (at(other) - at(row))).product()
+        };
+        rows.iter().map(|row| row.degree_of_consolidation * lagrange(row)).sum()
+    };
+    let straight = through(&curve[after - 1..=after]);
+    let cubic = through(&curve[after.saturating_sub(2)..(after + 2).min(curve.len())]);
+    ((degree - cubic).abs() - (cubic - straight).abs()).max(0.0)
 }
 
 fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, ExactError> {

@@ -7,6 +7,7 @@ use super::limiter::{Limiter, LimiterKind};
 use super::measure::exact_samples;
 use super::norms::{Norm, relative_error};
 use super::orders::{FinestOrder, PairOrder, SlopeFit, finest_order, pair_orders, slope};
+use super::oscillation::oscillation;
 use super::series::{ErrorSeries, Level, Undefined};
 use super::verdict::{Verdict, judge};
 use crate::exact::{Reference, ReferenceKind};
@@ -47,7 +48,7 @@ pub struct SeriesSummary<'a> {
 }
 
 /// The judgement of one expectation of a study.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize)]
 pub struct Judgement {
     /// Line of the expectation in its file.
     pub line: usize,
@@ -141,6 +142,38 @@ impl<'a> Path<'a> {
             limiters: model_limiter(finest, measure).into_iter().chain(self.mesh_limiter(measure)).collect(),
             mobility: self.mobility(measure),
         }
+    }
+
+    /// Spurious wiggle of the profile at the level that a demand names, else at the finest: its total
+    /// variation beyond the net changes that the exact profile has too, over those. Measured where it is
+    /// asked for only.
+    fn oscillation(&self, demand: &Demand, measure: &Measure) -> Option<f64> {
+        demand.oscillation_below?;
+        let named = |record: &&&Record| {
+            let size = level_size(record, self.axis);
+            demand.at.is_some_and(|at| (size - at.size).abs() <= 1e-9 * at.size)
+        };
+        let record = self.records.iter().find(named).or(self.records.last())?;
+        let case = &record.case;
+        let index = case.time_factors.iter().position(|factor| *factor == measure.time_factor)?;
+        let snapshot = record.snapshots.get(index)?;
+        let (samples, per_cell) = match measure.sample {
+            Sample::Points => (&snapshot.points, case.points_per_cell as f64),
+            Sample::Centres => (&snapshot.centres, 1.0),
+            Sample::Nodes => (&snapshot.nodes, 1.0),
+            Sample::Surface => return None,
+        };
+        let kind = SceneKind::reference_for(measure.reference.parse().ok()?, &case.material);
+        let parameters = column_parameters(&case.column, &case.material);
+        let reference = Reference::new(kind, &parameters, &[measure.time_factor]).ok()?;
+        let exact = exact_samples(case, &reference, measure.time_factor, samples).ok()?;
+        let (computed, exact) = match measure.quantity {
+            Quantity::Pressure => (&samples.pressure, exact.pressure),
+            Quantity::EffectiveStress => (&samples.effective_stress, exact.effective_stress),
+            Quantity::Displacement => (&samples.displacement, exact.displacement),
+            Quantity::Settlement => return None,
+        };
+        oscillation(computed, &exact, per_cell).ok()?.reversal
     }
 
     /// Settlement over the exact one at each level, for the errors of displacements: a locked body
@@ -325,7 +358,12 @@ fn judge_expectation(expectation: &Expectation, records: &[Record]) -> Vec<Judge
         .map(|path| Judgement {
             line: expectation.line,
             subject: format!("{}: {what}", path.label()),
-            verdict: judge(&expectation.demand, &path.series(measure), &path.context(measure), None),
+            verdict: judge(
+                &expectation.demand,
+                &path.series(measure),
+                &path.context(measure),
+                path.oscillation(&expectation.demand, measure),
+            ),
         })
         .collect()
 }

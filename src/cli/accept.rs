@@ -11,8 +11,11 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// Study files
-    #[arg(required = true, value_name = "STUDY.toml")]
+    #[arg(required_unless_present = "references", value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
+    /// Take the present values of the exact solutions too
+    #[arg(long)]
+    references: bool,
     /// Why the new values are right
     #[arg(long, value_name = "TEXT")]
     reason: String,
@@ -39,11 +42,20 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             "the sources differ from their commit: commit and build first, so that golden values have an origin",
         ));
     }
-    for study in load(&arguments.studies)? {
-        let records = run_quietly(&study, jobs_of(arguments.jobs))?;
-        let golden = GoldenFile::of(&study.name, &records, arguments.reason.trim());
-        let path = golden.write(&arguments.golden)?;
-        eprintln!("{}: {} values in {}", study.name, golden.values.len(), path.display());
+    let reason = arguments.reason.trim();
+    let studies = load(&arguments.studies)?;
+    if arguments.references {
+        keep(&GoldenFile::of_references(reason)?, arguments)?;
+    }
+    let records = run_quietly(&studies, jobs_of(arguments.jobs))?;
+    for (study, records) in studies.iter().zip(&records) {
+        keep(&GoldenFile::of(&study.name, records, reason), arguments)?;
     }
     Ok(Exit::Pass)
+}
+
+fn keep(golden: &GoldenFile, arguments: &Arguments) -> anyhow::Result<()> {
+    let path = golden.write(&arguments.golden)?;
+    eprintln!("{}: {} values in {}", golden.study, golden.values.len(), path.display());
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! Exit codes, decided in one place.
 
 use crate::exact::ExactError;
+use crate::import::ImportError;
 use crate::study::StudyError;
 use std::process::ExitCode;
 
@@ -74,7 +75,9 @@ impl Failure {
         }
         let exit = match error.downcast_ref::<Ended>() {
             Some(ended) => ended.exit,
-            None if error.is::<StudyError>() || error.is::<ExactError>() => Exit::Usage,
+            None if error.is::<StudyError>() || error.is::<ExactError>() || error.is::<ImportError>() => {
+                Exit::Usage
+            }
             None => Exit::CaseFailed,
         };
         Self { exit, is_silent: false }

@@ -4,15 +4,22 @@
 
 mod accept;
 mod check;
+mod completions;
 mod exact;
 mod exit;
+mod explain;
 mod list;
+mod merge;
+mod output;
 mod overrides;
 mod plan;
 mod progress;
 mod report;
 mod run;
+mod schema;
+mod score;
 mod solve;
+mod spread;
 mod stability;
 
 pub use exit::Exit;
@@ -42,12 +49,24 @@ enum Command {
     Exact(exact::Arguments),
     /// Solve one case and print its errors
     Solve(solve::Arguments),
+    /// Hold somebody else's result against exact solutions
+    Score(score::Arguments),
     /// Predict and observe the critical time step
     Stability(stability::Arguments),
     /// List the cases of studies with their hashes
     Plan(plan::Arguments),
+    /// Bring the records of shards together, with the whole table of each study
+    Merge(merge::Arguments),
     /// List scenes, methods, references and shipped studies
     List,
+    /// Say where the error of a case comes from and what changed
+    Explain(explain::Arguments),
+    /// Measure how far results scatter that should be equal
+    Spread(spread::Arguments),
+    /// Print the JSON Schema of study files, records or mappings
+    Schema(schema::Arguments),
+    /// Print the completions of a shell
+    Completions(completions::Arguments),
 }
 
 /// Parses the command line, runs the command, and turns its end into an exit code.
@@ -68,9 +87,15 @@ pub fn main() -> ExitCode {
         Command::Accept(arguments) => accept::run(&arguments),
         Command::Exact(arguments) => exact::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),
+        Command::Score(arguments) => score::run(&arguments),
         Command::Stability(arguments) => stability::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
+        Command::Merge(arguments) => merge::run(&arguments),
         Command::List => list::run(),
+        Command::Explain(arguments) => explain::run(&arguments),
+        Command::Spread(arguments) => spread::run(&arguments),
+        Command::Schema(arguments) => schema::run(&arguments),
+        Command::Completions(arguments) => Ok(completions::run(&arguments)),
     };
     match result {
         Ok(exit) => exit.into(),

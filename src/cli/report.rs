@@ -31,7 +31,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let options = RunOptions { jobs: jobs_of(arguments.jobs), tier: Tier::Full, shard: None, resume: true };
     let mut runs: Vec<(&Study, Vec<Record>)> = Vec::new();
     for study in &studies {
-        runs.push((study, run_and_store(study, &options, &arguments.records)?.records));
+        runs.push((study, run_and_store(study, study, &options, &arguments.records)?.records));
     }
     let results: Vec<StudyResults<'_>> =
         runs.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();

@@ -51,6 +51,9 @@ pub struct Arguments {
     /// Only this share of the cases, like 2/3
     #[arg(long, value_name = "i/n")]
     shard: Option<String>,
+    /// Only the case with this hash, or the first digits of it
+    #[arg(long, value_name = "HASH", conflicts_with_all = ["tier", "shard"])]
+    case: Option<String>,
     /// Take up finished records of this very program
     #[arg(long)]
     resume: bool,
@@ -68,7 +71,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let mut exit = Exit::NothingSelected;
     for study in &studies {
-        let report = run_and_store(study, &options, &arguments.out)?;
+        let selected = match &arguments.case {
+            Some(hash) => with_case(study, hash),
+            None => study.clone(),
+        };
+        let report = run_and_store(study, &selected, &options, &arguments.out)?;
         if !report.records.is_empty() && exit == Exit::NothingSelected {
             exit = Exit::Pass;
         }
@@ -77,18 +84,30 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
     }
     if exit == Exit::NothingSelected {
-        return Err(Ended::with(exit, "no case belongs to this tier and shard"));
+        return Err(Ended::with(exit, "no case belongs to this tier and shard, or has this hash"));
     }
     Ok(exit)
 }
 
-/// Runs a study, times it where it asks for it, and writes its CSV.
-pub fn run_and_store(study: &Study, options: &RunOptions, results: &Path) -> anyhow::Result<RunReport> {
+/// The study with only the cases whose hash begins so.
+fn with_case(study: &Study, hash: &str) -> Study {
+    let mut selected = study.clone();
+    selected.planned.retain(|planned| planned.case.hash().starts_with(hash));
+    selected
+}
+
+/// Runs the selected cases of a study, times them where it asks for it, and writes its CSV.
+pub fn run_and_store(
+    study: &Study,
+    selected: &Study,
+    options: &RunOptions,
+    results: &Path,
+) -> anyhow::Result<RunReport> {
     let store = RecordStore::new(results, &study.name);
     let bar = StudyBar::new(&study.name);
     let tell = |progress| bar.tell(progress);
-    let mut report = run_study(study, options, Some(&store), &tell);
-    time_study(study, &mut report.records, Some(&store), &tell)?;
+    let mut report = run_study(selected, options, Some(&store), &tell);
+    time_study(selected, &mut report.records, Some(&store), &tell)?;
     bar.finish();
     if let Some(error) = report.errors.pop() {
         return Err(error.into());

@@ -4,7 +4,8 @@ use super::GoldenFile;
 use std::collections::BTreeMap;
 
 /// What happened to a value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Change {
     /// Beyond the tolerance, and not better.
     Moved,
@@ -29,7 +30,7 @@ impl Change {
 }
 
 /// One value that is not what it was.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Difference {
     /// Case and measure.
     pub name: String,

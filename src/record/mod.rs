@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 /// Hexadecimal digits of a record's digest.
 const DIGEST_DIGITS: usize = 32;
 /// Version of the record's layout.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// A measured quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -157,6 +157,9 @@ pub struct Balance {
     pub internal_force_imbalance: f64,
     /// Root mean square of `(σ' − p + q)/q` over the points.
     pub equilibrium_residual: f64,
+    /// Distance of the settlement at this output from the settlement curve, over the final
+    /// settlement, beyond what interpolation between the curve's rows explains.
+    pub settlement_curve_gap: f64,
 }
 
 /// One measured error.

@@ -108,14 +108,24 @@ impl RecordStore {
 fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), StoreError> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|source| StoreError::Json { path: path.to_owned(), source })?;
-    write_whole(path, text.as_bytes())
+    // Not forced to the disk, which costs more than a small case: after a loss of power an unreadable
+    // record is as good as none, and the case runs again.
+    write_renamed(path, text.as_bytes(), |_| Ok(()))
 }
 
-/// Writes a file under a temporary name and renames it, making its folders.
+/// Writes a file under a temporary name and renames it, making its folders; it is on the disk then.
 ///
 /// # Errors
 /// When the file system refuses; nothing is left under the name then.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), StoreError> {
+    write_renamed(path, content, fs::File::sync_all)
+}
+
+fn write_renamed(
+    path: &Path,
+    content: &[u8],
+    finish: impl Fn(&fs::File) -> std::io::Result<()>,
+) -> Result<(), StoreError> {
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(|source| StoreError::Io {
         action: "make the folder",
@@ -126,7 +136,7 @@ pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), StoreError> {
     let temporary = folder.join(format!(".{name}.{}.part", std::process::id()));
     let written = fs::File::create(&temporary).and_then(|mut file| {
         file.write_all(content)?;
-        file.sync_all()
+        finish(&file)
     });
     written.and_then(|()| fs::rename(&temporary, path)).map_err(|source| {
         // What is half written is of no use to anyone.

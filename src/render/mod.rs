@@ -1,16 +1,20 @@
 //! Tables, charts and pages out of plain data. Nothing here computes science, and nothing here
 //! knows a solver: the same description always gives the same bytes.
+pub mod annotations;
 pub mod chart;
 mod error;
 mod escape;
+pub mod explanation;
 pub mod junit;
 pub mod measures;
 pub mod number;
 pub mod page;
 pub mod report;
+pub mod scores;
 mod script;
 #[cfg(test)]
 mod showcase;
+pub mod spreads;
 pub mod stability;
 pub mod table;
 pub mod verdicts;

@@ -115,7 +115,9 @@ fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
                 sizes,
                 pressure_scale: problem.pressure_scale,
                 initial_height,
-                settlement_scale: strain * initial_height,
+                // The mean height: a cosine has none of its own.
+                settlement_scale: strain
+                    * LoadedSurface::of(&problem.points, problem.load).height(&problem.points),
                 loading_time: problem.loading_time,
             };
             let undrained_start = problem.undrained_start;

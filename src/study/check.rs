@@ -904,7 +904,7 @@ impl Checker<'_> {
                 above: floor.get_ref().above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
                 below: floor.get_ref().below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
             }),
-            oscillation_below: None,
+            oscillation_below: table.oscillation.as_ref().map(|bound| *bound.get_ref().below.get_ref()),
             xfail: table.xfail.as_ref().map(|known| KnownFailure {
                 strict: known.get_ref().strict.as_ref().is_none_or(|typed| *typed.get_ref()),
                 reason: known.get_ref().reason.get_ref().clone(),
@@ -938,7 +938,8 @@ impl Checker<'_> {
             axis,
             demand,
             tier: Tier::ALL[tier?],
-            line: self.source.text[..entry.span().start.min(self.source.text.len())].lines().count().max(1),
+            line: self.source.text[..entry.span().start.min(self.source.text.len())].matches('\n').count()
+                + 1,
         };
         (self.diagnostics.len() == before).then_some(expectation)
     }

@@ -203,6 +203,7 @@ pub struct ExpectTable {
     pub at: Typed<LevelTable>,
     pub class: Typed<String>,
     pub floor: Typed<FloorTable>,
+    pub oscillation: Typed<OscillationTable>,
     pub xfail: Typed<XfailTable>,
     pub tier: Typed<String>,
 }
@@ -264,6 +265,12 @@ pub struct FloorTable {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
+pub struct OscillationTable {
+    pub below: Spanned<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct XfailTable {
     pub strict: Typed<bool>,
     pub reason: Spanned<String>,
@@ -295,7 +302,20 @@ impl StudySource {
     /// # Errors
     /// What the parser refuses, with the nearest key.
     pub fn parse(&self) -> Result<StudyFile, StudyError> {
+        self.read()
+    }
+
+    /// Reads TOML into any tables, with the complaints of a study.
+    ///
+    /// # Errors
+    /// What the parser refuses, with the nearest key.
+    pub fn read<T: serde::de::DeserializeOwned>(&self) -> Result<T, StudyError> {
         toml::from_str(&self.text).map_err(|error| self.error(vec![explained(&error, &self.text)]))
+    }
+
+    /// One complaint about the whole text.
+    pub fn complaint(&self, message: String, help: String) -> StudyError {
+        self.error(vec![Diagnostic { message, span: None, help: Some(help) }])
     }
 
     /// An error of this study.
@@ -316,7 +336,7 @@ fn explained(error: &toml::de::Error, text: &str) -> Diagnostic {
             })
         }
         _ if is_bare_word(error, text) => Some("words are written in quotes, like \"terzaghi\"".to_owned()),
-        _ if message.starts_with("missing field") => {
+        _ if ["missing field `title`", "missing field `scene`"].contains(&message.as_str()) => {
             Some("a study needs at least `title`, `scene` and one [[sweep]] block".to_owned())
         }
         _ => None,

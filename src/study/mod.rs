@@ -15,8 +15,10 @@ pub use check::{Purpose, Study, Tier};
 pub use diagnostic::{Diagnostic, StudyError};
 pub use expectation::{Axis, Expectation, Measure, NEXT_FINER};
 pub use file::StudySource;
+pub(crate) use file::{MethodTable, StudyFile};
 pub use runner::{
-    Progress, RunError, RunOptions, RunReport, Shard, TimingReport, estimated_updates, run_case, run_study,
-    time_study,
+    Progress, RunError, RunOptions, RunReport, Shard, TimingReport, estimated_updates, run_case, run_studies,
+    run_study, time_study,
 };
 pub use shipped::shipped_studies;
+pub use sweep::AXES;

@@ -115,6 +115,14 @@ impl RunReport {
     }
 }
 
+/// One case to run.
+#[derive(Clone, Copy)]
+struct Job<'a> {
+    case: &'a Case,
+    study: &'a Study,
+    store: Option<&'a RecordStore>,
+}
+
 /// Runs the cases of a study and keeps each record as soon as it is there.
 pub fn run_study(
     study: &Study,
@@ -129,36 +137,15 @@ pub fn run_study(
         .collect();
     let stored = |case: &Case| store.filter(|_| options.resume).and_then(|store| store.finished(case));
     let found: Vec<Option<Record>> = cases.iter().map(|case| stored(case)).collect();
-    let mut missing: Vec<usize> = (0..cases.len()).filter(|index| found[*index].is_none()).collect();
-    // The longest first: the last ones to finish are then short.
-    missing.sort_by_key(|index| std::cmp::Reverse(estimated_updates(cases[*index])));
-    tell(Progress::Planned {
-        cases: missing.len(),
-        resumed: cases.len() - missing.len(),
-        work: missing.iter().map(|index| estimated_updates(cases[*index])).sum(),
-    });
-    let results: Vec<Mutex<Option<Result<Record, RunError>>>> =
-        cases.iter().map(|_| Mutex::new(None)).collect();
-    let next = AtomicUsize::new(0);
-    let jobs = options.jobs.clamp(1, missing.len().max(1));
-    std::thread::scope(|scope| {
-        for _ in 0..jobs {
-            scope.spawn(|| {
-                while let Some(index) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let result = run_and_keep(cases[*index], study, store, jobs == 1, tell);
-                    if let Ok(mut slot) = results[*index].lock() {
-                        *slot = Some(result);
-                    }
-                }
-            });
-        }
-    });
-    let mut report = RunReport { resumed: cases.len() - missing.len(), ..RunReport::default() };
-    for (found, slot) in found.into_iter().zip(results) {
-        match (found, slot.into_inner().ok().flatten()) {
-            (Some(record), _) | (None, Some(Ok(record))) => report.records.push(record),
-            (None, Some(Err(error))) => report.errors.push(error),
-            (None, None) => {}
+    let missing = cases.iter().zip(&found).filter(|(_, found)| found.is_none());
+    let jobs: Vec<Job<'_>> = missing.map(|(case, _)| Job { case, study, store }).collect();
+    let mut report = RunReport { resumed: cases.len() - jobs.len(), ..RunReport::default() };
+    let mut results = run_jobs(&jobs, report.resumed, options.jobs, tell).into_iter();
+    for found in found {
+        match found.map(Ok).or_else(|| results.next().flatten()) {
+            Some(Ok(record)) => report.records.push(record),
+            Some(Err(error)) => report.errors.push(error),
+            None => {}
         }
     }
     report.errors.extend(report.records.iter().filter_map(|record| {
@@ -171,6 +158,73 @@ pub fn run_study(
     report
 }
 
+/// Runs the cases of several studies side by side and keeps nothing: the cores stay busy to the
+/// end of the last one. One report a study.
+pub fn run_studies(
+    studies: &[Study],
+    tier: Tier,
+    threads: usize,
+    tell: &(dyn Fn(Progress) + Sync),
+) -> Vec<RunReport> {
+    let of_study =
+        |study| Study::cases(study, tier).into_iter().map(move |case| Job { case, study, store: None });
+    let jobs: Vec<Job<'_>> = studies.iter().flat_map(of_study).collect();
+    let mut results = run_jobs(&jobs, 0, threads, tell).into_iter();
+    let report_of = |study: &Study| {
+        let mut report = RunReport::default();
+        for result in results.by_ref().take(study.cases(tier).len()).flatten() {
+            match result {
+                Ok(record) => report.records.push(record),
+                Err(error) => report.errors.push(error),
+            }
+        }
+        report
+    };
+    studies.iter().map(report_of).collect()
+}
+
+/// Runs jobs, the longest first so that the last ones to finish are short; results in the order of
+/// the jobs.
+fn run_jobs(
+    jobs: &[Job<'_>],
+    resumed: usize,
+    threads: usize,
+    tell: &(dyn Fn(Progress) + Sync),
+) -> Vec<Option<Result<Record, RunError>>> {
+    let mut order: Vec<usize> = (0..jobs.len()).collect();
+    order.sort_by_key(|index| std::cmp::Reverse(estimated_work(jobs[*index].case)));
+    tell(Progress::Planned {
+        cases: jobs.len(),
+        resumed,
+        work: jobs.iter().map(|job| estimated_work(job.case)).sum(),
+    });
+    let results: Vec<Mutex<Option<Result<Record, RunError>>>> =
+        jobs.iter().map(|_| Mutex::new(None)).collect();
+    let next = AtomicUsize::new(0);
+    let threads = threads.clamp(1, jobs.len().max(1));
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while let Some(index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let Job { case, study, store } = jobs[*index];
+                    let result = run_and_keep(case, study, store, threads == 1, tell);
+                    if let Ok(mut slot) = results[*index].lock() {
+                        *slot = Some(result);
+                    }
+                }
+            });
+        }
+    });
+    results.into_iter().map(|slot| slot.into_inner().ok().flatten()).collect()
+}
+
+/// Point updates, weighted with what one costs: operators that follow the points are built anew in
+/// every step.
+fn estimated_work(case: &Case) -> u64 {
+    let follows = case.method.configuration_or(case.scene.configuration()).deforms();
+    estimated_updates(case).saturating_mul(if follows { 30 } else { 1 })
+}
+
 fn run_and_keep(
     case: &Case,
     study: &Study,
@@ -178,7 +232,7 @@ fn run_and_keep(
     alone: bool,
     tell: &(dyn Fn(Progress) + Sync),
 ) -> Result<Record, RunError> {
-    let estimate = estimated_updates(case);
+    let estimate = estimated_work(case);
     let told = Cell::new(0);
     let deadline = Instant::now() + Duration::from_secs_f64(study.case_seconds.min(MOST_SECONDS));
     let observe = |done: u64, expected: u64| {
@@ -346,7 +400,7 @@ pub fn time_study(
                 .map_err(|source| RunError::Case { label: record.case.label(), source })?;
             record.wall.extend(timed.wall);
             report.runs += 1;
-            tell(Progress::Advanced(estimated_updates(&record.case)));
+            tell(Progress::Advanced(estimated_work(&record.case)));
         }
     }
     if let Some(store) = store.filter(|_| report.runs > 0) {

@@ -1,0 +1,119 @@
+//! `oedometer explain`: which norm and place carries the error of a case, how it stands among the
+//! other levels, what changed against the golden values, and the command that runs it again.
+
+use super::exit::{Ended, Exit};
+use super::output::{TableFormat, print_tables};
+use super::run::{DEFAULT_RESULTS, load_or_shipped};
+use crate::assess::explain::explain;
+use crate::golden::{GoldenError, GoldenFile};
+use crate::record::{Record, RecordStore};
+use crate::render::explanation;
+use crate::solver::run::Kernel;
+use crate::study::{Case, Study, Tier, run_case};
+use std::path::{Path, PathBuf};
+
+/// Cases that are named where a description fits several.
+const MOST_NAMED: usize = 10;
+
+/// Arguments of `explain`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Case: the first digits of its hash, words of its label, or a golden value as `check` names it
+    case: String,
+    /// Study files; every shipped one where none is named
+    #[arg(value_name = "STUDY.toml")]
+    studies: Vec<PathBuf>,
+    /// Folder of results: a record that this program made is taken from there, else the case is run
+    #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
+    records: PathBuf,
+    /// Folder of the golden values
+    #[arg(long, value_name = "DIR", default_value = super::check::GOLDEN)]
+    golden: PathBuf,
+    /// Output format
+    #[arg(long, value_enum, default_value_t = TableFormat::Table)]
+    format: TableFormat,
+}
+
+/// Finds, runs where it must, and explains.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    let studies = load_or_shipped(&arguments.studies)?;
+    let (description, focus) = match arguments.case.split_once(" | ") {
+        Some((label, measure)) => (label, Some(measure)),
+        None => (arguments.case.as_str(), None),
+    };
+    let (study, case) = the_one(&studies, description)?;
+    let record = record_of(study, case, &arguments.records)?;
+    let golden = match GoldenFile::read(&arguments.golden, &study.name) {
+        Ok(golden) => Some(golden),
+        Err(GoldenError::Missing(_)) => None,
+        Err(error) => return Err(Ended::with(Exit::Golden, error.to_string())),
+    };
+    let siblings = study.cases(Tier::Full);
+    let found = explain(&record, &siblings, golden.as_ref(), focus)?;
+    if arguments.format == TableFormat::Json {
+        println!("{}", serde_json::to_string_pretty(&found)?);
+    } else {
+        print_tables(&explanation::tables_of(&record, &found), arguments.format)?;
+    }
+    eprintln!("{}: {}", study.name, explanation::golden_sentence(&found));
+    eprintln!("run it again: {}", rerun(study, case, &arguments.studies));
+    Ok(Exit::Pass)
+}
+
+/// The one case that a description fits.
+fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a Study, &'a Case)> {
+    let all =
+        studies.iter().flat_map(|study| study.cases(Tier::Full).into_iter().map(move |case| (study, case)));
+    let all: Vec<(&Study, &Case)> = all.collect();
+    let exact: Vec<_> = all
+        .iter()
+        .filter(|(study, case)| {
+            let label = case.label();
+            label == description || format!("{}/{label}", study.name) == description
+        })
+        .collect();
+    let by_words = |(study, case): &&(&Study, &Case)| {
+        let told = format!("{}/{} {}", study.name, case.label(), case.method);
+        case.hash().starts_with(description)
+            || description.split_whitespace().all(|word| told.split([' ', '/']).any(|part| part == word))
+    };
+    let fitting: Vec<_> = if exact.is_empty() { all.iter().filter(by_words).collect() } else { exact };
+    match fitting.as_slice() {
+        [] => Err(Ended::with(
+            Exit::NothingSelected,
+            format!("no case is described by `{description}`; `oedometer plan` lists them all"),
+        )),
+        [(study, case)] => Ok((study, case)),
+        several => {
+            let mut lines: Vec<String> = several
+                .iter()
+                .take(MOST_NAMED)
+                .map(|(study, case)| format!("  {} {}/{}", case.hash(), study.name, case.label()))
+                .collect();
+            if several.len() > MOST_NAMED {
+                lines.push(format!("  and {} more", several.len() - MOST_NAMED));
+            }
+            Err(Ended::usage(format!(
+                "`{description}` describes {} cases; give the first digits of a hash:\n{}",
+                several.len(),
+                lines.join("\n")
+            )))
+        }
+    }
+}
+
+/// The stored record, if this very program made it; else the case is run and nothing is kept.
+fn record_of(study: &Study, case: &Case, results: &Path) -> anyhow::Result<Record> {
+    if let Some(record) = RecordStore::new(results, &study.name).finished(case) {
+        return Ok(record);
+    }
+    Ok(run_case(case, &study.references, Kernel::Fastest, true, &|_, _| true)?)
+}
+
+/// The command that runs one case again and keeps its record.
+fn rerun(study: &Study, case: &Case, named: &[PathBuf]) -> String {
+    let stem = |path: &&PathBuf| path.file_stem().is_some_and(|stem| stem.to_string_lossy() == study.name);
+    let file = named.iter().find(stem);
+    let file = file.map_or_else(|| format!("studies/{}.toml", study.name), |path| path.display().to_string());
+    format!("oedometer run {file} --case {}", case.hash())
+}

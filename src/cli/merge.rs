@@ -1,0 +1,115 @@
+//! `oedometer merge`: the records of shards into one folder, with the whole table of each study.
+
+use super::exit::{Ended, Exit};
+use super::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped, write_table};
+use crate::record::{Record, RecordStore};
+use crate::study::{Case, Study};
+use std::path::{Path, PathBuf};
+
+/// Holes that are named before the rest is only counted.
+const MOST_HOLES: usize = 10;
+
+/// Arguments of `merge`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Study files (`*.toml`) and folders of results; without a study every shipped one that the folders know
+    #[arg(required = true, value_name = "STUDY.toml|DIR")]
+    inputs: Vec<PathBuf>,
+    /// Folder for the merged results
+    #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
+    out: PathBuf,
+    /// How much of each study must be there
+    #[arg(long, value_enum, default_value_t = TierArgument::Full)]
+    tier: TierArgument,
+}
+
+/// Merges and tells of holes.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    let is_study = |path: &&PathBuf| path.extension().is_some_and(|extension| extension == "toml");
+    let (files, folders): (Vec<PathBuf>, Vec<PathBuf>) =
+        arguments.inputs.iter().cloned().partition(|path| is_study(&path));
+    if let Some(missing) = folders.iter().find(|folder| !folder.is_dir()) {
+        return Err(Ended::usage(format!("there is no folder of results {}", missing.display())));
+    }
+    let mut studies = load_or_shipped(&files)?;
+    if files.is_empty() {
+        studies.retain(|study| folders.iter().any(|folder| folder.join(&study.name).is_dir()));
+    }
+    if studies.is_empty() {
+        return Err(Ended::with(Exit::NothingSelected, "the folders have results of no shipped study"));
+    }
+    let mut exit = Exit::Pass;
+    for study in &studies {
+        if merge_study(study, &folders, arguments)? > 0 {
+            exit = Exit::IncompleteMerge;
+        }
+    }
+    Ok(exit)
+}
+
+/// Brings the records of a study together; the number of holes that are left.
+fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> anyhow::Result<usize> {
+    let target = RecordStore::new(&arguments.out, &study.name);
+    let mut holes: Vec<&Case> = Vec::new();
+    let cases = study.cases(arguments.tier.into());
+    for case in &cases {
+        match record_of(study, case, &target, folders)? {
+            Some(record) => {
+                if target.kept(case).as_ref() != Some(&record) {
+                    target.write(&record)?;
+                }
+            }
+            None => holes.push(case),
+        }
+    }
+    let there = cases.len() - holes.len();
+    if there > 0 {
+        let table = write_table(study, &target)?;
+        eprintln!("{}: {there} of {} cases, {}", study.name, cases.len(), table.display());
+    }
+    for case in holes.iter().take(MOST_HOLES) {
+        eprintln!("{}: no result of {} {}", study.name, case.hash(), case.label());
+    }
+    if holes.len() > MOST_HOLES {
+        eprintln!("{}: and {} more", study.name, holes.len() - MOST_HOLES);
+    }
+    Ok(holes.len())
+}
+
+/// The one record of a case that target and folders have, with the wall times of all.
+fn record_of(
+    study: &Study,
+    case: &Case,
+    target: &RecordStore,
+    folders: &[PathBuf],
+) -> anyhow::Result<Option<Record>> {
+    let mut found: Option<(Record, &Path)> = target.kept(case).map(|record| (record, target.folder()));
+    for folder in folders {
+        let Some(other) = RecordStore::new(folder, &study.name).kept(case) else { continue };
+        match &mut found {
+            None => found = Some((other, folder)),
+            Some((record, from)) => {
+                let timeless = |record: &Record| Record { wall: Vec::new(), ..record.clone() };
+                if timeless(record) != timeless(&other) {
+                    return Err(Ended::with(
+                        Exit::IncompleteMerge,
+                        format!(
+                            "{}: {} and {} have different results of {} {}: they were not made by one program",
+                            study.name,
+                            from.display(),
+                            folder.display(),
+                            case.hash(),
+                            case.label()
+                        ),
+                    ));
+                }
+                for sample in other.wall {
+                    if !record.wall.contains(&sample) {
+                        record.wall.push(sample);
+                    }
+                }
+            }
+        }
+    }
+    Ok(found.map(|(record, _)| record))
+}

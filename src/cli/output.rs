@@ -1,0 +1,97 @@
+//! Tables on standard output: their formats, and colour on a terminal only.
+
+use crate::render::table::Table;
+use clap::ValueEnum;
+use std::io::{IsTerminal, Write};
+
+/// How a table is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TableFormat {
+    /// For people
+    Table,
+    /// For GitHub
+    Markdown,
+    /// For programs, numbers with all digits
+    Csv,
+    /// For programs, with everything there is
+    Json,
+}
+
+/// Prints tables, parted by empty lines; JSON as one array of a list of rows a table.
+pub fn print_tables(tables: &[Table], format: TableFormat) -> anyhow::Result<()> {
+    let texts: Vec<String> = match format {
+        TableFormat::Table => tables.iter().map(Table::to_text).collect::<Result<_, _>>()?,
+        TableFormat::Markdown => tables.iter().map(Table::to_markdown).collect::<Result<_, _>>()?,
+        TableFormat::Csv => tables.iter().map(Table::to_csv).collect::<Result<_, _>>()?,
+        TableFormat::Json => vec![
+            serde_json::to_string_pretty(&tables.iter().map(rows_of).collect::<anyhow::Result<Vec<_>>>()?)?
+                + "\n",
+        ],
+    };
+    let text = texts.join("\n");
+    let mut out = std::io::stdout().lock();
+    write!(out, "{}", if format == TableFormat::Table { coloured(&text) } else { text })?;
+    Ok(())
+}
+
+/// The rows of a table by their headers, in the words of its CSV.
+fn rows_of(table: &Table) -> anyhow::Result<Vec<serde_json::Map<String, serde_json::Value>>> {
+    let text = table.to_csv()?;
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers()?.clone();
+    reader
+        .records()
+        .map(|record| {
+            let record = record?;
+            let fields = header.iter().zip(&record).map(|(name, field)| {
+                let number = field.parse::<f64>().ok().filter(|number| number.is_finite());
+                let value = number.map_or_else(|| field.into(), |number| serde_json::json!(number));
+                (name.to_owned(), value)
+            });
+            Ok(fields.collect())
+        })
+        .collect()
+}
+
+/// The marks of judgements in colour, where standard output is a terminal that wants it.
+pub fn coloured(text: &str) -> String {
+    if wants_colour(std::io::stdout().is_terminal(), |name| std::env::var(name).ok()) {
+        text.replace('✓', "\x1b[32m✓\x1b[0m").replace('✗', "\x1b[31m✗\x1b[0m")
+    } else {
+        text.to_owned()
+    }
+}
+
+/// Whether colours are wanted: on a terminal, unless `NO_COLOR` is set or the terminal is dumb.
+fn wants_colour(is_terminal: bool, variable: impl Fn(&str) -> Option<String>) -> bool {
+    is_terminal
+        && variable("NO_COLOR").is_none_or(|value| value.is_empty())
+        && variable("TERM").as_deref() != Some("dumb")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::table::{Cell, Column};
+
+    #[test]
+    fn colours_are_for_terminals_that_want_them() {
+        let none = |_: &str| None;
+        assert!(wants_colour(true, none));
+        assert!(!wants_colour(false, none));
+        assert!(!wants_colour(true, |name| (name == "NO_COLOR").then(|| "1".to_owned())));
+        assert!(wants_colour(true, |name| (name == "NO_COLOR").then(String::new)));
+        assert!(!wants_colour(true, |name| (name == "TERM").then(|| "dumb".to_owned())));
+    }
+
+    #[test]
+    fn a_row_in_json_has_numbers_as_numbers_and_words_as_words() {
+        let table = Table {
+            rows: vec![vec!["GIMP".into(), Cell::Error(1.5e-3)], vec!["nan".into(), Cell::Error(f64::NAN)]],
+            ..Table::new("t", vec![Column::text("method"), Column::number("error")])
+        };
+        let rows = rows_of(&table).expect("rows");
+        assert_eq!(serde_json::to_string(&rows[0]).expect("JSON"), r#"{"error":0.0015,"method":"GIMP"}"#);
+        assert!(rows[1]["error"].is_string(), "what is no number is written as such: {:?}", rows[1]);
+    }
+}

@@ -1,0 +1,70 @@
+//! The exact solutions as golden values: a fault in one shows at its own numbers, and not only in
+//! the errors of those scenes that happen to use it.
+
+use crate::exact::cosine_layer::{Base, CosineLayer};
+use crate::exact::large_strain::Water;
+use crate::exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
+use std::collections::BTreeMap;
+
+/// Name under which their golden values are kept.
+pub const REFERENCES: &str = "references";
+
+/// Time factors: before and after the front reaches the base, and on both sides of the switch
+/// between images and modes.
+const TIME_FACTORS: [f64; 5] = [0.0, 0.02, 0.19, 0.21, 1.0];
+/// Depths.
+const DEPTHS: [f64; 3] = [0.1, 0.5, 1.0];
+/// Load that strains the seed column by a sixth, Pa.
+const LARGE_LOAD: f64 = 2e5;
+/// Water so soft that its storage shows, Pa.
+const SOFT_WATER: f64 = 2e7;
+
+/// Pressures, stresses, displacements and degrees of every solution on a few places and times.
+///
+/// # Errors
+/// When a solution refuses the column: a fault of this program.
+pub fn reference_values() -> Result<BTreeMap<String, f64>, ExactError> {
+    let mut values = BTreeMap::new();
+    let seed = ColumnParameters::default();
+    let soft = ColumnParameters { load: LARGE_LOAD, water_bulk_modulus: SOFT_WATER, ..seed };
+    for kind in ReferenceKind::ALL {
+        for (column, parameters) in [("seed column", seed), ("soft water, 200 kPa", soft)] {
+            let reference = Reference::new(kind, &parameters, &TIME_FACTORS)?;
+            let mut note = |what: &str, time_factor: f64, value: f64| {
+                values.insert(format!("{kind} {column} | {what} T_v={time_factor}"), value);
+            };
+            for time_factor in TIME_FACTORS {
+                note("degree", time_factor, reference.degree_of_consolidation(time_factor)?);
+                for zeta in DEPTHS {
+                    let fields = reference.fields(time_factor, zeta)?;
+                    let load = parameters.load;
+                    note(&format!("p/q ζ={zeta}"), time_factor, fields.pressure / load);
+                    note(&format!("σ'/q ζ={zeta}"), time_factor, fields.effective_stress / load);
+                    let displacement = fields.displacement / parameters.final_settlement();
+                    note(&format!("u/(m_v q H) ζ={zeta}"), time_factor, displacement);
+                }
+            }
+        }
+    }
+    for (base, name) in [(Base::Rough, "rough"), (Base::Smooth, "smooth")] {
+        let layer = CosineLayer::new(&seed, 1.0, base, Water::Compressible)?;
+        for time_factor in TIME_FACTORS {
+            let state = layer.at(time_factor)?;
+            for (x, y) in [(0.0, 0.9), (0.3, 0.5), (0.5, 0.1)] {
+                let fields = state.fields(x, y)?;
+                let mut note = |what: &str, value: f64| {
+                    values
+                        .insert(format!("cosine-layer {name} | {what} x={x} y={y} T_v={time_factor}"), value);
+                };
+                note("p", fields.pressure);
+                for (stress, direction) in fields.effective_stress.iter().zip(["xx", "yy", "zz", "xy"]) {
+                    note(&format!("σ'_{direction}"), *stress);
+                }
+                for (displacement, direction) in fields.displacement.iter().zip(["x", "y"]) {
+                    note(&format!("u_{direction}/(m_v q H)"), displacement / seed.final_settlement());
+                }
+            }
+        }
+    }
+    Ok(values)
+}

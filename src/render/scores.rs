@@ -1,0 +1,100 @@
+//! Tables of somebody else's result held against references.
+
+use super::table::{Cell, Column, Table};
+use crate::assess::norms::Norm;
+use crate::assess::score::{Score, ScoredSeries, WorstPlace};
+use crate::record::{ErrorRow, Quantity};
+
+/// One row a time and quantity: the main norm against every reference, and the place that carries
+/// most of the error against the first.
+pub fn errors_table(score: &Score, title: &str) -> Table {
+    let mut references: Vec<&str> = Vec::new();
+    for row in &score.errors {
+        if !references.contains(&row.reference.as_str()) {
+            references.push(&row.reference);
+        }
+    }
+    let mut columns = vec![Column::number("T_v"), Column::text("quantity"), Column::text("sample")];
+    columns.extend(references.iter().map(|name| Column::number(format!("error against {name}"))));
+    columns.extend([
+        Column::number("worst at ζ"),
+        Column::number("its share"),
+        Column::number("result there"),
+        Column::number("exact there"),
+    ]);
+    let is_main = |row: &&ErrorRow| matches!(row.norm, Norm::L2 | Norm::Relative);
+    let first = references.first().copied().unwrap_or_default();
+    let rows = score.errors.iter().filter(is_main).filter(|row| row.reference == first).map(|row| {
+        let mut cells =
+            vec![Cell::Number(row.time_factor), row.quantity.name().into(), row.sample.name().into()];
+        cells.extend(references.iter().map(|name| {
+            let like = ErrorRow { reference: (*name).to_owned(), ..row.clone() };
+            error_cell(score.error(&like))
+        }));
+        let worst = score
+            .worst
+            .iter()
+            .find(|worst| worst.quantity == row.quantity && worst.time_factor == row.time_factor);
+        cells.extend(place_cells(worst));
+        cells
+    });
+    Table {
+        title: title.to_owned(),
+        columns,
+        rows: rows.collect(),
+        notes: vec![
+            "relative L2 error over the samples; settlement as s/s_exact − 1; ζ is the initial depth over the height"
+                .to_owned(),
+        ],
+    }
+}
+
+fn error_cell(row: Option<&ErrorRow>) -> Cell {
+    match row {
+        Some(row) if row.quantity == Quantity::Settlement => Cell::Percent(row.value),
+        Some(row) => Cell::Error(row.value),
+        None => Cell::Missing("the exact field is zero".to_owned()),
+    }
+}
+
+fn place_cells(worst: Option<&WorstPlace>) -> [Cell; 4] {
+    match worst {
+        Some(worst) => [
+            Cell::Number(worst.zeta),
+            Cell::Percent(worst.share),
+            Cell::Error(worst.computed),
+            Cell::Error(worst.exact),
+        ],
+        None => std::array::from_fn(|_| Cell::Missing(String::new())),
+    }
+}
+
+/// One row a series over meshes, with its errors, order and class.
+pub fn series_table(series: &[ScoredSeries], cells: &[usize]) -> Table {
+    let mut columns = ["T_v", "quantity", "reference"].map(Column::text).to_vec();
+    columns[0] = Column::number("T_v");
+    columns.extend(cells.iter().map(|cells| Column::number(format!("{cells} cells"))));
+    columns.extend([Column::number("order"), Column::text("class"), Column::text("reason")]);
+    let rows = series.iter().map(|one| {
+        let mut row = vec![
+            Cell::Number(one.measure.time_factor),
+            one.measure.quantity.name().into(),
+            one.measure.reference.as_str().into(),
+        ];
+        row.extend(one.series.levels().iter().map(|level| match level.error {
+            Some(error) => Cell::Error(error),
+            None => Cell::Missing("no such row in the result".to_owned()),
+        }));
+        let class = &one.classification;
+        row.push(class.order.map_or(Cell::Missing("the class allows no order".to_owned()), Cell::Order));
+        row.push(class.class.name().into());
+        row.push(class.reason.as_str().into());
+        row
+    });
+    Table {
+        title: "convergence".to_owned(),
+        columns,
+        rows: rows.collect(),
+        notes: vec!["the order is that of the finest three meshes".to_owned()],
+    }
+}

@@ -1,0 +1,42 @@
+//! The table of measured spreads.
+
+use super::table::{Cell, Column, Table};
+use crate::assess::spread::Spread;
+
+/// One row a study and source.
+pub fn table_of(spreads: &[Spread]) -> Table {
+    let rows = spreads.iter().map(|spread| {
+        vec![
+            spread.study.as_str().into(),
+            spread.source.as_str().into(),
+            Cell::Count(spread.values as u64),
+            Cell::Count(spread.unpaired as u64),
+            Cell::Count(spread.differing as u64),
+            Cell::Error(spread.absolute),
+            Cell::Error(spread.relative),
+            Cell::Error(spread.tolerance()),
+            match &spread.place {
+                Some(place) => Cell::Code(place.clone()),
+                None => Cell::Missing("every bit is equal".to_owned()),
+            },
+        ]
+    });
+    Table {
+        title: "spread of results that should be equal".to_owned(),
+        columns: vec![
+            Column::text("study"),
+            Column::text("against"),
+            Column::number("values"),
+            Column::number("unpaired"),
+            Column::number("differing"),
+            Column::number("largest difference"),
+            Column::number("relative"),
+            Column::number("tolerance from it"),
+            Column::text("widest at"),
+        ],
+        rows: rows.collect(),
+        notes: vec![
+            "a tolerance is ten times the relative spread; errors are themselves relative".to_owned(),
+        ],
+    }
+}

@@ -1,0 +1,147 @@
+//! JSON Schemas of what this program reads and writes, for editors and for other programs.
+//!
+//! They are traced from the very types that read the files, so that they cannot fall behind the
+//! code; the words of text keys and what keys mean are told here.
+
+mod node;
+mod tracer;
+
+use crate::assess::class::Class;
+use crate::assess::norms::Norm;
+use crate::exact::ReferenceKind;
+use crate::import::Mapping;
+use crate::record::{Quantity, Record, Sample};
+use crate::scene::SceneKind;
+use crate::solver::explicit::Drag;
+use crate::solver::material::{Continuity, Law};
+use crate::solver::method::{Configuration, Method};
+use crate::solver::scheme::Scheme;
+use crate::study::{Axis, IntegratorKind, MethodTable, StudyFile, Tier};
+use node::Language;
+use serde_json::{Value, json};
+use tracer::shape_of;
+
+/// Dialect of the schemas.
+const DIALECT: &str = "https://json-schema.org/draft/2020-12/schema";
+
+/// What the keys mean, with their units.
+const KEYS: &[(&str, &str)] = &[
+    ("title", "What the study is about, in one line."),
+    ("summary", "The question that it answers."),
+    ("scene", "Physical problem."),
+    ("height", "Initial height H, m."),
+    ("length", "Length, m."),
+    ("width", "Width, m; two dimensions only."),
+    ("load", "Load q on the surface, Pa."),
+    ("law", "Stress–strain law of the skeleton."),
+    ("youngs_modulus", "Young's modulus of the skeleton, Pa."),
+    ("poissons_ratio", "Poisson's ratio of the skeleton."),
+    ("porosity", "Initial porosity."),
+    ("grain_density", "Density of the grains, kg/m³."),
+    ("water_density", "Density of the water, kg/m³."),
+    ("water_bulk_modulus", "Bulk modulus of the water, Pa."),
+    ("hydraulic_conductivity", "Initial hydraulic conductivity, m/s."),
+    ("gravity", "Gravity in the drag, m/s²."),
+    ("continuity", "Form of the water's continuity."),
+    ("drag", "Time level of the drag between the phases."),
+    ("scheme", "Time levels of velocities and stresses in the explicit step."),
+    ("oscillation", "Bound on the spurious wiggle of the profile."),
+    ("flip", "Share of FLIP in the velocities of the points, 0 to 1."),
+    ("mapping_back", "Whether stresses see velocities mapped back from the points."),
+    ("time_factors", "Outputs T_v = c_v t/H², with the drained c_v."),
+    ("time_factor", "T_v = c_v t/H², with the drained c_v."),
+    ("references", "Exact solutions to hold the result against."),
+    ("reference", "Exact solution to hold the result against."),
+    ("sweep", "Blocks of cases: the product of the lists, or a path."),
+    ("expect", "What must be found; judged by `check`."),
+    ("repeats", "Runs of each case alone for its wall time."),
+    ("method", "Method by its name, or by its choices."),
+    ("integrator", "Integrator in time."),
+    ("cells", "Cells over the height."),
+    ("points_per_cell", "Material points a cell and direction."),
+    ("time_step", "Rule of the time step."),
+    ("stable", "Share of the predicted critical step."),
+    ("courant", "Share of a cell that the fastest wave crosses in a step."),
+    ("seconds", "Step, s."),
+    ("growth", "Step over the time that has passed."),
+    ("path", "Axes that step together instead of being multiplied out."),
+    ("tier", "Smallest tier that has it."),
+    ("order", "Two-sided band about the order on the finest three levels."),
+    ("minus", "How far below it may lie."),
+    ("plus", "How far above it may lie."),
+    ("at", "Bounds on the error at a named level."),
+    ("below", "Upper bound."),
+    ("above", "Lower bound."),
+    ("class", "Class of the series."),
+    ("floor", "Bounds on the floor under the errors."),
+    ("xfail", "Marks a known failure, which must then fail."),
+    ("strict", "Whether an unexpected pass is a failure."),
+    ("reason", "Why."),
+    ("axis", "What is refined along the series."),
+    ("quantity", "What is measured."),
+    ("sample", "Where it is measured."),
+    ("norm", "How the error becomes one number."),
+];
+
+/// What there is a schema of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Document {
+    /// A study file
+    Study,
+    /// The record of a case
+    Record,
+    /// The mapping of somebody else's result
+    Mapping,
+}
+
+/// The JSON Schema of a document.
+///
+/// # Errors
+/// When its types refuse to be traced: a fault of this program.
+pub fn schema_of(document: Document) -> Result<Value, serde::de::value::Error> {
+    let (title, node, language) = match document {
+        Document::Study => ("oedometer study", shape_of::<StudyFile>()?, study_language()?),
+        Document::Record => {
+            ("oedometer record", shape_of::<Record>()?, Language { has_null: true, ..Language::default() })
+        }
+        Document::Mapping => ("oedometer mapping", shape_of::<Mapping>()?, Language::default()),
+    };
+    let mut schema = node.to_schema("", &language);
+    if let Some(root) = schema.as_object_mut() {
+        root.insert("$schema".to_owned(), DIALECT.into());
+        root.insert("title".to_owned(), title.into());
+    }
+    Ok(schema)
+}
+
+/// The words of a study's keys, and the two ways to name a method.
+fn study_language() -> Result<Language, serde::de::value::Error> {
+    fn owned<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+        names.into_iter().map(str::to_owned).collect()
+    }
+    let words = vec![
+        ("scene", owned(SceneKind::ALL.map(SceneKind::name))),
+        ("law", owned(Law::ALL.map(Law::name))),
+        ("continuity", owned(Continuity::ALL.map(Continuity::name))),
+        ("drag", shape_of::<Drag>()?.words()),
+        ("scheme", owned(Scheme::ALL.map(Scheme::name))),
+        ("integrator", owned(IntegratorKind::ALL.map(IntegratorKind::name))),
+        ("configuration", owned(Configuration::ALL.map(Configuration::name))),
+        ("references", owned(ReferenceKind::ALL.iter().map(|kind| kind.name()))),
+        ("reference", owned(ReferenceKind::ALL.iter().map(|kind| kind.name()))),
+        ("quantity", owned(Quantity::ALL.map(Quantity::name))),
+        ("sample", owned(Sample::ALL.map(Sample::name))),
+        ("norm", owned(Norm::ALL.map(Norm::name))),
+        ("axis", owned(Axis::ALL.map(Axis::name))),
+        ("class", owned(Class::ALL.map(Class::name))),
+        ("tier", owned(Tier::ALL.map(Tier::name))),
+        ("path", owned(crate::study::AXES)),
+    ];
+    let choices =
+        shape_of::<MethodTable>()?.to_schema("", &Language { words: words.clone(), ..Language::default() });
+    let method = json!({ "anyOf": [{ "enum": Method::names() }, choices] });
+    Ok(Language { has_null: false, words, descriptions: KEYS, any: vec![("method", method)] })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,305 @@
+//! `check`, `accept` and `report` through the program: exit codes, what is named and what is not,
+//! what is written and what is left alone.
+
+use assert_cmd::Command;
+use oedometer::golden::GoldenFile;
+use oedometer::record::{Provenance, Record};
+use oedometer::study::{RunOptions, Study, StudySource, Tier, run_study};
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// Three levels that take a fraction of a second, with an expectation that is met.
+const STUDY: &str = r#"title = "A short study"
+scene = "terzaghi"
+integrator.drag = "implicit"
+
+[output]
+time_factors = [0.1, 0.2]
+
+[[sweep]]
+method = ["GIMP-SRI"]
+cells = [3, 6, 12]
+
+[[expect]]
+method = "GIMP-SRI"
+time_factor = 0.2
+order = { value = 1.0, minus = 0.2, plus = 0.2 }
+at = { cells = 6, below = 0.1 }
+"#;
+
+/// The value that the tests disturb.
+const VALUE: &str =
+    "GIMP-SRI explicit cells=6 points=2 stable=0.8 (implicit drag) | pressure points l2 terzaghi T_v=0.2";
+
+struct Told {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+/// A folder with a study and its golden values.
+struct Place(TempDir);
+
+impl Place {
+    fn with(study: &str) -> Self {
+        let place = Self(TempDir::new().expect("a folder"));
+        fs::write(place.path().join("short.toml"), study).expect("a file");
+        place
+    }
+
+    /// The same with golden values of its records, changed as a test wants.
+    fn golden(study: &str, change: impl FnOnce(&mut GoldenFile)) -> Self {
+        let place = Self::with(study);
+        let mut golden = GoldenFile::of("short", &records(study), "for a test");
+        change(&mut golden);
+        golden.write(&place.path().join("golden")).expect("written");
+        place
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    fn call(&self, variables: &[(&str, &str)], arguments: &[&str]) -> Told {
+        let mut command = Command::cargo_bin("oedometer").expect("the program");
+        for name in ["CI", "GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY", "NO_COLOR"] {
+            command.env_remove(name);
+        }
+        command.envs(variables.iter().copied());
+        let output = command.current_dir(self.path()).args(arguments).output().expect("it starts");
+        let told = Told {
+            code: output.status.code().expect("an exit code"),
+            out: String::from_utf8(output.stdout).expect("words"),
+            err: String::from_utf8(output.stderr).expect("words"),
+        };
+        assert!(!told.err.contains("panicked"), "{}", told.err);
+        told
+    }
+
+    fn check(&self, options: &[&str]) -> Told {
+        self.call(&[], &[&["check", "short.toml"], options].concat())
+    }
+}
+
+fn records(study: &str) -> Vec<Record> {
+    let source = StudySource { name: "short.toml".to_owned(), text: study.to_owned() };
+    let study = Study::check(&source).expect("a sound study");
+    let options = RunOptions { jobs: 1, tier: Tier::Ci, shard: None, resume: false };
+    run_study(&study, &options, None, &|_| {}).records
+}
+
+/// A golden value ten times its tolerance away, towards a larger error or a smaller one.
+fn disturb(golden: &mut GoldenFile, sign: f64) {
+    let value = golden.values.get_mut(VALUE).expect("the value is measured");
+    *value += sign * 10.0 * (golden.absolute_tolerance + golden.relative_tolerance * value.abs());
+}
+
+/// Rows of the table of values that differ.
+fn differing(told: &Told) -> Vec<&str> {
+    told.out.lines().filter(|line| line.contains(" | ") && line.contains("T_v=")).collect()
+}
+
+#[test]
+fn a_study_with_its_golden_values_passes_and_nothing_is_written() {
+    let place = Place::golden(STUDY, |_| {});
+    let told = place.check(&[]);
+    assert_eq!(told.code, 0, "{}{}", told.out, told.err);
+    assert!(told.out.starts_with("short: 1 of 1 expectations met, "), "{}", told.out);
+    assert!(!told.out.contains('\x1b'), "no colours but on a terminal");
+    let mut entries: Vec<_> = fs::read_dir(place.path())
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name())
+        .collect();
+    entries.sort();
+    assert_eq!(entries, ["golden", "short.toml"]);
+}
+
+#[test]
+fn one_disturbed_value_is_named_with_its_place_and_nothing_else() {
+    // The golden value is smaller: the present one is worse.
+    let told = Place::golden(STUDY, |golden| disturb(golden, -1.0)).check(&[]);
+    assert_eq!(told.code, 1, "{}", told.out);
+    let rows = differing(&told);
+    assert_eq!(rows.len(), 1, "{}", told.out);
+    assert!(rows[0].contains(VALUE) && rows[0].contains("moved"), "{}", rows[0]);
+    assert!(told.out.contains("dominated by its golden values"), "{}", told.out);
+    assert!(told.out.contains("1 of 1 expectations met"), "the expectation is still met");
+}
+
+#[test]
+fn a_better_value_is_a_stale_golden_and_no_failure() {
+    let told = Place::golden(STUDY, |golden| disturb(golden, 1.0)).check(&[]);
+    assert_eq!(told.code, 5, "{}", told.out);
+    let rows = differing(&told);
+    assert_eq!(rows.len(), 1);
+    assert!(rows[0].contains("better: stale golden"), "{}", rows[0]);
+}
+
+#[test]
+fn a_trade_of_cost_for_accuracy_is_stale_and_a_dearer_run_fails() {
+    let steps = "GIMP-SRI explicit cells=6 points=2 stable=0.8 (implicit drag) | steps";
+    let traded = Place::golden(STUDY, |golden| {
+        *golden.values.get_mut(steps).expect("a counter") *= 2.0;
+        disturb(golden, -1.0);
+    });
+    let told = traded.check(&[]);
+    assert_eq!(told.code, 5, "{}", told.out);
+    assert!(told.out.contains("cost traded for accuracy"), "{}", told.out);
+    let dearer = Place::golden(STUDY, |golden| *golden.values.get_mut(steps).expect("a counter") *= 0.5);
+    let told = dearer.check(&[]);
+    assert_eq!(told.code, 1, "{}", told.out);
+    assert!(told.out.contains("dominated by its golden values"), "{}", told.out);
+}
+
+#[test]
+fn missing_extra_and_renamed_values_and_a_missing_file_are_no_pass() {
+    assert_eq!(Place::with(STUDY).check(&[]).code, 5, "no golden file");
+    let fewer = Place::golden(STUDY, |golden| {
+        golden.values.remove(VALUE).expect("the value is measured");
+    });
+    let told = fewer.check(&[]);
+    assert_eq!((told.code, differing(&told).len()), (5, 1), "{}", told.out);
+    assert!(told.out.contains("not in the golden"), "{}", told.out);
+    let renamed = Place::golden(STUDY, |golden| {
+        let value = golden.values.remove(VALUE).expect("the value is measured");
+        golden.values.insert(format!("{VALUE}x"), value);
+    });
+    let told = renamed.check(&[]);
+    assert_eq!((told.code, differing(&told).len()), (5, 2), "{}", told.out);
+    let spoilt = Place::with(STUDY);
+    fs::create_dir(spoilt.path().join("golden")).expect("a folder");
+    fs::write(spoilt.path().join("golden/short.json"), "{ \"schema\": 1 ").expect("a file");
+    let told = spoilt.check(&[]);
+    assert_eq!(told.code, 5);
+    assert!(told.out.contains("cannot be read"), "{}", told.out);
+}
+
+#[test]
+fn an_expectation_that_is_not_met_fails_everywhere_it_is_told() {
+    let study = STUDY.replace("order = { value = 1.0", "order = { value = 2.0");
+    let place = Place::golden(&study, |_| {});
+    let summary = place.path().join("summary.md");
+    fs::write(&summary, "before\n").expect("a file");
+    let variables = [("GITHUB_ACTIONS", "true"), ("GITHUB_STEP_SUMMARY", summary.to_str().expect("a path"))];
+    let told = place.call(&variables, &["check", "short.toml", "--junit", "junit.xml"]);
+    assert_eq!(told.code, 1, "{}", told.out);
+    assert!(told.out.contains("0 of 1 expectations met"), "{}", told.out);
+    let annotation = told.err.lines().find(|line| line.starts_with("::error ")).expect("an annotation");
+    assert!(annotation.starts_with("::error file=short.toml,line=12,title=short%3A "), "{annotation}");
+    let summary = fs::read_to_string(summary).expect("a summary");
+    assert!(summary.starts_with("before\n## oedometer check\n"), "appended: {summary}");
+    let junit = fs::read_to_string(place.path().join("junit.xml")).expect("a report");
+    assert!(junit.contains("name=\"short/GIMP-SRI, 2 points a cell"), "{junit}");
+    assert!(junit.contains("/order\"") && junit.contains("<failure"), "{junit}");
+    let names: Vec<&str> =
+        junit.split("<testcase name=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    let mut unique = names.clone();
+    unique.sort_unstable();
+    unique.dedup();
+    assert_eq!(unique.len(), names.len(), "names are unique: {names:?}");
+}
+
+#[test]
+fn a_wiggle_is_measured_where_a_study_bounds_it() {
+    let asked = |bound: &str| {
+        let study = STUDY.replace("at = {", &format!("oscillation = {{ below = {bound} }}\nat = {{"));
+        Place::golden(&study, |_| {}).check(&["--format", "json"])
+    };
+    let told = asked("1e-6");
+    assert_eq!(told.code, 0, "constant recovery makes a staircase and no wiggle: {}", told.out);
+    let json: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
+    let checks = json[0]["judgements"][0]["verdict"]["checks"].as_array().expect("checks");
+    let wiggle = checks.iter().find(|check| check["name"] == "oscillation").expect("it is judged");
+    assert_eq!(wiggle["measured"], 0.0, "{wiggle}");
+    assert_eq!(asked("-1.0").code, 1, "and a bound that cannot be met is not");
+}
+
+#[test]
+fn a_known_failure_must_fail() {
+    let known = STUDY
+        .replace("order = { value = 1.0", "order = { value = 2.0")
+        .replace("at = { cells = 6, below = 0.1 }", "xfail = { reason = \"constant recovery\" }");
+    assert_eq!(Place::golden(&known, |_| {}).check(&[]).code, 0);
+    let met = STUDY.replace("at = { cells = 6, below = 0.1 }", "xfail = { reason = \"constant recovery\" }");
+    let told = Place::golden(&met, |_| {}).check(&[]);
+    assert_eq!(told.code, 1);
+    assert!(told.out.contains("unexpected pass"), "{}", told.out);
+}
+
+#[test]
+fn a_case_that_fails_is_exit_code_three_and_an_empty_tier_four() {
+    let unstable = STUDY.replace("cells = [3, 6, 12]\n", "cells = [3]\ntime_step = [{ stable = 1.3 }]\n");
+    let unstable = unstable.split("[[expect]]").next().expect("a head").to_owned();
+    let told = Place::golden(&unstable, |_| {}).check(&[]);
+    assert_eq!(told.code, 3, "{}", told.out);
+    assert!(told.out.contains("1 cases failed") && told.out.contains("unstable at step"), "{}", told.out);
+    let full = STUDY.replace("[[sweep]]\n", "[[sweep]]\ntier = \"full\"\n");
+    assert_eq!(Place::with(&full).check(&[]).code, 4);
+}
+
+#[test]
+fn every_format_has_the_verdicts() {
+    let place = Place::golden(STUDY, |golden| disturb(golden, -1.0));
+    let json: serde_json::Value =
+        serde_json::from_str(&place.check(&["--format", "json"]).out).expect("JSON");
+    assert_eq!(json[0]["end"], "failed");
+    assert_eq!(json[0]["differences"][0]["name"], VALUE);
+    assert_eq!(json[0]["judgements"][0]["verdict"]["pass"], true);
+    assert_eq!(json[0]["accuracy_and_cost"][0]["change"], "dominated");
+    let told = place.check(&["--format", "csv"]);
+    let mut rows = csv::Reader::from_reader(told.out.as_bytes());
+    assert_eq!(rows.records().count(), 2, "{}", told.out);
+    assert!(place.check(&["--format", "markdown"]).out.starts_with("## oedometer check\n"));
+}
+
+#[test]
+fn a_warning_on_wall_time_fails_nothing() {
+    let place = Place::golden(STUDY, |golden| golden.seconds = Some(1e-9));
+    let told = place.check(&[]);
+    assert_eq!(told.code, 0, "{}", told.out);
+    assert!(told.out.contains("warning: the cases took"), "{}", told.out);
+}
+
+#[test]
+fn golden_values_are_taken_with_a_reason_from_a_clean_tree_and_never_in_ci() {
+    let place = Place::with(STUDY);
+    let accept = ["accept", "short.toml", "--reason", "a test"];
+    let told = place.call(&[("CI", "true")], &accept);
+    assert_eq!(told.code, 2);
+    assert!(told.err.contains("never taken in CI"), "{}", told.err);
+    let told = place.call(&[], &["accept", "short.toml", "--reason", "  "]);
+    assert_eq!(told.code, 2);
+    assert!(told.err.contains("needs a reason"), "{}", told.err);
+    assert_eq!(place.call(&[], &["accept", "short.toml"]).code, 2, "no reason at all");
+    assert!(!place.path().join("golden").exists(), "nothing is written by a refusal");
+    let told = place.call(&[], &accept);
+    if Provenance::of_this_program().dirty {
+        assert_eq!(told.code, 2);
+        assert!(told.err.contains("differ from their commit"), "{}", told.err);
+        assert!(!place.path().join("golden").exists());
+    } else {
+        assert_eq!(told.code, 0, "{}", told.err);
+        let golden = GoldenFile::read(&place.path().join("golden"), "short").expect("golden values");
+        assert_eq!(golden.reason, "a test");
+        assert_eq!(place.check(&[]).code, 0);
+    }
+}
+
+#[test]
+fn a_report_shows_verdicts_and_does_not_gate_on_them() {
+    let study = STUDY.replace("order = { value = 1.0", "order = { value = 2.0");
+    let place = Place::with(&study);
+    let told = place.call(&[], &["report", "short.toml", "--out", "made"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    let html = fs::read_to_string(place.path().join("made/index.html")).expect("a page");
+    let markdown = fs::read_to_string(place.path().join("made/report.md")).expect("a page");
+    for page in [&html, &markdown] {
+        assert!(page.contains("GIMP-SRI") && page.contains("A short study"));
+        assert!(!page.contains(place.path().to_str().expect("a path")), "no absolute path");
+    }
+    assert!(place.path().join("made/figures").read_dir().expect("figures").count() > 0);
+    assert!(place.path().join("out/short/short.csv").is_file(), "records are kept");
+    let again = place.call(&[], &["report", "short.toml", "--out", "made"]);
+    assert!(again.err.contains("3 cases (3 from disk"), "{}", again.err);
+}

@@ -1,0 +1,283 @@
+//! `score`, `explain`, `merge`, `spread`, `schema`, `completions` and `run --case` through the
+//! program, and the list of faults that `check` is held against.
+
+use assert_cmd::Command;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+const STUDY: &str = r#"title = "Short"
+scene = "terzaghi"
+[output]
+time_factors = [0.02]
+[[sweep]]
+method = ["MPM", "GC-SRI-patch"]
+cells = [3, 4, 5]
+"#;
+
+struct Told {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+fn call(folder: &Path, arguments: &[&str]) -> Told {
+    let mut command = Command::cargo_bin("oedometer").expect("the program");
+    let output = command.current_dir(folder).args(arguments).output().expect("it starts");
+    let told = Told {
+        code: output.status.code().expect("an exit code"),
+        out: String::from_utf8(output.stdout).expect("words"),
+        err: String::from_utf8(output.stderr).expect("words"),
+    };
+    assert!(!told.err.contains("panicked"), "{}", told.err);
+    told
+}
+
+fn place() -> TempDir {
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("short.toml"), STUDY).expect("a file");
+    folder
+}
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn assert_snapshot(name: &str, told: &str) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("../golden/snapshots");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!(name, told));
+}
+
+/// The example of the README, in the words that it shows.
+#[test]
+fn the_other_solver_of_the_examples_is_of_second_order_against_its_own_theory() {
+    let folder = root().join("examples/other-solver");
+    let files = ["column-10.csv", "column-20.csv", "column-40.csv"];
+    let common = ["--scene", "terzaghi", "--mapping", "mapping.toml"];
+    let told = call(&folder, &[&["score"], &files[..], &common, &["--cells", "10,20,40"]].concat());
+    assert_eq!(told.code, 0, "{}", told.err);
+    assert_snapshot("score_example", &format!("{}{}", told.out, told.err));
+    let own = [&common[..], &["--reference", "terzaghi-incompressible", "--format", "csv"]].concat();
+    let mut errors = Vec::new();
+    for file in files {
+        let told = call(&folder, &[&["score", file], &own[..]].concat());
+        assert_eq!(told.code, 0, "{}", told.err);
+        let row = told
+            .out
+            .lines()
+            .find(|line| line.starts_with("0.1,pressure,nodes,l2,") || line.contains(",pressure,nodes,l2,"));
+        errors
+            .push(row.expect("a row").rsplit(',').next().expect("a value").parse::<f64>().expect("a number"));
+    }
+    for pair in errors.windows(2) {
+        assert!(((pair[0] / pair[1]).log2() - 2.0).abs() < 0.05, "{errors:?}");
+    }
+}
+
+#[test]
+fn a_score_can_be_a_gate() {
+    let folder = root().join("examples/other-solver");
+    let gate = |below: &str| {
+        call(
+            &folder,
+            &["score", "column-20.csv", "--scene", "terzaghi", "--mapping", "mapping.toml", "--below", below],
+        )
+    };
+    assert_eq!(gate("5e-3").code, 0);
+    let told = gate("1e-4");
+    assert_eq!(told.code, 1);
+    assert!(told.err.contains("not below 1e-4"), "{}", told.err);
+    assert_eq!(gate("-1").code, 2);
+}
+
+#[test]
+fn what_solve_computes_scores_as_solve_says() {
+    let folder = place();
+    let told = call(
+        folder.path(),
+        &["exact", "terzaghi", "--time-factor", "0.1", "--zeta", "0.125,0.375,0.625,0.875"],
+    );
+    let mut rows = csv::Reader::from_reader(told.out.as_bytes());
+    let mut text = "t,x,y,p,u_y\n".to_owned();
+    for row in rows.records() {
+        let row = row.expect("a row");
+        let zeta: f64 = row[1].parse().expect("a number");
+        let pressure: f64 = row[2].parse().expect("a number");
+        writeln!(text, "8.175,0,{},{},0", 1.0 - zeta, 1.01 * pressure).expect("a line");
+    }
+    fs::write(folder.path().join("result.csv"), text).expect("a file");
+    let told = call(folder.path(), &["score", "result.csv", "--scene", "terzaghi", "--format", "csv"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    assert!(told.err.contains("no --mapping"), "what is taken for granted is told: {}", told.err);
+    let header = told.out.lines().next().expect("a header");
+    assert_eq!(header, "time_factor,quantity,sample,norm,reference,value");
+    for norm in ["l1", "l2", "linf"] {
+        let row = told.out.lines().find(|line| line.contains(&format!(",pressure,points,{norm},terzaghi,")));
+        let value: f64 = row.expect("a row").rsplit(',').next().expect("a value").parse().expect("a number");
+        assert!((value - 0.01).abs() < 1e-9, "one percent everywhere is one percent in {norm}: {value}");
+    }
+}
+
+#[test]
+fn a_bad_result_or_mapping_is_exit_code_two_with_its_place() {
+    let folder = place();
+    let score = |text: &str, options: &[&str]| {
+        fs::write(folder.path().join("result.csv"), text).expect("a file");
+        let told = call(folder.path(), &[&["score", "result.csv", "--scene", "terzaghi"], options].concat());
+        assert_eq!((told.code, told.out.as_str()), (2, ""), "{}", told.err);
+        told.err
+    };
+    assert!(score("t,x,y,p,u_y\n1,0,0.5,nan,0\n", &[]).contains("result.csv:2: `nan` in the column `p`"));
+    assert!(score("t,x,y,p\n1,0,0.5,1\n", &[]).contains("no column `u_y`"));
+    assert!(score("t,x,y,p,u_y\n1,0,500,1,0\n", &[]).contains("outside the column of 1 m"));
+    assert!(score("t,x,y,p,u_y\n", &[]).contains("there are no rows"));
+    assert!(score("", &[]).contains("no column `t`"));
+    fs::write(folder.path().join("map.toml"), "[columns]\ny = \"y\"\npp = \"p\"\n").expect("a file");
+    let told = score("t,y,p\n1,0.5,1\n", &["--mapping", "map.toml"]);
+    assert!(told.contains("map.toml:3:1") && told.contains("unknown key `pp`"), "{told}");
+    assert!(score("t,x,y,p,u_y\n1,0,0.5,1,0\n", &["--cells", "10,20"]).contains("2 numbers for 1 results"));
+}
+
+#[test]
+fn merged_shards_are_the_whole_and_holes_are_told() {
+    let folder = place();
+    let at = folder.path();
+    assert_eq!(call(at, &["run", "short.toml", "--out", "whole"]).code, 0);
+    for shard in ["1/2", "2/2"] {
+        let out = format!("part-{}", &shard[..1]);
+        call(at, &["run", "short.toml", "--shard", shard, "--out", &out]);
+    }
+    let told = call(at, &["merge", "short.toml", "part-1", "--out", "merged"]);
+    assert_eq!(told.code, 6, "{}", told.err);
+    assert!(told.err.contains("no result of"), "{}", told.err);
+    let merge = ["merge", "short.toml", "part-1", "part-2", "--out", "merged"];
+    assert_eq!(call(at, &merge).code, 0);
+    let table = |folder: &str| fs::read(at.join(folder).join("short/short.csv")).expect("a table");
+    assert_eq!(table("merged"), table("whole"));
+    let modified = || {
+        let record =
+            fs::read_dir(at.join("merged/short/cases")).expect("cases").next().expect("one").expect("one");
+        fs::metadata(record.path().join("record.json")).expect("a record").modified().expect("a time")
+    };
+    let before = modified();
+    assert_eq!(call(at, &merge).code, 0, "merging again changes nothing");
+    assert_eq!((table("merged"), modified()), (table("whole"), before));
+    assert_eq!(call(at, &["merge", "short.toml", "nowhere"]).code, 2);
+    // A result of the same case that says something else was not made by the same program.
+    let case = fs::read_dir(at.join("part-1/short/cases")).expect("cases").next().expect("one").expect("one");
+    let path = case.path().join("record.json");
+    let text = fs::read_to_string(&path).expect("a record").replacen("\"steps\": ", "\"steps\": 1", 1);
+    fs::write(&path, text).expect("written");
+    let told = call(at, &merge);
+    assert_eq!(told.code, 6);
+    assert!(told.err.contains("different results of"), "{}", told.err);
+}
+
+#[test]
+fn one_case_can_be_explained_and_run_again() {
+    let folder = place();
+    let at = folder.path();
+    assert_eq!(call(at, &["run", "short.toml"]).code, 0);
+    let before = fs::read(at.join("out/short/short.csv")).expect("a table");
+    let told = call(at, &["explain", "GC-SRI-patch cells=4", "short.toml"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    assert!(told.out.contains("worst at ζ") && told.out.contains("cells=4"), "{}", told.out);
+    assert!(told.err.contains("no golden values"), "{}", told.err);
+    let command =
+        told.err.lines().find_map(|line| line.strip_prefix("run it again: oedometer ")).expect("a command");
+    let arguments: Vec<&str> = command.split(' ').collect();
+    let again = call(at, &arguments);
+    assert_eq!(again.code, 0, "{}", again.err);
+    assert!(again.err.contains("short: 1 cases (0 from disk"), "{}", again.err);
+    assert_eq!(
+        fs::read(at.join("out/short/short.csv")).expect("a table"),
+        before,
+        "the table keeps the others"
+    );
+    let several = call(at, &["explain", "cells=4", "short.toml"]);
+    assert_eq!(several.code, 2);
+    assert!(several.err.contains("describes 2 cases"), "{}", several.err);
+    assert_eq!(call(at, &["explain", "cells=77", "short.toml"]).code, 4);
+}
+
+#[test]
+fn an_explanation_says_what_changed_against_the_golden_values() {
+    use oedometer::golden::GoldenFile;
+    use oedometer::study::{RunOptions, Study, StudySource, Tier, run_study};
+    let folder = place();
+    let source = StudySource { name: "short.toml".to_owned(), text: STUDY.to_owned() };
+    let study = Study::check(&source).expect("sound");
+    let options = RunOptions { jobs: 1, tier: Tier::Ci, shard: None, resume: false };
+    let mut golden =
+        GoldenFile::of("short", &run_study(&study, &options, None, &|_| {}).records, "for a test");
+    let name = "MPM explicit cells=4 points=2 stable=0.8 | pressure centres l2 terzaghi T_v=0.02";
+    *golden.values.get_mut(name).expect("a value") *= 0.9;
+    golden.write(&folder.path().join("golden")).expect("written");
+    let told = call(folder.path(), &["explain", name, "short.toml"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    assert!(told.err.contains("1 values differ from the golden ones"), "{}", told.err);
+    assert!(told.out.contains("moved") && told.out.contains(name), "{}", told.out);
+    assert!(
+        told.out.contains("pressure centres at T_v = 0.02 over cells"),
+        "it is about that value: {}",
+        told.out
+    );
+    assert_snapshot("explain_changed", &told.out);
+    let other = call(folder.path(), &["explain", "MPM cells=5", "short.toml"]);
+    assert!(other.err.contains("golden values of the case agree"), "{}", other.err);
+    assert!(other.out.contains("• this case") && other.out.contains("golden"), "{}", other.out);
+}
+
+#[test]
+fn threads_make_no_spread_and_kernels_a_little() {
+    let folder = place();
+    let told = call(folder.path(), &["spread", "short.toml", "--format", "json"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    let spreads: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
+    assert_eq!(spreads[0]["differing"], 0, "{spreads}");
+    assert_eq!(spreads[1]["source"], "point-wise kernel");
+    let relative = spreads[1]["relative"].as_f64().expect("a number");
+    assert!(spreads[1]["differing"].as_u64() > Some(0) && relative < 1e-9, "{spreads}");
+}
+
+#[test]
+fn schemas_and_completions_are_printed() {
+    let folder = place();
+    for document in ["study", "record", "mapping"] {
+        let told = call(folder.path(), &["schema", document]);
+        let schema: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
+        assert_eq!(schema["type"], "object", "{document}");
+    }
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let told = call(folder.path(), &["completions", shell]);
+        assert!(told.code == 0 && told.out.contains("explain"), "{shell}");
+    }
+    assert_eq!(call(folder.path(), &["completions", "sh"]).code, 2);
+}
+
+/// Every fault of the campaign still stands where the list says, exactly once.
+#[test]
+fn the_faults_that_check_is_held_against_are_in_the_sources() {
+    let text = fs::read_to_string(root().join("tests/mutations/faults.toml")).expect("the list");
+    let list: toml::Table = toml::from_str(&text).expect("TOML");
+    let faults = list["fault"].as_array().expect("faults");
+    assert!(faults.len() >= 40);
+    for fault in faults {
+        let file = fault["file"].as_str().expect("a file");
+        let from = fault["from"].as_str().expect("a text");
+        let source = fs::read_to_string(root().join(file)).expect(file);
+        let found = source.matches(from).count();
+        let nth =
+            fault.get("nth").and_then(toml::Value::as_integer).and_then(|nth| usize::try_from(nth).ok());
+        let name = &fault["name"];
+        assert!(
+            nth.map_or(found == 1, |nth| found >= nth),
+            "{name}: `{from}` stands {found} times in {file}"
+        );
+        assert_ne!(from, fault["to"].as_str().expect("a text"), "{name}");
+    }
+}
