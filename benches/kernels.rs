@@ -10,7 +10,7 @@ use oedometer::exact::consolidation;
 use oedometer::scene::{Column, SceneKind, column_problem};
 use oedometer::solver::assembled::AssembledColumn;
 use oedometer::solver::assembled_plane::AssembledPlane;
-use oedometer::solver::body::{Body, Gimp, Hat, Problem, ShapeFunction};
+use oedometer::solver::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
 use oedometer::solver::explicit::ExplicitSettings;
 use oedometer::solver::implicit::drive::Plan;
 use oedometer::solver::implicit::linear::LinearMarch;
@@ -79,6 +79,11 @@ fn build_operators<const C: usize>(bencher: Bencher, method: &str) {
             let mut body = Body::<1, 3, Gimp>::new(problem);
             bencher.bench_local(|| body.build_operators());
         }
+        Basis::Cpdi => {
+            let mut body = Body::<1, 3, DomainEnds>::new(problem);
+            bencher.bench_local(|| body.build_operators());
+        }
+        Basis::Bspline2 | Basis::Bspline3 => unreachable!("no name has splines"),
     }
 }
 
@@ -157,6 +162,8 @@ fn stepper(method: &str, cells: usize, kernel: Kernel) -> Box<dyn FnMut()> {
     match problem.method.basis {
         Basis::Hat => steps_of(Body::<1, 2, Hat>::new(problem), kernel, dt, settings),
         Basis::Ugimp | Basis::Cpgimp => steps_of(Body::<1, 3, Gimp>::new(problem), kernel, dt, settings),
+        Basis::Cpdi => steps_of(Body::<1, 3, DomainEnds>::new(problem), kernel, dt, settings),
+        Basis::Bspline2 | Basis::Bspline3 => unreachable!("no name has splines"),
     }
 }
 

@@ -167,14 +167,13 @@ fn merged_shards_are_the_whole_and_holes_are_told() {
     assert_eq!(call(at, &merge).code, 0, "merging again changes nothing");
     assert_eq!((table("merged"), modified()), (table("whole"), before));
     assert_eq!(call(at, &["merge", "short.toml", "nowhere"]).code, 2);
-    // A result of the same case that says something else was not made by the same program.
+    // A record that was changed by hand is no result, and takes nothing from those that are.
     let case = fs::read_dir(at.join("part-1/short/cases")).expect("cases").next().expect("one").expect("one");
     let path = case.path().join("record.json");
     let text = fs::read_to_string(&path).expect("a record").replacen("\"steps\": ", "\"steps\": 1", 1);
     fs::write(&path, text).expect("written");
-    let told = call(at, &merge);
-    assert_eq!(told.code, 6);
-    assert!(told.err.contains("different results of"), "{}", told.err);
+    assert_eq!(call(at, &merge).code, 0);
+    assert_eq!(table("merged"), table("whole"));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use oedometer::scene::{Column, SceneKind, column_problem};
 use oedometer::solver::assembled::AssembledColumn;
-use oedometer::solver::body::{Body, Gimp, Hat, Problem, ShapeFunction};
+use oedometer::solver::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
 use oedometer::solver::explicit::{Drag, ExplicitSettings};
 use oedometer::solver::material::{Continuity, Material};
 use oedometer::solver::method::{Basis, Configuration, Method};
@@ -75,6 +75,10 @@ fn a_step_allocates_nothing() {
                     Basis::Ugimp | Basis::Cpgimp => {
                         assert_no_allocation(Body::<1, 3, Gimp>::new(problem), dt, &settings, &what);
                     }
+                    Basis::Cpdi => {
+                        assert_no_allocation(Body::<1, 3, DomainEnds>::new(problem), dt, &settings, &what);
+                    }
+                    Basis::Bspline2 | Basis::Bspline3 => unreachable!("no name has splines"),
                 }
             }
         }

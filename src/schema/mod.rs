@@ -16,6 +16,7 @@ use crate::solver::explicit::Drag;
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::{Configuration, Method};
 use crate::solver::scheme::Scheme;
+use crate::study::NEXT_FINER;
 use crate::study::{Axis, IntegratorKind, MethodTable, StudyFile, Tier};
 use node::Language;
 use serde_json::{Value, json};
@@ -128,7 +129,10 @@ fn study_language() -> Result<Language, serde::de::value::Error> {
         ("integrator", owned(IntegratorKind::ALL.map(IntegratorKind::name))),
         ("configuration", owned(Configuration::ALL.map(Configuration::name))),
         ("references", owned(ReferenceKind::ALL.iter().map(|kind| kind.name()))),
-        ("reference", owned(ReferenceKind::ALL.iter().map(|kind| kind.name()))),
+        (
+            "reference",
+            owned(ReferenceKind::ALL.iter().map(|kind| kind.name()).chain(std::iter::once(NEXT_FINER))),
+        ),
         ("quantity", owned(Quantity::ALL.map(Quantity::name))),
         ("sample", owned(Sample::ALL.map(Sample::name))),
         ("norm", owned(Norm::ALL.map(Norm::name))),

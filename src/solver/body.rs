@@ -1,19 +1,24 @@
 //! The discretised body: points, nodes and the operators that join them.
 
 use super::cells::Cells;
-use super::grid::{Grid, Tensor, Vector};
+use super::grid::{GHOST_LAYERS, Grid, Tensor, Vector};
 use super::material::{Continuity, Material, Stiffness};
-use super::method::{Basis, Configuration, Method, Recovery};
+use super::memory::CellMemory;
+use super::method::{Basis, Configuration, Method, Recovery, StrainGradient};
 use super::nodes::{Nodes, Support};
 use super::points::Points;
 use super::recovered::Recovered;
 use super::recovery::PatchRows;
 use super::shape::{self, Row};
 use super::stencil::Stencils;
+use super::strain::ENDS_WIDTH;
 use super::surface::{LoadShape, LoadedSurface};
 
 /// A basis as the compiler sees it: rows of `W` nodes a direction.
 pub trait ShapeFunction<const W: usize>: Clone {
+    /// Whether nodes beyond a wall have a share in what is inside it.
+    const PASSES_WALLS: bool = false;
+
     /// The row at a place (in cells), in a cell, of a point with a domain of half-length (in
     /// cells).
     fn row(place: f64, cell: usize, half_length: f64) -> Row<W>;
@@ -39,6 +44,43 @@ impl ShapeFunction<3> for Gimp {
     fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
         // A domain wider than a cell would need a fourth node; it is cut there.
         shape::gimp(place, half_length.min(0.5))
+    }
+}
+
+/// Hat functions at the ends of the domains.
+#[derive(Clone, Copy, Debug)]
+pub struct DomainEnds;
+
+impl ShapeFunction<3> for DomainEnds {
+    #[inline]
+    fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
+        shape::domain_ends(place, half_length.min(0.5))
+    }
+}
+
+/// Quadratic B-splines.
+#[derive(Clone, Copy, Debug)]
+pub struct QuadraticSpline;
+
+impl ShapeFunction<3> for QuadraticSpline {
+    const PASSES_WALLS: bool = true;
+
+    #[inline]
+    fn row(place: f64, _cell: usize, _half_length: f64) -> Row<3> {
+        shape::quadratic_spline(place)
+    }
+}
+
+/// Cubic B-splines.
+#[derive(Clone, Copy, Debug)]
+pub struct CubicSpline;
+
+impl ShapeFunction<4> for CubicSpline {
+    const PASSES_WALLS: bool = true;
+
+    #[inline]
+    fn row(place: f64, cell: usize, _half_length: f64) -> Row<4> {
+        shape::cubic_spline(place, cell)
     }
 }
 
@@ -112,6 +154,12 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     pub basis: Stencils<D, W>,
     /// `G` of the composite MPM.
     pub composite: Stencils<D, 4>,
+    /// `G` of the composite MPM between the ends of the domains, and what carries the points then.
+    pub between_ends: Stencils<D, ENDS_WIDTH>,
+    /// What the cells remember.
+    pub cell_memory: CellMemory<D>,
+    /// Whether the base holds both phases, so that velocities are odd about it.
+    has_fixed_base: bool,
     /// `R` of the patch recovery.
     pub patch: PatchRows<D>,
     /// Values on their way from the sites of `D` to the points, where a method needs them kept.
@@ -141,7 +189,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let solid_cell_mass = (0..D).map(|_| grid.cell_size).product::<f64>()
             * (1.0 - material.porosity)
             * material.grain_density;
-        let composite_rows = if method.strain.is_composite() { count } else { 0 };
+        let between_ends = method.strain == StrainGradient::CmpmEnds;
+        let composite_rows = if method.strain.is_composite() && !between_ends { count } else { 0 };
+        let ends_rows = if between_ends { count } else { 0 };
         let patch_rows = if method.uses_patch() { count } else { 0 };
         let mut body = Self {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
@@ -149,9 +199,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             stiffness: material.stiffness(),
             surface: LoadedSurface::of(&points, load)
                 .shaped(load_shape, &points)
+                .spread_by(method.basis)
                 .stretching(configuration.moves_points() && !method.domains_follow()),
             basis: Stencils::with_points(count),
             composite: Stencils::with_points(composite_rows),
+            between_ends: Stencils::with_points(ends_rows),
+            cell_memory: CellMemory::new(&grid),
+            has_fixed_base: support.lower[D - 1],
             patch: PatchRows::with_points(patch_rows),
             recovered: Recovered::of(&grid, count, &method),
             surface_flux: 0.0,
@@ -273,18 +327,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             let (position, half) = (&self.points.position[point], &self.points.half_length[point]);
             let cell = self.grid.cell_of(position);
             let place = self.grid.held_in_cells(position);
-            let rows = std::array::from_fn(|d| S::row(place[d], cell[d], half[d] * per_cell));
+            let rows = std::array::from_fn(|d| {
+                let row = S::row(place[d], cell[d], half[d] * per_cell);
+                let folds = S::PASSES_WALLS && d == D - 1 && self.has_fixed_base;
+                if folds { row.mirrored_at(GHOST_LAYERS) } else { row }
+            });
             self.basis.set(&self.grid, point, &rows);
-            if self.method.strain.is_composite() {
-                let home = self.grid.flat_cell(&cell);
-                let rows = std::array::from_fn(|d| {
-                    let stride = self.grid.cell_stride()[d];
-                    let lower = self.cells.is_reached(home - stride);
-                    let upper = self.cells.is_reached(home + stride);
-                    shape::composite(place[d], cell[d], lower, upper)
-                });
-                self.composite.set(&self.grid, point, &rows);
-            }
+            self.build_strain_rows(point, &cell, &place);
         }
         if self.method.uses_patch() {
             self.patch.build(&self.grid, &self.cells, &self.points.position);
@@ -360,7 +409,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         self.nodes.mixture_force.copy_from_slice(&self.nodes.external_force);
         self.nodes.water_force.fill([0.0; D]);
         for point in 0..self.points.len() {
-            let volume = self.points.volume(point);
+            let volume = self.points.stressed_volume(point);
             let pressure = volume * self.points.pressure[point];
             let mut total = self.points.effective_stress[point];
             let mut water = [[0.0; D]; D];
@@ -430,6 +479,6 @@ impl Method {
 
     /// Whether the domains of the points follow the deformation.
     pub fn domains_follow(&self) -> bool {
-        self.basis == Basis::Cpgimp
+        matches!(self.basis, Basis::Cpgimp | Basis::Cpdi)
     }
 }

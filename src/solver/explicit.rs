@@ -2,7 +2,7 @@
 
 use super::body::{Body, ShapeFunction};
 use super::grid::{Tensor, Vector};
-use super::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
+use super::method::{Configuration, PressureIntegration, Recovery};
 use super::scheme::Scheme;
 use serde::{Deserialize, Serialize};
 
@@ -72,6 +72,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
         self.update_effective_stress(dt); // (6)
         self.update_pressure(dt); // (7), and (8) is the next step
+        if self.remembers_in_cells() {
+            self.remember_in_cells();
+        }
     }
 
     /// (1) Operators, masses and velocities on the points' places. Where nothing moves, the
@@ -133,6 +136,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         for point in 0..self.points.len() {
             let at_point = |field: &[Vector<D>]| self.basis.value(self.grid.node_stride(), point, field);
             let (solid, water) = (at_point(&nodes.solid_velocity), at_point(&nodes.water_velocity));
+            let carrying = self.carrying(point, &nodes.solid_velocity, solid);
             let solid_rate = at_point(&nodes.solid_acceleration);
             let water_rate = at_point(&nodes.water_acceleration);
             for d in 0..D {
@@ -141,9 +145,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                     flip * (points.solid_velocity[point][d] + kick * solid_rate[d]) + pic * solid[d];
                 points.water_velocity[point][d] =
                     flip * (points.water_velocity[point][d] + kick * water_rate[d]) + pic * water[d];
-                points.displacement[point][d] += dt * solid[d];
+                points.displacement[point][d] += dt * carrying[d];
                 if moving {
-                    points.position[point][d] += dt * solid[d];
+                    points.position[point][d] += dt * carrying[d];
                 }
             }
         }
@@ -152,24 +156,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// (6) Effective stress by the method's strain gradient; at finite strain also volume and
     /// domain.
     fn update_effective_stress(&mut self, dt: f64) {
-        match self.method.strain {
-            StrainGradient::Standard | StrainGradient::Bbar => self.stress_from(dt, |body, point| {
-                body.basis.gradient(body.grid.node_stride(), point, &body.nodes.solid_velocity)
-            }),
-            StrainGradient::Cmpm | StrainGradient::CmpmBbar => self.stress_from(dt, |body, point| {
-                body.composite.gradient(body.grid.node_stride(), point, &body.nodes.solid_velocity)
-            }),
-        }
-    }
-
-    #[inline]
-    fn stress_from(&mut self, dt: f64, velocity_gradient: impl Fn(&Self, usize) -> Tensor<D>) {
         let (deforms, is_bbar) = (self.configuration.deforms(), self.method.strain.is_bbar());
         if is_bbar {
             self.recover_dilation_rates();
         }
         for point in 0..self.points.len() {
-            let gradient = self.pushed_forward(point, velocity_gradient(self, point));
+            let gradient =
+                self.pushed_forward(point, self.strain_gradient(point, &self.nodes.solid_velocity));
             let mut increment = gradient.map(|row| row.map(|rate| dt * rate));
             let before = self.points.volume_ratio[point];
             if deforms {

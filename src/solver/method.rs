@@ -13,6 +13,19 @@ pub enum Basis {
     Ugimp,
     /// GIMP with point domains that follow the deformation.
     Cpgimp,
+    /// Hat functions averaged over the ends of domains that follow the deformation (CPDI,
+    /// Sadeghirad, Brannon & Burghardt 2011): domains that tile the material keep tiling it.
+    Cpdi,
+    /// Quadratic B-splines at the points (Steffen, Kirby & Berzins 2008).
+    Bspline2,
+    /// Cubic B-splines at the points.
+    Bspline3,
+}
+
+impl Basis {
+    /// Every basis.
+    pub const ALL: [Self; 6] =
+        [Self::Hat, Self::Ugimp, Self::Cpgimp, Self::Cpdi, Self::Bspline2, Self::Bspline3];
 }
 
 /// Gradient from which the effective stress takes its strain.
@@ -23,6 +36,9 @@ pub enum StrainGradient {
     Standard,
     /// Lagrange interpolant through the nodes of the cell and of its neighbours.
     Cmpm,
+    /// The same interpolant between the ends of the point's domain, which it also carries: strains
+    /// add up to the surface's displacement wherever the points are.
+    CmpmEnds,
     /// The gradient of the basis with its trace replaced by the method's own volumetric rate, the
     /// one that drives the pressure: B-bar by cells (Hughes 1980), in the rate form F-bar (de Souza
     /// Neto et al. 1996; Coombs et al. 2018 for material points).
@@ -33,22 +49,23 @@ pub enum StrainGradient {
 
 impl StrainGradient {
     /// Every choice.
-    pub const ALL: [Self; 4] = [Self::Standard, Self::Cmpm, Self::Bbar, Self::CmpmBbar];
+    pub const ALL: [Self; 5] = [Self::Standard, Self::Cmpm, Self::CmpmEnds, Self::Bbar, Self::CmpmBbar];
 
     /// Name in study files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Standard => "standard",
             Self::Cmpm => "cmpm",
+            Self::CmpmEnds => "cmpm-ends",
             Self::Bbar => "bbar",
             Self::CmpmBbar => "cmpm-bbar",
         }
     }
 
-    /// Whether the Lagrange interpolant is taken.
+    /// Whether the Lagrange interpolant is taken, at the points or between the ends of their domains.
     #[inline]
     pub fn is_composite(self) -> bool {
-        matches!(self, Self::Cmpm | Self::CmpmBbar)
+        matches!(self, Self::Cmpm | Self::CmpmEnds | Self::CmpmBbar)
     }
 
     /// Whether the skeleton's volumetric strain goes the way of the water's.
@@ -131,6 +148,29 @@ impl Recovery {
     }
 }
 
+/// What remembers stress, pressure and volume while points move through the mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Memory {
+    /// Each point, all that ever happened to it.
+    #[default]
+    Points,
+    /// The cells: within a cell the points follow the parabola through the means of its
+    /// neighbourhood. What no equation of the grid sees is forgotten.
+    Cells,
+}
+
+impl Memory {
+    /// Both, the paper's first.
+    pub const ALL: [Self; 2] = [Self::Points, Self::Cells];
+
+    /// Whether it is the paper's.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks by reference")]
+    pub fn is_points(&self) -> bool {
+        *self == Self::Points
+    }
+}
+
 /// Configuration on which weights are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -181,17 +221,22 @@ pub struct Method {
     pub pressure: PressureIntegration,
     /// Way of the pressure increment back to the points; full integration needs none.
     pub recovery: Recovery,
+    /// What remembers the state while points move.
+    #[serde(default, skip_serializing_if = "Memory::is_points")]
+    pub memory: Memory,
     /// Configuration of the weights, where the method insists on one.
     pub configuration: Option<Configuration>,
 }
 
-/// The paper's ladder of methods and mitigations beside it, without prefixes: one line a method.
-const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 11] = [
+/// The paper's ladder of methods and others beside it, without prefixes: one line a method.
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 13] = [
     ("MPM", Basis::Hat, StrainGradient::Standard, PressureIntegration::Points, Recovery::Constant),
     ("GIMP", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Points, Recovery::Constant),
     ("GIMP-SRI", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Constant),
     ("GIMP-SRI-patch", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Patch),
     ("GC-SRI-patch", Basis::Cpgimp, StrainGradient::Cmpm, PressureIntegration::Sri, Recovery::Patch),
+    ("CPDI-SRI-patch", Basis::Cpdi, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Patch),
+    ("CE-SRI-patch", Basis::Cpdi, StrainGradient::CmpmEnds, PressureIntegration::Sri, Recovery::Patch),
     (
         "GIMP-null-space",
         Basis::Cpgimp,
@@ -208,11 +253,17 @@ const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 11] 
 
 /// Prefix of the names of methods with weights on the initial configuration.
 const TOTAL_PREFIX: &str = "TL-";
+/// Suffix of the names of methods whose cells remember.
+const CELLS_SUFFIX: &str = "-cells";
 
 impl Method {
-    /// The method of a name, bare, with the prefix `u` for fixed domains, or with the prefix
-    /// `TL-` for weights on the initial configuration.
+    /// The method of a name, bare, with the prefix `u` for fixed domains, with the prefix `TL-` for
+    /// weights on the initial configuration, or with the suffix `-cells` for cells that remember.
     pub fn named(name: &str) -> Option<Self> {
+        if let Some(bare) = name.strip_suffix(CELLS_SUFFIX) {
+            let method = Self::named(bare).filter(Self::can_move)?;
+            return (method.memory == Memory::Points).then_some(Self { memory: Memory::Cells, ..method });
+        }
         if let Some(bare) = name.strip_prefix(TOTAL_PREFIX) {
             let method = Self::named(bare).filter(|method| method.configuration.is_none())?;
             // Domains on the initial configuration have nothing to follow.
@@ -229,7 +280,7 @@ impl Method {
             (true, Basis::Cpgimp) => Basis::Ugimp,
             (true, _) => return None,
         };
-        Some(Self { basis, strain, pressure, recovery, configuration: None })
+        Some(Self { basis, strain, pressure, recovery, memory: Memory::Points, configuration: None })
     }
 
     /// Every name that `named` knows.
@@ -237,15 +288,25 @@ impl Method {
         let bare = NAMED.iter().map(|row| row.0.to_owned());
         let fixed = NAMED.iter().filter(|row| row.1 == Basis::Cpgimp).map(|row| format!("u{}", row.0));
         let total = NAMED.iter().map(|row| format!("{TOTAL_PREFIX}{}", row.0));
-        bare.chain(fixed).chain(total).collect()
+        let cells = NAMED.iter().filter(|row| row.4 == Recovery::Patch);
+        let cells = cells.map(|row| format!("{}{CELLS_SUFFIX}", row.0));
+        bare.chain(fixed).chain(total).chain(cells).collect()
+    }
+
+    /// Whether the method leaves it to the scene to move its points.
+    fn can_move(&self) -> bool {
+        self.configuration.is_none()
     }
 
     /// The operators in the words of a study file: `basis+strain+pressure+recovery`.
     pub fn choices(&self) -> String {
-        let choices = format!("{}+{}+{}", word(self.basis), self.strain.name(), self.pressure.name());
-        match (self.pressure, self.recovery) {
-            (PressureIntegration::Points, Recovery::Constant) => choices,
-            _ => format!("{choices}+{}", self.recovery.name()),
+        let mut choices = format!("{}+{}+{}", word(self.basis), self.strain.name(), self.pressure.name());
+        if (self.pressure, self.recovery) != (PressureIntegration::Points, Recovery::Constant) {
+            choices = format!("{choices}+{}", self.recovery.name());
+        }
+        match self.memory {
+            Memory::Points => choices,
+            Memory::Cells => format!("{choices}+{}", word(self.memory)),
         }
     }
 
@@ -273,7 +334,15 @@ impl fmt::Display for Method {
 
 /// The word of a choice as the study file spells it.
 fn word<C: fmt::Debug>(choice: C) -> String {
-    format!("{choice:?}").to_lowercase()
+    // Words of two, `CmpmEnds`, are joined by a hyphen.
+    let mut word = String::new();
+    for (place, letter) in format!("{choice:?}").char_indices() {
+        if letter.is_uppercase() && place > 0 {
+            word.push('-');
+        }
+        word.extend(letter.to_lowercase());
+    }
+    word
 }
 
 #[cfg(test)]
@@ -289,7 +358,18 @@ mod tests {
 
     #[test]
     fn names_that_are_none_are_refused() {
-        for name in ["", "uMPM", "gimp", "GC-SRI", "uuGIMP", "TL-", "TL-uGIMP", "TL-TL-GIMP"] {
+        for name in [
+            "",
+            "uMPM",
+            "gimp",
+            "GC-SRI",
+            "uuGIMP",
+            "TL-",
+            "TL-uGIMP",
+            "TL-TL-GIMP",
+            "TL-GIMP-cells",
+            "GIMP-cells-cells",
+        ] {
             assert_eq!(Method::named(name), None, "{name}");
         }
     }
@@ -301,6 +381,7 @@ mod tests {
             strain: StrainGradient::Cmpm,
             pressure: PressureIntegration::Sri,
             recovery: Recovery::Patch,
+            memory: Memory::Points,
             configuration: Some(Configuration::Updated),
         };
         assert_eq!(method.to_string(), "hat+cmpm+sri+patch (updated)");

@@ -17,6 +17,9 @@ pub struct Points<const D: usize> {
     pub initial_volume: Vec<f64>,
     /// Volume ratio `J`.
     pub volume_ratio: Vec<f64>,
+    /// Volume that a point's stress fills over `J V_0`: what its domain has kept where the cells
+    /// remember `J`, one elsewhere.
+    pub stressed_share: Vec<f64>,
     /// Inverse `F⁻¹` of the deformation gradient, where weights stay on the initial configuration.
     pub inverse_deformation: Vec<Tensor<D>>,
     /// Velocity of the skeleton, m/s.
@@ -53,6 +56,7 @@ impl<const D: usize> Points<D> {
             half_length: vec![[0.5 * spacing; D]; count],
             initial_volume: vec![(0..D).map(|_| spacing).product(); count],
             volume_ratio: vec![1.0; count],
+            stressed_share: vec![1.0; count],
             inverse_deformation: vec![identity(); count],
             solid_velocity: vec![[0.0; D]; count],
             water_velocity: vec![[0.0; D]; count],
@@ -84,6 +88,7 @@ impl<const D: usize> Points<D> {
             half_length: pick(&self.half_length, keep),
             initial_volume: pick(&self.initial_volume, keep),
             volume_ratio: pick(&self.volume_ratio, keep),
+            stressed_share: pick(&self.stressed_share, keep),
             inverse_deformation: pick(&self.inverse_deformation, keep),
             solid_velocity: pick(&self.solid_velocity, keep),
             water_velocity: pick(&self.water_velocity, keep),
@@ -96,6 +101,12 @@ impl<const D: usize> Points<D> {
     #[inline]
     pub fn volume(&self, point: usize) -> f64 {
         self.initial_volume[point] * self.volume_ratio[point]
+    }
+
+    /// Volume that a point's stress fills in the internal force, m^D.
+    #[inline]
+    pub fn stressed_volume(&self, point: usize) -> f64 {
+        self.volume(point) * self.stressed_share[point]
     }
 }
 

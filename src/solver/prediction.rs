@@ -1,6 +1,6 @@
 //! The critical time step of a problem, predicted from its own operators.
 
-use super::body::{Body, Gimp, Hat, Problem};
+use super::body::{Body, CubicSpline, DomainEnds, Gimp, Hat, Problem, QuadraticSpline};
 use super::explicit::ExplicitSettings;
 use super::frozen::FrozenStep;
 use super::grid::Grid;
@@ -65,6 +65,9 @@ pub fn predict<const D: usize>(
     let frozen = match problem.method.basis {
         Basis::Hat => FrozenStep::new(&Body::<D, 2, Hat>::new(problem)),
         Basis::Ugimp | Basis::Cpgimp => FrozenStep::new(&Body::<D, 3, Gimp>::new(problem)),
+        Basis::Cpdi => FrozenStep::new(&Body::<D, 3, DomainEnds>::new(problem)),
+        Basis::Bspline2 => FrozenStep::new(&Body::<D, 3, QuadraticSpline>::new(problem)),
+        Basis::Bspline3 => FrozenStep::new(&Body::<D, 4, CubicSpline>::new(problem)),
     };
     let critical_step = match &frozen {
         FrozenStep::Column(column) => stability::critical_step(column, settings, safe, GROWTH_TOLERANCE),

@@ -1,6 +1,6 @@
 //! A run: from a problem and a schedule to snapshots, history, counters and a named end.
 
-use super::body::{Body, Gimp, Hat, Problem, ShapeFunction};
+use super::body::{Body, CubicSpline, DomainEnds, Gimp, Hat, Problem, QuadraticSpline, ShapeFunction};
 use super::explicit::ExplicitSettings;
 use super::frozen::FrozenStep;
 use super::implicit::banded::Singular;
@@ -22,8 +22,8 @@ const WATCH_INTERVAL: u64 = 64;
 /// Velocities beyond this multiple of their scale have left.
 const BLOW_UP: f64 = 1e3;
 /// Steps after which deforming points are given a new step size: the pores at the drained end
-/// close within a thousand.
-const STEP_RENEWAL: u64 = 256;
+/// close within a hundred.
+const STEP_RENEWAL: u64 = 32;
 /// Share of a semi-implicit run's critical step that growing steps end at.
 const LARGEST_SHARE: f64 = 0.8;
 
@@ -84,6 +84,9 @@ pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: O
     match problem.method.basis {
         Basis::Hat => solve(Body::<D, 2, Hat>::new, problem, schedule, observer),
         Basis::Ugimp | Basis::Cpgimp => solve(Body::<D, 3, Gimp>::new, problem, schedule, observer),
+        Basis::Cpdi => solve(Body::<D, 3, DomainEnds>::new, problem, schedule, observer),
+        Basis::Bspline2 => solve(Body::<D, 3, QuadraticSpline>::new, problem, schedule, observer),
+        Basis::Bspline3 => solve(Body::<D, 4, CubicSpline>::new, problem, schedule, observer),
     }
 }
 

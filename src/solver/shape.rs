@@ -51,6 +51,106 @@ pub fn gimp(place: f64, half_length: f64) -> Row<3> {
     }
 }
 
+/// The hat functions averaged over the two ends of a point's domain (CPDI, Sadeghirad, Brannon &
+/// Burghardt 2011, in one direction), `half_length` in cells and at most one half.
+///
+/// The gradient is the difference between the ends over the length, which is that of GIMP; the
+/// weights move the middle of the domain as its ends move, so that neighbours stay neighbours.
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "coordinates in cells are positive, the ghost layers see to it"
+)]
+pub fn domain_ends(place: f64, half_length: f64) -> Row<3> {
+    let (low, high) = (place - half_length, place + half_length);
+    let first = low as usize;
+    let middle = first as f64 + 1.0;
+    // The end below the middle node weighs in on its left, the one above on its right.
+    let at = |end: f64| [(middle - end).max(0.0), (end - middle).max(0.0)];
+    let ([low_left, low_right], [high_left, high_right]) = (at(low), at(high));
+    let per_length = 0.5 / half_length;
+    let (left, right) = (0.5 * (low_left + high_left), 0.5 * (low_right + high_right));
+    let (left_gradient, right_gradient) =
+        (per_length * (high_left - low_left), per_length * (high_right - low_right));
+    Row {
+        first,
+        weights: [left, 1.0 - left - right, right],
+        gradients: [left_gradient, -left_gradient - right_gradient, right_gradient],
+    }
+}
+
+/// Quadratic B-splines about the nodes (Steffen, Kirby & Berzins 2008).
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "coordinates in cells are positive, the ghost layers see to it"
+)]
+pub fn quadratic_spline(place: f64) -> Row<3> {
+    let nearest = (place + 0.5) as usize;
+    let x = place - nearest as f64;
+    let (left, right) = (0.5 * (0.5 - x) * (0.5 - x), 0.5 * (0.5 + x) * (0.5 + x));
+    Row {
+        first: nearest - 1,
+        weights: [left, 1.0 - left - right, right],
+        gradients: [x - 0.5, -2.0 * x, x + 0.5],
+    }
+}
+
+/// Cubic B-splines about the nodes, at a place in a cell.
+#[inline]
+pub fn cubic_spline(place: f64, cell: usize) -> Row<4> {
+    let x = place - cell as f64;
+    let y = 1.0 - x;
+    let (outer_left, outer_right) = (y * y * y / 6.0, x * x * x / 6.0);
+    let left = 2.0 / 3.0 - x * x * (1.0 - 0.5 * x);
+    let (left_gradient, right_gradient) = (-2.0 * x + 1.5 * x * x, 2.0 * y - 1.5 * y * y);
+    Row {
+        first: cell - 1,
+        weights: [outer_left, left, 1.0 - outer_left - left - outer_right, outer_right],
+        gradients: [-0.5 * y * y, left_gradient, right_gradient, 0.5 * x * x],
+    }
+}
+
+impl<const W: usize> Row<W> {
+    /// The row of a field that is odd about a fixed node, as a velocity at a wall is: what nodes
+    /// beyond the wall carry is the mirrored nodes' with the other sign. Linear fields that vanish
+    /// at the wall are still met exactly, and the weights still add up to one.
+    #[must_use]
+    pub fn mirrored_at(mut self, wall: usize) -> Self {
+        for k in 0..W {
+            let node = self.first + k;
+            if node < wall {
+                let (at_wall, mirrored) = (wall - self.first, 2 * wall - node - self.first);
+                for side in [&mut self.weights, &mut self.gradients] {
+                    let beyond = std::mem::replace(&mut side[k], 0.0);
+                    side[at_wall] += 2.0 * beyond;
+                    side[mirrored] -= beyond;
+                }
+            }
+        }
+        self
+    }
+
+    /// Mean of two rows, and the slope between them `length` apart, as a row of up to `V` nodes.
+    #[inline]
+    pub fn between<const V: usize>(low: &Self, high: &Self, length: f64) -> Row<V> {
+        let first = low.first.min(high.first);
+        let mut row = Row { first, weights: [0.0; V], gradients: [0.0; V] };
+        for (end, sign) in [(low, -1.0), (high, 1.0)] {
+            for k in 0..W {
+                // Ends more than a cell apart are no domain: what has no place is left out.
+                if let Some(weight) = row.weights.get_mut(end.first - first + k) {
+                    *weight += 0.5 * end.weights[k];
+                    row.gradients[end.first - first + k] += sign * end.weights[k] / length;
+                }
+            }
+        }
+        row
+    }
+}
+
 /// Lagrange interpolation through the nodes of a cell and of its neighbours, for the composite
 /// MPM (González Acosta, Vardon & Hicks 2017): cubic with both neighbours, quadratic with one,
 /// linear with none. Always written as four weights from the node below the cell.
@@ -107,10 +207,59 @@ mod tests {
             for (value, gradient) in [
                 moments(&hat(place, cell), |x| 2.0 + 3.0 * x),
                 moments(&gimp(place, half_length), |x| 2.0 + 3.0 * x),
+                moments(&domain_ends(place, half_length), |x| 2.0 + 3.0 * x),
+                moments(&quadratic_spline(place), |x| 2.0 + 3.0 * x),
+                moments(&cubic_spline(place, cell), |x| 2.0 + 3.0 * x),
             ] {
                 prop_assert!((value - (2.0 + 3.0 * place)).abs() < 1e-12, "value {value}");
                 prop_assert!((gradient - 3.0).abs() < 1e-11, "gradient {gradient}");
             }
+        }
+
+        #[test]
+        fn gradients_are_those_of_the_weights(place in 3.01..8.99f64) {
+            // Hat functions have kinks; splines have none that a small step sees.
+            let step = 1e-5;
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test range")]
+            let cell = place as usize;
+            let slope = |field: &dyn Fn(f64) -> f64| (field(place + step) - field(place - step)) / (2.0 * step);
+            for power in 1..4 {
+                let cube = |x: f64| x.powi(power);
+                let quadratic = slope(&|x| moments(&quadratic_spline(x), cube).0);
+                prop_assert!((moments(&quadratic_spline(place), cube).1 - quadratic).abs() < 1e-4);
+                let cubic = slope(&|x| moments(&cubic_spline(x, cell), cube).0);
+                prop_assert!((moments(&cubic_spline(place, cell), cube).1 - cubic).abs() < 1e-4);
+            }
+        }
+
+        #[test]
+        fn a_row_at_a_wall_meets_an_odd_linear_field(place in 5.0..6.5f64) {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test range")]
+            let cell = place as usize;
+            let odd = |x: f64| 3.0 * (x - 5.0);
+            let rows = [
+                moments(&quadratic_spline(place).mirrored_at(5), odd),
+                moments(&cubic_spline(place, cell).mirrored_at(5), odd),
+            ];
+            for (value, gradient) in rows {
+                prop_assert!((value - odd(place)).abs() < 1e-12);
+                prop_assert!((gradient - 3.0).abs() < 1e-12);
+            }
+            let row = cubic_spline(place, cell).mirrored_at(5);
+            prop_assert!((row.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            prop_assert!((0..4).all(|k| row.first + k >= 5 || row.weights[k] == 0.0), "nothing beyond the wall");
+        }
+
+        #[test]
+        fn a_row_between_ends_adds_up_to_the_field(low in 3.0..8.0f64, length in 0.05..0.9f64) {
+            // Cubic fields are met exactly at both ends, so their difference is too.
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test range")]
+            let row_at = |x: f64| composite(x, x as usize, true, true);
+            let row = Row::between::<6>(&row_at(low), &row_at(low + length), length);
+            let cubic = |x: f64| x * x * x - 4.0 * x;
+            let (mean, slope) = moments(&row, cubic);
+            prop_assert!((mean - 0.5 * (cubic(low) + cubic(low + length))).abs() < 1e-10);
+            prop_assert!((slope - (cubic(low + length) - cubic(low)) / length).abs() < 1e-9);
         }
 
         #[test]

@@ -73,11 +73,8 @@ impl<const D: usize> StrainEntry<D> {
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// The gradient from which a point's effective stress takes its strain, as a row.
     pub fn strain_row(&self, point: usize, rows: &VolumetricRows<D>) -> Vec<StrainEntry<D>> {
-        let gradients = if self.method.strain.is_composite() {
-            self.composite.gradient_row(&self.grid, point)
-        } else {
-            self.basis.gradient_row(&self.grid, point)
-        };
+        let mut gradients = Vec::new();
+        self.visit_strain(point, |node, gradient| gradients.push((node, *gradient)));
         let is_bbar = self.method.strain.is_bbar();
         let mut entries: Vec<StrainEntry<D>> = gradients
             .into_iter()

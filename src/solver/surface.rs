@@ -1,9 +1,10 @@
 //! The load on the material's surface, wherever the points have carried it.
 
-use super::grid::{Grid, Vector};
+use super::grid::{Grid, Vector, power};
+use super::method::Basis;
 use super::nodes::Nodes;
 use super::points::Points;
-use super::shape;
+use super::shape::{self, Row};
 
 /// How a load varies along the surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,8 +31,8 @@ impl LoadShape {
 
 /// A pressure on the upper outline of the material.
 ///
-/// It acts at the outer edge of the outermost points' domains and is spread with the hat weights
-/// there. Left on a node, it errs once the top cell empties; spread over the top point, it costs
+/// It acts at the outer edge of the outermost points' domains and is spread with the weights of the
+/// basis there. Left on a node, it errs once the top cell empties; spread over the top point, it costs
 /// percents of settlement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadedSurface {
@@ -41,6 +42,8 @@ pub struct LoadedSurface {
     spots: Vec<Spot>,
     /// Sum of the squares of the spots' shapes.
     squares: f64,
+    /// Basis whose weights spread the load.
+    basis: Basis,
     /// Whether the edge follows the volume of the points because their domains do not.
     stretches: bool,
 }
@@ -72,7 +75,7 @@ impl LoadedSurface {
         let spots: Vec<Spot> = top_points
             .flat_map(|point| places.iter().map(move |along| Spot { point, along: *along, shape: 1.0 }))
             .collect();
-        Self { load, squares: spots.len() as f64, spots, stretches: false }
+        Self { load, squares: spots.len() as f64, spots, basis: Basis::Hat, stretches: false }
     }
 
     /// The surface under a load that varies along it.
@@ -106,6 +109,39 @@ impl LoadedSurface {
         place
     }
 
+    /// The surface of a body with a basis: its load is spread with the weights of that basis, and
+    /// with hats where domains smear them.
+    #[must_use]
+    pub fn spread_by(self, basis: Basis) -> Self {
+        Self { basis, ..self }
+    }
+
+    /// Visits the nodes that carry a place of the surface, with their weights.
+    #[inline]
+    fn visit_nodes<const D: usize>(
+        &self,
+        grid: &Grid<D>,
+        place: &Vector<D>,
+        node_visitor: impl FnMut(usize, f64),
+    ) {
+        let cell = grid.cell_of(place);
+        let at: Vector<D> = std::array::from_fn(|d| grid.in_cells(place[d]));
+        match self.basis {
+            Basis::Hat | Basis::Ugimp | Basis::Cpgimp | Basis::Cpdi => {
+                let rows: [Row<2>; D] = std::array::from_fn(|d| shape::hat(at[d], cell[d]));
+                visit_block(grid, &rows, node_visitor);
+            }
+            Basis::Bspline2 => {
+                let rows: [Row<3>; D] = std::array::from_fn(|d| shape::quadratic_spline(at[d]));
+                visit_block(grid, &rows, node_visitor);
+            }
+            Basis::Bspline3 => {
+                let rows: [Row<4>; D] = std::array::from_fn(|d| shape::cubic_spline(at[d], cell[d]));
+                visit_block(grid, &rows, node_visitor);
+            }
+        }
+    }
+
     /// Height of the surface now, m, as much of it as has the load's shape: the mean over the
     /// width under a uniform load.
     pub fn height<const D: usize>(&self, points: &Points<D>) -> f64 {
@@ -121,7 +157,7 @@ impl LoadedSurface {
             let half_length = &points.half_length[spot.point];
             let width: f64 = half_length[..D - 1].iter().map(|half| 2.0 * half).product();
             let force = -self.load * spot.shape * share * width;
-            visit_hat(grid, &self.place(points, spot), |node, weight| {
+            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
                 nodes.external_force[node][D - 1] += weight * force;
             });
         }
@@ -132,7 +168,9 @@ impl LoadedSurface {
         let mut weights = Vec::new();
         for spot in &self.spots {
             let share = spot.shape / self.squares;
-            visit_hat(grid, &self.place(points, spot), |node, weight| weights.push((node, share * weight)));
+            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
+                weights.push((node, share * weight))
+            });
         }
         weights
     }
@@ -147,7 +185,7 @@ impl LoadedSurface {
     ) -> f64 {
         let mut sum = 0.0;
         for spot in &self.spots {
-            visit_hat(grid, &self.place(points, spot), |node, weight| {
+            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
                 sum += spot.shape * weight * field[node][D - 1];
             });
         }
@@ -158,24 +196,28 @@ impl LoadedSurface {
     pub fn mean_of<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
         let mut sum = 0.0;
         for spot in &self.spots {
-            visit_hat(grid, &self.place(points, spot), |node, weight| sum += weight * field[node][D - 1]);
+            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
+                sum += weight * field[node][D - 1]
+            });
         }
         sum / self.spots.len() as f64
     }
 }
 
-/// Visits the corner nodes of the cell that holds a place, with the hat weights there.
+/// Visits the nodes of a tensor product of rows with their weights.
 #[inline]
-fn visit_hat<const D: usize>(grid: &Grid<D>, place: &Vector<D>, mut node_visitor: impl FnMut(usize, f64)) {
-    let cell = grid.cell_of(place);
-    let rows: [shape::Row<2>; D] = std::array::from_fn(|d| shape::hat(grid.in_cells(place[d]), cell[d]));
-    for corner in 0..1_usize << D {
-        let mut node = 0;
-        let mut weight = 1.0;
+fn visit_block<const D: usize, const W: usize>(
+    grid: &Grid<D>,
+    rows: &[Row<W>; D],
+    mut node_visitor: impl FnMut(usize, f64),
+) {
+    for corner in 0..power(W, D) {
+        let (mut node, mut weight, mut rest) = (0, 1.0, corner);
         for direction in 0..D {
-            let upper = corner >> direction & 1;
-            node += (rows[direction].first + upper) * grid.node_stride()[direction];
-            weight *= rows[direction].weights[upper];
+            let k = rest % W;
+            rest /= W;
+            node += (rows[direction].first + k) * grid.node_stride()[direction];
+            weight *= rows[direction].weights[k];
         }
         node_visitor(node, weight);
     }

@@ -147,7 +147,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             for d in 0..D {
                 stress[d][d] += self.stiffness.shared_dilation_stress::<D>(dilation);
             }
-            let moved = self.basis.value(self.grid.node_stride(), point, displacements);
+            let of_basis = self.basis.value(self.grid.node_stride(), point, displacements);
+            let moved = self.carrying(point, displacements, of_basis);
             self.points.pressure[point] += pressures[point];
             for d in 0..D {
                 self.points.displacement[point][d] += moved[d];

@@ -22,7 +22,9 @@ use crate::scene::{Arrangement, Column, SceneKind, column_parameters};
 use crate::solver::explicit::{Drag, ExplicitSettings};
 use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Law, Material};
-use crate::solver::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
+use crate::solver::method::{
+    Basis, Configuration, Memory, Method, PressureIntegration, Recovery, StrainGradient,
+};
 use crate::solver::run::TimeStepRule;
 use crate::solver::scheme::Scheme;
 use std::ops::{Range, RangeInclusive};
@@ -790,13 +792,17 @@ impl Checker<'_> {
                 None
             }
         };
-        let basis = pick(&table.basis, "basis", &["hat", "ugimp", "cpgimp"]);
+        let basis = pick(&table.basis, "basis", &["hat", "ugimp", "cpgimp", "cpdi", "bspline2", "bspline3"]);
         let strain = pick(&table.strain, "strain", &StrainGradient::ALL.map(StrainGradient::name));
         let pressure =
             pick(&table.pressure, "pressure", &PressureIntegration::ALL.map(PressureIntegration::name));
         let recovery = match (&table.recovery, pressure) {
             (None, Some(0)) => Some(0),
             (word, _) => pick(word, "recovery", &Recovery::ALL.map(Recovery::name)),
+        };
+        let memory = match &table.memory {
+            Some(word) => Memory::ALL[self.word(word, "memory", &["points", "cells"])?],
+            None => Memory::Points,
         };
         let configuration = match &table.configuration {
             Some(word) => {
@@ -810,10 +816,11 @@ impl Checker<'_> {
             return None;
         }
         Some(Method {
-            basis: [Basis::Hat, Basis::Ugimp, Basis::Cpgimp][basis?],
+            basis: Basis::ALL[basis?],
             strain: StrainGradient::ALL[strain?],
             pressure,
             recovery,
+            memory,
             configuration: configuration.map(|index| Configuration::ALL[index]),
         })
     }

@@ -175,6 +175,7 @@ pub struct MethodTable {
     pub strain: Typed<String>,
     pub pressure: Typed<String>,
     pub recovery: Typed<String>,
+    pub memory: Typed<String>,
     pub configuration: Typed<String>,
 }
 

@@ -44,6 +44,10 @@ pub fn shipped_studies() -> Vec<StudySource> {
         ("studies/large-strain-implicit.toml", include_str!("../../studies/large-strain-implicit.toml")),
         ("studies/large-strain-models.toml", include_str!("../../studies/large-strain-models.toml")),
         ("studies/large-strain-points.toml", include_str!("../../studies/large-strain-points.toml")),
+        ("studies/large-strain-crossing.toml", include_str!("../../studies/large-strain-crossing.toml")),
+        ("studies/large-strain-small.toml", include_str!("../../studies/large-strain-small.toml")),
+        ("studies/large-strain-half.toml", include_str!("../../studies/large-strain-half.toml")),
+        ("studies/large-strain-limit.toml", include_str!("../../studies/large-strain-limit.toml")),
     ];
     SHIPPED
         .iter()

@@ -25,6 +25,7 @@ const SLOW: f64 = 0.1;
 struct Structure {
     basis: Vec<usize>,
     composite: Vec<usize>,
+    between_ends: Vec<usize>,
     cells: Vec<usize>,
 }
 
@@ -33,6 +34,7 @@ impl Structure {
         Self {
             basis: body.basis.first.clone(),
             composite: body.composite.first.clone(),
+            between_ends: body.between_ends.first.clone(),
             cells: body.cells.of_point.clone(),
         }
     }
@@ -40,6 +42,7 @@ impl Structure {
     fn is_of<const D: usize, const W: usize, S: ShapeFunction<W>>(&self, body: &Body<D, W, S>) -> bool {
         self.basis == body.basis.first
             && self.composite == body.composite.first
+            && self.between_ends == body.between_ends.first
             && self.cells == body.cells.of_point
     }
 }

@@ -7,7 +7,7 @@ use super::unknowns::Unknowns;
 use crate::solver::body::{Body, ShapeFunction};
 use crate::solver::grid::{Tensor, Vector};
 use crate::solver::integrator::Formulation;
-use crate::solver::method::{Configuration, PressureIntegration, StrainGradient};
+use crate::solver::method::{Configuration, Memory, PressureIntegration};
 use crate::solver::points::Points;
 
 /// Where a stage starts: the unknowns' share that is known before it is solved.
@@ -284,7 +284,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
         }
         let stride = *self.body.grid.node_stride();
         for point in 0..self.anchor.len() {
-            let moved = self.body.basis.value(&stride, point, &self.displacement);
+            let of_basis = self.body.basis.value(&stride, point, &self.displacement);
+            let moved = self.body.carrying(point, &self.displacement, of_basis);
             for d in 0..D {
                 self.body.points.displacement[point][d] += moved[d];
             }
@@ -298,6 +299,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
             }
         }
         if self.moves_points {
+            if self.body.method.memory == Memory::Cells {
+                self.body.remember_in_cells();
+            }
             self.body.build_operators();
             self.body.map_masses();
             self.unknowns = Unknowns::of(&self.body);
@@ -344,21 +348,5 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
             }
         }
         points.inverse_deformation[point] = identity();
-    }
-}
-
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
-    /// Gradient of a nodal field at a point by the method's strain operator, on the configuration
-    /// of the weights.
-    #[inline]
-    pub fn strain_gradient(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        match self.method.strain {
-            StrainGradient::Standard | StrainGradient::Bbar => {
-                self.basis.gradient(self.grid.node_stride(), point, field)
-            }
-            StrainGradient::Cmpm | StrainGradient::CmpmBbar => {
-                self.composite.gradient(self.grid.node_stride(), point, field)
-            }
-        }
     }
 }

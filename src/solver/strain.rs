@@ -1,0 +1,88 @@
+//! The strain gradient `G`: from nodal velocities to the strain of the effective stress, and what
+//! carries the points with it.
+
+use super::body::{Body, ShapeFunction};
+use super::grid::{Tensor, Vector};
+use super::method::StrainGradient;
+use super::shape::{self, Row};
+
+/// Nodes a direction between the ends of a domain: four at either end, at most one cell apart.
+pub const ENDS_WIDTH: usize = 5;
+/// Ends are looked up this far inside their domain, in cells: an end on a face belongs to its own
+/// domain's cell.
+const INSET: f64 = 1e-9;
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+    /// Gradient of a nodal field at a point, from which the effective stress takes its strain.
+    #[inline]
+    pub fn strain_gradient(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
+        let stride = self.grid.node_stride();
+        match self.method.strain {
+            StrainGradient::Standard | StrainGradient::Bbar => self.basis.gradient(stride, point, field),
+            StrainGradient::Cmpm | StrainGradient::CmpmBbar => self.composite.gradient(stride, point, field),
+            StrainGradient::CmpmEnds => self.between_ends.gradient(stride, point, field),
+        }
+    }
+
+    /// Visits the nodes that a point's strain depends on, with their gradients, 1/m.
+    pub fn visit_strain(&self, point: usize, mut node_visitor: impl FnMut(usize, &Vector<D>)) {
+        let stride = self.grid.node_stride();
+        let visitor = |node: usize, _: f64, gradient: &Vector<D>| node_visitor(node, gradient);
+        match self.method.strain {
+            StrainGradient::Standard | StrainGradient::Bbar => self.basis.visit(stride, point, visitor),
+            StrainGradient::Cmpm | StrainGradient::CmpmBbar => self.composite.visit(stride, point, visitor),
+            StrainGradient::CmpmEnds => self.between_ends.visit(stride, point, visitor),
+        }
+    }
+
+    /// What carries a point under a nodal velocity or displacement: the value of the basis, or the
+    /// mean of its domain's ends where those are what its strain is taken between.
+    #[inline]
+    pub fn carrying(&self, point: usize, field: &[Vector<D>], of_basis: Vector<D>) -> Vector<D> {
+        match self.method.strain {
+            StrainGradient::CmpmEnds => self.between_ends.value(self.grid.node_stride(), point, field),
+            _ => of_basis,
+        }
+    }
+
+    /// Builds the rows of a composite gradient at a point in a cell, at a place in cells.
+    #[inline]
+    pub(super) fn build_strain_rows(&mut self, point: usize, cell: &[usize; D], place: &Vector<D>) {
+        match self.method.strain {
+            StrainGradient::Standard | StrainGradient::Bbar => {}
+            StrainGradient::Cmpm | StrainGradient::CmpmBbar => {
+                let rows = std::array::from_fn(|d| self.composite_row(cell, d, place[d], cell[d]));
+                self.composite.set(&self.grid, point, &rows);
+            }
+            StrainGradient::CmpmEnds => {
+                let per_cell = self.grid.inverse_cell_size();
+                let rows = std::array::from_fn(|d| {
+                    let half = (self.points.half_length[point][d] * per_cell).min(0.5);
+                    let end = |side: f64| {
+                        let at = place[d] + side * half;
+                        self.composite_row(cell, d, at, self.cell_of_end(cell[d], at - side * INSET))
+                    };
+                    Row::between(&end(-1.0), &end(1.0), 2.0 * half)
+                });
+                self.between_ends.set(&self.grid, point, &rows);
+            }
+        }
+    }
+
+    /// Cell, in one direction, of an end of a domain whose middle is in the cell `home`.
+    #[inline]
+    fn cell_of_end(&self, home: usize, at: f64) -> usize {
+        self.grid.cell_below(at).clamp(home - 1, home + 1)
+    }
+
+    /// Composite interpolation at a place of the cell `along` steps from `cell` in one direction.
+    #[inline]
+    fn composite_row(&self, cell: &[usize; D], direction: usize, at: f64, along: usize) -> Row<4> {
+        let mut place = *cell;
+        place[direction] = along;
+        let home = self.grid.flat_cell(&place);
+        let stride = self.grid.cell_stride()[direction];
+        let (lower, upper) = (self.cells.is_reached(home - stride), self.cells.is_reached(home + stride));
+        shape::composite(at, along, lower, upper)
+    }
+}
