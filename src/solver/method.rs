@@ -165,7 +165,6 @@ impl Memory {
     pub const ALL: [Self; 2] = [Self::Points, Self::Cells];
 
     /// Whether it is the paper's.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks by reference")]
     pub fn is_points(&self) -> bool {
         *self == Self::Points
     }
@@ -261,7 +260,7 @@ impl Method {
     /// weights on the initial configuration, or with the suffix `-cells` for cells that remember.
     pub fn named(name: &str) -> Option<Self> {
         if let Some(bare) = name.strip_suffix(CELLS_SUFFIX) {
-            let method = Self::named(bare).filter(Self::can_move)?;
+            let method = Self::named(bare).filter(|method| method.can_move())?;
             return (method.memory == Memory::Points).then_some(Self { memory: Memory::Cells, ..method });
         }
         if let Some(bare) = name.strip_prefix(TOTAL_PREFIX) {
@@ -294,7 +293,7 @@ impl Method {
     }
 
     /// Whether the method leaves it to the scene to move its points.
-    fn can_move(&self) -> bool {
+    fn can_move(self) -> bool {
         self.configuration.is_none()
     }
 

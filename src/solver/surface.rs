@@ -169,7 +169,7 @@ impl LoadedSurface {
         for spot in &self.spots {
             let share = spot.shape / self.squares;
             self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
-                weights.push((node, share * weight))
+                weights.push((node, share * weight));
             });
         }
         weights
@@ -197,7 +197,7 @@ impl LoadedSurface {
         let mut sum = 0.0;
         for spot in &self.spots {
             self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
-                sum += weight * field[node][D - 1]
+                sum += weight * field[node][D - 1];
             });
         }
         sum / self.spots.len() as f64
