@@ -20,6 +20,7 @@ pub mod grid;
 pub mod implicit;
 pub mod integrator;
 pub mod limits;
+pub mod mapping;
 pub mod material;
 pub mod memory;
 pub mod method;
