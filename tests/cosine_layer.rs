@@ -35,7 +35,7 @@ fn three(record: &Record) -> [f64; 3] {
 
 #[test]
 fn the_undrained_start_has_the_errors_of_the_oracle() {
-    // numerics.md, section 7: method, K_w/E, then the three errors on 8, 16 and 32 cells.
+    // Method, K_w/E, then the three errors on 8, 16 and 32 cells.
     let oracle: [(&str, f64, [[f64; 3]; 3]); 9] = [
         ("GIMP", 10.0, [[0.20, 3.1, 0.15], [6.7e-2, 1.9, 4.8e-2], [1.9e-2, 1.05, 1.3e-2]]),
         ("GIMP", 2200.0, [[0.98, 20.0, 0.91], [0.91, 36.0, 0.84], [0.73, 55.0, 0.65]]),

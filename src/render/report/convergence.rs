@@ -85,6 +85,7 @@ fn heading(axis: Axis) -> &'static str {
         Axis::Cells => "Error against the mesh",
         Axis::TimeStep => "Error against the time step",
         Axis::PointsPerCell => "Error against the points in a cell",
+        Axis::WaterBulkModulus => "Error against the compressibility of the water",
     }
 }
 
@@ -145,7 +146,7 @@ fn figure(
         sample.name()
     ));
     let caption = match axis {
-        Axis::Cells | Axis::TimeStep => captions(&summaries),
+        Axis::Cells | Axis::TimeStep | Axis::WaterBulkModulus => captions(&summaries),
         Axis::PointsPerCell => {
             "More points refine the quadrature, not the mesh: the error tends to the mesh's own.".to_owned()
         }
@@ -285,6 +286,7 @@ fn level_names(all: &[Path<'_>], axis: Axis) -> Vec<String> {
                 Axis::Cells => record.case.cells.to_string(),
                 Axis::TimeStep => step_label(&record.case.time_step).replace("seconds=", "Δt = ") + " s",
                 Axis::PointsPerCell => format!("m = {}", record.case.points_per_cell),
+                Axis::WaterBulkModulus => format!("K_w = {:e} Pa", record.case.material.water_bulk_modulus),
             })
             .collect()
     })
