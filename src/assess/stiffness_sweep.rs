@@ -8,7 +8,6 @@ use crate::record::{Quantity, Record, Sample, Status};
 use crate::solver::integrator::IntegratorKind;
 use crate::solver::material::Material;
 use crate::solver::method::Method;
-use crate::solver::run::TimeStepRule;
 use crate::study::{Case, Study};
 
 /// Fewer values than these are no sweep.
@@ -90,8 +89,8 @@ pub struct StiffnessSweep {
 }
 
 impl StiffnessSweep {
-    /// The sweep of a study's records over a stiffness, on one mesh and by one step rule; `None` where
-    /// the study has none that goes beyond the start.
+    /// The sweep of a study's records over a stiffness on one mesh; `None` where the study has none that
+    /// goes beyond the start. Steps may differ: a stiffer skeleton consolidates faster.
     ///
     /// # Errors
     /// When a reference refuses a case.
@@ -106,20 +105,17 @@ impl StiffnessSweep {
                     && stiffness.is_alone_in(case)
             })
             .collect();
-        // The mesh and rule of the runs that depart furthest from compressible.
+        // The mesh of the runs that depart furthest from compressible.
         let Some(hardest) = swept.iter().max_by(|a, b| {
             stiffness.of(&a.case).total_cmp(&stiffness.of(&b.case)).then(a.case.cells.cmp(&b.case.cells))
         }) else {
             return Ok(None);
         };
-        let (cells, rule): (usize, TimeStepRule) = (hardest.case.cells, hardest.case.time_step);
+        let (cells, per_cell) = (hardest.case.cells, hardest.case.points_per_cell);
         let alike: Vec<&Record> = swept
             .iter()
             .copied()
-            .filter(|record| {
-                (record.case.cells, record.case.time_step, record.case.points_per_cell)
-                    == (cells, rule, hardest.case.points_per_cell)
-            })
+            .filter(|record| (record.case.cells, record.case.points_per_cell) == (cells, per_cell))
             .collect();
         let mut values: Vec<f64> = alike.iter().map(|record| stiffness.of(&record.case)).collect();
         values.sort_by(f64::total_cmp);

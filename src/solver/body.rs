@@ -357,8 +357,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             return self.nodes.displacement[node];
         }
         let position = self.grid.node_position(node);
-        let place: Vector<D> = std::array::from_fn(|d| self.grid.in_cells(position[d]));
-        let rows = self.rows_at(&place, &place.map(|x| self.grid.cell_below(x)), &[0.0; D]);
+        let (place, cell) = (self.grid.held_in_cells(&position), self.grid.cell_of(&position));
+        let rows = self.rows_at(&place, &cell, &[0.0; D]);
         let mut value = [0.0; D];
         visit_block(&self.grid, &rows, |node, weight| {
             for d in 0..D {

@@ -116,7 +116,8 @@ impl Row<3> {
 impl<const W: usize> Row<W> {
     /// Takes the nodes beyond a wall out of the row: a field goes on there as a line through its value
     /// at the wall and that at the mirrored node, which for a velocity that the wall holds is its odd
-    /// image. Linear fields are still met exactly, and the weights still add up to one.
+    /// image. Linear fields are still met exactly, and the weights still add up to one; a field that bends
+    /// at the wall, as above a rough base, is met to first order there.
     #[inline]
     pub fn fold_at(&mut self, wall: usize, is_beyond: impl Fn(usize) -> bool) {
         for k in 0..W {

@@ -16,7 +16,8 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
         let Some(last) = sweep.time_factors.last().copied() else { continue };
         blocks.push(Block::Heading(heading(stiffness).to_owned()));
         blocks.push(Block::Paragraph(format!(
-            "{} cells over the height, T_v = {last}; what a method does not feel is a level line.",
+            "{} cells over the height, T_v = {last}; what a method does not feel is a level line. Methods that agree hide \
+             one another; the tables have them all.",
             sweep.cells
         )));
         let figures = Showing::ALL.iter().map(|showing| figure(results, &sweep, last, *showing)).collect();
@@ -41,9 +42,9 @@ fn heading(stiffness: Stiffness) -> &'static str {
 
 fn subject(showing: Showing) -> &'static str {
     match showing {
-        Showing::Displacement => "relative L_2 error, displacement at the nodes",
-        Showing::Pressure => "relative L_2 error, pressure at the points",
-        Showing::Oscillation => "variation of the pressure over the exact one's",
+        Showing::Displacement => "Displacement at the nodes",
+        Showing::Pressure => "Pressure at the points",
+        Showing::Oscillation => "Oscillation of the pressure",
     }
 }
 
@@ -66,7 +67,11 @@ fn figure(results: &StudyResults<'_>, sweep: &StiffnessSweep, time_factor: f64, 
         Stiffness::Skeleton => Axis::log10("1 − 2ν (–)").inverted(),
     };
     let title = format!("{}, T_v = {time_factor}", subject(showing));
-    let mut chart = Chart::new(title.clone(), x, Axis::log10(format!("{} (–)", short(showing))));
+    let label = match showing {
+        Showing::Displacement | Showing::Pressure => "relative L_2 error (–)",
+        Showing::Oscillation => "total variation over the exact one's (–)",
+    };
+    let mut chart = Chart::new(title.clone(), x, Axis::log10(label));
     chart.size = Size { width: 560.0, ..Size::default() };
     for row in sweep.at(time_factor) {
         let points = sweep.values.iter().zip(&row.found).filter_map(|(value, found)| {
@@ -77,15 +82,16 @@ fn figure(results: &StudyResults<'_>, sweep: &StiffnessSweep, time_factor: f64, 
     if showing == Showing::Oscillation {
         chart.rules.push(Rule { axis: Direction::Y, at: 1.0, label: "theory".to_owned() });
     }
-    let name = slug(&format!("{}-{}-{}", results.study.name, short(showing), axis_word(sweep.stiffness)));
+    let name = slug(&format!("{}-{}-{}", results.study.name, word(showing), axis_word(sweep.stiffness)));
     Figure::new(name, chart, format!("{title}."))
 }
 
-fn short(showing: Showing) -> &'static str {
+/// The same in one word, for the name of a file.
+fn word(showing: Showing) -> &'static str {
     match showing {
-        Showing::Displacement => "error of the displacement",
-        Showing::Pressure => "error of the pressure",
-        Showing::Oscillation => "variation over the exact one",
+        Showing::Displacement => "displacement",
+        Showing::Pressure => "pressure",
+        Showing::Oscillation => "oscillation",
     }
 }
 
@@ -116,7 +122,10 @@ fn table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
         Showing::Oscillation => vec!["Total variation over the exact one's, minus one.".to_owned()],
         Showing::Displacement | Showing::Pressure => Vec::new(),
     };
-    let what =
-        if showing == Showing::Oscillation { "oscillation index of the pressure" } else { subject(showing) };
-    Table { title: format!("{what}, T_v = {time_factor}"), columns, rows: rows.collect(), notes }
+    Table {
+        title: format!("{}, T_v = {time_factor}", subject(showing)),
+        columns,
+        rows: rows.collect(),
+        notes,
+    }
 }
