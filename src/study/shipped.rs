@@ -40,6 +40,7 @@ pub fn shipped_studies() -> Vec<StudySource> {
         ("studies/hard-early.toml", include_str!("../../studies/hard-early.toml")),
         ("studies/hard-strain.toml", include_str!("../../studies/hard-strain.toml")),
         ("studies/hard-long.toml", include_str!("../../studies/hard-long.toml")),
+        ("studies/large-strain-column.toml", include_str!("../../studies/large-strain-column.toml")),
         ("studies/large-strain-mesh.toml", include_str!("../../studies/large-strain-mesh.toml")),
         ("studies/large-strain-implicit.toml", include_str!("../../studies/large-strain-implicit.toml")),
         ("studies/large-strain-models.toml", include_str!("../../studies/large-strain-models.toml")),
