@@ -88,7 +88,10 @@ fn figure(
     chart.size = Size { width: 380.0, plot_height: 240.0, equal_units: true };
     let caption = match oscillation {
         None => format!("Theory at T_v = {time_factor}."),
-        Some(index) => format!("{name} at T_v = {time_factor}: oscillation index {index:.2}."),
+        Some(index) => {
+            let index = format!("{index:.2}").replace('-', "−");
+            format!("{name} at T_v = {time_factor}: oscillation index {index}.")
+        }
     };
     Figure::new(slug(&format!("{}-field-{name}", results.study.name)), chart, caption)
 }
@@ -111,13 +114,15 @@ fn verdicts(standings: &[Standing]) -> Vec<String> {
             names(&|one| one.spread.is_some_and(|spread| spread < 0.02) && one.class != Some(Class::Locked))
         ),
         format!(
-            "**Holds where the skeleton is nearly incompressible too** (no more than twice its error at ν = 0.25): {}.",
+            "**Holds where the skeleton is nearly incompressible too** (no more than twice its errors of displacement and \
+             pressure at ν = 0.25): {}.",
             names(&|one| {
+                let keeps = |stiff: Option<f64>, plain: Option<f64>| {
+                    stiff.zip(plain).is_some_and(|(stiff, plain)| stiff < 2.0 * plain)
+                };
                 one.class != Some(Class::Locked)
-                    && one
-                        .stiff_skeleton
-                        .zip(one.displacement)
-                        .is_some_and(|(stiff, plain)| stiff < 2.0 * plain)
+                    && keeps(one.stiff_skeleton, one.displacement)
+                    && keeps(one.stiff_skeleton_pressure, one.pressure)
             })
         ),
     ]
@@ -128,6 +133,9 @@ fn table(standings: &[Standing]) -> Table {
     let error = |value: Option<f64>| value.map_or_else(missing, Cell::Error);
     let order = |value: Option<f64>| value.map_or_else(missing, Cell::Order);
     let number = |value: Option<f64>| value.map_or_else(missing, Cell::Number);
+    let rounded = |value: Option<f64>, decimals: usize| {
+        value.map_or_else(missing, |value| Cell::Text(format!("{value:.decimals$}").replace('-', "−")))
+    };
     let rows = standings
         .iter()
         .map(|one| {
@@ -138,14 +146,14 @@ fn table(standings: &[Standing]) -> Table {
             };
             vec![
                 Cell::Code(one.method.to_string()),
-                Cell::Number(one.rank),
+                rounded(Some(one.rank), 1),
                 class,
                 error(one.displacement),
                 order(one.displacement_order),
                 error(one.pressure),
                 order(one.pressure_order),
                 error(one.consolidated),
-                number(one.oscillation),
+                rounded(one.oscillation, 3),
                 one.spread.map_or_else(missing, Cell::Percent),
                 error(one.stiff_skeleton),
                 number(one.critical_step),
