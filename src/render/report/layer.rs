@@ -7,6 +7,7 @@ use crate::assess::plane_field::PlaneField;
 use crate::exact::ExactError;
 use crate::record::{Record, Status};
 use crate::render::chart::{Axis, Chart, Colours, Field, Range, Scale, Size};
+use crate::render::number;
 use crate::render::page::{Block, Figure, slug};
 use crate::render::table::{Cell, Column, Mood, Table};
 use crate::solver::material::Material;
@@ -90,8 +91,7 @@ fn figure(
     let caption = match oscillation {
         None => format!("Theory at T_v = {time_factor}."),
         Some(index) => {
-            let index = format!("{index:.2}").replace('-', "−");
-            format!("{name} at T_v = {time_factor}: oscillation index {index}.")
+            format!("{name} at T_v = {time_factor}: oscillation index {}.", number::fixed(index, 2))
         }
     };
     Figure::new(slug(&format!("{}-field-{name}", results.study.name)), chart, caption)
@@ -218,5 +218,5 @@ fn order(value: Option<f64>) -> Cell {
 }
 
 fn rounded(value: Option<f64>, decimals: usize) -> Cell {
-    value.map_or_else(missing, |value| Cell::Text(format!("{value:.decimals$}").replace('-', "−")))
+    value.map_or_else(missing, |value| Cell::Text(number::fixed(value, decimals)))
 }
