@@ -103,6 +103,7 @@ fn figure(
         norm: first_norm(quantity),
         reference: reference.to_owned(),
         time_factor,
+        probe: None,
     };
     let summaries: Vec<SeriesSummary<'_>> = all.iter().map(|path| path.summary(&measure)).collect();
     if summaries.iter().all(|summary| summary.series.levels().iter().all(|level| level.error.is_none())) {
@@ -213,6 +214,7 @@ fn orders_table(all: &[Path<'_>], axis: Axis, reference: &str, time_factor: f64)
             norm: first_norm(quantity),
             reference: reference.to_owned(),
             time_factor,
+            probe: None,
         };
         for (path, label) in all.iter().zip(&labels.each) {
             let summary = path.summary(&measure);
