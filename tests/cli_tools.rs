@@ -291,7 +291,7 @@ fn tolerances_from_last_digits_hold_for_another_kernel() {
         let value = values.get_mut(name).expect("a value");
         *value += 10.0 * golden.tolerance(name, value.abs());
         let places: Vec<String> = compare(&golden, &values).into_iter().map(|one| one.name).collect();
-        assert_eq!(places, [name.clone()]);
+        assert_eq!(places, std::slice::from_ref(name));
     }
 }
 
