@@ -177,6 +177,9 @@ def keep_outcomes(outcomes, faults):
         lines.append(
             f"| {row['fault']} | {fault['file'][4:]} | {fault['what']} | {study} | {said} | {row['commit']} |"
         )
+    waiting = [fault["name"] for fault in faults if fault["name"] not in outcomes]
+    if waiting:
+        lines += ["", f"Not run yet, {len(waiting)} of the list: {', '.join(waiting)}."]
     (HERE / "OUTCOME.md").write_text("\n".join(lines) + "\n")
     return len(through)
 
