@@ -1,10 +1,12 @@
 //! `check`, `accept` and `report` through the program: exit codes, what is named and what is not,
 //! what is written and what is left alone.
 
-use assert_cmd::Command;
+mod program;
+
 use oedometer::golden::GoldenFile;
 use oedometer::record::{Provenance, Record};
 use oedometer::study::{RunOptions, Study, StudySource, Tier, run_study};
+use program::{Told, assert_words, call_with, folder_with};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -32,20 +34,12 @@ at = { cells = 6, below = 0.1 }
 const VALUE: &str =
     "GIMP-SRI explicit cells=6 points=2 stable=0.8 (implicit drag) | pressure points l2 terzaghi T_v=0.2";
 
-struct Told {
-    code: i32,
-    out: String,
-    err: String,
-}
-
 /// A folder with a study and its golden values.
 struct Place(TempDir);
 
 impl Place {
     fn with(study: &str) -> Self {
-        let place = Self(TempDir::new().expect("a folder"));
-        fs::write(place.path().join("short.toml"), study).expect("a file");
-        place
+        Self(folder_with(study))
     }
 
     /// The same with golden values of its records, changed as a test wants.
@@ -62,19 +56,7 @@ impl Place {
     }
 
     fn call(&self, variables: &[(&str, &str)], arguments: &[&str]) -> Told {
-        let mut command = Command::cargo_bin("oedometer").expect("the program");
-        for name in ["CI", "GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY", "NO_COLOR"] {
-            command.env_remove(name);
-        }
-        command.envs(variables.iter().copied());
-        let output = command.current_dir(self.path()).args(arguments).output().expect("it starts");
-        let told = Told {
-            code: output.status.code().expect("an exit code"),
-            out: String::from_utf8(output.stdout).expect("words"),
-            err: String::from_utf8(output.stderr).expect("words"),
-        };
-        assert!(!told.err.contains("panicked"), "{}", told.err);
-        told
+        call_with(self.path(), variables, arguments)
     }
 
     fn check(&self, options: &[&str]) -> Told {
@@ -91,8 +73,9 @@ fn records(study: &str) -> Vec<Record> {
 
 /// A golden value ten times its tolerance away, towards a larger error or a smaller one.
 fn disturb(golden: &mut GoldenFile, sign: f64) {
+    let tolerance = golden.tolerance(VALUE, golden.values[VALUE].abs());
     let value = golden.values.get_mut(VALUE).expect("the value is measured");
-    *value += sign * 10.0 * (golden.absolute_tolerance + golden.relative_tolerance * value.abs());
+    *value += sign * 10.0 * tolerance;
 }
 
 /// Rows of the table of values that differ.
@@ -146,6 +129,7 @@ fn a_trade_of_cost_for_accuracy_is_stale_and_a_dearer_run_fails() {
     let told = traded.check(&[]);
     assert_eq!(told.code, 5, "{}", told.out);
     assert!(told.out.contains("cost traded for accuracy"), "{}", told.out);
+    assert_words("accuracy_and_cost", &told.out);
     let dearer = Place::golden(STUDY, |golden| *golden.values.get_mut(steps).expect("a counter") *= 0.5);
     let told = dearer.check(&[]);
     assert_eq!(told.code, 1, "{}", told.out);
@@ -213,6 +197,65 @@ fn a_wiggle_is_measured_where_a_study_bounds_it() {
     let wiggle = checks.iter().find(|check| check["name"] == "oscillation").expect("it is judged");
     assert_eq!(wiggle["measured"], 0.0, "{wiggle}");
     assert_eq!(asked("-1.0").code, 1, "and a bound that cannot be met is not");
+}
+
+#[test]
+fn the_wiggle_of_a_plane_is_measured_along_its_rows_and_columns() {
+    let study = |method: &str, bound: &str| {
+        let text = format!(
+            "title = \"A layer\"\nscene = \"cosine-layer\"\noutput.time_factors = [0]\n\n[[sweep]]\nmethod = [\"{method}\"]\n\
+             integrator = [\"implicit\"]\ncells = [2, 4, 8]\ntime_step = [{{ seconds = 1.0 }}]\n\n[[expect]]\n\
+             time_factor = 0\noscillation = {{ below = {bound} }}\n"
+        );
+        Place::golden(&text, |_| {}).check(&["--format", "json"])
+    };
+    let index = |told: &Told| {
+        let json: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
+        let checks = json[0]["judgements"][0]["verdict"]["checks"].as_array().expect("checks").clone();
+        checks.iter().find(|check| check["name"] == "oscillation").expect("it is judged")["measured"].as_f64()
+    };
+    let (patched, checkerboard) = (study("GIMP-SRI-patch", "0.01"), study("GIMP", "0.01"));
+    assert_eq!((patched.code, checkerboard.code), (0, 1), "{}{}", patched.out, checkerboard.out);
+    assert!(index(&patched).expect("a number").abs() < 0.01);
+    assert!(index(&checkerboard).expect("a number") > 10.0);
+}
+
+/// A settlement that is held against nothing but itself.
+const VALUE_STUDY: &str = r#"title = "A value"
+scene = "terzaghi"
+output.time_factors = [0.1]
+
+[[sweep]]
+method = ["GC-SRI-patch"]
+integrator = ["implicit"]
+cells = [4, 8, 16, 32]
+time_step = [{ seconds = 0.1 }]
+
+[[expect]]
+quantity = "settlement"
+reference = "none"
+time_factor = 0.1
+order = { value = 2.0 }
+uncertainty = { below = 3e-3 }
+"#;
+
+#[test]
+fn a_value_without_a_reference_is_judged_by_what_refinement_tells() {
+    let told = Place::golden(VALUE_STUDY, |_| {}).check(&[]);
+    assert_eq!(told.code, 0, "{}", told.out);
+    assert_words("uncertainties", &told.out);
+    let strict = VALUE_STUDY.replace("below = 3e-3", "below = 2e-5");
+    let told = Place::golden(&strict, |_| {}).check(&[]);
+    assert_eq!(told.code, 1, "{}", told.out);
+    assert!(told.out.contains("by least squares not below 2e-5"), "{}", told.out);
+    // Three levels have an index, two have nothing to go by.
+    let three = VALUE_STUDY.replace("[4, 8, 16, 32]", "[8, 16, 32]").replace("order = { value = 2.0 }\n", "");
+    let told = Place::golden(&three, |_| {}).check(&["--format", "json"]);
+    assert_eq!(told.code, 0, "{}", told.out);
+    assert!(told.out.contains("grid-convergence-index"), "{}", told.out);
+    let told = Place::golden(&three.replace("[8, 16, 32]", "[16, 32]"), |_| {}).check(&[]);
+    assert_eq!(told.code, 1, "{}", told.out);
+    assert!(told.out.contains("no uncertainty: 2 levels are too few: 3 are needed"), "{}", told.out);
 }
 
 #[test]

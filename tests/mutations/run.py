@@ -73,7 +73,7 @@ def with_switches(tree, faults):
             text = text[:start] + new + text[end:]
         path.write_text(text)
     library = tree / "src/lib.rs"
-    library.write_text(library.read_text() + SWITCH)
+    library.write_text("#![allow(unused_parens)]\n" + library.read_text() + SWITCH)
 
 
 def bring_up_to_date(source, tree):
