@@ -134,7 +134,10 @@ fn figure(
         return None;
     }
     let title = format!("Error of the {}", labels::measure(&measure));
-    let ticks = summaries[0].series.levels().iter().map(|level| level.size).collect();
+    let sizes = summaries.iter().flat_map(|summary| summary.series.levels()).map(|level| level.size);
+    let mut ticks: Vec<f64> = sizes.collect();
+    ticks.sort_by(f64::total_cmp);
+    ticks.dedup();
     let mut chart = Chart::new(
         title,
         ChartAxis::log10(labels::axis(axis)).with_ticks(ticks),
@@ -152,15 +155,20 @@ fn figure(
     if shows_orders(axis, reference) {
         add_triangles(&mut chart, &summaries, &labels.each);
     }
-    let floor = summaries.iter().find_map(|summary| summary.classification.floor.clone());
-    if let Some(floor) = floor.filter(|_| axis == Axis::Cells) {
+    let floors: Vec<f64> = summaries
+        .iter()
+        .filter_map(|summary| summary.classification.floor.as_ref().map(|floor| floor.value))
+        .collect();
+    // A floor of one method among many is told in the table; one that most share is the figure's.
+    let is_shared = 2 * floors.len() >= summaries.len();
+    if let Some(floor) = floors.first().filter(|_| axis == Axis::Cells && is_shared) {
         let kind: Option<ReferenceKind> = reference.parse().ok();
         let cause = kind
             .and_then(|kind| {
                 results.study.scene.model_difference(kind, &summaries[0].path.records[0].case.material)
             })
             .unwrap_or("of unknown cause");
-        chart.rules.push(Rule { axis: Direction::Y, at: floor.value, label: format!("floor: {cause}") });
+        chart.rules.push(Rule { axis: Direction::Y, at: *floor, label: format!("floor: {cause}") });
     }
     let name = slug(&format!(
         "{}-{}-{}-{}-{reference}",
