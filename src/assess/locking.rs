@@ -167,8 +167,14 @@ fn series_order(
 ) -> (Option<Class>, Option<f64>) {
     let plain: Vec<Record> =
         records.iter().filter(|record| record.case.method == method && is_plain(record)).cloned().collect();
-    let measure =
-        Measure { quantity, sample, norm: Norm::L2, reference: reference.to_owned(), time_factor: 0.0 };
+    let measure = Measure {
+        quantity,
+        sample,
+        norm: Norm::L2,
+        reference: reference.to_owned(),
+        time_factor: 0.0,
+        probe: None,
+    };
     let found = paths(&plain, Axis::Cells);
     let Some(path) = found.first() else { return (None, None) };
     let summary = path.summary(&measure);

@@ -113,6 +113,12 @@ fn heading(axis: Axis) -> &'static str {
     }
 }
 
+/// A measure in the norm in which its quantity is reported first.
+fn first_measure(quantity: Quantity, sample: Sample, reference: &str, time_factor: f64) -> Measure {
+    let norm = first_norm(quantity);
+    Measure { quantity, sample, norm, reference: reference.to_owned(), time_factor, probe: None }
+}
+
 fn figure(
     results: &StudyResults<'_>,
     all: &[Path<'_>],
@@ -122,13 +128,7 @@ fn figure(
     reference: &str,
     time_factor: f64,
 ) -> Option<Figure> {
-    let measure = Measure {
-        quantity,
-        sample,
-        norm: first_norm(quantity),
-        reference: reference.to_owned(),
-        time_factor,
-    };
+    let measure = first_measure(quantity, sample, reference, time_factor);
     let summaries: Vec<SeriesSummary<'_>> = all.iter().map(|path| path.summary(&measure)).collect();
     if summaries.iter().all(|summary| summary.series.levels().iter().all(|level| level.error.is_none())) {
         return None;
@@ -246,13 +246,7 @@ fn orders_table(
     let mut rows = Vec::new();
     let mut notes = Vec::new();
     for (quantity, sample) in panels(results) {
-        let measure = Measure {
-            quantity,
-            sample,
-            norm: first_norm(quantity),
-            reference: reference.to_owned(),
-            time_factor,
-        };
+        let measure = first_measure(quantity, sample, reference, time_factor);
         for (path, label) in all.iter().zip(&labels.each) {
             let summary = path.summary(&measure);
             let told = summary.classification.floor.as_ref().filter(|_| axis != Axis::PointsPerCell);

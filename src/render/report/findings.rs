@@ -60,6 +60,7 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
                         norm: first_norm(quantity),
                         reference: reference.name().to_owned(),
                         time_factor: *time_factor,
+                        probe: None,
                     };
                     quote(path, &measure, &mut floors)
                 });
