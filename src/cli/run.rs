@@ -4,7 +4,8 @@ use super::exit::{Ended, Exit};
 use super::progress::StudyBar;
 use crate::record::{Provenance, Record, RecordStore, tidy_csv, write_whole};
 use crate::study::{
-    Purpose, RunOptions, RunReport, Shard, Study, StudySource, Tier, run_study, shipped_studies, time_study,
+    Purpose, RunOptions, RunReport, Selected, Shard, Study, StudySource, Tier, run_studies, shipped_studies,
+    time_study,
 };
 use clap::ValueEnum;
 use std::path::{Path, PathBuf};
@@ -69,13 +70,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         shard: arguments.shard.as_deref().map(shard_of).transpose()?,
         resume: arguments.resume,
     };
+    let selected: Vec<Study> = studies
+        .iter()
+        .map(|study| arguments.case.as_ref().map_or_else(|| study.clone(), |hash| with_case(study, hash)))
+        .collect();
     let mut exit = Exit::NothingSelected;
-    for study in &studies {
-        let selected = match &arguments.case {
-            Some(hash) => with_case(study, hash),
-            None => study.clone(),
-        };
-        let report = run_and_store(study, &selected, &options, &arguments.out)?;
+    for (study, report) in studies.iter().zip(run_and_store(&studies, &selected, &options, &arguments.out)?) {
         if !report.records.is_empty() && exit == Exit::NothingSelected {
             exit = Exit::Pass;
         }
@@ -96,35 +96,51 @@ fn with_case(study: &Study, hash: &str) -> Study {
     selected
 }
 
-/// Runs the selected cases of a study, times them where it asks for it, and writes its CSV.
+/// Runs the selected cases of studies side by side, then times alone those of the studies that ask
+/// for it, and writes a CSV a study; one report a study.
 pub fn run_and_store(
-    study: &Study,
-    selected: &Study,
+    studies: &[Study],
+    selected: &[Study],
     options: &RunOptions,
     results: &Path,
-) -> anyhow::Result<RunReport> {
-    let store = RecordStore::new(results, &study.name);
-    let bar = StudyBar::new(&study.name);
+) -> anyhow::Result<Vec<RunReport>> {
+    let stores: Vec<RecordStore> =
+        studies.iter().map(|study| RecordStore::new(results, &study.name)).collect();
+    let kept = selected.iter().zip(&stores).map(|(study, store)| Selected { study, store: Some(store) });
+    let name = match studies {
+        [study] => study.name.clone(),
+        _ => format!("{} studies", studies.len()),
+    };
+    let bar = StudyBar::new(&name);
     let tell = |progress| bar.tell(progress);
-    let mut report = run_study(selected, options, Some(&store), &tell);
-    time_study(selected, &mut report.records, Some(&store), &tell)?;
+    let mut reports = run_studies(&kept.collect::<Vec<_>>(), options, &tell);
+    for ((study, store), report) in selected.iter().zip(&stores).zip(&mut reports) {
+        time_study(study, &mut report.records, Some(store), &tell)?;
+    }
     bar.finish();
-    if let Some(error) = report.errors.pop() {
-        return Err(error.into());
+    let mut first_error = None;
+    for ((study, store), report) in studies.iter().zip(&stores).zip(&mut reports) {
+        if let Some(error) = report.errors.pop() {
+            first_error = first_error.or(Some(error));
+        } else if !report.records.is_empty() {
+            tell_of(study, report, &write_table(study, store)?);
+        }
     }
-    if report.records.is_empty() {
-        return Ok(report);
+    match first_error {
+        Some(error) => Err(error.into()),
+        None => Ok(reports),
     }
-    let table = write_table(study, &store)?;
-    let failed = report.failed().count();
+}
+
+fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     eprintln!(
-        "{}: {} cases ({} from disk, {failed} failed), {}",
+        "{}: {} cases ({} from disk, {} failed), {}",
         study.name,
         report.records.len(),
         report.resumed,
+        report.failed().count(),
         table.display()
     );
-    Ok(report)
 }
 
 /// Writes the CSV of every record that a store keeps of a study, whichever run made it: a run of

@@ -63,7 +63,10 @@ impl Banded {
 /// The factors of a banded matrix.
 #[derive(Clone, Debug)]
 pub struct BandedLu {
+    /// The upper factor.
     factors: Banded,
+    /// The lower factor, column by column, for that is how a right-hand side goes through it.
+    multipliers: Vec<f64>,
     /// Row that took the place of each row.
     pivots: Vec<usize>,
     /// One over the diagonal of the upper factor.
@@ -73,7 +76,12 @@ pub struct BandedLu {
 impl BandedLu {
     /// Factors of the unit matrix, with room for those of matrices of a shape.
     pub fn of_shape(shape: &Banded) -> Self {
-        Self { factors: shape.clone(), pivots: vec![0; shape.size], per_diagonal: vec![1.0; shape.size] }
+        Self {
+            factors: shape.clone(),
+            multipliers: vec![0.0; shape.size * shape.lower],
+            pivots: vec![0; shape.size],
+            per_diagonal: vec![1.0; shape.size],
+        }
     }
 
     /// Factors `fixed + factor · scaled`; nothing is allocated.
@@ -130,7 +138,7 @@ impl BandedLu {
             for row in column + 1..=last {
                 let start = (row - column - 1) * width + column + lower - row;
                 let multiplier = below[start] * per_value;
-                below[start] = multiplier;
+                self.multipliers[column * lower + row - column - 1] = multiplier;
                 if multiplier != 0.0 {
                     for (entry, above) in below[start + 1..start + reach].iter_mut().zip(pivot_row) {
                         *entry -= multiplier * above;
@@ -146,22 +154,38 @@ impl BandedLu {
         let Banded { size, lower, width, ref entries, .. } = self.factors;
         for column in 0..size {
             values.swap(column, self.pivots[column]);
-            let value = values[column];
-            let last = (column + lower).min(size - 1);
-            for row in column + 1..=last {
-                values[row] -= entries[row * width + column + lower - row] * value;
+            let (above, below) = values.split_at_mut(column + 1);
+            let value = above[column];
+            let multipliers = &self.multipliers[column * lower..][..lower];
+            for (entry, multiplier) in below.iter_mut().zip(multipliers) {
+                *entry -= multiplier * value;
             }
         }
         for row in (0..size).rev() {
             let reach = (width - lower).min(size - row);
-            let above = &entries[row * width + lower..][1..reach];
-            let mut sum = values[row];
-            for (entry, value) in above.iter().zip(&values[row + 1..]) {
-                sum -= entry * value;
-            }
+            let upper = &entries[row * width + lower..][1..reach];
+            let sum = values[row] - dot(upper, &values[row + 1..]);
             values[row] = sum * self.per_diagonal[row];
         }
     }
+}
+
+/// Sums that run side by side in [`dot`]: one long chain would wait for every addition.
+const LANES: usize = 8;
+
+/// `Σ a_i b_i` over the shorter of the two.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let count = a.len().min(b.len());
+    let (a, b) = (&a[..count], &b[..count]);
+    let (a_lanes, b_lanes) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest = a_lanes.remainder().iter().zip(b_lanes.remainder()).map(|(a, b)| a * b).sum::<f64>();
+    let mut sums = [0.0; LANES];
+    for (a, b) in a_lanes.zip(b_lanes) {
+        for lane in 0..LANES {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
 }
 
 #[cfg(test)]
