@@ -1,7 +1,9 @@
 //! Bad input ends with exit code 2 and a sentence that says where and what would be right; nothing
 //! goes to standard output and nothing panics.
 
-use assert_cmd::Command;
+mod program;
+
+use program::{Told, assert_snapshot, call};
 use std::path::Path;
 use tempfile::TempDir;
 
@@ -24,17 +26,9 @@ time_step = [{ stable = 0.8 }]
 
 /// What a refused command wrote to standard error.
 fn refused_in(folder: &Path, arguments: &[&str]) -> String {
-    let output = Command::cargo_bin("oedometer")
-        .expect("the program")
-        .current_dir(folder)
-        .args(arguments)
-        .timeout(std::time::Duration::from_secs(60))
-        .output()
-        .expect("the program starts");
-    let told = String::from_utf8(output.stderr).expect("words, not bytes");
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
-    assert_eq!(String::from_utf8_lossy(&output.stdout), "", "{arguments:?}: nothing on standard output");
-    assert!(!told.contains("panicked"), "{arguments:?}: {told}");
+    let Told { code, out, err: told } = call(folder, arguments);
+    assert_eq!(code, 2, "{arguments:?}: {told}");
+    assert_eq!(out, "", "{arguments:?}: nothing on standard output");
     assert!(told.starts_with("error: "), "{arguments:?}: {told}");
     told
 }
@@ -74,20 +68,11 @@ fn assert_says(told: &str, parts: &[&str]) {
     }
 }
 
-fn assert_snapshot(name: &str, told: &str) {
-    let mut settings = insta::Settings::clone_current();
-    settings.set_snapshot_path("../golden/snapshots");
-    settings.set_prepend_module_to_snapshot(false);
-    settings.set_omit_expression(true);
-    settings.bind(|| insta::assert_snapshot!(name, told));
-}
-
 #[test]
 fn the_sound_study_is_taken() {
     let folder = TempDir::new().expect("a folder");
     std::fs::write(folder.path().join("study.toml"), SOUND).expect("a file");
-    let mut command = Command::cargo_bin("oedometer").expect("the program");
-    command.current_dir(folder.path()).args(["run", "study.toml"]).assert().code(0);
+    assert_eq!(call(folder.path(), &["run", "study.toml"]).code, 0);
 }
 
 #[test]

@@ -1,10 +1,12 @@
 //! `check`, `accept` and `report` through the program: exit codes, what is named and what is not,
 //! what is written and what is left alone.
 
-use assert_cmd::Command;
+mod program;
+
 use oedometer::golden::GoldenFile;
 use oedometer::record::{Provenance, Record};
 use oedometer::study::{RunOptions, Study, StudySource, Tier, run_study};
+use program::{Told, assert_words, call_with, folder_with};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -32,20 +34,12 @@ at = { cells = 6, below = 0.1 }
 const VALUE: &str =
     "GIMP-SRI explicit cells=6 points=2 stable=0.8 (implicit drag) | pressure points l2 terzaghi T_v=0.2";
 
-struct Told {
-    code: i32,
-    out: String,
-    err: String,
-}
-
 /// A folder with a study and its golden values.
 struct Place(TempDir);
 
 impl Place {
     fn with(study: &str) -> Self {
-        let place = Self(TempDir::new().expect("a folder"));
-        fs::write(place.path().join("short.toml"), study).expect("a file");
-        place
+        Self(folder_with(study))
     }
 
     /// The same with golden values of its records, changed as a test wants.
@@ -62,19 +56,7 @@ impl Place {
     }
 
     fn call(&self, variables: &[(&str, &str)], arguments: &[&str]) -> Told {
-        let mut command = Command::cargo_bin("oedometer").expect("the program");
-        for name in ["CI", "GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY", "NO_COLOR"] {
-            command.env_remove(name);
-        }
-        command.envs(variables.iter().copied());
-        let output = command.current_dir(self.path()).args(arguments).output().expect("it starts");
-        let told = Told {
-            code: output.status.code().expect("an exit code"),
-            out: String::from_utf8(output.stdout).expect("words"),
-            err: String::from_utf8(output.stderr).expect("words"),
-        };
-        assert!(!told.err.contains("panicked"), "{}", told.err);
-        told
+        call_with(self.path(), variables, arguments)
     }
 
     fn check(&self, options: &[&str]) -> Told {
@@ -146,6 +128,7 @@ fn a_trade_of_cost_for_accuracy_is_stale_and_a_dearer_run_fails() {
     let told = traded.check(&[]);
     assert_eq!(told.code, 5, "{}", told.out);
     assert!(told.out.contains("cost traded for accuracy"), "{}", told.out);
+    assert_words("accuracy_and_cost", &told.out);
     let dearer = Place::golden(STUDY, |golden| *golden.values.get_mut(steps).expect("a counter") *= 0.5);
     let told = dearer.check(&[]);
     assert_eq!(told.code, 1, "{}", told.out);

@@ -1,7 +1,9 @@
 //! `run` and `plan`: records and tidy CSV, resuming, shards, exit codes; the same bytes whatever
 //! the number of jobs.
 
-use assert_cmd::Command;
+mod program;
+
+use program::{Told, call, folder_with};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,17 +28,9 @@ struct Place {
     folder: TempDir,
 }
 
-struct Told {
-    code: i32,
-    out: String,
-    err: String,
-}
-
 impl Place {
     fn with(study: &str) -> Self {
-        let folder = TempDir::new().expect("a folder");
-        fs::write(folder.path().join("short.toml"), study).expect("a file");
-        Self { folder }
+        Self { folder: folder_with(study) }
     }
 
     fn path(&self) -> &Path {
@@ -44,15 +38,7 @@ impl Place {
     }
 
     fn call(&self, arguments: &[&str]) -> Told {
-        let mut command = Command::cargo_bin("oedometer").expect("the program");
-        let output = command.current_dir(self.path()).args(arguments).output().expect("it starts");
-        let told = Told {
-            code: output.status.code().expect("an exit code"),
-            out: String::from_utf8(output.stdout).expect("words"),
-            err: String::from_utf8(output.stderr).expect("words"),
-        };
-        assert!(!told.err.contains("panicked"), "{}", told.err);
-        told
+        call(self.path(), arguments)
     }
 
     /// Runs the study; nothing of `run` is data.

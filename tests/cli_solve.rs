@@ -1,15 +1,16 @@
 //! The contract of `solve` and `exact`: columns, names, digits, exit codes, and the accuracy that
 //! the paper's method is known for.
 
-use assert_cmd::Command;
+mod program;
+
+use program::call;
 use serde_json::Value;
+use std::path::Path;
 
 /// Exit code, standard output and standard error.
 fn told(arguments: &[&str]) -> (i32, String, String) {
-    let output =
-        Command::cargo_bin("oedometer").expect("the program").args(arguments).output().expect("it starts");
-    let text = |bytes| String::from_utf8(bytes).expect("words, not bytes");
-    (output.status.code().expect("an exit code"), text(output.stdout), text(output.stderr))
+    let told = call(Path::new("."), arguments);
+    (told.code, told.out, told.err)
 }
 
 fn json(arguments: &[&str]) -> (i32, Value) {

@@ -1,7 +1,10 @@
 //! `score`, `explain`, `merge`, `spread`, `schema`, `completions` and `run --case` through the
 //! program, and the list of faults that `check` is held against.
 
-use assert_cmd::Command;
+mod program;
+
+use oedometer::record::{Record, RecordStore};
+use program::{assert_snapshot, assert_words, call, folder_with};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,40 +19,12 @@ method = ["MPM", "GC-SRI-patch"]
 cells = [3, 4, 5]
 "#;
 
-struct Told {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-fn call(folder: &Path, arguments: &[&str]) -> Told {
-    let mut command = Command::cargo_bin("oedometer").expect("the program");
-    let output = command.current_dir(folder).args(arguments).output().expect("it starts");
-    let told = Told {
-        code: output.status.code().expect("an exit code"),
-        out: String::from_utf8(output.stdout).expect("words"),
-        err: String::from_utf8(output.stderr).expect("words"),
-    };
-    assert!(!told.err.contains("panicked"), "{}", told.err);
-    told
-}
-
 fn place() -> TempDir {
-    let folder = TempDir::new().expect("a folder");
-    fs::write(folder.path().join("short.toml"), STUDY).expect("a file");
-    folder
+    folder_with(STUDY)
 }
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-}
-
-fn assert_snapshot(name: &str, told: &str) {
-    let mut settings = insta::Settings::clone_current();
-    settings.set_snapshot_path("../golden/snapshots");
-    settings.set_prepend_module_to_snapshot(false);
-    settings.set_omit_expression(true);
-    settings.bind(|| insta::assert_snapshot!(name, told));
 }
 
 /// The example of the README, in the words that it shows.
@@ -176,6 +151,46 @@ fn merged_shards_are_the_whole_and_holes_are_told() {
     assert_eq!(table("merged"), table("whole"));
 }
 
+/// Every record of a study as if another program had made it, signed as that program would.
+fn change_records(results: &Path, change: impl Fn(&mut Record)) {
+    let store = RecordStore::new(results, "short");
+    for case in fs::read_dir(results.join("short/cases")).expect("cases") {
+        let path = case.expect("a case").path().join("record.json");
+        let text = fs::read_to_string(path).expect("a record");
+        let mut record: Record = serde_json::from_str(&text).expect("a record");
+        change(&mut record);
+        store.write(&record).expect("written");
+    }
+}
+
+#[test]
+fn sound_records_that_disagree_are_no_merge() {
+    let folder = place();
+    let at = folder.path();
+    for out in ["one", "other"] {
+        assert_eq!(call(at, &["run", "short.toml", "--out", out]).code, 0);
+    }
+    let merge = |out: &str| call(at, &["merge", "short.toml", "one", "other", "--out", out]);
+    assert_eq!(merge("agreed").code, 0, "equal records from two folders are one record");
+    // An error in the last digit, from a build that is not told apart by anything else.
+    change_records(&at.join("other"), |record| record.errors[0].value = record.errors[0].value.next_up());
+    let told = merge("disagreed");
+    assert_eq!(told.code, 6, "{}", told.err);
+    assert!(told.err.contains("one/short and other/short have different results of"), "{}", told.err);
+    assert!(told.err.contains("not made by one program"), "{}", told.err);
+    assert!(!at.join("disagreed/short/short.csv").exists(), "no table of results that nobody can trust");
+    // The same numbers from other sources are another program's all the same.
+    change_records(&at.join("other"), |record| {
+        record.errors[0].value = record.errors[0].value.next_down();
+        record.provenance.sources = "0123456789abcdef".to_owned();
+    });
+    assert_eq!(merge("of-two-builds").code, 6);
+    // What is merged already is held against what comes: nothing overwrites it.
+    let before = fs::read(at.join("agreed/short/short.csv")).expect("a table");
+    assert_eq!(merge("agreed").code, 6);
+    assert_eq!(fs::read(at.join("agreed/short/short.csv")).expect("a table"), before);
+}
+
 #[test]
 fn one_case_can_be_explained_and_run_again() {
     let folder = place();
@@ -225,7 +240,7 @@ fn an_explanation_says_what_changed_against_the_golden_values() {
         "it is about that value: {}",
         told.out
     );
-    assert_snapshot("explain_changed", &told.out);
+    assert_words("explain_changed", &told.out);
     let other = call(folder.path(), &["explain", "MPM cells=5", "short.toml"]);
     assert!(other.err.contains("golden values of the case agree"), "{}", other.err);
     assert!(other.out.contains("• this case") && other.out.contains("golden"), "{}", other.out);
@@ -241,6 +256,7 @@ fn threads_make_no_spread_and_kernels_a_little() {
     assert_eq!(spreads[1]["source"], "point-wise kernel");
     let relative = spreads[1]["relative"].as_f64().expect("a number");
     assert!(spreads[1]["differing"].as_u64() > Some(0) && relative < 1e-9, "{spreads}");
+    assert_words("spread_table", &call(folder.path(), &["spread", "short.toml", "--jobs", "2"]).out);
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! Faults around a run: killed, out of space, two at once, damaged records, a clock that jumps.
 //! Nothing finished is lost, and nothing wrong is taken for a result.
 
+mod program;
+
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::fs;
@@ -30,16 +32,12 @@ fn program() -> Command {
 }
 
 fn folder_with_study() -> TempDir {
-    let folder = TempDir::new().expect("a folder");
-    fs::write(folder.path().join("short.toml"), STUDY).expect("a file");
-    folder
+    program::folder_with(STUDY)
 }
 
 fn run_in(folder: &Path, arguments: &[&str]) -> (i32, String) {
-    let output = program().current_dir(folder).args(arguments).output().expect("it starts");
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(!told.contains("panicked"), "{told}");
-    (output.status.code().expect("it ends by itself"), told)
+    let told = program::call(folder, arguments);
+    (told.code, told.err)
 }
 
 /// Every file of the results but wall times, which differ from day to day.

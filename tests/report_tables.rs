@@ -3,6 +3,8 @@
 //! Snapshots hold the wording and the layout; what the numbers must be is for expectations and
 //! golden values to judge.
 
+mod program;
+
 use oedometer::assess::study_check::StudyCheck;
 use oedometer::golden::{GoldenFile, values_of};
 use oedometer::record::{Provenance, Record, WallSample};
@@ -12,6 +14,7 @@ use oedometer::render::report::{StudyResults, page_of};
 use oedometer::render::table::Table;
 use oedometer::render::{junit, verdicts};
 use oedometer::study::{RunOptions, Study, StudySource, Tier, run_study};
+use program::assert_snapshot;
 
 const STUDY: &str = r#"
 title = "A small study"
@@ -72,13 +75,6 @@ fn tables(blocks: &[Block]) -> Vec<&Table> {
             _ => Vec::new(),
         })
         .collect()
-}
-
-fn assert_snapshot(name: &str, text: &str) {
-    let mut settings = insta::Settings::clone_current();
-    settings.set_snapshot_path("../golden/snapshots");
-    settings.set_prepend_module_to_snapshot(false);
-    settings.bind(|| insta::assert_snapshot!(name, text));
 }
 
 #[test]

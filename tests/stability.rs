@@ -1,18 +1,16 @@
 //! `stability` through the door: predicted and observed critical steps agree, for every method, and
 //! have the values that an independent implementation measured (numerics, section 2).
 
-use assert_cmd::Command;
+mod program;
+
+use std::path::Path;
 
 /// Rows of the CSV: predicted, observed, `h/c`, share, status.
 fn stability(arguments: &[&str]) -> (i32, Vec<Vec<String>>) {
-    let output = Command::cargo_bin("oedometer")
-        .expect("the program")
-        .args([&["stability", "terzaghi", "--format", "csv", "--time-factor", "1e-3"], arguments].concat())
-        .output()
-        .expect("it starts");
-    let text = String::from_utf8(output.stdout).expect("words");
-    let rows = text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect();
-    (output.status.code().expect("an exit code"), rows)
+    let command = ["stability", "terzaghi", "--format", "csv", "--time-factor", "1e-3"];
+    let told = program::call(Path::new("."), &[&command, arguments].concat());
+    let rows = told.out.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect();
+    (told.code, rows)
 }
 
 fn number(row: &[String], column: usize) -> f64 {

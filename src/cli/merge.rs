@@ -4,7 +4,7 @@ use super::exit::{Ended, Exit};
 use super::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped, write_table};
 use crate::record::{Record, RecordStore};
 use crate::study::{Case, Study};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Holes that are named before the rest is only counted.
 const MOST_HOLES: usize = 10;
@@ -83,11 +83,12 @@ fn record_of(
     target: &RecordStore,
     folders: &[PathBuf],
 ) -> anyhow::Result<Option<Record>> {
-    let mut found: Option<(Record, &Path)> = target.kept(case).map(|record| (record, target.folder()));
+    let stored = |store: &RecordStore| Some((store.kept(case)?, store.folder().to_owned()));
+    let mut found = stored(target);
     for folder in folders {
-        let Some(other) = RecordStore::new(folder, &study.name).kept(case) else { continue };
+        let Some((other, place)) = stored(&RecordStore::new(folder, &study.name)) else { continue };
         match &mut found {
-            None => found = Some((other, folder)),
+            None => found = Some((other, place)),
             Some((record, from)) => {
                 let timeless = |record: &Record| Record { wall: Vec::new(), ..record.clone() };
                 if timeless(record) != timeless(&other) {
@@ -97,7 +98,7 @@ fn record_of(
                             "{}: {} and {} have different results of {} {}: they were not made by one program",
                             study.name,
                             from.display(),
-                            folder.display(),
+                            place.display(),
                             case.hash(),
                             case.label()
                         ),

@@ -1,6 +1,6 @@
 //! What a study expects of its own results: which series, and what of it.
 
-use super::check::Tier;
+use super::tier::Tier;
 use crate::assess::expectation::Expectation as Demand;
 use crate::assess::norms::Norm;
 use crate::exact::ReferenceKind;

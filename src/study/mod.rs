@@ -1,4 +1,4 @@
-//! Studies: what was typed (`file`), what will run (`check`, `sweep`, `case`), and the runner.
+//! Studies: what was typed (`file`), what will run (`check`, `sweep`, `case`, `tier`), and the runner.
 
 mod case;
 mod check;
@@ -8,10 +8,11 @@ mod file;
 mod runner;
 mod shipped;
 mod sweep;
+mod tier;
 
 pub use crate::solver::integrator::IntegratorKind;
 pub use case::{Case, Task, step_label};
-pub use check::{Purpose, Study, Tier};
+pub use check::{Purpose, Study};
 pub use diagnostic::{Diagnostic, StudyError};
 pub use expectation::{Axis, Expectation, Measure, NEXT_FINER};
 pub use file::StudySource;
@@ -22,3 +23,4 @@ pub use runner::{
 };
 pub use shipped::shipped_studies;
 pub use sweep::AXES;
+pub use tier::Tier;

@@ -1,7 +1,8 @@
 //! Runs the cases of a study: in parallel, resumable, every finished case on disk at once.
 
 use super::case::{Case, Task};
-use super::check::{Study, Tier};
+use super::check::Study;
+use super::tier::Tier;
 use crate::assess::measure::{record_of, record_of_critical_step};
 use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Record, RecordStore, Status, StoreError, WallSample};

@@ -1,6 +1,6 @@
 //! Checks of what is said about single cases: where their points lie, and what must become of them.
 
-use super::{Checker, MOST_CELLS, MOST_POINTS, Tier};
+use super::{Checker, MOST_CELLS, MOST_POINTS};
 use crate::assess::case_expectation::{CaseDemand, CaseExpectation, ErrorRange, Selection};
 use crate::assess::norms::Norm;
 use crate::exact::ReferenceKind;
@@ -11,6 +11,7 @@ use crate::solver::outcome::FailureKind;
 use crate::study::case::Task;
 use crate::study::expectation::Measure;
 use crate::study::file::{ExpectCaseTable, PointsTable, RangeTable, StudyFile};
+use crate::study::tier::Tier;
 use toml::Spanned;
 
 impl Checker<'_> {

@@ -1,0 +1,161 @@
+//! Checks of what a study expects of its series: the blocks `[[expect]]`.
+
+use super::{Checker, MOST_CELLS, MOST_POINTS};
+use crate::assess::class::Class;
+use crate::assess::expectation::{Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure};
+use crate::assess::norms::Norm;
+use crate::exact::ReferenceKind;
+use crate::record::{Quantity, Sample};
+use crate::scene::SceneKind;
+use crate::study::expectation::{Axis, Expectation, Measure, NEXT_FINER};
+use crate::study::file::{ExpectTable, LevelTable};
+use crate::study::tier::Tier;
+use toml::Spanned;
+
+/// Half-width of an order's band where an expectation names none.
+const DEFAULT_BAND: f64 = 0.1;
+
+impl Checker<'_> {
+    pub(super) fn expectation(
+        &mut self,
+        entry: &Spanned<ExpectTable>,
+        scene: SceneKind,
+        references: &[ReferenceKind],
+    ) -> Option<Expectation> {
+        let table = entry.get_ref();
+        let before = self.diagnostics.len();
+        let quantity =
+            self.choice(table.quantity.as_ref(), "quantity", &Quantity::ALL.map(Quantity::name), 0)?;
+        let quantity = Quantity::ALL[quantity];
+        let default_sample = if quantity == Quantity::Settlement { Sample::Surface } else { Sample::Points };
+        let samples = Sample::ALL.map(Sample::name);
+        let sample = table.sample.as_ref().map(|word| self.word(word, "sample", &samples));
+        let sample = sample.map_or(Some(default_sample), |index| index.map(|index| Sample::ALL[index]))?;
+        let default_norm = if quantity == Quantity::Settlement { Norm::Relative } else { Norm::L2 };
+        let norms = Norm::ALL.map(Norm::name);
+        let norm = table.norm.as_ref().map(|word| self.word(word, "norm", &norms));
+        let norm = norm.map_or(Some(default_norm), |index| index.map(|index| Norm::ALL[index]))?;
+        let Some(time_factor) = table.time_factor.as_ref().map(|typed| *typed.get_ref()) else {
+            self.complain(entry.span(), "the expectation names no time factor", "add `time_factor = 0.1`");
+            return None;
+        };
+        let axis = Axis::ALL[self.choice(table.axis.as_ref(), "axis", &Axis::ALL.map(Axis::name), 0)?];
+        let reference = if self.is_held_against_itself(table, axis)? {
+            None
+        } else {
+            Some(self.expected_reference(table, scene, references)?)
+        };
+        let method = match &table.method {
+            Some(typed) => Some(self.method(typed)?),
+            None => None,
+        };
+        let height = self.column_height?;
+        let demand = Demand {
+            order: table.order.as_ref().map(|order| Band {
+                value: *order.get_ref().value.get_ref(),
+                minus: order.get_ref().minus.as_ref().map_or(DEFAULT_BAND, |typed| *typed.get_ref()),
+                plus: order.get_ref().plus.as_ref().map_or(DEFAULT_BAND, |typed| *typed.get_ref()),
+            }),
+            at: table.at.as_ref().and_then(|level| self.error_bound(level, axis, height)),
+            class: match &table.class {
+                Some(word) => Some(Class::ALL[self.word(word, "class", &Class::ALL.map(Class::name))?]),
+                None => None,
+            },
+            floor: table.floor.as_ref().map(|floor| FloorBand {
+                above: floor.get_ref().above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
+                below: floor.get_ref().below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
+            }),
+            oscillation_below: table.oscillation.as_ref().map(|bound| *bound.get_ref().below.get_ref()),
+            xfail: table.xfail.as_ref().map(|known| KnownFailure {
+                strict: known.get_ref().strict.as_ref().is_none_or(|typed| *typed.get_ref()),
+                reason: known.get_ref().reason.get_ref().clone(),
+            }),
+        };
+        for problem in demand.problems() {
+            self.complain(entry.span(), problem, "see the other expectations of the shipped studies");
+        }
+        let tiers = Tier::ALL.map(Tier::name);
+        let tier = table.tier.as_ref().map_or(Some(1), |word| self.word(word, "tier", &tiers));
+        let expectation = Expectation {
+            method,
+            integrator: table.integrator.as_ref().and_then(|word| self.integrator(word)),
+            cells: self.count(table.cells.as_ref(), "cells", 1..=MOST_CELLS),
+            points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
+            law: table.law.as_ref().and_then(|word| self.law(word, scene)),
+            continuity: table.continuity.as_ref().and_then(|word| self.continuity(word)),
+            water_bulk_modulus: table.water_bulk_modulus.as_ref().map(|typed| *typed.get_ref()),
+            poissons_ratio: table.poissons_ratio.as_ref().map(|typed| *typed.get_ref()),
+            scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)),
+            drag: table.drag.as_ref().and_then(|word| self.drag(word)),
+            mapping_back: table.mapping_back.as_ref().map(|typed| *typed.get_ref()),
+            measure: Measure {
+                quantity,
+                sample,
+                norm,
+                reference: reference.map_or(NEXT_FINER, |kind| kind.name()).to_owned(),
+                time_factor,
+            },
+            reference,
+            axis,
+            demand,
+            tier: Tier::ALL[tier?],
+            line: self.source.text[..entry.span().start.min(self.source.text.len())].matches('\n').count()
+                + 1,
+        };
+        (self.diagnostics.len() == before).then_some(expectation)
+    }
+
+    /// Whether an expectation holds a series against itself; none where its axis forbids it.
+    fn is_held_against_itself(&mut self, table: &ExpectTable, axis: Axis) -> Option<bool> {
+        let asked = table.reference.as_ref().filter(|word| word.get_ref() == NEXT_FINER);
+        match asked {
+            Some(word) if axis != Axis::TimeStep => {
+                self.complain(
+                    word.span(),
+                    "the next finer level has other places",
+                    "\"next-finer\" is for `axis = \"time_step\"`",
+                );
+                None
+            }
+            asked => Some(asked.is_some()),
+        }
+    }
+
+    /// The reference of an expectation, the scene's own where it names none.
+    fn expected_reference(
+        &mut self,
+        table: &ExpectTable,
+        scene: SceneKind,
+        references: &[ReferenceKind],
+    ) -> Option<ReferenceKind> {
+        let names: Vec<&str> = references.iter().map(|kind| kind.name()).collect();
+        match &table.reference {
+            Some(word) => Some(references[self.word(word, "reference", &names)?]),
+            None => Some(scene.references()[0]),
+        }
+    }
+
+    /// A bound at a level that is named in the words of its axis.
+    fn error_bound(&mut self, level: &Spanned<LevelTable>, axis: Axis, height: f64) -> Option<ErrorBound> {
+        let table = level.get_ref();
+        let size = match axis {
+            Axis::Cells => self
+                .count(table.cells.as_ref(), "at.cells", 1..=MOST_CELLS)
+                .map(|cells| height / cells as f64),
+            Axis::PointsPerCell => self
+                .count(table.points_per_cell.as_ref(), "at.points_per_cell", 1..=MOST_POINTS)
+                .map(|points| 1.0 / points as f64),
+            Axis::TimeStep => table.seconds.as_ref().map(|typed| *typed.get_ref()),
+        };
+        let (Some(size), Some(below)) = (size, &table.below) else {
+            self.complain(
+                level.span(),
+                "the bound names no level of its axis, or no bound",
+                "write like { cells = 10, below = 5.0e-3 }",
+            );
+            return None;
+        };
+        let above = table.above.as_ref().map_or(0.0, |typed| *typed.get_ref());
+        Some(ErrorBound { size, below: *below.get_ref(), above })
+    }
+}

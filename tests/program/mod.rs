@@ -1,0 +1,78 @@
+//! The program as a user calls it, for the tests that go through the binary: its exit code, what it
+//! writes to both outputs, and never a panic.
+#![allow(dead_code, reason = "every test takes the part that it needs")]
+
+use assert_cmd::Command;
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// Longest that any call of a test may take.
+const LONGEST: Duration = Duration::from_secs(600);
+/// Variables of a CI that must not reach a test from the one that runs it.
+const OF_A_CI: [&str; 4] = ["CI", "GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY", "NO_COLOR"];
+
+/// What a call of the program came to.
+pub struct Told {
+    /// Exit code.
+    pub code: i32,
+    /// Standard output.
+    pub out: String,
+    /// Standard error.
+    pub err: String,
+}
+
+/// Calls the program in a folder.
+pub fn call(folder: &Path, arguments: &[&str]) -> Told {
+    call_with(folder, &[], arguments)
+}
+
+/// Calls the program in a folder with variables of the environment.
+pub fn call_with(folder: &Path, variables: &[(&str, &str)], arguments: &[&str]) -> Told {
+    let mut command = Command::cargo_bin("oedometer").expect("the program");
+    for name in OF_A_CI {
+        command.env_remove(name);
+    }
+    command.envs(variables.iter().copied()).current_dir(folder).args(arguments).timeout(LONGEST);
+    let output = command.output().expect("it starts");
+    let told = Told {
+        code: output.status.code().expect("an exit code"),
+        out: String::from_utf8(output.stdout).expect("words"),
+        err: String::from_utf8(output.stderr).expect("words"),
+    };
+    assert!(!told.err.contains("panicked"), "{arguments:?}: {}", told.err);
+    told
+}
+
+/// A folder with a study `short.toml`.
+pub fn folder_with(study: &str) -> TempDir {
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("short.toml"), study).expect("a file");
+    folder
+}
+
+/// Holds a text against its snapshot.
+pub fn assert_snapshot(name: &str, text: &str) {
+    settings().bind(|| insta::assert_snapshot!(name, text));
+}
+
+/// Holds the words of a table against its snapshot and not the numbers in it: those are for golden
+/// values and expectations to judge, and their last digits are another platform's own.
+pub fn assert_words(name: &str, text: &str) {
+    let mut settings = settings();
+    // Not those in a name, as in `cells=4` or `L2`.
+    settings.add_filter(r"([ (])[-+]?\d+(\.\d+)?(e-?\d+)?", "${1}#");
+    // Columns are as wide as their numbers.
+    settings.add_filter(" {2,}", " ");
+    settings.add_filter("-{3,}:?", "---");
+    settings.bind(|| insta::assert_snapshot!(name, text));
+}
+
+fn settings() -> insta::Settings {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("../../golden/snapshots");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings
+}
