@@ -4,10 +4,12 @@ use super::exit::{Ended, Exit};
 use super::progress::StudyBar;
 use crate::record::{Provenance, Record, RecordStore, tidy_csv, write_whole};
 use crate::study::{
-    Purpose, RunOptions, RunReport, Selected, Shard, Study, StudySource, Tier, run_studies, shipped_studies,
-    time_study,
+    Case, Purpose, RunOptions, RunReport, Selected, Shard, Study, StudySource, Tier, run_studies,
+    shipped_studies, time_study,
 };
 use clap::ValueEnum;
+use std::borrow::Cow;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// Folder of results where none is named.
@@ -123,7 +125,7 @@ pub fn run_and_store(
         if let Some(error) = report.errors.pop() {
             first_error = first_error.or(Some(error));
         } else if !report.records.is_empty() {
-            tell_of(study, report, &write_table(study, store)?);
+            tell_of(study, report, &write_table(study, store, &report.records)?);
         }
     }
     match first_error {
@@ -144,17 +146,23 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
 }
 
 /// Writes the CSV of every record that a store keeps of a study, whichever run made it: a run of
-/// one tier or shard takes nothing away from what others found.
-pub fn write_table(study: &Study, store: &RecordStore) -> anyhow::Result<PathBuf> {
-    let records: Vec<Record> =
-        study.cases(Tier::Full).into_iter().filter_map(|case| store.kept(case)).collect();
+/// one tier or shard takes nothing away from what others found. Those that are at hand are not
+/// read again.
+pub fn write_table(study: &Study, store: &RecordStore, at_hand: &[Record]) -> anyhow::Result<PathBuf> {
+    let at_hand: HashMap<&str, &Record> =
+        at_hand.iter().map(|record| (record.hash.as_str(), record)).collect();
+    let record_of = |case: &Case| match at_hand.get(case.hash().as_str()) {
+        Some(record) => Some(Cow::Borrowed(*record)),
+        None => store.kept(case).map(Cow::Owned),
+    };
+    let records: Vec<Cow<'_, Record>> = study.cases(Tier::Full).into_iter().filter_map(record_of).collect();
     let own = Provenance::of_this_program().sources;
     let foreign = records.iter().filter(|record| record.provenance.sources != own).count();
     if foreign > 0 {
         eprintln!("{}: {foreign} older records in the table are of other sources", study.name);
     }
     let table = store.folder().join(format!("{}.csv", study.name));
-    write_whole(&table, tidy_csv(&study.name, &records)?.as_bytes())?;
+    write_whole(&table, tidy_csv(&study.name, records.iter().map(AsRef::as_ref))?.as_bytes())?;
     Ok(table)
 }
 

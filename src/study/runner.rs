@@ -9,6 +9,7 @@ use crate::record::{Record, RecordStore, Status, StoreError, WallSample};
 use crate::scene::{SceneProblem, column_parameters};
 use crate::solver::limits;
 use crate::solver::outcome::FailureKind;
+use crate::solver::profile::{Phase, enter};
 use crate::solver::run::{Kernel, Schedule, TimeStepRule};
 use std::cell::Cell;
 use std::sync::Mutex;
@@ -339,6 +340,7 @@ pub fn run_case(
     let start = Instant::now();
     let outcome = problem.run(&schedule, observe);
     let seconds = start.elapsed().as_secs_f64();
+    enter(Phase::Assessment);
     let mut record = record_of(case, references, outcome)?;
     record.wall.push(WallSample { seconds, alone });
     Ok(record)

@@ -91,14 +91,19 @@ impl Blocks {
         }
     }
 
-    /// One step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
+    /// Accelerations, and the velocities that they lead to within `kick` seconds.
     #[inline]
-    pub(super) fn step(&self, state: &mut State, kick: f64, dt: f64, settings: &ExplicitSettings) {
+    pub(super) fn accelerate(&self, state: &mut State, kick: f64) {
         match self.force_reach {
             0 | 1 => self.forces_and_trial_velocities::<1>(state, kick),
             2 => self.forces_and_trial_velocities::<2>(state, kick),
             _ => self.forces_and_trial_velocities::<REACH>(state, kick),
         }
+    }
+
+    /// Velocities after `kick` seconds, and all that they carry within `dt`.
+    #[inline]
+    pub(super) fn advance(&self, state: &mut State, kick: f64, dt: f64, settings: &ExplicitSettings) {
         // On a regular lattice a node shares points with its neighbours only.
         if self.projection_reach <= 1 {
             self.advance_velocities::<1>(state, kick, dt, settings);
