@@ -33,7 +33,7 @@ const ROUNDS: usize = 31;
 /// Cells over the height and length of the layer.
 const PLANE_CELLS: [usize; 2] = [8, 32];
 const PLANE_STEPS: usize = 32;
-const PLANE_ROUNDS: usize = 15;
+const PLANE_ROUNDS: usize = 41;
 
 /// A way to take a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -207,21 +207,46 @@ fn print_table() {
     }
 }
 
-/// The same for the seed layer: the assembled and the point-wise step in two dimensions.
+/// The same for the seed layer: the point-wise and the assembled step in two dimensions, and what
+/// bounds the latter.
+///
+/// The assembled step is a product of sparse maps with grid arrays: it reads every coefficient once and
+/// multiplies it once. `reading` is the time to sum as many bytes from memory in order, measured in turn with
+/// the steps; `share` is how much of the step that bound explains. What is left of the step are its
+/// multiply-adds (`products`, two a cycle without wider registers) and the gathers of nodal values.
 fn print_plane_table() {
     println!(
-        "\nns per point and step, two dimensions, frozen, {POINTS_PER_CELL} × {POINTS_PER_CELL} points a cell"
+        "\nns per point and step, two dimensions, frozen, {POINTS_PER_CELL} × {POINTS_PER_CELL} points a cell, \
+         least of {PLANE_ROUNDS} rounds"
     );
-    println!("{:<16}{:>6}{:>12}{:>12}", "method", "cells", "point-wise", "assembled");
+    println!(
+        "{:<16}{:>6}{:>12}{:>12}{:>12}{:>8}{:>12}{:>12}",
+        "method", "cells", "point-wise", "assembled", "reading", "share", "bytes/pt", "products/pt"
+    );
     for method in ["GIMP", "GIMP-SRI-patch", "GC-SRI-patch", "GC-Bbar-patch"] {
         for cells in PLANE_CELLS {
-            let [point_wise, assembled] = plane_medians(method, cells);
-            println!("{method:<16}{cells:>6}{point_wise:>12.1}{assembled:>12.1}");
+            let cost = plane_cost(method, cells);
+            let [point_wise, assembled, reading] = cost.nanoseconds;
+            println!(
+                "{method:<16}{cells:>6}{point_wise:>12.1}{assembled:>12.1}{reading:>12.1}{:>7.0}%{:>12.0}{:>12.0}",
+                100.0 * reading / assembled,
+                cost.bytes,
+                cost.products
+            );
         }
     }
 }
 
-fn plane_medians(name: &str, cells: usize) -> [f64; 2] {
+/// Cost of a step per point.
+struct PlaneCost {
+    /// Point-wise step, assembled step, reading alone.
+    nanoseconds: [f64; 3],
+    bytes: f64,
+    products: f64,
+}
+
+/// The steps and the reading take turns; the least of the rounds is what the machine can do undisturbed.
+fn plane_cost(name: &str, cells: usize) -> PlaneCost {
     let method = Method::named(name).expect("a known method");
     let (column, soil) = (Column::layer(), Material::default());
     let problem = column_problem::<2>(SceneKind::CosineLayer, &column, &soil, method, cells, POINTS_PER_CELL)
@@ -231,24 +256,37 @@ fn plane_medians(name: &str, cells: usize) -> [f64; 2] {
     let mut body = Body::<2, 3, Gimp>::new(problem);
     let mut plane = AssembledPlane::new(&body);
     plane.set_step(dt, &settings);
-    let points = body.points.len();
-    let mut samples = [const { Vec::new() }; 2];
+    let coefficients = vec![1.0_f64; plane.bytes_a_step() / size_of::<f64>()];
+    let points = body.points.len() as f64;
+    let mut least = [f64::INFINITY; 3];
     for _ in 0..PLANE_ROUNDS {
-        let start = Instant::now();
-        for _ in 0..PLANE_STEPS {
-            body.explicit_step(black_box(dt), &settings);
-        }
-        samples[0].push(start.elapsed().as_secs_f64());
-        let start = Instant::now();
-        for _ in 0..PLANE_STEPS {
-            plane.step(black_box(dt), &settings);
-        }
-        samples[1].push(start.elapsed().as_secs_f64());
+        let mut time = |kind: usize, one: &mut dyn FnMut()| {
+            let start = Instant::now();
+            (0..PLANE_STEPS).for_each(|_| one());
+            least[kind] = least[kind].min(start.elapsed().as_secs_f64());
+        };
+        time(0, &mut || body.explicit_step(black_box(dt), &settings));
+        time(1, &mut || plane.step(black_box(dt), &settings));
+        time(2, &mut || {
+            black_box(sum(black_box(&coefficients)));
+        });
     }
-    samples.map(|mut samples| {
-        samples.sort_by(f64::total_cmp);
-        1e9 * samples[PLANE_ROUNDS / 2] / (PLANE_STEPS * points) as f64
-    })
+    PlaneCost {
+        nanoseconds: least.map(|seconds| 1e9 * seconds / (PLANE_STEPS as f64 * points)),
+        bytes: plane.bytes_a_step() as f64 / points,
+        products: plane.products_a_step() as f64 / points,
+    }
+}
+
+/// A sum in eight chains, so that loads and not the latency of additions are timed.
+fn sum(numbers: &[f64]) -> f64 {
+    let mut chains = [0.0; 8];
+    for some in numbers.chunks_exact(8) {
+        for (chain, number) in chains.iter_mut().zip(some) {
+            *chain += number;
+        }
+    }
+    chains.iter().sum()
 }
 
 /// The kernels take turns, so that what drifts on the machine meets each alike.

@@ -358,3 +358,9 @@ fn an_unknown_command_is_refused_with_the_nearest() {
     assert_says(&refused(&["solve"]), &["SCENE"]);
     assert_says(&refused(&["run"]), &["STUDY.toml"]);
 }
+
+#[test]
+fn a_mesh_that_no_memory_holds_is_refused() {
+    let told = refused(&["solve", "cosine-layer", "--cells", "4000", "--integrator", "implicit"]);
+    assert_says(&told, &["4000 cells over the height", "GB of memory", "take fewer"]);
+}

@@ -62,6 +62,8 @@ pub struct Expectation {
     pub class: Option<Class>,
     /// Floor under the errors.
     pub floor: Option<FloorBand>,
+    /// Largest error over the smallest, minus one, over the levels of this size and below.
+    pub spread: Option<ErrorBound>,
     /// Bound on the oscillation index of the series.
     pub oscillation_below: Option<f64>,
     /// That the expectation is known not to be met.
@@ -113,6 +115,12 @@ impl Expectation {
                 "`above` of `at` must be a number from 0 on and smaller than `below`",
             );
         }
+        if let Some(spread) = self.spread {
+            demand(
+                positive(spread.size) && positive(spread.below),
+                "`spread` needs a level of a positive size and a positive bound",
+            );
+        }
         if let Some(floor) = self.floor {
             demand(
                 width(floor.above) && positive(floor.below) && floor.above <= floor.below,
@@ -129,6 +137,7 @@ impl Expectation {
             || self.at.is_some()
             || self.class.is_some()
             || self.floor.is_some()
+            || self.spread.is_some()
             || self.oscillation_below.is_some();
         demand(asked, "the expectation asks for nothing");
         problems

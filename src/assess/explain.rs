@@ -171,7 +171,7 @@ fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &Err
     let mut records: Vec<Record> = siblings.iter().filter(|case| **case != &record.case).map(empty).collect();
     records.push(record.clone());
     let mut all = Vec::new();
-    for axis in Axis::ALL.into_iter().filter(|axis| *axis != Axis::TimeStep) {
+    for axis in Axis::REFINEMENTS.into_iter().filter(|axis| *axis != Axis::TimeStep) {
         let path = paths(&records, axis)
             .into_iter()
             .find(|path| path.records.iter().any(|other| other.hash == record.hash));

@@ -34,6 +34,7 @@ pub mod soundness;
 pub mod spread;
 pub mod stability_map;
 pub mod statistics;
+pub mod stiffness_sweep;
 pub mod study_check;
 pub mod summary;
 pub mod two_terms;

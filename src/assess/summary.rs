@@ -13,6 +13,7 @@ use super::verdict::{Verdict, judge};
 use crate::exact::{Reference, ReferenceKind};
 use crate::record::{Quantity, Record, Sample};
 use crate::scene::{SceneKind, column_parameters};
+use crate::solver::material::Material;
 use crate::solver::snapshot::{Samples, Snapshot};
 use crate::study::{Axis, Case, Expectation, IntegratorKind, Measure, NEXT_FINER, Study, Tier, step_label};
 
@@ -86,16 +87,19 @@ fn alike(a: &Case, b: &Case, axis: Axis) -> bool {
         }
         Axis::TimeStep => {}
         Axis::PointsPerCell => b.points_per_cell = a.points_per_cell,
+        Axis::WaterBulkModulus => b.material.water_bulk_modulus = a.material.water_bulk_modulus,
     }
     *a == b
 }
 
-/// Size of a record's level: cell size (m), time step (s), or spacing of points in cells.
+/// Size of a record's level: cell size (m), time step (s), spacing of points in cells, or
+/// compressibility of the water (1/Pa).
 pub fn level_size(record: &Record, axis: Axis) -> f64 {
     match axis {
         Axis::Cells => record.case.cell_size(),
         Axis::TimeStep => record.step_sizes.target,
         Axis::PointsPerCell => 1.0 / record.case.points_per_cell as f64,
+        Axis::WaterBulkModulus => 1.0 / record.case.material.water_bulk_modulus,
     }
 }
 
@@ -203,7 +207,10 @@ impl<'a> Path<'a> {
 
     /// What the runs of the path share, in words, the method first.
     pub fn parts(&self) -> Vec<String> {
-        let case = &self.records[0].case;
+        let mut case = self.records[0].case.clone();
+        if self.axis == Axis::WaterBulkModulus {
+            case.material.water_bulk_modulus = Material::default().water_bulk_modulus;
+        }
         let mut parts = vec![case.method.to_string()];
         if case.integrator != IntegratorKind::Explicit {
             parts.push(case.integrator.name().to_owned());
@@ -384,7 +391,8 @@ fn selects(expectation: &Expectation, case: &Case) -> bool {
             || fits(expectation.points_per_cell, case.points_per_cell))
         && fits(expectation.law, case.material.law)
         && fits(expectation.continuity, case.material.continuity)
-        && fits(expectation.water_bulk_modulus, case.material.water_bulk_modulus)
+        && (expectation.axis == Axis::WaterBulkModulus
+            || fits(expectation.water_bulk_modulus, case.material.water_bulk_modulus))
         && fits(expectation.poissons_ratio, case.material.poissons_ratio)
         && fits(expectation.scheme, case.settings.scheme)
         && fits(expectation.drag, case.settings.drag)

@@ -30,7 +30,7 @@ pub enum Outcome {
 /// One thing that was asked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Check {
-    /// `expectation`, `rows`, `class`, `order`, `error`, `floor` or `oscillation`.
+    /// `expectation`, `rows`, `class`, `order`, `error`, `spread`, `floor` or `oscillation`.
     pub name: String,
     /// Whether it is met.
     pub pass: bool,
@@ -78,6 +78,7 @@ pub fn judge(
     checks.extend(class.map(|class| class_found(class, &classification)));
     checks.extend(expectation.order.map(|band| order_found(band, class, &classification)));
     checks.extend(expectation.at.map(|bound| error_found(bound, series)));
+    checks.extend(expectation.spread.map(|bound| spread_found(bound, series)));
     checks.extend(expectation.floor.map(|band| floor_found(band, series, formal_order, &classification)));
     checks.extend(expectation.oscillation_below.map(|bound| oscillation_found(bound, oscillation)));
     let (outcome, reason) = conclude(expectation, &classification, &checks, problems.is_empty());
@@ -181,6 +182,32 @@ fn error_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
             check("error", pass, Some(error), reason)
         }
     }
+}
+
+/// How far the errors of the levels up to a size lie apart.
+fn spread_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
+    let counted: Vec<f64> = series
+        .levels()
+        .iter()
+        .filter(|level| level.size <= bound.size * (1.0 + 1e-9))
+        .filter_map(|level| level.positive_error().ok())
+        .collect();
+    if counted.len() < 2 {
+        let reason = format!("{} levels up to size {} have no spread", counted.len(), short(bound.size));
+        return check("spread", false, None, reason);
+    }
+    let largest = counted.iter().copied().fold(0.0, f64::max);
+    let smallest = counted.iter().copied().fold(f64::INFINITY, f64::min);
+    let spread = largest / smallest - 1.0;
+    let pass = spread < bound.below;
+    let relation = if pass { "below" } else { "not below" };
+    let reason = format!(
+        "errors of {} levels lie within {:.3} %, {relation} {} %",
+        counted.len(),
+        100.0 * spread,
+        short(100.0 * bound.below)
+    );
+    check("spread", pass, Some(spread), reason)
 }
 
 fn floor_found(band: FloorBand, series: &ErrorSeries, formal: Option<f64>, found: &Classification) -> Check {

@@ -94,6 +94,10 @@ impl<T: Copy> SparseMap<T> {
         Self { starts, entries }
     }
 
+    fn bytes(&self) -> usize {
+        std::mem::size_of_val(&self.entries[..]) + std::mem::size_of_val(&self.starts[..])
+    }
+
     #[inline]
     fn row(&self, row: usize) -> &[(u32, T)] {
         &self.entries[self.starts[row]..self.starts[row + 1]]
@@ -160,6 +164,23 @@ impl<const D: usize> AssembledPlane<D> {
             self.state.velocity[row] =
                 [mapped.nodes.solid_velocity[*node], mapped.nodes.water_velocity[*node]];
         }
+    }
+
+    /// Coefficients of the maps that a step reads once, bytes: what bounds its speed once they no longer
+    /// fit into the nearest cache.
+    pub fn bytes_a_step(&self) -> usize {
+        self.divergence.bytes()
+            + self.pressure_force.bytes()
+            + self.skeleton_force.bytes()
+            + self.projection.bytes()
+            + std::mem::size_of_val(&self.constants[..])
+    }
+
+    /// Multiply-adds of a step by its maps, with FLIP.
+    pub fn products_a_step(&self) -> usize {
+        D * (self.divergence.entries.len() + self.pressure_force.entries.len())
+            + D * D * self.skeleton_force.entries.len()
+            + 2 * D * self.projection.entries.len()
     }
 
     /// Fixes the duration of a kick and the drag. Call before `step`.

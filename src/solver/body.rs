@@ -1,7 +1,7 @@
 //! The discretised body: points, nodes and the operators that join them.
 
 use super::cells::Cells;
-use super::grid::{GHOST_LAYERS, Grid, Tensor, Vector};
+use super::grid::{Grid, Tensor, Vector};
 use super::material::{Continuity, Material, Stiffness};
 use super::memory::CellMemory;
 use super::method::{Basis, Configuration, Method, Recovery, StrainGradient};
@@ -12,11 +12,11 @@ use super::recovery::PatchRows;
 use super::shape::{self, Row};
 use super::stencil::Stencils;
 use super::strain::ENDS_WIDTH;
-use super::surface::{LoadShape, LoadedSurface};
+use super::surface::{LoadShape, LoadedSurface, visit_block};
 
 /// A basis as the compiler sees it: rows of `W` nodes a direction.
 pub trait ShapeFunction<const W: usize>: Clone {
-    /// Whether nodes beyond a wall have a share in what is inside it.
+    /// Whether nodes beyond a wall would have a share in what is inside it.
     const PASSES_WALLS: bool = false;
 
     /// The row at a place (in cells), in a cell, of a point with a domain of half-length (in
@@ -149,7 +149,7 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     /// Configuration of the weights.
     pub configuration: Configuration,
     /// Loaded surface.
-    pub surface: LoadedSurface,
+    pub surface: LoadedSurface<D>,
     /// `N` and `∇N` between points and nodes.
     pub basis: Stencils<D, W>,
     /// `G` of the composite MPM.
@@ -158,8 +158,8 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     pub between_ends: Stencils<D, ENDS_WIDTH>,
     /// What the cells remember.
     pub cell_memory: CellMemory<D>,
-    /// Whether the base holds both phases, so that velocities are odd about it.
-    has_fixed_base: bool,
+    /// Faces that are held.
+    support: Support<D>,
     /// `R` of the patch recovery.
     pub patch: PatchRows<D>,
     /// Values on their way from the sites of `D` to the points, where a method needs them kept.
@@ -199,13 +199,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             stiffness: material.stiffness(),
             surface: LoadedSurface::of(&points, load)
                 .shaped(load_shape, &points)
-                .spread_by(method.basis)
+                .spread_by(method.basis, support)
                 .stretching(configuration.moves_points() && !method.domains_follow()),
             basis: Stencils::with_points(count),
             composite: Stencils::with_points(composite_rows),
             between_ends: Stencils::with_points(ends_rows),
             cell_memory: CellMemory::new(&grid),
-            has_fixed_base: support.lower[D - 1],
+            support,
             patch: PatchRows::with_points(patch_rows),
             recovered: Recovered::of(&grid, count, &method),
             surface_flux: 0.0,
@@ -322,16 +322,11 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         if self.method.strain.is_composite() {
             self.cells.find_reached(&self.grid, &self.points);
         }
-        let per_cell = self.grid.inverse_cell_size();
         for point in 0..self.points.len() {
-            let (position, half) = (&self.points.position[point], &self.points.half_length[point]);
+            let position = &self.points.position[point];
             let cell = self.grid.cell_of(position);
             let place = self.grid.held_in_cells(position);
-            let rows = std::array::from_fn(|d| {
-                let row = S::row(place[d], cell[d], half[d] * per_cell);
-                let folds = S::PASSES_WALLS && d == D - 1 && self.has_fixed_base;
-                if folds { row.mirrored_at(GHOST_LAYERS) } else { row }
-            });
+            let rows = self.rows_at(&place, &cell, &self.points.half_length[point]);
             self.basis.set(&self.grid, point, &rows);
             self.build_strain_rows(point, &cell, &place);
         }
@@ -342,6 +337,35 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             self.cells.average_deformation(&self.points);
         }
         self.surface.apply(&self.grid, &self.points, &mut self.nodes);
+    }
+
+    /// Rows of the basis at a place (in cells) of a cell, for a domain of half-lengths (m), without nodes
+    /// beyond held faces.
+    #[inline]
+    fn rows_at(&self, place: &Vector<D>, cell: &[usize; D], half_length: &Vector<D>) -> [Row<W>; D] {
+        let per_cell = self.grid.inverse_cell_size();
+        std::array::from_fn(|d| {
+            let row = S::row(place[d], cell[d], half_length[d] * per_cell);
+            if S::PASSES_WALLS { self.support.folded(&self.grid, d, row) } else { row }
+        })
+    }
+
+    /// Displacement of the skeleton at the place of a node, m: that of the node itself, but for splines,
+    /// whose coefficients are no values.
+    pub fn displacement_at_node(&self, node: usize) -> Vector<D> {
+        if !S::PASSES_WALLS {
+            return self.nodes.displacement[node];
+        }
+        let position = self.grid.node_position(node);
+        let (place, cell) = (self.grid.held_in_cells(&position), self.grid.cell_of(&position));
+        let rows = self.rows_at(&place, &cell, &[0.0; D]);
+        let mut value = [0.0; D];
+        visit_block(&self.grid, &rows, |node, weight| {
+            for d in 0..D {
+                value[d] += weight * self.nodes.displacement[node][d];
+            }
+        });
+        value
     }
 
     /// Sums masses, volumes and drag of the points to the nodes.

@@ -147,20 +147,13 @@ impl<const D: usize> Cells<D> {
     /// the field.
     #[inline]
     pub fn centre_divergence(&self, grid: &Grid<D>, cell: usize, field: &[Vector<D>]) -> f64 {
-        let corners = 1_usize << D;
         let mut divergence = 0.0;
-        for corner in 0..corners {
-            let mut node = self.first_node[cell];
+        for (corner, node) in grid.corners(self.first_node[cell]).enumerate() {
             for direction in 0..D {
-                node += (corner >> direction & 1) * grid.node_stride()[direction];
-            }
-            for direction in 0..D {
-                let sign = if corner >> direction & 1 == 1 { 1.0 } else { -1.0 };
-                divergence += sign * field[node][direction];
+                divergence += side(corner, direction) * field[node][direction];
             }
         }
-        // Each direction averages over the 2^(D−1) edges along it.
-        divergence * grid.inverse_cell_size() * 2.0 / corners as f64
+        divergence * share_of_corner(grid)
     }
 
     /// Visits the nodes of that divergence with their coefficients, 1/m.
@@ -170,16 +163,8 @@ impl<const D: usize> Cells<D> {
         cell: usize,
         mut node_visitor: impl FnMut(usize, &Vector<D>),
     ) {
-        let corners = 1_usize << D;
-        let coefficient = grid.inverse_cell_size() * 2.0 / corners as f64;
-        for corner in 0..corners {
-            let is_upper = |direction: usize| corner >> direction & 1 == 1;
-            let steps = (0..D).filter(|d| is_upper(*d)).map(|d| grid.node_stride()[d]);
-            let node = self.first_node[cell] + steps.sum::<usize>();
-            node_visitor(
-                node,
-                &std::array::from_fn(|d| if is_upper(d) { coefficient } else { -coefficient }),
-            );
+        for (corner, node) in grid.corners(self.first_node[cell]).enumerate() {
+            node_visitor(node, &std::array::from_fn(|d| side(corner, d) * share_of_corner(grid)));
         }
     }
 
@@ -187,23 +172,31 @@ impl<const D: usize> Cells<D> {
     /// times the cell's inverse deformation gradient.
     #[inline]
     pub fn deformed_centre_divergence(&self, grid: &Grid<D>, cell: usize, field: &[Vector<D>]) -> f64 {
-        let corners = 1_usize << D;
         let inverse = &self.inverse_deformation[cell];
         let mut divergence = 0.0;
-        for corner in 0..corners {
-            let mut node = self.first_node[cell];
+        for (corner, node) in grid.corners(self.first_node[cell]).enumerate() {
             for direction in 0..D {
-                node += (corner >> direction & 1) * grid.node_stride()[direction];
-            }
-            for direction in 0..D {
-                let sign = if corner >> direction & 1 == 1 { 1.0 } else { -1.0 };
                 for component in 0..D {
-                    divergence += sign * field[node][component] * inverse[direction][component];
+                    divergence +=
+                        side(corner, direction) * field[node][component] * inverse[direction][component];
                 }
             }
         }
-        divergence * grid.inverse_cell_size() * 2.0 / corners as f64
+        divergence * share_of_corner(grid)
     }
+}
+
+/// The side of a cell, in a direction, that a corner lies on: −1 or 1.
+#[inline]
+fn side(corner: usize, direction: usize) -> f64 {
+    if corner >> direction & 1 == 1 { 1.0 } else { -1.0 }
+}
+
+/// Slope at the centre that a unit value at a corner makes, 1/m: each direction averages over the
+/// 2^(D−1) edges along it.
+#[inline]
+fn share_of_corner<const D: usize>(grid: &Grid<D>) -> f64 {
+    grid.inverse_cell_size() * 2.0 / (1_usize << D) as f64
 }
 
 #[cfg(test)]

@@ -137,6 +137,15 @@ impl<const D: usize> Grid<D> {
         (0..D).map(|d| node[d] * self.node_stride[d]).sum()
     }
 
+    /// Corners of a cell from its lowest: bit `d` of a corner's number says that it is the upper one in
+    /// direction `d`.
+    #[inline]
+    pub fn corners(&self, first_node: usize) -> impl Iterator<Item = usize> + use<D> {
+        let stride = self.node_stride;
+        (0..1_usize << D)
+            .map(move |corner| first_node + (0..D).map(|d| (corner >> d & 1) * stride[d]).sum::<usize>())
+    }
+
     /// Place of a node, m.
     pub fn node_position(&self, flat: usize) -> Vector<D> {
         let mut rest = flat;

@@ -1,6 +1,7 @@
 //! Nodal fields: lumped masses, forces, velocities and accelerations of both phases.
 
-use super::grid::{Grid, Vector};
+use super::grid::{GHOST_LAYERS, Grid, Vector};
+use super::shape::Row;
 
 /// Nodes with less than this share of a full cell's mass carry nothing: a point on a cell face
 /// leaves ghosts of 1e-30 behind.
@@ -70,6 +71,26 @@ impl<const D: usize> Support<D> {
         let mut upper = [true; D];
         upper[D - 1] = false;
         Self { lower: [true; D], upper, rough_base: false }
+    }
+
+    /// Nothing held at all.
+    pub fn free() -> Self {
+        Self { lower: [false; D], upper: [false; D], rough_base: false }
+    }
+
+    /// A row along a direction without nodes beyond held faces: those behind a wall have no freedom of
+    /// their own.
+    #[inline]
+    #[must_use]
+    pub fn folded<const W: usize>(&self, grid: &Grid<D>, direction: usize, mut row: Row<W>) -> Row<W> {
+        let (lowest, highest) = (GHOST_LAYERS, GHOST_LAYERS + grid.cells[direction]);
+        if self.lower[direction] {
+            row.fold_at(lowest, |node| node < lowest);
+        }
+        if self.upper[direction] {
+            row.fold_at(highest, |node| node > highest);
+        }
+        row
     }
 
     /// The same on a base that the skeleton sticks to.

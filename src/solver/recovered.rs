@@ -7,6 +7,7 @@ use super::body::{Body, ShapeFunction};
 use super::cells::Cells;
 use super::grid::{Grid, Tensor, Vector};
 use super::method::{Method, PressureIntegration, Recovery};
+use super::nodes::Nodes;
 use super::points::Points;
 use super::shape;
 
@@ -63,7 +64,7 @@ impl<const D: usize> Recovered<D> {
         self.nodal.fill(0.0);
         self.nodal_weight.fill(0.0);
         for cell in cells.occupied() {
-            for corner in corners(grid, cells.first_node(cell)) {
+            for corner in grid.corners(cells.first_node(cell)) {
                 self.nodal[corner] += cells.volume(cell) * values[cell];
                 self.nodal_weight[corner] += cells.volume(cell);
             }
@@ -75,7 +76,7 @@ impl<const D: usize> Recovered<D> {
         }
         for (point, place) in points.position.iter().enumerate() {
             let weights = hat_weights(grid, place);
-            let nodes = corners(grid, cells.first_node(cells.of_point[point]));
+            let nodes = grid.corners(cells.first_node(cells.of_point[point]));
             self.at_points[point] = nodes.zip(weights).map(|(node, weight)| weight * self.nodal[node]).sum();
         }
     }
@@ -83,10 +84,10 @@ impl<const D: usize> Recovered<D> {
     /// Takes from the points' values the part that no force on the nodes of their cell feels.
     ///
     /// The forces of pressures `p` on the corners of a cell are `Σ V p ∇N`, and the gradients of the
-    /// (bi)linear hats span the constants and, above one dimension, the lines along each direction:
-    /// what is felt is the plane through the values (in one dimension their mean), by least squares;
-    /// the rest is the null space.
-    fn filter_null_space(&mut self, cells: &Cells<D>, points: &Points<D>) {
+    /// (bi)linear hats span the constants and the lines along the [felt slopes](felt_slopes): what is
+    /// felt is the plane through the values (in one dimension their mean), by least squares; the rest
+    /// is the null space.
+    fn filter_null_space(&mut self, grid: &Grid<D>, cells: &Cells<D>, nodes: &Nodes<D>, points: &Points<D>) {
         self.planes.fill(CellPlane::EMPTY);
         for (point, place) in points.position.iter().enumerate() {
             let plane = &mut self.planes[cells.of_point[point]];
@@ -100,21 +101,20 @@ impl<const D: usize> Recovered<D> {
             plane.value /= plane.count;
             plane.place = plane.place.map(|sum| sum / plane.count);
         }
-        if D > 1 {
-            for (point, place) in points.position.iter().enumerate() {
-                let plane = &mut self.planes[cells.of_point[point]];
-                let offset: Vector<D> = std::array::from_fn(|d| place[d] - plane.place[d]);
-                let departure = self.at_points[point] - plane.value;
-                for d in 0..D {
-                    plane.tilt[d] += offset[d] * departure;
-                    for e in 0..D {
-                        plane.spread[d][e] += offset[d] * offset[e];
-                    }
+        for (point, place) in points.position.iter().enumerate() {
+            let plane = &mut self.planes[cells.of_point[point]];
+            let offset: Vector<D> = std::array::from_fn(|d| place[d] - plane.place[d]);
+            let departure = self.at_points[point] - plane.value;
+            for d in 0..D {
+                plane.tilt[d] += offset[d] * departure;
+                for e in 0..D {
+                    plane.spread[d][e] += offset[d] * offset[e];
                 }
             }
-            for plane in self.planes.iter_mut().filter(|plane| plane.count > 0.0) {
-                plane.tilt = slope(&plane.spread, &plane.tilt);
-            }
+        }
+        for (cell, plane) in self.planes.iter_mut().enumerate().filter(|(_, plane)| plane.count > 0.0) {
+            let felt = felt_slopes(grid, nodes, cells.first_node(cell));
+            plane.tilt = slope(&plane.spread, &plane.tilt, felt);
         }
         for (point, place) in points.position.iter().enumerate() {
             let plane = &self.planes[cells.of_point[point]];
@@ -124,13 +124,23 @@ impl<const D: usize> Recovered<D> {
     }
 }
 
+/// Directions along which a slope of the pressure changes a force on the corners of a cell: forces
+/// along one direction feel the slopes along all others, where a corner is free to follow them. Between
+/// two rollers none is, and a cell of a plane is one of a column.
+fn felt_slopes<const D: usize>(grid: &Grid<D>, nodes: &Nodes<D>, first_node: usize) -> [bool; D] {
+    let follows: [bool; D] = std::array::from_fn(|d| {
+        grid.corners(first_node).any(|node| nodes.free[node][d] > 0.0 || nodes.water_free[node][d] > 0.0)
+    });
+    std::array::from_fn(|d| (0..D).any(|other| other != d && follows[other]))
+}
+
 /// Slope of a plane from the spread of its places and the tilt of its values; a direction along
-/// which the places do not differ has none.
-fn slope<const D: usize>(spread: &Tensor<D>, tilt: &Vector<D>) -> Vector<D> {
+/// which the places do not differ, or that is not felt, has none.
+fn slope<const D: usize>(spread: &Tensor<D>, tilt: &Vector<D>, felt: [bool; D]) -> Vector<D> {
     let (mut matrix, mut slope) = (*spread, *tilt);
     let largest = (0..D).map(|d| spread[d][d]).fold(0.0, f64::max);
     for i in 0..D {
-        if matrix[i][i] <= 1e-10 * largest {
+        if !felt[i] || matrix[i][i] <= 1e-10 * largest {
             for row in &mut matrix {
                 row[i] = 0.0;
             }
@@ -155,13 +165,7 @@ fn slope<const D: usize>(spread: &Tensor<D>, tilt: &Vector<D>) -> Vector<D> {
     slope
 }
 
-/// Corner nodes of a cell from its lowest.
-fn corners<const D: usize>(grid: &Grid<D>, first: usize) -> impl Iterator<Item = usize> + use<D> {
-    let stride = *grid.node_stride();
-    (0..1_usize << D).map(move |corner| first + (0..D).map(|d| (corner >> d & 1) * stride[d]).sum::<usize>())
-}
-
-/// Weights of those corners at a place.
+/// Weights of the corners of a place's cell, in their order.
 fn hat_weights<const D: usize>(grid: &Grid<D>, place: &Vector<D>) -> impl Iterator<Item = f64> + use<D> {
     let cell = grid.cell_of(place);
     let held = grid.held_in_cells(place);
@@ -184,7 +188,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             Recovery::Nodal => {
                 self.recovered.interpolate_nodal_means(&self.grid, &self.cells, &self.points, values);
             }
-            Recovery::NullSpace => self.recovered.filter_null_space(&self.cells, &self.points),
+            Recovery::NullSpace => {
+                self.recovered.filter_null_space(&self.grid, &self.cells, &self.nodes, &self.points);
+            }
             Recovery::Constant | Recovery::Patch => {
                 for point in 0..self.points.len() {
                     self.recovered.at_points[point] = match self.method.recovery {
@@ -267,7 +273,12 @@ pub fn nodal_row<const D: usize>(
 }
 
 /// Rows of the null-space filter: what the points of a cell keep of each other's values.
-pub fn filtered_rows<const D: usize>(cells: &Cells<D>, points: &Points<D>) -> Vec<Vec<(usize, f64)>> {
+pub fn filtered_rows<const D: usize>(
+    grid: &Grid<D>,
+    cells: &Cells<D>,
+    nodes: &Nodes<D>,
+    points: &Points<D>,
+) -> Vec<Vec<(usize, f64)>> {
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); cells.pressure_increment.len()];
     for (point, cell) in cells.of_point.iter().enumerate() {
         members[*cell].push(point);
@@ -290,7 +301,8 @@ pub fn filtered_rows<const D: usize>(cells: &Cells<D>, points: &Points<D>) -> Ve
                     }
                 }
             }
-            let reach = if D > 1 { slope(&spread, &offset(point)) } else { [0.0; D] };
+            let felt = felt_slopes(grid, nodes, cells.first_node(cells.of_point[point]));
+            let reach = slope(&spread, &offset(point), felt);
             let share = |other: &usize| {
                 let along = offset(*other);
                 (*other, 1.0 / count + (0..D).map(|d| reach[d] * along[d]).sum::<f64>())
@@ -303,6 +315,7 @@ pub fn filtered_rows<const D: usize>(cells: &Cells<D>, points: &Points<D>) -> Ve
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::nodes::Support;
 
     /// A row applied to values.
     fn applied(row: &[(usize, f64)], values: &[f64]) -> f64 {
@@ -315,7 +328,10 @@ mod tests {
         let points = Points::<2>::lattice(0.5, [2, 2], 3);
         let mut cells = Cells::new(&grid, points.len());
         cells.locate(&grid, &points, 0.3);
-        let rows = filtered_rows(&cells, &points);
+        let mut nodes = Nodes::new(&grid, &Support::free(), 1.0);
+        nodes.solid_mass.fill(1.0);
+        nodes.finish_masses();
+        let rows = filtered_rows(&grid, &cells, &nodes, &points);
         let values: Vec<f64> = (0..points.len()).map(|point| (1.7 * point as f64).sin()).collect();
         let filtered: Vec<f64> = rows.iter().map(|row| applied(row, &values)).collect();
         // Forces Σ V p ∇N of the corners of each cell.
@@ -346,8 +362,14 @@ mod tests {
         assert!(change(&again, &filtered) < 1e-12 && change(&filtered, &values) > 0.1);
         let mut recovered = Recovered { at_points: values, ..Recovered::default() };
         recovered.planes = vec![CellPlane::EMPTY; grid.cell_count()];
-        recovered.filter_null_space(&cells, &points);
+        recovered.filter_null_space(&grid, &cells, &nodes, &points);
         assert!(change(&recovered.at_points, &filtered) < 1e-12, "rows and filter are one");
+        // Between rollers no force along x is felt, nor what it would feel: slopes along y.
+        let mut narrow = nodes;
+        for free in [&mut narrow.free, &mut narrow.water_free] {
+            free.fill([0.0, 1.0]);
+        }
+        assert_eq!(felt_slopes(&grid, &narrow, cells.first_node(cells.of_point[0])), [true, false]);
     }
 
     #[test]

@@ -44,11 +44,7 @@ pub fn gimp(place: f64, half_length: f64) -> Row<3> {
     let right = 0.5 * per_length * (right_far * right_far - right_near * right_near);
     let left_gradient = -per_length * (left_far - left_near);
     let right_gradient = per_length * (right_far - right_near);
-    Row {
-        first: nearest - 1,
-        weights: [left, 1.0 - left - right, right],
-        gradients: [left_gradient, -left_gradient - right_gradient, right_gradient],
-    }
+    Row::about(nearest, [left, right], [left_gradient, right_gradient])
 }
 
 /// The hat functions averaged over the two ends of a point's domain (CPDI, Sadeghirad, Brannon &
@@ -73,11 +69,7 @@ pub fn domain_ends(place: f64, half_length: f64) -> Row<3> {
     let (left, right) = (0.5 * (low_left + high_left), 0.5 * (low_right + high_right));
     let (left_gradient, right_gradient) =
         (per_length * (high_left - low_left), per_length * (high_right - low_right));
-    Row {
-        first,
-        weights: [left, 1.0 - left - right, right],
-        gradients: [left_gradient, -left_gradient - right_gradient, right_gradient],
-    }
+    Row::about(first + 1, [left, right], [left_gradient, right_gradient])
 }
 
 /// Quadratic B-splines about the nodes (Steffen, Kirby & Berzins 2008).
@@ -91,11 +83,7 @@ pub fn quadratic_spline(place: f64) -> Row<3> {
     let nearest = (place + 0.5) as usize;
     let x = place - nearest as f64;
     let (left, right) = (0.5 * (0.5 - x) * (0.5 - x), 0.5 * (0.5 + x) * (0.5 + x));
-    Row {
-        first: nearest - 1,
-        weights: [left, 1.0 - left - right, right],
-        gradients: [x - 0.5, -2.0 * x, x + 0.5],
-    }
+    Row::about(nearest, [left, right], [x - 0.5, x + 0.5])
 }
 
 /// Cubic B-splines about the nodes, at a place in a cell.
@@ -113,15 +101,28 @@ pub fn cubic_spline(place: f64, cell: usize) -> Row<4> {
     }
 }
 
+impl Row<3> {
+    /// The row about a node from the weights and gradients of its neighbours: the node has what is left.
+    #[inline]
+    fn about(node: usize, [left, right]: [f64; 2], [left_gradient, right_gradient]: [f64; 2]) -> Self {
+        Self {
+            first: node - 1,
+            weights: [left, 1.0 - left - right, right],
+            gradients: [left_gradient, -left_gradient - right_gradient, right_gradient],
+        }
+    }
+}
+
 impl<const W: usize> Row<W> {
-    /// The row of a field that is odd about a fixed node, as a velocity at a wall is: what nodes
-    /// beyond the wall carry is the mirrored nodes' with the other sign. Linear fields that vanish
-    /// at the wall are still met exactly, and the weights still add up to one.
-    #[must_use]
-    pub fn mirrored_at(mut self, wall: usize) -> Self {
+    /// Takes the nodes beyond a wall out of the row: a field goes on there as a line through its value
+    /// at the wall and that at the mirrored node, which for a velocity that the wall holds is its odd
+    /// image. Linear fields are still met exactly, and the weights still add up to one; a field that bends
+    /// at the wall, as above a rough base, is met to first order there.
+    #[inline]
+    pub fn fold_at(&mut self, wall: usize, is_beyond: impl Fn(usize) -> bool) {
         for k in 0..W {
             let node = self.first + k;
-            if node < wall {
+            if is_beyond(node) {
                 let (at_wall, mirrored) = (wall - self.first, 2 * wall - node - self.first);
                 for side in [&mut self.weights, &mut self.gradients] {
                     let beyond = std::mem::replace(&mut side[k], 0.0);
@@ -130,7 +131,6 @@ impl<const W: usize> Row<W> {
                 }
             }
         }
-        self
     }
 
     /// Mean of two rows, and the slope between them `length` apart, as a row of up to `V` nodes.
@@ -233,21 +233,26 @@ mod tests {
         }
 
         #[test]
-        fn a_row_at_a_wall_meets_an_odd_linear_field(place in 5.0..6.5f64) {
+        fn rows_between_walls_meet_linear_fields(place in 5.0..6.5f64, width in 1..3_usize) {
+            // Walls at node 5 and `width` cells above it.
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test range")]
-            let cell = place as usize;
-            let odd = |x: f64| 3.0 * (x - 5.0);
-            let rows = [
-                moments(&quadratic_spline(place).mirrored_at(5), odd),
-                moments(&cubic_spline(place, cell).mirrored_at(5), odd),
-            ];
-            for (value, gradient) in rows {
-                prop_assert!((value - odd(place)).abs() < 1e-12);
+            let (place, cell) = (place.min(5.0 + width as f64 - 1e-9), (place as usize).min(4 + width));
+            let held = |node: usize| node < 5 || node > 5 + width;
+            let linear = |x: f64| 2.0 + 3.0 * (x - 5.0);
+            let (mut quadratic, mut cubic) = (quadratic_spline(place), cubic_spline(place, cell));
+            for (wall, above) in [(5, false), (5 + width, true)] {
+                let is_beyond = |node: usize| if above { node > wall } else { node < wall };
+                quadratic.fold_at(wall, is_beyond);
+                cubic.fold_at(wall, is_beyond);
+            }
+            for (value, gradient) in [moments(&quadratic, linear), moments(&cubic, linear)] {
+                prop_assert!((value - linear(place)).abs() < 1e-12);
                 prop_assert!((gradient - 3.0).abs() < 1e-12);
             }
-            let row = cubic_spline(place, cell).mirrored_at(5);
-            prop_assert!((row.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
-            prop_assert!((0..4).all(|k| row.first + k >= 5 || row.weights[k] == 0.0), "nothing beyond the wall");
+            prop_assert!((quadratic.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            prop_assert!((cubic.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            prop_assert!((0..3).all(|k| !held(quadratic.first + k) || quadratic.weights[k] == 0.0));
+            prop_assert!((0..4).all(|k| !held(cubic.first + k) || cubic.weights[k] == 0.0));
         }
 
         #[test]

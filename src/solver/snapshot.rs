@@ -124,16 +124,26 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 self.add_point(&mut means, node, point, weight);
             });
         }
+        if S::PASSES_WALLS {
+            // Splines reach to nodes that lie outside the body, where no exact field is.
+            let mut inside = vec![false; self.nodes.len()];
+            for cell in self.cells.occupied() {
+                self.grid.corners(self.cells.first_node(cell)).for_each(|node| inside[node] = true);
+            }
+            for node in (0..inside.len()).filter(|node| !inside[*node]) {
+                means.volume[node] = 0.0;
+            }
+        }
         let mut samples = means.finish(D);
         if !self.configuration.moves_points() {
             // The nodes' own displacement is known, and better than any projection.
             let places = || (0..self.nodes.len()).filter(|node| means.volume[*node] > means.least_volume());
-            samples.displacement = places().map(|node| self.nodes.displacement[node][D - 1]).collect();
+            samples.displacement = places().map(|node| self.displacement_at_node(node)[D - 1]).collect();
             samples.displacement_height =
                 Some(places().map(|node| self.grid.node_position(node)[D - 1]).collect());
             if let Some(plane) = &mut samples.plane {
                 plane.horizontal_displacement =
-                    places().map(|node| self.nodes.displacement[node][0]).collect();
+                    places().map(|node| self.displacement_at_node(node)[0]).collect();
                 plane.displacement_distance =
                     Some(places().map(|node| self.grid.node_position(node)[0]).collect());
             }

@@ -2,7 +2,7 @@
 
 use super::grid::{Grid, Vector, power};
 use super::method::Basis;
-use super::nodes::Nodes;
+use super::nodes::{Nodes, Support};
 use super::points::Points;
 use super::shape::{self, Row};
 
@@ -35,7 +35,7 @@ impl LoadShape {
 /// basis there. Left on a node, it errs once the top cell empties; spread over the top point, it costs
 /// percents of settlement.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LoadedSurface {
+pub struct LoadedSurface<const D: usize> {
     /// Load `q`, Pa, compression positive, carried by the total stress.
     pub load: f64,
     /// Where it acts.
@@ -44,6 +44,8 @@ pub struct LoadedSurface {
     squares: f64,
     /// Basis whose weights spread the load.
     basis: Basis,
+    /// Held faces, beyond which no node carries any of it.
+    support: Support<D>,
     /// Whether the edge follows the volume of the points because their domains do not.
     stretches: bool,
 }
@@ -63,9 +65,9 @@ struct Spot {
 /// Gauss points of an edge: exact for the hats times a line.
 const EDGE_SPOTS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
 
-impl LoadedSurface {
+impl<const D: usize> LoadedSurface<D> {
     /// The surface of a lattice: the highest points of the initial configuration.
-    pub fn of<const D: usize>(points: &Points<D>, load: f64) -> Self {
+    pub fn of(points: &Points<D>, load: f64) -> Self {
         let height = |point: usize| points.initial_position[point][D - 1];
         let highest = (0..points.len()).map(height).fold(f64::NEG_INFINITY, f64::max);
         let tolerance = 1e-9 * highest.abs();
@@ -75,12 +77,19 @@ impl LoadedSurface {
         let spots: Vec<Spot> = top_points
             .flat_map(|point| places.iter().map(move |along| Spot { point, along: *along, shape: 1.0 }))
             .collect();
-        Self { load, squares: spots.len() as f64, spots, basis: Basis::Hat, stretches: false }
+        Self {
+            load,
+            squares: spots.len() as f64,
+            spots,
+            basis: Basis::Hat,
+            support: Support::free(),
+            stretches: false,
+        }
     }
 
     /// The surface under a load that varies along it.
     #[must_use]
-    pub fn shaped<const D: usize>(mut self, shape: LoadShape, points: &Points<D>) -> Self {
+    pub fn shaped(mut self, shape: LoadShape, points: &Points<D>) -> Self {
         for spot in &mut self.spots {
             let reach = spot.along * points.half_length[spot.point][0];
             spot.shape = shape.at(points.initial_position[spot.point][0] + reach);
@@ -97,7 +106,7 @@ impl LoadedSurface {
 
     /// Place of a spot on the upper edge of its point's share of the material.
     #[inline]
-    fn place<const D: usize>(&self, points: &Points<D>, spot: &Spot) -> Vector<D> {
+    fn place(&self, points: &Points<D>, spot: &Spot) -> Vector<D> {
         let point = spot.point;
         let mut place = points.position[point];
         if D > 1 {
@@ -112,18 +121,13 @@ impl LoadedSurface {
     /// The surface of a body with a basis: its load is spread with the weights of that basis, and
     /// with hats where domains smear them.
     #[must_use]
-    pub fn spread_by(self, basis: Basis) -> Self {
-        Self { basis, ..self }
+    pub fn spread_by(self, basis: Basis, support: Support<D>) -> Self {
+        Self { basis, support, ..self }
     }
 
     /// Visits the nodes that carry a place of the surface, with their weights.
     #[inline]
-    fn visit_nodes<const D: usize>(
-        &self,
-        grid: &Grid<D>,
-        place: &Vector<D>,
-        node_visitor: impl FnMut(usize, f64),
-    ) {
+    fn visit_nodes(&self, grid: &Grid<D>, place: &Vector<D>, node_visitor: impl FnMut(usize, f64)) {
         let cell = grid.cell_of(place);
         let at: Vector<D> = std::array::from_fn(|d| grid.in_cells(place[d]));
         match self.basis {
@@ -132,11 +136,13 @@ impl LoadedSurface {
                 visit_block(grid, &rows, node_visitor);
             }
             Basis::Bspline2 => {
-                let rows: [Row<3>; D] = std::array::from_fn(|d| shape::quadratic_spline(at[d]));
+                let row = |d: usize| self.support.folded(grid, d, shape::quadratic_spline(at[d]));
+                let rows: [Row<3>; D] = std::array::from_fn(row);
                 visit_block(grid, &rows, node_visitor);
             }
             Basis::Bspline3 => {
-                let rows: [Row<4>; D] = std::array::from_fn(|d| shape::cubic_spline(at[d], cell[d]));
+                let row = |d: usize| self.support.folded(grid, d, shape::cubic_spline(at[d], cell[d]));
+                let rows: [Row<4>; D] = std::array::from_fn(row);
                 visit_block(grid, &rows, node_visitor);
             }
         }
@@ -144,13 +150,13 @@ impl LoadedSurface {
 
     /// Height of the surface now, m, as much of it as has the load's shape: the mean over the
     /// width under a uniform load.
-    pub fn height<const D: usize>(&self, points: &Points<D>) -> f64 {
+    pub fn height(&self, points: &Points<D>) -> f64 {
         let sum: f64 = self.spots.iter().map(|spot| spot.shape * self.place(points, spot)[D - 1]).sum();
         sum / self.squares
     }
 
     /// Puts the load on the nodes as the external force of the mixture.
-    pub fn apply<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>, nodes: &mut Nodes<D>) {
+    pub fn apply(&self, grid: &Grid<D>, points: &Points<D>, nodes: &mut Nodes<D>) {
         nodes.external_force.fill([0.0; D]);
         let share = if D == 1 { 1.0 } else { 1.0 / EDGE_SPOTS.len() as f64 };
         for spot in &self.spots {
@@ -164,7 +170,7 @@ impl LoadedSurface {
     }
 
     /// Nodes that span the surface, with the weights of [`amplitude_of`](Self::amplitude_of).
-    pub fn weights<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>) -> Vec<(usize, f64)> {
+    pub fn weights(&self, grid: &Grid<D>, points: &Points<D>) -> Vec<(usize, f64)> {
         let mut weights = Vec::new();
         for spot in &self.spots {
             let share = spot.shape / self.squares;
@@ -177,12 +183,7 @@ impl LoadedSurface {
 
     /// Vertical component of a nodal vector field on the surface, as much of it as has the load's
     /// shape: the mean under a uniform load, the amplitude of the cosine under a cosine.
-    pub fn amplitude_of<const D: usize>(
-        &self,
-        grid: &Grid<D>,
-        points: &Points<D>,
-        field: &[Vector<D>],
-    ) -> f64 {
+    pub fn amplitude_of(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
         let mut sum = 0.0;
         for spot in &self.spots {
             self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
@@ -193,7 +194,7 @@ impl LoadedSurface {
     }
 
     /// Mean over the surface of a nodal vector field's vertical component.
-    pub fn mean_of<const D: usize>(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
+    pub fn mean_of(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
         let mut sum = 0.0;
         for spot in &self.spots {
             self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
@@ -206,7 +207,7 @@ impl LoadedSurface {
 
 /// Visits the nodes of a tensor product of rows with their weights.
 #[inline]
-fn visit_block<const D: usize, const W: usize>(
+pub(super) fn visit_block<const D: usize, const W: usize>(
     grid: &Grid<D>,
     rows: &[Row<W>; D],
     mut node_visitor: impl FnMut(usize, f64),
@@ -226,7 +227,6 @@ fn visit_block<const D: usize, const W: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::nodes::Support;
 
     #[test]
     fn the_load_is_whole_and_acts_where_the_surface_is() {

@@ -37,7 +37,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             divergence: (0..count).map(|point| self.basis.gradient_row(&self.grid, point)).collect(),
             coupling: (0..count).map(coupling).collect(),
             recovery: match self.method.recovery {
-                Recovery::NullSpace => filtered_rows(&self.cells, &self.points),
+                Recovery::NullSpace => filtered_rows(&self.grid, &self.cells, &self.nodes, &self.points),
                 Recovery::Constant | Recovery::Patch | Recovery::Nodal => {
                     (0..count).map(|point| vec![(point, 1.0)]).collect()
                 }

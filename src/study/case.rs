@@ -8,6 +8,9 @@ use crate::solver::method::Method;
 use crate::solver::run::TimeStepRule;
 use serde::{Deserialize, Serialize};
 
+/// State and operators of a point, bytes.
+const BYTES_A_POINT: f64 = 500.0;
+
 /// Hexadecimal digits of a case's hash: enough that a million cases do not meet.
 const HASH_DIGITS: usize = 16;
 
@@ -95,6 +98,22 @@ impl Case {
     /// Time, s, at which `T_v = 1`.
     pub fn seconds_per_time_factor(&self) -> f64 {
         self.column.height * self.column.height / self.material.coefficient_of_consolidation()
+    }
+
+    /// Memory that a run may take, bytes, to an order of magnitude: its points, and the band of the direct
+    /// solver, which the undrained start of an explicit run needs too.
+    pub fn estimated_bytes(&self) -> f64 {
+        let across = self.column.cells_across(self.cells).unwrap_or(1) as f64;
+        let (short, long) = (across.min(self.cells as f64), across.max(self.cells as f64));
+        let dimensions = self.column.dimensions as f64;
+        let points_a_cell = (self.points_per_cell as f64).powf(dimensions);
+        let sites = if self.method.pressure.is_by_cells() { 1.0 } else { points_a_cell };
+        // Unknowns of one row of cells across the layer; a node couples to four rows above and below.
+        let row = short * (dimensions + sites);
+        let band = 12.0 * row;
+        let solves = self.integrator != IntegratorKind::Explicit || self.scene.is_plane();
+        let solver = if solves { 16.0 * long * row * band } else { 0.0 };
+        solver + BYTES_A_POINT * short * long * points_a_cell
     }
 
     /// What is special about integration and equations: empty for the paper's integration of the

@@ -157,6 +157,8 @@ impl Checker<'_> {
             let Some(sweep) = self.sweep(table, block.span(), &common) else { continue };
             if self.purpose == Purpose::Solving {
                 self.cells_fill_the_width(table, &column);
+                let cases = sweep.combinations();
+                self.memory_fits(table, cases.iter().map(|one| common.case_of(one, &[])));
             }
             let time_factors = match &table.time_factors {
                 Some(list) => self.time_factors(list),

@@ -22,11 +22,15 @@ pub enum Axis {
     TimeStep,
     /// Spacing of the points in a cell.
     PointsPerCell,
+    /// Compressibility of the water: not a refinement, and what does not lock does not change with it.
+    WaterBulkModulus,
 }
 
 impl Axis {
     /// Every axis.
-    pub const ALL: [Self; 3] = [Self::Cells, Self::TimeStep, Self::PointsPerCell];
+    pub const ALL: [Self; 4] = [Self::Cells, Self::TimeStep, Self::PointsPerCell, Self::WaterBulkModulus];
+    /// Those along which a discretisation gets finer.
+    pub const REFINEMENTS: [Self; 3] = [Self::Cells, Self::TimeStep, Self::PointsPerCell];
 
     /// Name in study files.
     pub fn name(self) -> &'static str {
@@ -34,6 +38,7 @@ impl Axis {
             Self::Cells => "cells",
             Self::TimeStep => "time_step",
             Self::PointsPerCell => "points_per_cell",
+            Self::WaterBulkModulus => "water_bulk_modulus",
         }
     }
 }

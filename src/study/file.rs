@@ -201,6 +201,7 @@ pub struct ExpectTable {
     pub mapping_back: Typed<bool>,
     pub order: Typed<OrderTable>,
     pub at: Typed<LevelTable>,
+    pub spread: Typed<LevelTable>,
     pub class: Typed<String>,
     pub floor: Typed<FloorTable>,
     pub oscillation: Typed<OscillationTable>,
@@ -252,6 +253,7 @@ pub struct LevelTable {
     pub cells: Typed<i64>,
     pub points_per_cell: Typed<i64>,
     pub seconds: Typed<f64>,
+    pub water_bulk_modulus: Typed<f64>,
     pub below: Typed<f64>,
     pub above: Typed<f64>,
 }

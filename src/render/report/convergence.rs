@@ -12,13 +12,30 @@ use crate::render::page::{Block, Figure, slug};
 use crate::render::table::{Cell, Column, Table};
 use crate::study::{Axis, Measure, NEXT_FINER, step_label};
 
-/// Quantities of one figure, side by side.
-const PANELS: [(Quantity, Sample); 4] = [
-    (Quantity::Pressure, Sample::Points),
-    (Quantity::Pressure, Sample::Centres),
-    (Quantity::EffectiveStress, Sample::Points),
-    (Quantity::Settlement, Sample::Surface),
-];
+/// Quantities of one figure, side by side; a layer's settlement says less than its displacements.
+fn panels(results: &StudyResults<'_>) -> [(Quantity, Sample); 4] {
+    let of_the_body = if results.study.scene.is_plane() {
+        (Quantity::Displacement, Sample::Nodes)
+    } else {
+        (Quantity::Settlement, Sample::Surface)
+    };
+    [
+        (Quantity::Pressure, Sample::Points),
+        (Quantity::Pressure, Sample::Centres),
+        (Quantity::EffectiveStress, Sample::Points),
+        of_the_body,
+    ]
+}
+
+/// More series than these are no figure.
+const MOST_SERIES: usize = 14;
+
+/// The paths that a figure shows: all of them, or, where they are too many, those of the undisturbed soil.
+fn drawn<'a, 'b>(all: &'b [Path<'a>]) -> Vec<Path<'a>> {
+    let is_plain = |path: &&Path<'_>| path.records[0].case.variant().is_empty();
+    let plain: Vec<Path<'a>> = all.iter().filter(is_plain).cloned().collect();
+    if all.len() > MOST_SERIES && !plain.is_empty() { plain } else { all.to_vec() }
+}
 
 /// Width of a figure that has a neighbour.
 const PANEL_WIDTH: f64 = 560.0;
@@ -37,21 +54,28 @@ pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
         references.insert(0, NEXT_FINER);
     }
     let own = references.first().copied().unwrap_or_default();
-    let figures = PANELS.map(|(quantity, sample)| figure(results, &all, axis, quantity, sample, own, shown));
+    let few = drawn(&all);
+    let figures =
+        panels(results).map(|(quantity, sample)| figure(results, &few, axis, quantity, sample, own, shown));
     blocks.push(Block::Figures(figures.into_iter().flatten().collect()));
     if let (true, Some(other)) = (floors_of_model(results), references.get(1)) {
         blocks.extend(
-            figure(results, &all, axis, Quantity::Pressure, Sample::Points, other, shown).map(Block::Figure),
+            figure(results, &few, axis, Quantity::Pressure, Sample::Points, other, shown).map(Block::Figure),
         );
     }
-    blocks.push(Block::Table(orders_table(&all, axis, own, shown)));
+    if few.len() < all.len() {
+        blocks.push(Block::Paragraph(
+            "The figures show the undisturbed soil; the table has every variant too.".to_owned(),
+        ));
+    }
+    blocks.push(Block::Table(orders_table(results, &all, axis, own, shown)));
     let mut more: Vec<Block> = times
         .iter()
         .filter(|time| **time != shown)
-        .map(|time| Block::Table(orders_table(&all, axis, own, *time)))
+        .map(|time| Block::Table(orders_table(results, &all, axis, own, *time)))
         .collect();
     for other in references.iter().skip(1) {
-        more.push(Block::Table(orders_table(&all, axis, other, shown)));
+        more.push(Block::Table(orders_table(results, &all, axis, other, shown)));
     }
     if !more.is_empty() {
         blocks.push(Block::Details { summary: "The other times and references".to_owned(), blocks: more });
@@ -85,6 +109,7 @@ fn heading(axis: Axis) -> &'static str {
         Axis::Cells => "Error against the mesh",
         Axis::TimeStep => "Error against the time step",
         Axis::PointsPerCell => "Error against the points in a cell",
+        Axis::WaterBulkModulus => "Error against the compressibility of the water",
     }
 }
 
@@ -145,7 +170,7 @@ fn figure(
         sample.name()
     ));
     let caption = match axis {
-        Axis::Cells | Axis::TimeStep => captions(&summaries),
+        Axis::Cells | Axis::TimeStep | Axis::WaterBulkModulus => captions(&summaries),
         Axis::PointsPerCell => {
             "More points refine the quadrature, not the mesh: the error tends to the mesh's own.".to_owned()
         }
@@ -193,7 +218,13 @@ fn captions(summaries: &[SeriesSummary<'_>]) -> String {
 }
 
 /// Errors at every level with pairwise orders, fit, finest window and class.
-fn orders_table(all: &[Path<'_>], axis: Axis, reference: &str, time_factor: f64) -> Table {
+fn orders_table(
+    results: &StudyResults<'_>,
+    all: &[Path<'_>],
+    axis: Axis,
+    reference: &str,
+    time_factor: f64,
+) -> Table {
     let levels = level_names(all, axis);
     let labels = labels::path_labels(all);
     let mut columns = vec![Column::text("method"), Column::text("error of")];
@@ -206,7 +237,7 @@ fn orders_table(all: &[Path<'_>], axis: Axis, reference: &str, time_factor: f64)
     }
     let mut rows = Vec::new();
     let mut notes = Vec::new();
-    for (quantity, sample) in PANELS {
+    for (quantity, sample) in panels(results) {
         let measure = Measure {
             quantity,
             sample,
@@ -285,6 +316,7 @@ fn level_names(all: &[Path<'_>], axis: Axis) -> Vec<String> {
                 Axis::Cells => record.case.cells.to_string(),
                 Axis::TimeStep => step_label(&record.case.time_step).replace("seconds=", "Δt = ") + " s",
                 Axis::PointsPerCell => format!("m = {}", record.case.points_per_cell),
+                Axis::WaterBulkModulus => format!("K_w = {:e} Pa", record.case.material.water_bulk_modulus),
             })
             .collect()
     })

@@ -35,6 +35,7 @@ pub fn axis(axis: Axis) -> &'static str {
         Axis::Cells => "cell size h (m)",
         Axis::TimeStep => "time step Δt (s)",
         Axis::PointsPerCell => "spacing of the points in a cell, 1/m (–)",
+        Axis::WaterBulkModulus => "compressibility of the water 1/K_w (1/Pa)",
     }
 }
 

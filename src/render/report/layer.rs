@@ -1,6 +1,6 @@
 //! What a plane layer shows: pressure fields beside the exact one, and the ranking of the methods.
 
-use super::StudyResults;
+use super::{StudyResults, stiffness};
 use crate::assess::class::Class;
 use crate::assess::locking::{Standing, standings};
 use crate::assess::plane_field::PlaneField;
@@ -44,6 +44,7 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
         blocks.push(Block::List(verdicts(&standings)));
         blocks.push(Block::Table(table(&standings)));
     }
+    blocks.extend(stiffness::blocks(results)?);
     Ok(blocks)
 }
 

@@ -10,6 +10,7 @@ mod precision;
 mod profiles;
 mod section;
 mod stability;
+mod stiffness;
 mod survival;
 mod work;
 

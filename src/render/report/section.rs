@@ -21,7 +21,7 @@ pub fn of_study(results: &StudyResults<'_>) -> Result<Section, ExactError> {
     }
     blocks.extend(layer::blocks(results)?);
     blocks.extend(profiles::blocks(results)?);
-    for axis in Axis::ALL {
+    for axis in Axis::REFINEMENTS {
         blocks.extend(convergence::blocks(results, axis));
     }
     let is_solved = results.records.iter().any(|record| record.stability.is_none());

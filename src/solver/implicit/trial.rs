@@ -250,29 +250,43 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
     /// What is left of the mixture's volume at each site.
     fn storage(&self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
         let body = &self.body;
-        let mean = |cell: usize, field: &[Vector<D>]| -> f64 {
-            let members = (0..body.points.len()).filter(|point| body.cells.of_point[*point] == cell);
-            let parts =
-                members.map(|point| body.points.volume(point) * body.divergence_at_point(point, field));
-            parts.sum::<f64>() / body.cells.volume(cell)
-        };
-        for (site, place) in self.unknowns.sites.iter().enumerate() {
+        let rates = self.volume_rates();
+        for (site, rate) in rates.iter().enumerate() {
             let number = self.unknowns.pressure[site];
-            let porosity = self.unknowns.porosity(body, site);
-            let rate = match self.unknowns.integration {
-                PressureIntegration::Points => {
-                    body.volume_rate(porosity, |field| body.divergence_at_point(*place, field))
-                }
-                PressureIntegration::Sri => {
-                    body.volume_rate(porosity, |field| body.divergence_at_centre(*place, field))
-                }
-                PressureIntegration::Mean => body.volume_rate(porosity, |field| mean(*place, field)),
-            };
-            let stored = porosity / body.material.water_bulk_modulus
+            let stored = self.unknowns.porosity(body, site) / body.material.water_bulk_modulus
                 * self.scales.pressure
                 * (increments[number] - start.unknowns[number]);
             residual[number] = stored + start.duration * rate;
         }
+    }
+
+    /// Rate of the mixture's volume at each site, 1/s.
+    fn volume_rates(&self) -> Vec<f64> {
+        let (body, unknowns) = (&self.body, &self.unknowns);
+        let at_point = |point: usize, porosity: f64| {
+            body.volume_rate(porosity, |field| body.divergence_at_point(point, field))
+        };
+        if unknowns.integration == PressureIntegration::Mean {
+            let mut rates = vec![0.0; unknowns.sites.len()];
+            for point in 0..body.points.len() {
+                let cell = body.cells.of_point[point];
+                if let Some(site) = unknowns.site_of(cell) {
+                    let share = body.points.volume(point) / body.cells.volume(cell);
+                    rates[site] += share * at_point(point, body.cells.porosity[cell]);
+                }
+            }
+            return rates;
+        }
+        let rate = |(site, place): (usize, &usize)| {
+            let porosity = unknowns.porosity(body, site);
+            match unknowns.integration {
+                PressureIntegration::Points => at_point(*place, porosity),
+                PressureIntegration::Sri | PressureIntegration::Mean => {
+                    body.volume_rate(porosity, |field| body.divergence_at_centre(*place, field))
+                }
+            }
+        };
+        unknowns.sites.iter().enumerate().map(rate).collect()
     }
 
     /// Ends a step at increments of the unknowns: the points keep the state, and where they move,

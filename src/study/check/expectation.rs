@@ -65,6 +65,7 @@ impl Checker<'_> {
                 above: floor.get_ref().above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
                 below: floor.get_ref().below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
             }),
+            spread: table.spread.as_ref().and_then(|level| self.error_bound(level, axis, height)),
             oscillation_below: table.oscillation.as_ref().map(|bound| *bound.get_ref().below.get_ref()),
             xfail: table.xfail.as_ref().map(|known| KnownFailure {
                 strict: known.get_ref().strict.as_ref().is_none_or(|typed| *typed.get_ref()),
@@ -146,6 +147,7 @@ impl Checker<'_> {
                 .count(table.points_per_cell.as_ref(), "at.points_per_cell", 1..=MOST_POINTS)
                 .map(|points| 1.0 / points as f64),
             Axis::TimeStep => table.seconds.as_ref().map(|typed| *typed.get_ref()),
+            Axis::WaterBulkModulus => table.water_bulk_modulus.as_ref().map(|typed| 1.0 / *typed.get_ref()),
         };
         let (Some(size), Some(below)) = (size, &table.below) else {
             self.complain(

@@ -12,6 +12,9 @@ use crate::study::tier::Tier;
 use std::ops::Range;
 use toml::Spanned;
 
+/// Memory that a case may ask for, bytes: a workstation's.
+const MOST_BYTES: f64 = 32e9;
+
 /// What the cases of a study share where a sweep does not say otherwise.
 #[derive(Clone, Copy)]
 pub(super) struct Common {
@@ -215,6 +218,25 @@ impl Checker<'_> {
                 typed.span(),
                 format!("square cells of {size} m do not fill a width of {} m", column.width),
                 format!("a width of {size} m is one cell wide, or take a number of cells that divides it"),
+            );
+        }
+    }
+
+    /// Complains of a mesh whose run would end for want of memory, and the others with it.
+    pub(super) fn memory_fits(&mut self, table: &SweepTable, cases: impl Iterator<Item = Case>) {
+        let largest = cases.max_by(|a, b| a.estimated_bytes().total_cmp(&b.estimated_bytes()));
+        let (Some(case), Some(cells)) = (largest, &table.cells) else { return };
+        let bytes = case.estimated_bytes();
+        if bytes > MOST_BYTES {
+            self.complain(
+                cells.span(),
+                format!(
+                    "{} cells over the height with {} points a cell need about {:.0} GB of memory",
+                    case.cells,
+                    case.points_per_cell,
+                    1e-9 * bytes
+                ),
+                format!("take fewer: {:.0} GB is the most", 1e-9 * MOST_BYTES),
             );
         }
     }
