@@ -71,6 +71,9 @@ pub struct BandedLu {
     pivots: Vec<usize>,
     /// One over the diagonal of the upper factor.
     per_diagonal: Vec<f64>,
+    /// Column behind the last entry of each row: only rows that changed places reach as far as they
+    /// might.
+    ends: Vec<usize>,
 }
 
 impl BandedLu {
@@ -81,6 +84,7 @@ impl BandedLu {
             multipliers: vec![0.0; shape.size * shape.lower],
             pivots: vec![0; shape.size],
             per_diagonal: vec![1.0; shape.size],
+            ends: (1..=shape.size).collect(),
         }
     }
 
@@ -109,7 +113,12 @@ impl BandedLu {
 
     fn eliminate(&mut self) -> Result<(), Singular> {
         let Banded { size, lower, width, .. } = self.factors;
+        let upper = self.factors.upper;
         let entries = &mut self.factors.entries;
+        let ends = &mut self.ends;
+        for (row, end) in ends.iter_mut().enumerate() {
+            *end = (row + upper + 1).min(size);
+        }
         for column in 0..size {
             let last = (column + lower).min(size - 1);
             let at = |row: usize| row * width + column + lower - row;
@@ -124,10 +133,11 @@ impl BandedLu {
                 return Err(Singular { row: column });
             }
             self.pivots[column] = pivot;
-            // Columns from this one to the last that a row below can reach.
-            let reach = (width - lower).min(size - column);
+            ends.swap(column, pivot);
+            let reach = ends[column] - column;
+            let either = reach.max(ends[pivot] - column);
             if pivot != column {
-                for k in 0..reach {
+                for k in 0..either {
                     entries.swap(at(column) + k, at(pivot) + k);
                 }
             }
@@ -140,6 +150,7 @@ impl BandedLu {
                 let multiplier = below[start] * per_value;
                 self.multipliers[column * lower + row - column - 1] = multiplier;
                 if multiplier != 0.0 {
+                    ends[row] = ends[row].max(column + reach);
                     for (entry, above) in below[start + 1..start + reach].iter_mut().zip(pivot_row) {
                         *entry -= multiplier * above;
                     }
@@ -162,8 +173,7 @@ impl BandedLu {
             }
         }
         for row in (0..size).rev() {
-            let reach = (width - lower).min(size - row);
-            let upper = &entries[row * width + lower..][1..reach];
+            let upper = &entries[row * width + lower..][1..self.ends[row] - row];
             values[row] = less_products(values[row], upper, &values[row + 1..]) * self.per_diagonal[row];
         }
     }
