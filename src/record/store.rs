@@ -95,7 +95,12 @@ impl RecordStore {
     pub fn write(&self, record: &Record) -> Result<(), StoreError> {
         self.write_wall(record)?;
         let path = self.path(&record.hash, RECORD);
-        let content = json_of(&path, record)?;
+        // One that was read has the seal of its file.
+        let content = if record.digest.is_empty() {
+            json_of(&path, record)?
+        } else {
+            json_of(&path, &Record { digest: String::new(), ..record.clone() })?
+        };
         write_renamed(&path, sealed(&content).as_bytes(), |_| Ok(()))
     }
 

@@ -172,6 +172,11 @@ impl AssembledColumn {
         self.blocks.fill(&self.rows);
     }
 
+    /// Nodes to one side that the forces on a node come from: what a step multiplies, for benches.
+    pub fn force_reach(&self) -> usize {
+        self.blocks.force_reach
+    }
+
     /// One step of `dt` seconds; nothing is allocated.
     pub fn step(&mut self, dt: f64, settings: &ExplicitSettings) {
         self.kick_and_drift(dt, dt, settings);

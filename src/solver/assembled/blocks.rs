@@ -18,7 +18,7 @@ pub(super) struct Blocks {
     /// First node of the first block, and the end of those that move.
     moving: Range<usize>,
     /// Nodes to one side that forces come from.
-    force_reach: usize,
+    pub(super) force_reach: usize,
     /// Nodes to one side that the projection comes from.
     projection_reach: usize,
 }
