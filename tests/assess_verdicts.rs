@@ -3,7 +3,7 @@
 use oedometer::assess::class::{Class, Context};
 use oedometer::assess::expectation::{Band, ErrorBound, Expectation, FloorBand, KnownFailure};
 use oedometer::assess::series::{ErrorSeries, Level};
-use oedometer::assess::verdict::{Outcome, Verdict, judge};
+use oedometer::assess::verdict::{Beside, Outcome, Verdict, judge};
 
 fn series(error: impl Fn(f64) -> f64) -> ErrorSeries {
     let sizes = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0].map(|cells| 1.0 / cells);
@@ -16,7 +16,7 @@ fn second_order() -> Expectation {
 }
 
 fn verdict(expectation: &Expectation, series: &ErrorSeries) -> Verdict {
-    judge(expectation, series, &Context::default(), None)
+    judge(expectation, series, &Context::default(), &Beside::default())
 }
 
 fn known(strict: bool, expectation: &Expectation) -> Expectation {
@@ -43,7 +43,7 @@ fn only_the_expected_class_passes() {
         for class in Class::ALL {
             let expectation = Expectation { class: Some(class), ..Expectation::default() };
             let context = Context { formal_order: Some(2.0), ..Context::default() };
-            let named = judge(&expectation, &series(error), &context, None);
+            let named = judge(&expectation, &series(error), &context, &Beside::default());
             assert_eq!(named.pass, class == found.classification.class, "{class}: {named:?}");
         }
     }
@@ -139,7 +139,10 @@ fn a_strict_known_failure_must_fail() {
 #[test]
 fn oscillation_is_judged_where_asked() {
     let expectation = Expectation { oscillation_below: Some(0.05), ..second_order() };
-    let of = |index| judge(&expectation, &series(|h| h * h), &Context::default(), index).pass;
+    let of = |oscillation| {
+        let beside = Beside { oscillation, ..Beside::default() };
+        judge(&expectation, &series(|h| h * h), &Context::default(), &beside).pass
+    };
     assert!(of(Some(0.01)) && of(Some(-0.01)));
     assert!(!of(Some(0.06)) && !of(Some(f64::NAN)) && !of(None));
 }
@@ -169,12 +172,13 @@ fn an_expectation_of_nonsense_never_passes() {
         Expectation { floor: Some(FloorBand { above: 2.0, below: 1.0 }), ..second_order() },
         Expectation { oscillation_below: Some(f64::INFINITY), ..second_order() },
     ];
+    let without_wiggle = Beside { oscillation: Some(0.0), ..Beside::default() };
     for expectation in expectations {
         for error in [|h: f64| h * h, |h: f64| h] {
-            let found = judge(&expectation, &series(error), &Context::default(), Some(0.0));
+            let found = judge(&expectation, &series(error), &Context::default(), &without_wiggle);
             assert!(!found.pass, "{expectation:?}: {found:?}");
             let marked = known(true, &expectation);
-            let found = judge(&marked, &series(error), &Context::default(), Some(0.0));
+            let found = judge(&marked, &series(error), &Context::default(), &without_wiggle);
             assert!(!found.pass || expectation.xfail.is_some(), "{marked:?}: {found:?}");
         }
     }

@@ -90,6 +90,34 @@ fn misspelt_keys_are_refused_with_the_nearest_key() {
     assert_says(&told, &["did you mean `stable`?"]);
 }
 
+/// What `run` says of the sound study with an expectation.
+fn refused_expectation(keys: &str) -> String {
+    refused_study(format!("{SOUND}\n[[expect]]\ntime_factor = 0.001\n{keys}\n"))
+}
+
+#[test]
+fn a_value_without_a_reference_must_be_one_number_and_nothing_else_has_an_uncertainty() {
+    for (keys, part) in [
+        ("reference = \"none\"\nuncertainty = { below = 0.1 }", "the pressure is no single number"),
+        ("reference = \"none\"\nprobe = 1.5\nuncertainty = { below = 0.1 }", "a probe at a depth of 1.5"),
+        ("reference = \"none\"\nprobe = nan\nuncertainty = { below = 0.1 }", "a probe at a depth of NaN"),
+        ("probe = 0.5\norder = { value = 2.0 }", "held against no reference"),
+        ("quantity = \"settlement\"\nuncertainty = { below = 0.1 }", "needs no uncertainty"),
+        (
+            "quantity = \"settlement\"\nreference = \"none\"\nat = { cells = 2, below = 0.1 }",
+            "no error for `at`",
+        ),
+        (
+            "quantity = \"settlement\"\nreference = \"none\"\nuncertainty = { below = -1.0 }",
+            "positive number",
+        ),
+        ("quantity = \"settlement\"\nreference = \"none\"", "asks for nothing"),
+        ("reference = \"next-finer\"\norder = { value = 2.0 }", "the next finer level has other places"),
+    ] {
+        assert_says(&refused_expectation(keys), &[part]);
+    }
+}
+
 #[test]
 fn unknown_keys_without_a_near_one_are_told_the_keys_there_are() {
     let told = refused_with("porosity = 0.3", "colour = 0.3");

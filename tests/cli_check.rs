@@ -73,8 +73,9 @@ fn records(study: &str) -> Vec<Record> {
 
 /// A golden value ten times its tolerance away, towards a larger error or a smaller one.
 fn disturb(golden: &mut GoldenFile, sign: f64) {
+    let tolerance = golden.tolerance(VALUE, golden.values[VALUE].abs());
     let value = golden.values.get_mut(VALUE).expect("the value is measured");
-    *value += sign * 10.0 * (golden.absolute_tolerance + golden.relative_tolerance * value.abs());
+    *value += sign * 10.0 * tolerance;
 }
 
 /// Rows of the table of values that differ.
@@ -196,6 +197,65 @@ fn a_wiggle_is_measured_where_a_study_bounds_it() {
     let wiggle = checks.iter().find(|check| check["name"] == "oscillation").expect("it is judged");
     assert_eq!(wiggle["measured"], 0.0, "{wiggle}");
     assert_eq!(asked("-1.0").code, 1, "and a bound that cannot be met is not");
+}
+
+#[test]
+fn the_wiggle_of_a_plane_is_measured_along_its_rows_and_columns() {
+    let study = |method: &str, bound: &str| {
+        let text = format!(
+            "title = \"A layer\"\nscene = \"cosine-layer\"\noutput.time_factors = [0]\n\n[[sweep]]\nmethod = [\"{method}\"]\n\
+             integrator = [\"implicit\"]\ncells = [2, 4, 8]\ntime_step = [{{ seconds = 1.0 }}]\n\n[[expect]]\n\
+             time_factor = 0\noscillation = {{ below = {bound} }}\n"
+        );
+        Place::golden(&text, |_| {}).check(&["--format", "json"])
+    };
+    let index = |told: &Told| {
+        let json: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
+        let checks = json[0]["judgements"][0]["verdict"]["checks"].as_array().expect("checks").clone();
+        checks.iter().find(|check| check["name"] == "oscillation").expect("it is judged")["measured"].as_f64()
+    };
+    let (patched, checkerboard) = (study("GIMP-SRI-patch", "0.01"), study("GIMP", "0.01"));
+    assert_eq!((patched.code, checkerboard.code), (0, 1), "{}{}", patched.out, checkerboard.out);
+    assert!(index(&patched).expect("a number").abs() < 0.01);
+    assert!(index(&checkerboard).expect("a number") > 10.0);
+}
+
+/// A settlement that is held against nothing but itself.
+const VALUE_STUDY: &str = r#"title = "A value"
+scene = "terzaghi"
+output.time_factors = [0.1]
+
+[[sweep]]
+method = ["GC-SRI-patch"]
+integrator = ["implicit"]
+cells = [4, 8, 16, 32]
+time_step = [{ seconds = 0.1 }]
+
+[[expect]]
+quantity = "settlement"
+reference = "none"
+time_factor = 0.1
+order = { value = 2.0 }
+uncertainty = { below = 3e-3 }
+"#;
+
+#[test]
+fn a_value_without_a_reference_is_judged_by_what_refinement_tells() {
+    let told = Place::golden(VALUE_STUDY, |_| {}).check(&[]);
+    assert_eq!(told.code, 0, "{}", told.out);
+    assert_words("uncertainties", &told.out);
+    let strict = VALUE_STUDY.replace("below = 3e-3", "below = 2e-5");
+    let told = Place::golden(&strict, |_| {}).check(&[]);
+    assert_eq!(told.code, 1, "{}", told.out);
+    assert!(told.out.contains("by least squares not below 2e-5"), "{}", told.out);
+    // Three levels have an index, two have nothing to go by.
+    let three = VALUE_STUDY.replace("[4, 8, 16, 32]", "[8, 16, 32]").replace("order = { value = 2.0 }\n", "");
+    let told = Place::golden(&three, |_| {}).check(&["--format", "json"]);
+    assert_eq!(told.code, 0, "{}", told.out);
+    assert!(told.out.contains("grid-convergence-index"), "{}", told.out);
+    let told = Place::golden(&three.replace("[8, 16, 32]", "[16, 32]"), |_| {}).check(&[]);
+    assert_eq!(told.code, 1, "{}", told.out);
+    assert!(told.out.contains("no uncertainty: 2 levels are too few: 3 are needed"), "{}", told.out);
 }
 
 #[test]

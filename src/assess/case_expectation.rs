@@ -115,7 +115,7 @@ impl CaseExpectation {
         };
         let outcome = if pass { Outcome::Passed } else { Outcome::Failed };
         let verdict = Verdict { pass, outcome, reason: told.join("; "), classification, checks };
-        Judgement { line: self.line, subject, verdict }
+        Judgement { line: self.line, subject, verdict, uncertainty: None }
     }
 }
 

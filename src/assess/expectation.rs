@@ -66,6 +66,8 @@ pub struct Expectation {
     pub spread: Option<ErrorBound>,
     /// Bound on the oscillation index of the series.
     pub oscillation_below: Option<f64>,
+    /// Bound on the numerical uncertainty of the finest value, over that value.
+    pub uncertainty_below: Option<f64>,
     /// That the expectation is known not to be met.
     pub xfail: Option<KnownFailure>,
 }
@@ -130,6 +132,9 @@ impl Expectation {
         if let Some(bound) = self.oscillation_below {
             demand(bound.is_finite(), "the bound on the oscillation must be a number");
         }
+        if let Some(bound) = self.uncertainty_below {
+            demand(positive(bound), "the bound on the uncertainty must be a positive number");
+        }
         if let Some(known) = &self.xfail {
             demand(!known.reason.trim().is_empty(), "a known failure needs a reason");
         }
@@ -138,7 +143,8 @@ impl Expectation {
             || self.class.is_some()
             || self.floor.is_some()
             || self.spread.is_some()
-            || self.oscillation_below.is_some();
+            || self.oscillation_below.is_some()
+            || self.uncertainty_below.is_some();
         demand(asked, "the expectation asks for nothing");
         problems
     }

@@ -42,6 +42,8 @@ pub struct Standing {
     pub spread: Option<f64>,
     /// Displacement error under the skeleton nearest to incompressible.
     pub stiff_skeleton: Option<f64>,
+    /// Pressure error there.
+    pub stiff_skeleton_pressure: Option<f64>,
     /// Critical explicit step over `h/c`.
     pub critical_step: Option<f64>,
     /// Median wall time of the implicit run on the finest mesh that every method ran, s.
@@ -121,7 +123,9 @@ fn standing(
     let least = stiff.iter().copied().fold(f64::INFINITY, f64::min);
     let most = stiff.iter().copied().fold(0.0, f64::max);
     let ratio = |record: &&Record| record.case.material.poissons_ratio;
-    let hardest = on_mesh().max_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+    let hardest = on_mesh()
+        .max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
+        .filter(|record| ratio(record) > Material::default().poissons_ratio);
     let explicit = own.iter().find(|record| record.case.integrator == IntegratorKind::Explicit);
     let order = |quantity, sample| series_order(records, method, quantity, sample, reference);
     let field = match plain {
@@ -141,9 +145,9 @@ fn standing(
         pressure_order: order(Quantity::Pressure, Sample::Points).1,
         class: order(Quantity::Displacement, Sample::Nodes).0,
         spread: (stiff.len() > 1).then(|| most / least - 1.0),
-        stiff_skeleton: hardest
-            .filter(|record| ratio(record) > Material::default().poissons_ratio)
-            .and_then(moved),
+        stiff_skeleton: hardest.and_then(moved),
+        stiff_skeleton_pressure: hardest
+            .and_then(|record| error(record, Quantity::Pressure, Sample::Points, 0.0)),
         critical_step: explicit.map(|record| {
             let soil = &record.case.material;
             let speed = limits::fastest_wave_speed(soil, soil.porosity);
@@ -163,8 +167,14 @@ fn series_order(
 ) -> (Option<Class>, Option<f64>) {
     let plain: Vec<Record> =
         records.iter().filter(|record| record.case.method == method && is_plain(record)).cloned().collect();
-    let measure =
-        Measure { quantity, sample, norm: Norm::L2, reference: reference.to_owned(), time_factor: 0.0 };
+    let measure = Measure {
+        quantity,
+        sample,
+        norm: Norm::L2,
+        reference: reference.to_owned(),
+        time_factor: 0.0,
+        probe: None,
+    };
     let found = paths(&plain, Axis::Cells);
     let Some(path) = found.first() else { return (None, None) };
     let summary = path.summary(&measure);

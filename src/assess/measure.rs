@@ -114,6 +114,61 @@ pub fn record_of_critical_step(case: &Case, found: CriticalStep) -> Record {
 /// Time factor by which every column is consolidated to round-off.
 const LONG_AFTER: f64 = 50.0;
 
+/// Which field of which sample is held against which reference.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldError<'a> {
+    /// Time factor.
+    pub time_factor: f64,
+    /// Quantity.
+    pub quantity: Quantity,
+    /// Where.
+    pub sample: Sample,
+    /// Name of the reference.
+    pub reference: &'a str,
+    /// What absolute errors are divided by, in the unit of the field.
+    pub scale: f64,
+}
+
+impl FieldError<'_> {
+    /// The error in every norm of fields in which it is defined.
+    pub fn rows(self, computed: &[f64], exact: &[f64], volume: &[f64]) -> impl Iterator<Item = ErrorRow> {
+        FIELD_NORMS.into_iter().filter_map(move |norm| {
+            Some(ErrorRow {
+                time_factor: self.time_factor,
+                quantity: self.quantity,
+                sample: self.sample,
+                norm,
+                reference: self.reference.to_owned(),
+                value: norms::relative_error(norm, computed, exact, volume).ok()?,
+                absolute: norms::absolute_error(norm, computed, exact, volume).ok()? / self.scale,
+            })
+        })
+    }
+}
+
+/// The signed error of a settlement, m, where it is defined; absolute over a scale, m.
+///
+/// # Errors
+/// When the reference refuses the time factor.
+pub fn settlement_error(
+    reference: &Reference,
+    time_factor: f64,
+    settlement: f64,
+    scale: f64,
+) -> Result<Option<ErrorRow>, ExactError> {
+    let exact = reference.settlement(time_factor)?;
+    let value = settlement / exact - 1.0;
+    Ok(value.is_finite().then(|| ErrorRow {
+        time_factor,
+        quantity: Quantity::Settlement,
+        sample: Sample::Surface,
+        norm: Norm::Relative,
+        reference: reference.name().to_owned(),
+        value,
+        absolute: (settlement - exact) / scale,
+    }))
+}
+
 /// Every error of a snapshot against a reference; where a relative error is not defined, for the
 /// exact field is zero, there is no row.
 fn snapshot_errors(
@@ -144,36 +199,11 @@ fn snapshot_errors(
             ),
             (Quantity::Displacement, &displacements.0, &displacements.1, &volumes, final_settlement),
         ] {
-            for norm in FIELD_NORMS {
-                let relative = norms::relative_error(norm, computed, exact, volume);
-                let absolute = norms::absolute_error(norm, computed, exact, volume);
-                if let (Ok(value), Ok(absolute)) = (relative, absolute) {
-                    rows.push(ErrorRow {
-                        time_factor,
-                        quantity,
-                        sample,
-                        norm,
-                        reference: reference.name().to_owned(),
-                        value,
-                        absolute: absolute / scale,
-                    });
-                }
-            }
+            let field = FieldError { time_factor, quantity, sample, reference: reference.name(), scale };
+            rows.extend(field.rows(computed, exact, volume));
         }
     }
-    let exact = reference.settlement(time_factor)?;
-    let value = snapshot.settlement / exact - 1.0;
-    if value.is_finite() {
-        rows.push(ErrorRow {
-            time_factor,
-            quantity: Quantity::Settlement,
-            sample: Sample::Surface,
-            norm: Norm::Relative,
-            reference: reference.name().to_owned(),
-            value,
-            absolute: (snapshot.settlement - exact) / final_settlement,
-        });
-    }
+    rows.extend(settlement_error(reference, time_factor, snapshot.settlement, final_settlement)?);
     Ok(rows)
 }
 

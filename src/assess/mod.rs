@@ -5,6 +5,7 @@
 //! What has no value is returned as a named reason, never as a number that could pass a test.
 
 mod bend;
+mod beside;
 mod cancelling;
 mod case;
 pub mod case_expectation;
@@ -21,6 +22,7 @@ pub mod limiter;
 pub mod locking;
 pub mod measure;
 pub mod norms;
+pub mod numerical_uncertainty;
 pub mod orders;
 pub mod oscillation;
 pub mod pareto;

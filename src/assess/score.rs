@@ -2,7 +2,8 @@
 
 use super::class::{Classification, Context};
 use super::classify::classify;
-use super::norms::{Norm, absolute_error, relative_error};
+use super::measure::{FieldError, settlement_error};
+use super::norms::Norm;
 use super::orders::{FinestOrder, finest_order};
 use super::places::contributions;
 use super::series::{ErrorSeries, Level, Undefined};
@@ -11,7 +12,6 @@ use crate::import::SampledState;
 use crate::record::{ErrorRow, Quantity, Sample};
 
 /// Norms of a field's error.
-const FIELD_NORMS: [Norm; 3] = [Norm::L1, Norm::L2, Norm::Linf];
 /// Share of the height within which a sample counts as the surface.
 const SURFACE: f64 = 1e-6;
 /// Errors up to this are round-off of a written number.
@@ -106,26 +106,18 @@ impl Score {
                 exact.iter().map(|f| f.displacement).collect::<Vec<f64>>(),
             ),
         ];
-        let row = |quantity, sample, norm, value, absolute| ErrorRow {
-            time_factor,
-            quantity,
-            sample,
-            norm,
-            reference: reference.name().to_owned(),
-            value,
-            absolute,
-        };
         for (quantity, computed, scale, exact) in &fields {
             if computed.is_empty() {
                 continue;
             }
-            for norm in FIELD_NORMS {
-                let relative = relative_error(norm, computed, exact, &state.volume);
-                let absolute = absolute_error(norm, computed, exact, &state.volume);
-                if let (Ok(relative), Ok(absolute)) = (relative, absolute) {
-                    self.errors.push(row(*quantity, sample, norm, relative, absolute / scale));
-                }
-            }
+            let field = FieldError {
+                time_factor,
+                quantity: *quantity,
+                sample,
+                reference: reference.name(),
+                scale: *scale,
+            };
+            self.errors.extend(field.rows(computed, exact, &state.volume));
             let worst = contributions(computed, exact, &state.volume).first().copied();
             if let Some(worst) = worst.filter(|_| first) {
                 self.worst.push(WorstPlace {
@@ -144,12 +136,7 @@ impl Score {
             .position(|height| *height > (1.0 - SURFACE) * parameters.height)
             .and_then(|place| state.displacement.get(place));
         if let Some(displacement) = surface {
-            let exact = reference.settlement(time_factor)?;
-            let value = -displacement / exact - 1.0;
-            if value.is_finite() {
-                let absolute = (-displacement - exact) / settled;
-                self.errors.push(row(Quantity::Settlement, Sample::Surface, Norm::Relative, value, absolute));
-            }
+            self.errors.extend(settlement_error(reference, time_factor, -displacement, settled)?);
         }
         Ok(())
     }

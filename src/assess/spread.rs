@@ -1,10 +1,10 @@
 //! How far two runs scatter that should give equal values.
 
-use crate::golden::ABSOLUTE_TOLERANCE;
+use crate::golden::ROOM;
 use std::collections::BTreeMap;
 
-/// Factor between the largest spread seen and a tolerance that leaves room for other machines.
-const ROOM: f64 = 10.0;
+/// Differences up to this are round-off of a value near zero.
+const ROUND_OFF: f64 = 1e-12;
 
 /// The largest differences between two sets of values.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -65,7 +65,7 @@ pub fn spread_of(
         let relative = if relative.is_nan() { f64::INFINITY } else { relative };
         spread.absolute = spread.absolute.max(difference);
         // Errors are relative themselves: what is this near zero has no digits left to compare.
-        if difference <= ABSOLUTE_TOLERANCE {
+        if difference <= ROUND_OFF {
             continue;
         }
         if relative > spread.relative {

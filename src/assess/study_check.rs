@@ -165,12 +165,6 @@ fn slowness(golden: &GoldenFile, seconds: f64) -> Option<String> {
 fn failure_sentence(record: &Record) -> Option<String> {
     match &record.status {
         Status::Ok => None,
-        Status::Failed(failure) => Some(format!(
-            "{} at step {}, t = {:.4e} s: {}",
-            failure.kind.name(),
-            failure.step,
-            failure.time,
-            failure.reason
-        )),
+        Status::Failed(failure) => Some(failure.to_string()),
     }
 }

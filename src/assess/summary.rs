@@ -6,16 +6,18 @@ use super::expectation::Expectation as Demand;
 use super::limiter::{Limiter, LimiterKind};
 use super::measure::exact_samples;
 use super::norms::{Norm, relative_error};
+use super::numerical_uncertainty::NumericalUncertainty;
 use super::orders::{FinestOrder, PairOrder, SlopeFit, finest_order, pair_orders, slope};
-use super::oscillation::oscillation;
 use super::series::{ErrorSeries, Level, Undefined};
-use super::verdict::{Verdict, judge};
+use super::verdict::{Beside, Verdict, judge};
 use crate::exact::{Reference, ReferenceKind};
 use crate::record::{Quantity, Record, Sample};
 use crate::scene::{SceneKind, column_parameters};
 use crate::solver::material::Material;
 use crate::solver::snapshot::{Samples, Snapshot};
-use crate::study::{Axis, Case, Expectation, IntegratorKind, Measure, NEXT_FINER, Study, Tier, step_label};
+use crate::study::{
+    Axis, Case, Expectation, IntegratorKind, Measure, NEXT_FINER, NO_REFERENCE, Study, Tier, step_label,
+};
 
 /// Errors up to this are round-off of a long run.
 const ROUND_OFF: f64 = 1e-12;
@@ -57,6 +59,9 @@ pub struct Judgement {
     pub subject: String,
     /// The verdict.
     pub verdict: Verdict,
+    /// What refinement tells of the value, where that was asked for and could be had.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<NumericalUncertainty>,
 }
 
 /// Paths of the records along an axis: every group of at least two levels.
@@ -107,6 +112,9 @@ impl<'a> Path<'a> {
     /// The series of one error along the path. Levels whose case does not ask for the time factor
     /// are no levels of it; a level that should have an error and has none stays, empty.
     pub fn series(&self, measure: &Measure) -> ErrorSeries {
+        if measure.reference == NO_REFERENCE {
+            return self.values(measure).differences();
+        }
         let asked = |record: &&&Record| record.case.time_factors.contains(&measure.time_factor);
         let records: Vec<&Record> = self.records.iter().filter(asked).copied().collect();
         let level = |record: &Record, error| Level { size: level_size(record, self.axis), error };
@@ -146,38 +154,6 @@ impl<'a> Path<'a> {
             limiters: model_limiter(finest, measure).into_iter().chain(self.mesh_limiter(measure)).collect(),
             mobility: self.mobility(measure),
         }
-    }
-
-    /// Spurious wiggle of the profile at the level that a demand names, else at the finest: its total
-    /// variation beyond the net changes that the exact profile has too, over those. Measured where it is
-    /// asked for only.
-    fn oscillation(&self, demand: &Demand, measure: &Measure) -> Option<f64> {
-        demand.oscillation_below?;
-        let named = |record: &&&Record| {
-            let size = level_size(record, self.axis);
-            demand.at.is_some_and(|at| (size - at.size).abs() <= 1e-9 * at.size)
-        };
-        let record = self.records.iter().find(named).or(self.records.last())?;
-        let case = &record.case;
-        let index = case.time_factors.iter().position(|factor| *factor == measure.time_factor)?;
-        let snapshot = record.snapshots.get(index)?;
-        let (samples, per_cell) = match measure.sample {
-            Sample::Points => (&snapshot.points, case.points_per_cell as f64),
-            Sample::Centres => (&snapshot.centres, 1.0),
-            Sample::Nodes => (&snapshot.nodes, 1.0),
-            Sample::Surface => return None,
-        };
-        let kind = SceneKind::reference_for(measure.reference.parse().ok()?, &case.material);
-        let parameters = column_parameters(&case.column, &case.material);
-        let reference = Reference::new(kind, &parameters, &[measure.time_factor]).ok()?;
-        let exact = exact_samples(case, &reference, measure.time_factor, samples).ok()?;
-        let (computed, exact) = match measure.quantity {
-            Quantity::Pressure => (&samples.pressure, exact.pressure),
-            Quantity::EffectiveStress => (&samples.effective_stress, exact.effective_stress),
-            Quantity::Displacement => (&samples.displacement, exact.displacement),
-            Quantity::Settlement => return None,
-        };
-        oscillation(computed, &exact, per_cell).ok()?.reversal
     }
 
     /// Settlement over the exact one at each level, for the errors of displacements: a locked body
@@ -340,14 +316,7 @@ pub fn judge_study(study: &Study, records: &[Record], tier: Tier) -> Vec<Judgeme
 /// One judgement a path that the expectation selects; where it selects none, one that fails.
 fn judge_expectation(expectation: &Expectation, records: &[Record]) -> Vec<Judgement> {
     let measure = &expectation.measure;
-    let what = format!(
-        "{} {} {} against {} at T_v = {}",
-        measure.quantity.name(),
-        measure.norm,
-        measure.sample.name(),
-        measure.reference,
-        measure.time_factor
-    );
+    let what = measure.to_string();
     let all = paths(records, expectation.axis);
     let selected: Vec<_> = all
         .iter()
@@ -357,20 +326,21 @@ fn judge_expectation(expectation: &Expectation, records: &[Record]) -> Vec<Judge
     if selected.is_empty() {
         let method = expectation.method.map_or("any method".to_owned(), |method| method.to_string());
         let nothing = ErrorSeries::new(Vec::new());
-        let verdict = judge(&strict(&expectation.demand), &nothing, &Context::default(), None);
-        return vec![Judgement { line: expectation.line, subject: format!("{method}: {what}"), verdict }];
+        let verdict = judge(&strict(&expectation.demand), &nothing, &Context::default(), &Beside::default());
+        let subject = format!("{method}: {what}");
+        return vec![Judgement { line: expectation.line, subject, verdict, uncertainty: None }];
     }
     selected
         .into_iter()
-        .map(|path| Judgement {
-            line: expectation.line,
-            subject: format!("{}: {what}", path.label()),
-            verdict: judge(
-                &expectation.demand,
-                &path.series(measure),
-                &path.context(measure),
-                path.oscillation(&expectation.demand, measure),
-            ),
+        .map(|path| {
+            let context = path.context(measure);
+            let beside = path.beside(&expectation.demand, measure, context.formal_order);
+            Judgement {
+                line: expectation.line,
+                subject: format!("{}: {what}", path.label()),
+                verdict: judge(&expectation.demand, &path.series(measure), &context, &beside),
+                uncertainty: beside.uncertainty.and_then(Result::ok),
+            }
         })
         .collect()
 }

@@ -10,7 +10,8 @@ use super::class::{Class, Classification, Context};
 use super::classify::classify;
 use super::expectation::{Band, ErrorBound, Expectation, FloorBand};
 use super::floor::fit_floor;
-use super::series::ErrorSeries;
+use super::numerical_uncertainty::NumericalUncertainty;
+use super::series::{ErrorSeries, Undefined};
 use super::wording::{order, short};
 
 /// How a verdict came out, the known failures told apart.
@@ -30,7 +31,7 @@ pub enum Outcome {
 /// One thing that was asked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Check {
-    /// `expectation`, `rows`, `class`, `order`, `error`, `spread`, `floor` or `oscillation`.
+    /// `expectation`, `rows`, `class`, `order`, `error`, `spread`, `floor`, `oscillation` or `uncertainty`.
     pub name: String,
     /// Whether it is met.
     pub pass: bool,
@@ -55,14 +56,17 @@ pub struct Verdict {
     pub checks: Vec<Check>,
 }
 
+/// What is measured of the runs beside their errors, where an expectation asks for it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Beside {
+    /// Oscillation index of the run that the expectation is about.
+    pub oscillation: Option<f64>,
+    /// Numerical uncertainty of the value, or why it has none.
+    pub uncertainty: Option<Result<NumericalUncertainty, Undefined>>,
+}
+
 /// Judges a series. Where the context names no formal order, the order expected serves as one.
-/// `oscillation` is the index of the run that the expectation is about, if it was measured.
-pub fn judge(
-    expectation: &Expectation,
-    series: &ErrorSeries,
-    context: &Context,
-    oscillation: Option<f64>,
-) -> Verdict {
+pub fn judge(expectation: &Expectation, series: &ErrorSeries, context: &Context, beside: &Beside) -> Verdict {
     let formal_order = context.formal_order.or(expectation.order.map(|band| band.value));
     let context = Context { formal_order, ..context.clone() };
     let classification = classify(series, &context);
@@ -80,7 +84,10 @@ pub fn judge(
     checks.extend(expectation.at.map(|bound| error_found(bound, series)));
     checks.extend(expectation.spread.map(|bound| spread_found(bound, series)));
     checks.extend(expectation.floor.map(|band| floor_found(band, series, formal_order, &classification)));
-    checks.extend(expectation.oscillation_below.map(|bound| oscillation_found(bound, oscillation)));
+    checks.extend(expectation.oscillation_below.map(|bound| oscillation_found(bound, beside.oscillation)));
+    checks.extend(
+        expectation.uncertainty_below.map(|bound| uncertainty_found(bound, beside.uncertainty.as_ref())),
+    );
     let (outcome, reason) = conclude(expectation, &classification, &checks, problems.is_empty());
     let pass = matches!(outcome, Outcome::Passed | Outcome::KnownFailure);
     Verdict { pass, outcome, reason, classification, checks }
@@ -240,4 +247,28 @@ fn oscillation_found(bound: f64, oscillation: Option<f64>) -> Check {
     let relation = if pass { "below" } else { "not below" };
     let reason = format!("oscillation {} {relation} {}", short(index), short(bound));
     check("oscillation", pass, Some(index), reason)
+}
+
+fn uncertainty_found(bound: f64, found: Option<&Result<NumericalUncertainty, Undefined>>) -> Check {
+    let found = match found {
+        Some(Ok(found)) if found.relative().is_finite() => found,
+        Some(Ok(_)) => {
+            return check("uncertainty", false, None, "a value of zero has no relative uncertainty".into());
+        }
+        Some(Err(undefined)) => {
+            return check("uncertainty", false, None, format!("no uncertainty: {undefined}"));
+        }
+        None => return check("uncertainty", false, None, "the uncertainty was not measured".into()),
+    };
+    let relative = found.relative();
+    let pass = relative < bound;
+    let relation = if pass { "below" } else { "not below" };
+    let reason = format!(
+        "uncertainty {} of the value {} by {} {relation} {}",
+        short(relative),
+        short(found.finest()),
+        found.estimator.name(),
+        short(bound)
+    );
+    check("uncertainty", pass, Some(relative), reason)
 }

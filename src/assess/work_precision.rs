@@ -116,6 +116,7 @@ fn pressure(reference: &str, time_factor: f64) -> Measure {
         norm: first_norm(Quantity::Pressure),
         reference: reference.to_owned(),
         time_factor,
+        probe: None,
     }
 }
 

@@ -3,8 +3,9 @@
 use super::check::run_quietly;
 use super::exit::{Ended, Exit};
 use super::run::{jobs_of, load};
-use crate::golden::GoldenFile;
+use crate::golden::{GoldenFile, spread_by_group, values_of};
 use crate::record::Provenance;
+use crate::study::{LastDigit, Study};
 use std::path::PathBuf;
 
 /// Arguments of `accept`.
@@ -27,11 +28,37 @@ pub struct Arguments {
     jobs: Option<u64>,
 }
 
-/// Runs the CI tier and writes the golden files.
+/// Runs the CI tier, as it is and with last digits changed, and writes values and tolerances.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.reason.trim().is_empty() {
         return Err(Ended::usage("a golden value needs a reason: --reason \"why the new values are right\""));
     }
+    refuse_without_origin()?;
+    let reason = arguments.reason.trim();
+    let studies = load(&arguments.studies)?;
+    if arguments.references {
+        keep(&GoldenFile::of_references(reason)?, arguments)?;
+    }
+    let records = run_quietly(&studies, jobs_of(arguments.jobs))?;
+    let mut perturbed = Vec::new();
+    for digit in LastDigit::ALL {
+        let studies: Vec<Study> = studies.iter().map(|study| study.perturbed(digit)).collect();
+        perturbed.push(run_quietly(&studies, jobs_of(arguments.jobs))?);
+    }
+    for (number, study) in studies.iter().enumerate() {
+        let golden = GoldenFile::of(&study.name, &records[number], reason);
+        let others: Vec<_> = perturbed.iter().map(|records| values_of(&records[number])).collect();
+        let spread = spread_by_group(&golden.values, &others);
+        keep(&golden.with_spread(spread), arguments)?;
+    }
+    Ok(Exit::Pass)
+}
+
+/// Refuses to write golden files in CI, and from sources that no commit has.
+///
+/// # Errors
+/// A sentence that says which.
+pub fn refuse_without_origin() -> anyhow::Result<()> {
     if std::env::var_os("CI").is_some() {
         return Err(Ended::usage(
             "golden values are never taken in CI: look at them first, on your own machine",
@@ -42,16 +69,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             "the sources differ from their commit: commit and build first, so that golden values have an origin",
         ));
     }
-    let reason = arguments.reason.trim();
-    let studies = load(&arguments.studies)?;
-    if arguments.references {
-        keep(&GoldenFile::of_references(reason)?, arguments)?;
-    }
-    let records = run_quietly(&studies, jobs_of(arguments.jobs))?;
-    for (study, records) in studies.iter().zip(&records) {
-        keep(&GoldenFile::of(&study.name, records, reason), arguments)?;
-    }
-    Ok(Exit::Pass)
+    Ok(())
 }
 
 fn keep(golden: &GoldenFile, arguments: &Arguments) -> anyhow::Result<()> {

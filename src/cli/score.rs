@@ -7,7 +7,7 @@ use crate::assess::norms::Norm;
 use crate::assess::score::{Score, score, series_of};
 use crate::exact::ReferenceKind;
 use crate::import::{CONVENTION, Mapping, states_of};
-use crate::record::Quantity;
+use crate::record::{ERROR_COLUMNS, Quantity};
 use crate::render::scores;
 use crate::scene::{SceneKind, column_parameters};
 use crate::study::{Case, Study, StudySource};
@@ -156,21 +156,14 @@ fn groups_of(case: &Case) -> String {
 fn csv_of(scores: &[Score], results: &[PathBuf]) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let several = scores.len() > 1;
-    let mut header = vec!["time_factor", "quantity", "sample", "norm", "reference", "value"];
+    let mut header = ERROR_COLUMNS.to_vec();
     if several {
         header.insert(0, "result");
     }
     writer.write_record(&header)?;
     for (score, result) in scores.iter().zip(results) {
         for row in &score.errors {
-            let mut fields = vec![
-                row.time_factor.to_string(),
-                row.quantity.name().to_owned(),
-                row.sample.name().to_owned(),
-                row.norm.name().to_owned(),
-                row.reference.clone(),
-                format!("{:.16e}", row.value),
-            ];
+            let mut fields = row.csv_fields().to_vec();
             if several {
                 fields.insert(0, result.display().to_string());
             }

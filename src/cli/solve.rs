@@ -2,7 +2,7 @@
 
 use super::exit::{Ended, Exit};
 use super::overrides::{self, StudyLines};
-use crate::record::{ErrorRow, Record, Status};
+use crate::record::{ERROR_COLUMNS, ErrorRow, Record, Status};
 use crate::render::measures;
 use crate::render::phases::phases_table;
 use crate::solver::profile::{PhaseTime, profiled};
@@ -16,7 +16,7 @@ use std::io::Write;
 pub enum Format {
     /// For people.
     Table,
-    /// One row a measure.
+    /// One row a measure or case.
     Csv,
     /// Everything.
     Json,
@@ -146,16 +146,9 @@ const OWN_OPTIONS: [(&str, &str); 5] = [
 
 fn csv_of(record: &Record) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(["time_factor", "quantity", "sample", "norm", "reference", "value"])?;
+    writer.write_record(ERROR_COLUMNS)?;
     for row in &record.errors {
-        writer.write_record([
-            row.time_factor.to_string(),
-            row.quantity.name().to_owned(),
-            row.sample.name().to_owned(),
-            row.norm.name().to_owned(),
-            row.reference.clone(),
-            format!("{:.16e}", row.value),
-        ])?;
+        writer.write_record(row.csv_fields())?;
     }
     Ok(String::from_utf8(writer.into_inner()?)?)
 }

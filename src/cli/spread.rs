@@ -1,16 +1,17 @@
-//! `oedometer spread`: how far results scatter that should be equal, by kernel, by number of
-//! threads and by build: what the tolerances of golden values are derived from.
+//! `oedometer spread`: how far results scatter that should be equal, by number of threads, by the last
+//! digit of an input, by kernel and by build: what the tolerances of golden values are derived from.
 
+use super::accept::refuse_without_origin;
 use super::check::run_quietly;
 use super::exit::{Ended, Exit};
 use super::output::{TableFormat, print_tables};
 use super::run::{jobs_of, load_or_shipped};
 use crate::assess::spread::{Spread, spread_of};
-use crate::golden::values_of;
+use crate::golden::{GoldenFile, spread_by_group, values_of};
 use crate::record::{Record, RecordStore};
 use crate::render::spreads;
 use crate::solver::run::Kernel;
-use crate::study::{Study, Tier, run_case};
+use crate::study::{LastDigit, Study, Tier, run_case};
 use std::path::PathBuf;
 
 /// Arguments of `spread`.
@@ -23,6 +24,12 @@ pub struct Arguments {
     /// without `--release`: the spread between optimisation levels
     #[arg(long, value_name = "DIR")]
     against: Vec<PathBuf>,
+    /// Leave out the point-wise kernel, which takes a hundred times as long
+    #[arg(long)]
+    quick: bool,
+    /// Make the spreads the tolerances of the golden files in this folder, whose values and reasons stay
+    #[arg(long, value_name = "DIR")]
+    into: Option<PathBuf>,
     /// Cases at the same time in the run that is held against the sequential one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
@@ -33,6 +40,9 @@ pub struct Arguments {
 
 /// Runs the CI tier in several ways and measures.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    if arguments.into.is_some() {
+        refuse_without_origin()?;
+    }
     let studies = load_or_shipped(&arguments.studies)?;
     let mut spreads: Vec<Spread> = Vec::new();
     for study in &studies {
@@ -42,16 +52,27 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
         let values = values_of(&one);
         let threads = jobs_of(arguments.jobs).max(2);
-        let many = values_of(&records_of(study, threads)?);
-        spreads.push(spread_of(&study.name, &format!("{threads} threads"), &values, &many));
-        spreads.push(spread_of(&study.name, "point-wise kernel", &values, &values_of(&point_wise(study)?)));
+        let mut others = vec![(format!("{threads} threads"), values_of(&records_of(study, threads)?))];
+        for digit in LastDigit::ALL {
+            let records = records_of(&study.perturbed(digit), threads)?;
+            others.push((digit.name().to_owned(), values_of(&records)));
+        }
+        if !arguments.quick {
+            others.push(("point-wise kernel".to_owned(), values_of(&point_wise(study)?)));
+        }
         for folder in &arguments.against {
             let store = RecordStore::new(folder, &study.name);
             let other: Vec<Record> =
                 study.cases(Tier::Ci).into_iter().filter_map(|case| store.kept(case)).collect();
             let build = other.first().map_or("no record", |record| record.provenance.profile.as_str());
-            let source = format!("build `{build}` in {}", folder.display());
-            spreads.push(spread_of(&study.name, &source, &values, &values_of(&other)));
+            others.push((format!("build `{build}` in {}", folder.display()), values_of(&other)));
+        }
+        spreads.extend(others.iter().map(|(source, other)| spread_of(&study.name, source, &values, other)));
+        if let Some(folder) = &arguments.into {
+            let spread = spread_by_group(&values, others.iter().map(|(_, other)| other));
+            let golden =
+                GoldenFile::read(folder, &study.name).map_err(|error| Ended::usage(error.to_string()))?;
+            golden.with_spread(spread).write(folder)?;
         }
     }
     if spreads.is_empty() {

@@ -3,26 +3,15 @@
 use super::exit::Exit;
 use super::overrides::{self, StudyLines};
 use super::run::jobs_of;
+use super::solve::Format;
 use crate::record::Record;
 use crate::render::stability;
 use crate::solver::critical::CriticalStep;
 use crate::study::{RunOptions, Tier, run_study};
-use clap::ValueEnum;
 use std::io::Write;
 
 /// Difference of observed from predicted step up to which they agree.
 const AGREEMENT: f64 = 0.02;
-
-/// Output format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people.
-    Table,
-    /// One row a case.
-    Csv,
-    /// Everything.
-    Json,
-}
 
 /// Arguments of `stability`.
 #[derive(Debug, clap::Args)]

@@ -51,7 +51,7 @@ pub fn compare(golden: &GoldenFile, found: &BTreeMap<String, f64>) -> Vec<Differ
     for (name, value) in &golden.values {
         let present = found.get(name).copied();
         let largest = value.abs().max(present.map_or(0.0, f64::abs));
-        let tolerance = golden.absolute_tolerance + golden.relative_tolerance * largest;
+        let tolerance = golden.tolerance(name, largest);
         let change = match present {
             None => Change::Missing,
             Some(present) if (present - value).abs() <= tolerance => continue,

@@ -7,10 +7,12 @@
 mod compare;
 mod gate;
 mod references;
+mod tolerance;
 
 pub use compare::{Change, Difference, compare};
 pub use gate::{CaseChange, case_changes};
-pub use references::{REFERENCES, reference_values};
+pub use references::{REFERENCES, perturbed_reference_values, reference_values};
+pub use tolerance::{ROOM, spread_by_group, spread_group};
 
 use crate::exact::ExactError;
 use crate::record::{ErrorRow, Provenance, Record, StoreError, write_whole};
@@ -20,16 +22,13 @@ use std::path::{Path, PathBuf};
 
 /// Version of the file's layout.
 const SCHEMA: u32 = 1;
-/// Allowed relative change.
+/// Allowed relative change where no spread was measured.
 const RELATIVE_TOLERANCE: f64 = 1e-8;
-/// Allowed absolute change of an error: round-off of a run of a million steps.
-pub const ABSOLUTE_TOLERANCE: f64 = 1e-12;
-/// Where the tolerances come from.
-const BASIS: &str = "round-off: the point-wise and the assembled kernel, which differ in every rounding, agree to \
-                     better than a tenth of it over a million steps (measured by `oedometer spread`)";
-/// Where those of the exact solutions come from.
-const REFERENCE_BASIS: &str = "the exact solutions are good to 1e-13 (against 30 digits in their tests); functions of \
-                               another platform's library may differ in the last digits";
+/// Allowed absolute change of an error where no spread was measured.
+const ABSOLUTE_TOLERANCE: f64 = 1e-12;
+/// Where those tolerances come from.
+const BASIS: &str = "no spread was measured: the point-wise and the assembled kernel, which differ in every rounding, \
+                     agree to better than a tenth of it over a million steps";
 
 /// Golden values of a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,9 +40,9 @@ pub struct GoldenFile {
     pub study: String,
     /// Why these values were taken.
     pub reason: String,
-    /// Allowed change relative to the larger of the values.
+    /// Change relative to the larger of the values that is always allowed.
     pub relative_tolerance: f64,
-    /// Allowed absolute change.
+    /// Absolute change that is always allowed.
     pub absolute_tolerance: f64,
     /// Where the tolerances come from.
     pub basis: String,
@@ -52,6 +51,10 @@ pub struct GoldenFile {
     /// Wall time of all cases together when the values were taken, s: it warns and never fails.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
+    /// Largest change by round-off that was measured, by case, quantity and time: a tolerance is ten
+    /// times as wide.
+    #[serde(default)]
+    pub spread: BTreeMap<String, f64>,
     /// Signed errors and work counters by case and measure.
     pub values: BTreeMap<String, f64>,
 }
@@ -87,6 +90,7 @@ impl GoldenFile {
             basis: BASIS.to_owned(),
             provenance: Provenance::of_this_program(),
             seconds: Some(seconds_of(records)),
+            spread: BTreeMap::new(),
             values: values_of(records),
         }
     }
@@ -96,12 +100,10 @@ impl GoldenFile {
     /// # Errors
     /// When a solution refuses its column: a fault of this program.
     pub fn of_references(reason: &str) -> Result<Self, ExactError> {
-        Ok(Self {
-            basis: REFERENCE_BASIS.to_owned(),
-            seconds: None,
-            values: reference_values()?,
-            ..Self::of(REFERENCES, &[], reason)
-        })
+        let values = reference_values()?;
+        let spread = spread_by_group(&values, &perturbed_reference_values()?);
+        let golden = Self { seconds: None, values, ..Self::of(REFERENCES, &[], reason) };
+        Ok(golden.with_spread(spread))
     }
 
     /// Path of a study's golden file in a folder.

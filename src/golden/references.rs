@@ -2,8 +2,10 @@
 //! the errors of those scenes that happen to use it.
 
 use crate::exact::cosine_layer::{Base, CosineLayer};
+use crate::exact::dynamic_column::{DynamicColumn, Start};
 use crate::exact::large_strain::Water;
 use crate::exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
+use crate::study::LastDigit;
 use std::collections::BTreeMap;
 
 /// Name under which their golden values are kept.
@@ -24,8 +26,25 @@ const SOFT_WATER: f64 = 2e7;
 /// # Errors
 /// When a solution refuses the column: a fault of this program.
 pub fn reference_values() -> Result<BTreeMap<String, f64>, ExactError> {
+    values_of_column(&ColumnParameters::default())
+}
+
+/// The same with the last digit of one input after the other changed: what they move by is round-off.
+///
+/// # Errors
+/// When a solution refuses the column: a fault of this program.
+pub fn perturbed_reference_values() -> Result<Vec<BTreeMap<String, f64>>, ExactError> {
+    let perturbed = LastDigit::ALL.map(|digit| {
+        let mut column = ColumnParameters::default();
+        digit.change(&mut column.youngs_modulus, &mut column.hydraulic_conductivity);
+        values_of_column(&column)
+    });
+    perturbed.into_iter().collect()
+}
+
+fn values_of_column(seed: &ColumnParameters) -> Result<BTreeMap<String, f64>, ExactError> {
     let mut values = BTreeMap::new();
-    let seed = ColumnParameters::default();
+    let seed = *seed;
     let soft = ColumnParameters { load: LARGE_LOAD, water_bulk_modulus: SOFT_WATER, ..seed };
     for kind in ReferenceKind::ALL {
         for (column, parameters) in [("seed column", seed), ("soft water, 200 kPa", soft)] {
@@ -43,6 +62,24 @@ pub fn reference_values() -> Result<BTreeMap<String, f64>, ExactError> {
                     let displacement = fields.displacement / parameters.final_settlement();
                     note(&format!("u/(m_v q H) ζ={zeta}"), time_factor, displacement);
                 }
+            }
+        }
+    }
+    for (start, name) in
+        [(Start::Step, "step"), (Start::Mode, "mode"), (Start::StandingWave, "standing wave")]
+    {
+        let column = DynamicColumn::new(&seed, start, &TIME_FACTORS)?;
+        let (length, rate) = (seed.final_settlement(), seed.final_settlement() / seed.time(1.0));
+        for time_factor in TIME_FACTORS {
+            for zeta in DEPTHS {
+                let fields = column.dynamic_fields(time_factor, zeta)?;
+                let mut note = |what: &str, value: f64| {
+                    values
+                        .insert(format!("dynamic-column {name} | {what} ζ={zeta} T_v={time_factor}"), value);
+                };
+                note("u_w/(m_v q H)", fields.water_displacement / length);
+                note("v_s/(m_v q c_v/H)", fields.velocities.solid / rate);
+                note("v_w/(m_v q c_v/H)", fields.velocities.water / rate);
             }
         }
     }

@@ -179,6 +179,23 @@ pub struct ErrorRow {
     pub absolute: f64,
 }
 
+/// Columns of the errors in the CSV of `solve` and `score`.
+pub const ERROR_COLUMNS: [&str; 6] = ["time_factor", "quantity", "sample", "norm", "reference", "value"];
+
+impl ErrorRow {
+    /// Its fields in the order of [`ERROR_COLUMNS`].
+    pub fn csv_fields(&self) -> [String; 6] {
+        [
+            self.time_factor.to_string(),
+            self.quantity.name().to_owned(),
+            self.sample.name().to_owned(),
+            self.norm.name().to_owned(),
+            self.reference.clone(),
+            format!("{:.16e}", self.value),
+        ]
+    }
+}
+
 /// A reference by its name: records outlive the enumeration.
 pub type ReferenceName = String;
 

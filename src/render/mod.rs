@@ -18,6 +18,7 @@ mod showcase;
 pub mod spreads;
 pub mod stability;
 pub mod table;
+pub mod uncertainties;
 pub mod verdicts;
 
 pub use error::RenderError;

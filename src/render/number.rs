@@ -5,6 +5,11 @@ pub fn error(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { finite(value, |v| format!("{v:.2e}")) }
 }
 
+/// A number with so many decimals, with a proper minus and no sign at zero.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    finite(value, |v| unsigned_zero(format!("{v:.decimals$}")).replace('-', "−"))
+}
+
 /// An order: two decimals.
 pub fn order(value: f64) -> String {
     finite(value, |v| unsigned_zero(format!("{v:.2}")))
@@ -97,7 +102,10 @@ fn three_digits(v: f64) -> String {
 }
 
 fn unsigned_zero(text: String) -> String {
-    if text == "-0.00" { "0.00".to_owned() } else { text }
+    match text.strip_prefix('-') {
+        Some(digits) if digits.chars().all(|c| matches!(c, '0' | '.')) => digits.to_owned(),
+        _ => text,
+    }
 }
 
 #[cfg(test)]
@@ -107,6 +115,12 @@ mod tests {
     #[test]
     fn errors_have_three_digits() {
         assert_eq!([5.62e-3, 1.0, 0.0, -2.5e-10].map(error), ["5.62e-3", "1.00e0", "0", "-2.50e-10"]);
+    }
+
+    #[test]
+    fn fixed_decimals_have_no_sign_at_zero() {
+        assert_eq!([-0.001, -0.05, 156.178].map(|value| fixed(value, 2)), ["0.00", "−0.05", "156.18"]);
+        assert_eq!(fixed(-0.0001, 3), "0.000");
     }
 
     #[test]

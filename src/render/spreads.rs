@@ -36,7 +36,7 @@ pub fn table_of(spreads: &[Spread]) -> Table {
         ],
         rows: rows.collect(),
         notes: vec![
-            "a tolerance is ten times the relative spread; errors are themselves relative".to_owned(),
+            "a tolerance is ten times the spread; a golden value takes that of its own quantity, case and time".to_owned(),
         ],
     }
 }

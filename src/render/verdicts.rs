@@ -3,6 +3,7 @@
 use super::RenderError;
 use super::number;
 use super::table::{Cell, Column, Mood, Table};
+use super::uncertainties;
 use crate::assess::pareto::ParetoChange;
 use crate::assess::study_check::{CaseNote, StudyCheck};
 use crate::assess::summary::Judgement;
@@ -91,6 +92,7 @@ fn tables_of(check: &StudyCheck) -> Vec<Table> {
     if !unmet.is_empty() {
         tables.push(judgements_table("expectations not met", &unmet));
     }
+    tables.extend(uncertainties::table_of(&check.judgements));
     for (title, notes) in
         [("failed cases", &check.failed_cases), ("records that cannot be right", &check.unsound)]
     {

@@ -16,8 +16,8 @@ use crate::solver::explicit::Drag;
 use crate::solver::material::{Continuity, Law};
 use crate::solver::method::{Configuration, Method};
 use crate::solver::scheme::Scheme;
-use crate::study::NEXT_FINER;
 use crate::study::{Axis, IntegratorKind, MethodTable, StudyFile, Tier};
+use crate::study::{NEXT_FINER, NO_REFERENCE};
 use node::Language;
 use serde_json::{Value, json};
 use tracer::shape_of;
@@ -75,6 +75,9 @@ const KEYS: &[(&str, &str)] = &[
     ("above", "Lower bound."),
     ("class", "Class of the series."),
     ("floor", "Bounds on the floor under the errors."),
+    ("uncertainty", "Bound on the numerical uncertainty of a value without a reference, over that value."),
+    ("probe", "Depth of the one place of a field without a reference, from 0 (surface) to 1 (base)."),
+    ("oscillation", "Bound on the wiggle of the profile."),
     ("xfail", "Marks a known failure, which must then fail."),
     ("strict", "Whether an unexpected pass is a failure."),
     ("reason", "Why."),
@@ -131,7 +134,7 @@ fn study_language() -> Result<Language, serde::de::value::Error> {
         ("references", owned(ReferenceKind::ALL.iter().map(|kind| kind.name()))),
         (
             "reference",
-            owned(ReferenceKind::ALL.iter().map(|kind| kind.name()).chain(std::iter::once(NEXT_FINER))),
+            owned(ReferenceKind::ALL.iter().map(|kind| kind.name()).chain([NEXT_FINER, NO_REFERENCE])),
         ),
         ("quantity", owned(Quantity::ALL.map(Quantity::name))),
         ("sample", owned(Sample::ALL.map(Sample::name))),

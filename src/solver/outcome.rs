@@ -2,6 +2,7 @@
 
 use super::snapshot::Snapshot;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Why a run ended before its last output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -63,6 +64,13 @@ pub struct Failure {
     pub growth: Option<f64>,
     /// A sentence with the numbers.
     pub reason: String,
+}
+
+impl fmt::Display for Failure {
+    /// What happened, when, and why.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{} at step {}, t = {:.4e} s: {}", self.kind.name(), self.step, self.time, self.reason)
+    }
 }
 
 /// How a run ended.

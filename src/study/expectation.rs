@@ -11,6 +11,7 @@ use crate::solver::material::{Continuity, Law};
 use crate::solver::method::Method;
 use crate::solver::scheme::Scheme;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// What is refined along a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -47,6 +48,10 @@ impl Axis {
 /// neighbours have no floor but round-off, whatever the exact solution.
 pub const NEXT_FINER: &str = "next-finer";
 
+/// No reference at all: what is judged is a value, its differences from the next finer level, and the
+/// numerical uncertainty that refinement leaves it.
+pub const NO_REFERENCE: &str = "none";
+
 /// Which error of a run: what, where, in which norm, against which reference, when.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measure {
@@ -60,6 +65,25 @@ pub struct Measure {
     pub reference: String,
     /// Time factor.
     pub time_factor: f64,
+    /// Depth `ζ`, from 0 at the surface to 1 at the base, of the one place of a field that has no
+    /// reference.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub probe: Option<f64>,
+}
+
+impl fmt::Display for Measure {
+    /// In words, as subjects of verdicts have it.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { quantity, norm, sample, reference, time_factor, probe } = self;
+        match (reference.as_str(), probe) {
+            (NO_REFERENCE, None) => write!(out, "{} without reference", quantity.name())?,
+            (NO_REFERENCE, Some(depth)) => {
+                write!(out, "{} at ζ = {depth} without reference", quantity.name())?;
+            }
+            _ => write!(out, "{} {norm} {} against {reference}", quantity.name(), sample.name())?,
+        }
+        write!(out, " at T_v = {time_factor}")
+    }
 }
 
 /// One expectation.
@@ -89,7 +113,7 @@ pub struct Expectation {
     pub mapping_back: Option<bool>,
     /// Which error.
     pub measure: Measure,
-    /// Reference, typed; none where a series is held against itself.
+    /// Reference, typed; none where a series is held against itself or against nothing.
     pub reference: Option<ReferenceKind>,
     /// Axis of the series.
     pub axis: Axis,

@@ -204,7 +204,9 @@ pub struct ExpectTable {
     pub spread: Typed<LevelTable>,
     pub class: Typed<String>,
     pub floor: Typed<FloorTable>,
-    pub oscillation: Typed<OscillationTable>,
+    pub oscillation: Typed<BelowTable>,
+    pub uncertainty: Typed<BelowTable>,
+    pub probe: Typed<f64>,
     pub xfail: Typed<XfailTable>,
     pub tier: Typed<String>,
 }
@@ -267,7 +269,7 @@ pub struct FloorTable {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct OscillationTable {
+pub struct BelowTable {
     pub below: Spanned<f64>,
 }
 

@@ -5,6 +5,7 @@ mod check;
 mod diagnostic;
 mod expectation;
 mod file;
+mod perturbed;
 mod runner;
 mod shipped;
 mod sweep;
@@ -14,9 +15,10 @@ pub use crate::solver::integrator::IntegratorKind;
 pub use case::{Case, Task, step_label};
 pub use check::{Purpose, Study};
 pub use diagnostic::{Diagnostic, StudyError};
-pub use expectation::{Axis, Expectation, Measure, NEXT_FINER};
+pub use expectation::{Axis, Expectation, Measure, NEXT_FINER, NO_REFERENCE};
 pub use file::StudySource;
 pub(crate) use file::{MethodTable, StudyFile};
+pub use perturbed::LastDigit;
 pub use runner::{
     Progress, RunError, RunOptions, RunReport, Selected, Shard, TimingReport, estimated_updates, run_case,
     run_studies, run_study, time_study,

@@ -291,13 +291,7 @@ fn run_and_keep(
         label: case.label(),
         failure: match &record.status {
             Status::Ok => None,
-            Status::Failed(failure) => Some(format!(
-                "{} at step {}, t = {:.4e} s: {}",
-                failure.kind.name(),
-                failure.step,
-                failure.time,
-                failure.reason
-            )),
+            Status::Failed(failure) => Some(failure.to_string()),
         },
     });
     Ok(record)
@@ -328,14 +322,7 @@ pub fn run_case(
     if case.task == Task::Stability {
         return stability_of(case);
     }
-    let problem = SceneProblem::new(
-        case.scene,
-        &case.column,
-        &case.material,
-        case.method,
-        case.cells,
-        case.points_per_cell,
-    )?;
+    let problem = problem_of(case)?;
     let schedule = schedule_of(case, kernel);
     let start = Instant::now();
     let outcome = problem.run(&schedule, observe);
@@ -346,16 +333,14 @@ pub fn run_case(
     Ok(record)
 }
 
+fn problem_of(case: &Case) -> Result<SceneProblem, ExactError> {
+    let Case { scene, column, material, method, cells, points_per_cell, .. } = case;
+    SceneProblem::new(*scene, column, material, *method, *cells, *points_per_cell)
+}
+
 /// Predicts and observes the critical step of a case.
 fn stability_of(case: &Case) -> Result<Record, ExactError> {
-    let problem = SceneProblem::new(
-        case.scene,
-        &case.column,
-        &case.material,
-        case.method,
-        case.cells,
-        case.points_per_cell,
-    )?;
+    let problem = problem_of(case)?;
     let end = case.time_factors.last().map_or(0.0, |factor| factor * case.seconds_per_time_factor());
     Ok(record_of_critical_step(case, problem.critical_step(&case.settings, end, MOST_PROBE_STEPS)))
 }

@@ -9,6 +9,7 @@ pub fn shipped_studies() -> Vec<StudySource> {
         ("studies/terzaghi-floor.toml", include_str!("../../studies/terzaghi-floor.toml")),
         ("studies/terzaghi-points.toml", include_str!("../../studies/terzaghi-points.toml")),
         ("studies/terzaghi-time-step.toml", include_str!("../../studies/terzaghi-time-step.toml")),
+        ("studies/value-uncertainty.toml", include_str!("../../studies/value-uncertainty.toml")),
         ("studies/terzaghi-methods.toml", include_str!("../../studies/terzaghi-methods.toml")),
         ("studies/terzaghi-integrators.toml", include_str!("../../studies/terzaghi-integrators.toml")),
         ("studies/work-precision.toml", include_str!("../../studies/work-precision.toml")),

@@ -11,6 +11,9 @@ pub(super) struct Tick {
     pub label: Option<String>,
 }
 
+/// Characters of a label that are still read at a glance.
+const LONGEST_LABEL: usize = 8;
+
 /// What labels need: the size of their font, and whether they stand beside each other or above.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Room {
@@ -36,9 +39,19 @@ fn given(span: &Span, values: &[f64]) -> Vec<Tick> {
         .iter()
         .map(|&value| Tick {
             value,
-            label: Some(if plain { minus(format!("{value}")) } else { power(value, None) }),
+            label: Some(if plain { minus(short(value)) } else { power(value, None) }),
         })
         .collect()
+}
+
+/// A number in full, or to four digits where that is too long for a label.
+fn short(value: f64) -> String {
+    let full = format!("{value}");
+    if full.len() <= LONGEST_LABEL {
+        return full;
+    }
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    format!("{rounded}")
 }
 
 fn automatic(ruler: &Ruler, room: Room) -> Vec<Tick> {
@@ -202,5 +215,6 @@ mod tests {
             .filter_map(|t| t.label)
             .collect();
         assert_eq!(labels, ["0.2", "0.1", "0.05", "0.025"]);
+        assert_eq!([1.0 / 3.0, 0.015_625, 0.007_812_5].map(short), ["0.3333", "0.015625", "0.007812"]);
     }
 }

@@ -113,6 +113,12 @@ fn heading(axis: Axis) -> &'static str {
     }
 }
 
+/// A measure in the norm in which its quantity is reported first.
+fn first_measure(quantity: Quantity, sample: Sample, reference: &str, time_factor: f64) -> Measure {
+    let norm = first_norm(quantity);
+    Measure { quantity, sample, norm, reference: reference.to_owned(), time_factor, probe: None }
+}
+
 fn figure(
     results: &StudyResults<'_>,
     all: &[Path<'_>],
@@ -122,19 +128,16 @@ fn figure(
     reference: &str,
     time_factor: f64,
 ) -> Option<Figure> {
-    let measure = Measure {
-        quantity,
-        sample,
-        norm: first_norm(quantity),
-        reference: reference.to_owned(),
-        time_factor,
-    };
+    let measure = first_measure(quantity, sample, reference, time_factor);
     let summaries: Vec<SeriesSummary<'_>> = all.iter().map(|path| path.summary(&measure)).collect();
     if summaries.iter().all(|summary| summary.series.levels().iter().all(|level| level.error.is_none())) {
         return None;
     }
     let title = format!("Error of the {}", labels::measure(&measure));
-    let ticks = summaries[0].series.levels().iter().map(|level| level.size).collect();
+    let sizes = summaries.iter().flat_map(|summary| summary.series.levels()).map(|level| level.size);
+    let mut ticks: Vec<f64> = sizes.collect();
+    ticks.sort_by(f64::total_cmp);
+    ticks.dedup();
     let mut chart = Chart::new(
         title,
         ChartAxis::log10(labels::axis(axis)).with_ticks(ticks),
@@ -152,15 +155,20 @@ fn figure(
     if shows_orders(axis, reference) {
         add_triangles(&mut chart, &summaries, &labels.each);
     }
-    let floor = summaries.iter().find_map(|summary| summary.classification.floor.clone());
-    if let Some(floor) = floor.filter(|_| axis == Axis::Cells) {
+    let floors: Vec<f64> = summaries
+        .iter()
+        .filter_map(|summary| summary.classification.floor.as_ref().map(|floor| floor.value))
+        .collect();
+    // A floor of one method among many is told in the table; one that most share is the figure's.
+    let is_shared = 2 * floors.len() >= summaries.len();
+    if let Some(floor) = floors.first().filter(|_| axis == Axis::Cells && is_shared) {
         let kind: Option<ReferenceKind> = reference.parse().ok();
         let cause = kind
             .and_then(|kind| {
                 results.study.scene.model_difference(kind, &summaries[0].path.records[0].case.material)
             })
             .unwrap_or("of unknown cause");
-        chart.rules.push(Rule { axis: Direction::Y, at: floor.value, label: format!("floor: {cause}") });
+        chart.rules.push(Rule { axis: Direction::Y, at: *floor, label: format!("floor: {cause}") });
     }
     let name = slug(&format!(
         "{}-{}-{}-{}-{reference}",
@@ -238,13 +246,7 @@ fn orders_table(
     let mut rows = Vec::new();
     let mut notes = Vec::new();
     for (quantity, sample) in panels(results) {
-        let measure = Measure {
-            quantity,
-            sample,
-            norm: first_norm(quantity),
-            reference: reference.to_owned(),
-            time_factor,
-        };
+        let measure = first_measure(quantity, sample, reference, time_factor);
         for (path, label) in all.iter().zip(&labels.each) {
             let summary = path.summary(&measure);
             let told = summary.classification.floor.as_ref().filter(|_| axis != Axis::PointsPerCell);

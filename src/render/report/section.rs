@@ -4,6 +4,7 @@ use super::{StudyResults, checks, convergence, layer, precision, profiles, stabi
 use crate::exact::ExactError;
 use crate::render::page::{Block, Section};
 use crate::render::table::Mood;
+use crate::render::uncertainties;
 use crate::render::verdicts::judgements_table;
 use crate::study::Axis;
 
@@ -24,6 +25,7 @@ pub fn of_study(results: &StudyResults<'_>) -> Result<Section, ExactError> {
     for axis in Axis::REFINEMENTS {
         blocks.extend(convergence::blocks(results, axis));
     }
+    blocks.extend(uncertainties::table_of(&results.judgements).map(Block::Table));
     let is_solved = results.records.iter().any(|record| record.stability.is_none());
     blocks.extend(stability::blocks(results));
     if is_solved {

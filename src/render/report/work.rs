@@ -59,6 +59,7 @@ fn measure_of(results: &StudyResults<'_>) -> Option<Measure> {
         norm: first_norm(Quantity::Pressure),
         reference: results.study.references.first()?.name().to_owned(),
         time_factor: *record.case.time_factors.last()?,
+        probe: None,
     })
 }
 

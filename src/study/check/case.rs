@@ -155,6 +155,7 @@ impl Checker<'_> {
                 norm: Norm::ALL[norm],
                 reference: reference.name().to_owned(),
                 time_factor,
+                probe: None,
             },
             below: range.get_ref().below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
             above: range.get_ref().above.as_ref().map_or(0.0, |typed| *typed.get_ref()),

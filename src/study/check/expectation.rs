@@ -7,7 +7,7 @@ use crate::assess::norms::Norm;
 use crate::exact::ReferenceKind;
 use crate::record::{Quantity, Sample};
 use crate::scene::SceneKind;
-use crate::study::expectation::{Axis, Expectation, Measure, NEXT_FINER};
+use crate::study::expectation::{Axis, Expectation, Measure, NEXT_FINER, NO_REFERENCE};
 use crate::study::file::{ExpectTable, LevelTable};
 use crate::study::tier::Tier;
 use toml::Spanned;
@@ -40,11 +40,16 @@ impl Checker<'_> {
             return None;
         };
         let axis = Axis::ALL[self.choice(table.axis.as_ref(), "axis", &Axis::ALL.map(Axis::name), 0)?];
-        let reference = if self.is_held_against_itself(table, axis)? {
-            None
-        } else {
-            Some(self.expected_reference(table, scene, references)?)
+        let own_word = table.reference.as_ref().map(|word| word.get_ref().as_str());
+        let own_word = own_word.filter(|word| [NEXT_FINER, NO_REFERENCE].contains(word));
+        let reference = match own_word {
+            Some(NEXT_FINER) if !self.can_be_held_against_itself(table, axis) => return None,
+            Some(_) => None,
+            None => Some(self.expected_reference(table, scene, references)?),
         };
+        let is_value = own_word == Some(NO_REFERENCE);
+        self.value_is_one_number(entry, scene, quantity, is_value);
+        self.oscillation_is_measured(table, scene, quantity, sample);
         let method = match &table.method {
             Some(typed) => Some(self.method(typed)?),
             None => None,
@@ -66,6 +71,7 @@ impl Checker<'_> {
                 below: floor.get_ref().below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
             }),
             spread: table.spread.as_ref().and_then(|level| self.error_bound(level, axis, height)),
+            uncertainty_below: table.uncertainty.as_ref().map(|bound| *bound.get_ref().below.get_ref()),
             oscillation_below: table.oscillation.as_ref().map(|bound| *bound.get_ref().below.get_ref()),
             xfail: table.xfail.as_ref().map(|known| KnownFailure {
                 strict: known.get_ref().strict.as_ref().is_none_or(|typed| *typed.get_ref()),
@@ -93,8 +99,9 @@ impl Checker<'_> {
                 quantity,
                 sample,
                 norm,
-                reference: reference.map_or(NEXT_FINER, |kind| kind.name()).to_owned(),
+                reference: reference.map_or(own_word.unwrap_or_default(), |kind| kind.name()).to_owned(),
                 time_factor,
+                probe: table.probe.as_ref().map(|typed| *typed.get_ref()),
             },
             reference,
             axis,
@@ -106,19 +113,88 @@ impl Checker<'_> {
         (self.diagnostics.len() == before).then_some(expectation)
     }
 
-    /// Whether an expectation holds a series against itself; none where its axis forbids it.
-    fn is_held_against_itself(&mut self, table: &ExpectTable, axis: Axis) -> Option<bool> {
-        let asked = table.reference.as_ref().filter(|word| word.get_ref() == NEXT_FINER);
-        match asked {
-            Some(word) if axis != Axis::TimeStep => {
+    /// Whether a series may be held against its own next finer level; a complaint where not.
+    fn can_be_held_against_itself(&mut self, table: &ExpectTable, axis: Axis) -> bool {
+        let Some(word) = table.reference.as_ref().filter(|_| axis != Axis::TimeStep) else { return true };
+        self.complain(
+            word.span(),
+            "the next finer level has other places",
+            "\"next-finer\" is for `axis = \"time_step\"`; a settlement or a `probe` takes \"none\"",
+        );
+        false
+    }
+
+    /// Complains where a quantity without a reference is more than one number, and where one with a
+    /// reference is asked what only such a number has.
+    fn value_is_one_number(
+        &mut self,
+        entry: &Spanned<ExpectTable>,
+        scene: SceneKind,
+        quantity: Quantity,
+        is_value: bool,
+    ) {
+        let table = entry.get_ref();
+        let is_field = quantity != Quantity::Settlement;
+        if let Some(probe) = &table.probe {
+            let depth = *probe.get_ref();
+            if !(depth > 0.0 && depth < 1.0) {
                 self.complain(
-                    word.span(),
-                    "the next finer level has other places",
-                    "\"next-finer\" is for `axis = \"time_step\"`",
+                    probe.span(),
+                    format!("a probe at a depth of {depth}"),
+                    "it lies between 0, the surface, and 1, the base, both excluded",
                 );
-                None
             }
-            asked => Some(asked.is_some()),
+            if !is_value || !is_field || scene.is_plane() {
+                self.complain(
+                    probe.span(),
+                    "a probe is for a field of a column that is held against no reference",
+                    "add `reference = \"none\"`, or leave the key out",
+                );
+            }
+        }
+        if !is_value {
+            if let Some(typed) = &table.uncertainty {
+                self.complain(
+                    typed.span(),
+                    "an error against a reference needs no uncertainty",
+                    "add `reference = \"none\"`, or bound the error itself with `at`",
+                );
+            }
+            return;
+        }
+        if is_field && table.probe.is_none() {
+            self.complain(
+                entry.span(),
+                format!("without a reference the {} is no single number", quantity.name()),
+                if scene.is_plane() { "ask for the settlement" } else { "add a depth, like `probe = 0.5`" },
+            );
+        }
+        for (key, place) in [
+            ("at", table.at.as_ref().map(Spanned::span)),
+            ("oscillation", table.oscillation.as_ref().map(Spanned::span)),
+        ] {
+            if let Some(place) = place {
+                let message = format!("without a reference there is no error for `{key}` to bound");
+                self.complain(place, message, "bound the `uncertainty`, or name a reference");
+            }
+        }
+    }
+
+    /// Complains where the oscillation of a plane is asked of anything but what it is measured of.
+    fn oscillation_is_measured(
+        &mut self,
+        table: &ExpectTable,
+        scene: SceneKind,
+        quantity: Quantity,
+        sample: Sample,
+    ) {
+        let is_measured = (quantity, sample) == (Quantity::Pressure, Sample::Points);
+        if let Some(typed) = table.oscillation.as_ref().filter(|_| scene.is_plane() && !is_measured) {
+            self.complain(
+                typed.span(),
+                format!("the scene `{}` measures the wiggle of the pressure at the points", scene.name()),
+                "leave `quantity` and `sample` out, or the oscillation",
+            );
         }
     }
 

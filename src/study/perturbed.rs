@@ -1,0 +1,46 @@
+//! A study with the last digit of one input changed: what its results move by is round-off.
+
+use super::check::{PlannedCase, Study};
+
+/// The input whose last digit changes. Every operator's entries follow, and with them every rounding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LastDigit {
+    /// Young's modulus, upwards.
+    Stiffness,
+    /// Hydraulic conductivity, downwards.
+    Conductivity,
+}
+
+impl LastDigit {
+    /// Every such input.
+    pub const ALL: [Self; 2] = [Self::Stiffness, Self::Conductivity];
+
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stiffness => "last digit of the stiffness",
+            Self::Conductivity => "last digit of the conductivity",
+        }
+    }
+
+    /// Changes the digit.
+    pub fn change(self, youngs_modulus: &mut f64, hydraulic_conductivity: &mut f64) {
+        match self {
+            Self::Stiffness => *youngs_modulus = youngs_modulus.next_up(),
+            Self::Conductivity => *hydraulic_conductivity = hydraulic_conductivity.next_down(),
+        }
+    }
+}
+
+impl Study {
+    /// The study with the last digit of an input of every case changed; its cases keep their labels.
+    #[must_use]
+    pub fn perturbed(&self, digit: LastDigit) -> Self {
+        let planned = self.planned.iter().cloned().map(|mut planned: PlannedCase| {
+            let soil = &mut planned.case.material;
+            digit.change(&mut soil.youngs_modulus, &mut soil.hydraulic_conductivity);
+            planned
+        });
+        Self { planned: planned.collect(), ..self.clone() }
+    }
+}
