@@ -3,6 +3,7 @@
 use super::body::{Body, ShapeFunction};
 use super::grid::{Tensor, Vector};
 use super::method::{Configuration, PressureIntegration, Recovery};
+use super::profile::{Phase, enter};
 use super::scheme::Scheme;
 use serde::{Deserialize, Serialize};
 
@@ -64,13 +65,18 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         self.reset_grid(settings); // (1)
+        enter(Phase::Forces);
         self.nodal_accelerations(kick, settings.drag); // (2)
+        enter(Phase::Motion);
         self.nodal_velocities(kick, dt); // (3)
         self.advance_points(kick, dt, settings.flip); // (4)
         if settings.mapping_back {
+            enter(Phase::MapVelocities);
             self.map_velocities(); // (5)
         }
+        enter(Phase::Stresses);
         self.update_effective_stress(dt); // (6)
+        enter(Phase::Recovery);
         self.update_pressure(dt); // (7), and (8) is the next step
         if self.remembers_in_cells() {
             self.remember_in_cells();
@@ -80,10 +86,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// (1) Operators, masses and velocities on the points' places. Where nothing moves, the
     /// operators stand, and velocities mapped back by the last step are already there.
     fn reset_grid(&mut self, settings: &ExplicitSettings) {
+        enter(Phase::BuildWeights);
         self.follow_places();
         if self.configuration.deforms() {
+            enter(Phase::MapVelocities);
             self.map_masses_and_velocities();
         } else if !settings.mapping_back {
+            enter(Phase::MapVelocities);
             self.map_velocities();
         }
     }

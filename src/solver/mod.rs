@@ -28,6 +28,7 @@ pub mod nodes;
 pub mod outcome;
 pub mod points;
 pub mod prediction;
+pub mod profile;
 pub mod recovered;
 pub mod recovery;
 pub mod run;
