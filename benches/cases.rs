@@ -7,11 +7,56 @@ use oedometer::scene::{Column, SceneKind};
 use oedometer::solver::explicit::{Drag, ExplicitSettings};
 use oedometer::solver::material::Material;
 use oedometer::solver::method::{Configuration, Method};
+use oedometer::solver::outcome::Counters;
 use oedometer::solver::run::{Kernel, TimeStepRule};
 use oedometer::study::{Case, IntegratorKind, run_case};
 
+/// Cells of the table of linear cost.
+const MESHES: [usize; 5] = [40, 80, 160, 320, 640];
+/// Rounds of the table; the least of each mesh counts.
+const ROUNDS: usize = 7;
+
 fn main() {
     divan::main();
+    if std::env::args().all(|argument| argument != "--test" && argument != "--list") {
+        print_linear_cost();
+    }
+}
+
+/// The implicit integrator to `T_v` = 1: its cost must grow as cells times steps. Work counters are
+/// exact; of the wall times, taken in turns over the meshes, the least counts.
+fn print_linear_cost() {
+    let cases = MESHES.map(|cells| implicit_case("GC-SRI-patch", SceneKind::Terzaghi, cells));
+    let mut least = [f64::INFINITY; MESHES.len()];
+    let mut counters = [Counters::default(); MESHES.len()];
+    for _ in 0..ROUNDS {
+        for (i, case) in cases.iter().enumerate() {
+            let record = solve(case, Kernel::Fastest);
+            least[i] = record.wall.iter().map(|sample| sample.seconds).fold(least[i], f64::min);
+            counters[i] = record.counters;
+        }
+    }
+    println!("\nimplicit to T_v = 1: cost over cells and steps, least of {ROUNDS} rounds");
+    println!(
+        "{:>6}{:>8}{:>16}{:>16}{:>12}{:>20}{:>10}",
+        "cells", "steps", "factorisations", "cells × steps", "wall, ms", "ns a cell and step", "exponent"
+    );
+    for i in 0..MESHES.len() {
+        let work = |i: usize| (MESHES[i] as u64 * counters[i].steps) as f64;
+        let exponent = match i.checked_sub(1) {
+            Some(last) => format!("{:.2}", (least[i] / least[last]).ln() / (work(i) / work(last)).ln()),
+            None => String::new(),
+        };
+        println!(
+            "{:>6}{:>8}{:>16}{:>16}{:>12.3}{:>20.1}{exponent:>10}",
+            MESHES[i],
+            counters[i].steps,
+            counters[i].factorisations,
+            work(i),
+            1e3 * least[i],
+            1e9 * least[i] / work(i),
+        );
+    }
 }
 
 #[divan::bench(args = [5, 10, 20], sample_count = 10)]
@@ -77,8 +122,10 @@ fn case(method: &str, cells: usize, configuration: Configuration) -> Case {
 
 /// One item is one point in one step.
 fn bench_case(bencher: Bencher, case: &Case, kernel: Kernel) {
-    let solve = || -> Record {
-        run_case(case, case.scene.references(), kernel, true, &|_, _| true).expect("a possible column")
-    };
-    bencher.counter(ItemsCount::new(solve().counters.point_updates)).bench_local(solve);
+    let updates = solve(case, kernel).counters.point_updates;
+    bencher.counter(ItemsCount::new(updates)).bench_local(|| solve(case, kernel));
+}
+
+fn solve(case: &Case, kernel: Kernel) -> Record {
+    run_case(case, case.scene.references(), kernel, true, &|_, _| true).expect("a possible column")
 }

@@ -67,7 +67,7 @@ impl Place {
 fn records(study: &str) -> Vec<Record> {
     let source = StudySource { name: "short.toml".to_owned(), text: study.to_owned() };
     let study = Study::check(&source).expect("a sound study");
-    let options = RunOptions { jobs: 1, tier: Tier::Ci, shard: None, resume: false };
+    let options = RunOptions::whole(Tier::Ci, 1);
     run_study(&study, &options, None, &|_| {}).records
 }
 

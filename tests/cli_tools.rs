@@ -225,7 +225,7 @@ fn an_explanation_says_what_changed_against_the_golden_values() {
     let folder = place();
     let source = StudySource { name: "short.toml".to_owned(), text: STUDY.to_owned() };
     let study = Study::check(&source).expect("sound");
-    let options = RunOptions { jobs: 1, tier: Tier::Ci, shard: None, resume: false };
+    let options = RunOptions::whole(Tier::Ci, 1);
     let mut golden =
         GoldenFile::of("short", &run_study(&study, &options, None, &|_| {}).records, "for a test");
     let name = "MPM explicit cells=4 points=2 stable=0.8 | pressure centres l2 terzaghi T_v=0.02";

@@ -44,7 +44,7 @@ order = { value = 2.0 }
 fn small_study() -> (Study, Vec<Record>) {
     let source = StudySource { name: "small.toml".to_owned(), text: STUDY.to_owned() };
     let study = Study::check(&source).expect("a sound study");
-    let options = RunOptions { jobs: 1, tier: Tier::Full, shard: None, resume: false };
+    let options = RunOptions::whole(Tier::Full, 1);
     let mut records = run_study(&study, &options, None, &|_| {}).records;
     for record in &mut records {
         // What changes from day to day does not belong in a snapshot.

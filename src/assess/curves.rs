@@ -45,6 +45,15 @@ pub fn theory_consolidation(
     times.iter().map(|time| Ok((*time, reference.degree_of_consolidation(*time)?))).collect()
 }
 
+/// Theory's degree of consolidation by settlement at a time factor.
+///
+/// # Errors
+/// When the reference refuses the case.
+pub fn theory_degree(case: &Case, kind: ReferenceKind, time_factor: f64) -> Result<f64, ExactError> {
+    let parameters = column_parameters(&case.column, &case.material);
+    Reference::new(kind, &parameters, &[time_factor])?.degree_of_consolidation(time_factor)
+}
+
 /// A run's `p/q` at its points over depth, at the output of a time factor.
 pub fn computed_isochrone(record: &Record, time_factor: f64) -> Vec<(f64, f64)> {
     let index = record.case.time_factors.iter().position(|factor| *factor == time_factor);

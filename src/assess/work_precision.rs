@@ -2,7 +2,7 @@
 
 use super::pareto::{CostLevel, CostPoint, Prediction, front, predict_next};
 use super::statistics::{Spread, noise_floor, paired_ratio, spread};
-use super::summary::{first_norm, paths};
+use super::summary::{Path, first_norm, paths};
 use crate::record::{Quantity, Record, Sample, Status};
 use crate::study::{Axis, Measure};
 
@@ -42,6 +42,8 @@ pub struct NextLevel {
     pub finest: CostPoint,
     /// Wall time and error of the next.
     pub next: Prediction,
+    /// The finest level as the coarser ones predict it: how far such predictions are to be trusted.
+    pub finest_predicted: Option<Prediction>,
 }
 
 /// Timed runs of one study.
@@ -134,7 +136,7 @@ fn session_noise(runs: &[TimedRun<'_>]) -> Option<f64> {
 }
 
 fn next_levels(records: &[Record], reference: &str) -> Vec<NextLevel> {
-    let of_path = |path: super::summary::Path<'_>| {
+    let of_path = |path: Path<'_>| {
         let levels: Vec<CostLevel> = path
             .records
             .iter()
@@ -144,13 +146,62 @@ fn next_levels(records: &[Record], reference: &str) -> Vec<NextLevel> {
             })
             .collect();
         let last = *path.records.last()?.case.time_factors.last()?;
-        let classification = path.summary(&pressure(reference, last)).classification;
-        let next = predict_next(&levels, &classification, REFINEMENT).ok()?;
-        Some(NextLevel { label: path.label(), finest: levels.last()?.point, next })
+        let class_of = |path: &Path<'_>| path.summary(&pressure(reference, last)).classification;
+        let next = predict_next(&levels, &class_of(&path), REFINEMENT).ok()?;
+        let (finest, coarser) = levels.split_last()?;
+        let known = path.records.len() - 1;
+        let coarser_path = Path { axis: path.axis, records: path.records[..known].to_vec() };
+        let ratio = coarser.last()?.size / finest.size;
+        let finest_predicted = predict_next(coarser, &class_of(&coarser_path), ratio).ok();
+        Some(NextLevel { label: path.label(), finest: finest.point, next, finest_predicted })
     };
     paths(records, Axis::Cells)
         .into_iter()
         .filter(|path| path.records.len() > 2)
         .filter_map(of_path)
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::WallSample;
+    use crate::study::{RunOptions, Study, StudySource, Tier, run_study};
+
+    const STUDY: &str = r#"title = "One more level"
+scene = "terzaghi"
+
+[output]
+time_factors = [0.05, 0.2]
+
+[[sweep]]
+method = ["GC-SRI-patch", "MPM"]
+integrator = ["implicit"]
+cells = [5, 10, 20, 40, 80]
+time_step = [{ growth = 0.005 }]
+"#;
+
+    #[test]
+    fn the_coarser_levels_predict_cost_and_error_of_the_finest() {
+        let source = StudySource { name: "levels.toml".to_owned(), text: STUDY.to_owned() };
+        let study = Study::check(&source).expect("a sound study");
+        let mut records = run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records;
+        for record in &mut records {
+            // A cost that is the same on every machine.
+            let seconds = 1e-9 * record.counters.point_updates as f64;
+            record.wall = vec![WallSample { seconds, alone: true }; 2];
+        }
+        let precision = WorkPrecision::of(&records, "terzaghi").expect("timed runs");
+        assert_eq!(precision.next_levels.len(), 2);
+        for level in &precision.next_levels {
+            let predicted = level.finest_predicted.expect("four coarser levels");
+            let cost = predicted.cost / level.finest.cost;
+            let error = predicted.error.expect("it converges") / level.finest.error;
+            assert!((cost - 1.0).abs() < 0.15, "{}: cost {cost} of the measured one", level.label);
+            assert!((error - 1.0).abs() < 0.1, "{}: error {error} of the measured one", level.label);
+        }
+        // Within the tightest tolerance that both reach, the cheapest is the method of second order.
+        let cheapest = precision.cheapest[1].run.as_ref().expect("within 0.1 %");
+        assert!(cheapest.record.case.label().starts_with("GC-SRI-patch"), "{}", cheapest.record.case.label());
+    }
 }

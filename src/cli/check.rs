@@ -10,7 +10,7 @@ use crate::golden::{CaseChange, Difference, GoldenFile, REFERENCES};
 use crate::record::{Record, write_whole};
 use crate::render::annotations::annotations_of;
 use crate::render::{junit, verdicts};
-use crate::study::{Study, Tier, run_studies};
+use crate::study::{RunOptions, Selected, Study, Tier, run_studies};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -95,7 +95,9 @@ pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Rec
         _ => "check",
     };
     let bar = StudyBar::new(name);
-    let reports = run_studies(studies, Tier::Ci, jobs, &|progress| bar.tell(progress));
+    let selected: Vec<Selected<'_>> = studies.iter().map(|study| Selected { study, store: None }).collect();
+    let options = RunOptions::whole(Tier::Ci, jobs);
+    let reports = run_studies(&selected, &options, &|progress| bar.tell(progress));
     bar.finish();
     reports
         .into_iter()

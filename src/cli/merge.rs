@@ -64,7 +64,7 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
     }
     let there = cases.len() - holes.len();
     if there > 0 {
-        let table = write_table(study, &target)?;
+        let table = write_table(study, &target, &[])?;
         eprintln!("{}: {there} of {} cases, {}", study.name, cases.len(), table.display());
     }
     for case in holes.iter().take(MOST_HOLES) {

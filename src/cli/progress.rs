@@ -5,14 +5,13 @@ use crate::study::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 
-/// Bar of one study.
+/// Bar of a study, or of several at once.
 pub struct StudyBar {
     bar: ProgressBar,
-    name: String,
 }
 
 impl StudyBar {
-    /// A bar for a study; hidden where standard error is no terminal.
+    /// A bar with a name; hidden where standard error is no terminal.
     pub fn new(name: &str) -> Self {
         let bar = ProgressBar::new(0);
         if !std::io::stderr().is_terminal() {
@@ -23,7 +22,7 @@ impl StudyBar {
             bar.set_style(style.progress_chars("=> "));
         }
         bar.set_prefix(name.to_owned());
-        Self { bar, name: name.to_owned() }
+        Self { bar }
     }
 
     /// Takes a word of the runner.
@@ -35,10 +34,9 @@ impl StudyBar {
                 self.bar.set_message(format!("{cases} cases{taken_up}"));
             }
             Progress::Advanced(work) => self.bar.inc(work),
-            Progress::Finished { label, failure } => {
+            Progress::Finished { study, label, failure } => {
                 if let Some(failure) = failure {
-                    let name = &self.name;
-                    self.bar.suspend(|| eprintln!("{name}: {label}: {failure}"));
+                    self.bar.suspend(|| eprintln!("{study}: {label}: {failure}"));
                 }
             }
         }

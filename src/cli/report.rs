@@ -2,10 +2,10 @@
 
 use super::exit::Exit;
 use super::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
-use crate::record::{Record, write_whole};
+use crate::record::write_whole;
 use crate::render::page::{figures, render_html, render_markdown};
 use crate::render::report::{StudyResults, page_of};
-use crate::study::{RunOptions, Study, Tier};
+use crate::study::{RunOptions, Tier};
 use std::path::PathBuf;
 
 /// Arguments of `report`.
@@ -28,13 +28,13 @@ pub struct Arguments {
 /// Runs, renders and writes `index.html`, `report.md` and `figures/`.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let studies = load_or_shipped(&arguments.studies)?;
-    let options = RunOptions { jobs: jobs_of(arguments.jobs), tier: Tier::Full, shard: None, resume: true };
-    let mut runs: Vec<(&Study, Vec<Record>)> = Vec::new();
-    for study in &studies {
-        runs.push((study, run_and_store(study, study, &options, &arguments.records)?.records));
-    }
-    let results: Vec<StudyResults<'_>> =
-        runs.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();
+    let options = RunOptions { resume: true, ..RunOptions::whole(Tier::Full, jobs_of(arguments.jobs)) };
+    let reports = run_and_store(&studies, &studies, &options, &arguments.records)?;
+    let results: Vec<StudyResults<'_>> = studies
+        .iter()
+        .zip(&reports)
+        .map(|(study, report)| StudyResults::new(study, &report.records, Tier::Full))
+        .collect();
     let page = page_of(&results)?;
     let html = arguments.out.join("index.html");
     write_whole(&html, render_html(&page)?.as_bytes())?;

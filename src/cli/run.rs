@@ -4,9 +4,12 @@ use super::exit::{Ended, Exit};
 use super::progress::StudyBar;
 use crate::record::{Provenance, Record, RecordStore, tidy_csv, write_whole};
 use crate::study::{
-    Purpose, RunOptions, RunReport, Shard, Study, StudySource, Tier, run_study, shipped_studies, time_study,
+    Case, Purpose, RunOptions, RunReport, Selected, Shard, Study, StudySource, Tier, run_studies,
+    shipped_studies, time_study,
 };
 use clap::ValueEnum;
+use std::borrow::Cow;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// Folder of results where none is named.
@@ -69,13 +72,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         shard: arguments.shard.as_deref().map(shard_of).transpose()?,
         resume: arguments.resume,
     };
+    let selected: Vec<Study> = studies
+        .iter()
+        .map(|study| arguments.case.as_ref().map_or_else(|| study.clone(), |hash| with_case(study, hash)))
+        .collect();
     let mut exit = Exit::NothingSelected;
-    for study in &studies {
-        let selected = match &arguments.case {
-            Some(hash) => with_case(study, hash),
-            None => study.clone(),
-        };
-        let report = run_and_store(study, &selected, &options, &arguments.out)?;
+    for (study, report) in studies.iter().zip(run_and_store(&studies, &selected, &options, &arguments.out)?) {
         if !report.records.is_empty() && exit == Exit::NothingSelected {
             exit = Exit::Pass;
         }
@@ -96,49 +98,71 @@ fn with_case(study: &Study, hash: &str) -> Study {
     selected
 }
 
-/// Runs the selected cases of a study, times them where it asks for it, and writes its CSV.
+/// Runs the selected cases of studies side by side, then times alone those of the studies that ask
+/// for it, and writes a CSV a study; one report a study.
 pub fn run_and_store(
-    study: &Study,
-    selected: &Study,
+    studies: &[Study],
+    selected: &[Study],
     options: &RunOptions,
     results: &Path,
-) -> anyhow::Result<RunReport> {
-    let store = RecordStore::new(results, &study.name);
-    let bar = StudyBar::new(&study.name);
+) -> anyhow::Result<Vec<RunReport>> {
+    let stores: Vec<RecordStore> =
+        studies.iter().map(|study| RecordStore::new(results, &study.name)).collect();
+    let kept = selected.iter().zip(&stores).map(|(study, store)| Selected { study, store: Some(store) });
+    let name = match studies {
+        [study] => study.name.clone(),
+        _ => format!("{} studies", studies.len()),
+    };
+    let bar = StudyBar::new(&name);
     let tell = |progress| bar.tell(progress);
-    let mut report = run_study(selected, options, Some(&store), &tell);
-    time_study(selected, &mut report.records, Some(&store), &tell)?;
+    let mut reports = run_studies(&kept.collect::<Vec<_>>(), options, &tell);
+    for ((study, store), report) in selected.iter().zip(&stores).zip(&mut reports) {
+        time_study(study, &mut report.records, Some(store), &tell)?;
+    }
     bar.finish();
-    if let Some(error) = report.errors.pop() {
-        return Err(error.into());
+    let mut first_error = None;
+    for ((study, store), report) in studies.iter().zip(&stores).zip(&mut reports) {
+        if let Some(error) = report.errors.pop() {
+            first_error = first_error.or(Some(error));
+        } else if !report.records.is_empty() {
+            tell_of(study, report, &write_table(study, store, &report.records)?);
+        }
     }
-    if report.records.is_empty() {
-        return Ok(report);
+    match first_error {
+        Some(error) => Err(error.into()),
+        None => Ok(reports),
     }
-    let table = write_table(study, &store)?;
-    let failed = report.failed().count();
+}
+
+fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     eprintln!(
-        "{}: {} cases ({} from disk, {failed} failed), {}",
+        "{}: {} cases ({} from disk, {} failed), {}",
         study.name,
         report.records.len(),
         report.resumed,
+        report.failed().count(),
         table.display()
     );
-    Ok(report)
 }
 
 /// Writes the CSV of every record that a store keeps of a study, whichever run made it: a run of
-/// one tier or shard takes nothing away from what others found.
-pub fn write_table(study: &Study, store: &RecordStore) -> anyhow::Result<PathBuf> {
-    let records: Vec<Record> =
-        study.cases(Tier::Full).into_iter().filter_map(|case| store.kept(case)).collect();
+/// one tier or shard takes nothing away from what others found. Those that are at hand are not
+/// read again.
+pub fn write_table(study: &Study, store: &RecordStore, at_hand: &[Record]) -> anyhow::Result<PathBuf> {
+    let at_hand: HashMap<&str, &Record> =
+        at_hand.iter().map(|record| (record.hash.as_str(), record)).collect();
+    let record_of = |case: &Case| match at_hand.get(case.hash().as_str()) {
+        Some(record) => Some(Cow::Borrowed(*record)),
+        None => store.kept(case).map(Cow::Owned),
+    };
+    let records: Vec<Cow<'_, Record>> = study.cases(Tier::Full).into_iter().filter_map(record_of).collect();
     let own = Provenance::of_this_program().sources;
     let foreign = records.iter().filter(|record| record.provenance.sources != own).count();
     if foreign > 0 {
         eprintln!("{}: {foreign} older records in the table are of other sources", study.name);
     }
     let table = store.folder().join(format!("{}.csv", study.name));
-    write_whole(&table, tidy_csv(&study.name, &records)?.as_bytes())?;
+    write_whole(&table, tidy_csv(&study.name, records.iter().map(AsRef::as_ref))?.as_bytes())?;
     Ok(table)
 }
 

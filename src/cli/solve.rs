@@ -4,6 +4,8 @@ use super::exit::{Ended, Exit};
 use super::overrides::{self, StudyLines};
 use crate::record::{ERROR_COLUMNS, ErrorRow, Record, Status};
 use crate::render::measures;
+use crate::render::phases::phases_table;
+use crate::solver::profile::{PhaseTime, profiled};
 use crate::solver::run::Kernel;
 use crate::study::{IntegratorKind, Study, run_case};
 use clap::ValueEnum;
@@ -55,6 +57,9 @@ pub struct Arguments {
     /// Visit every point in every step, even where one banded map does the same
     #[arg(long)]
     point_wise: bool,
+    /// Show where the time went, phase by phase
+    #[arg(long)]
+    profile: bool,
     /// Output format
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
@@ -67,12 +72,22 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Err(Ended::with(Exit::NothingSelected, "the command line describes no single case"));
     };
     let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
-    let record = run_case(&planned.case, &study.references, kernel, true, &|_, _| true)?;
+    let solve = || run_case(&planned.case, &study.references, kernel, true, &|_, _| true);
+    let (record, phases) = if arguments.profile { profiled(solve) } else { (solve(), Vec::new()) };
+    let record = record?;
     let mut out = std::io::stdout().lock();
     match arguments.format {
         Format::Csv => out.write_all(csv_of(&record)?.as_bytes())?,
-        Format::Json => writeln!(out, "{}", serde_json::to_string_pretty(&SolveJson::of(&record))?)?,
+        Format::Json => writeln!(out, "{}", serde_json::to_string_pretty(&SolveJson::of(&record, &phases))?)?,
         Format::Table => write!(out, "{}", measures::table_of(&record)?)?,
+    }
+    // A CSV is of one kind of row; its profile goes where notes go.
+    match arguments.format {
+        Format::Table if arguments.profile => {
+            write!(out, "\n{}", phases_table(&phases, &record).to_text()?)?;
+        }
+        Format::Csv if arguments.profile => eprint!("{}", phases_table(&phases, &record).to_text()?),
+        _ => {}
     }
     if let Status::Failed(failure) = &record.status {
         return Err(Ended::with(
@@ -158,11 +173,14 @@ struct SolveJson<'a> {
     failure: Option<&'a crate::solver::outcome::Failure>,
     case: &'a crate::study::Case,
     hash: &'a str,
+    /// Where the time went, with `--profile`.
+    #[serde(skip_serializing_if = "<[PhaseTime]>::is_empty")]
+    phases: &'a [PhaseTime],
     provenance: &'a crate::record::Provenance,
 }
 
 impl<'a> SolveJson<'a> {
-    fn of(record: &'a Record) -> Self {
+    fn of(record: &'a Record, phases: &'a [PhaseTime]) -> Self {
         let failure = match &record.status {
             Status::Ok => None,
             Status::Failed(failure) => Some(failure),
@@ -184,6 +202,7 @@ impl<'a> SolveJson<'a> {
             failure,
             case: &record.case,
             hash: &record.hash,
+            phases,
             provenance: &record.provenance,
         }
     }

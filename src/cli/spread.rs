@@ -2,16 +2,16 @@
 //! digit of an input, by kernel and by build: what the tolerances of golden values are derived from.
 
 use super::accept::refuse_without_origin;
+use super::check::run_quietly;
 use super::exit::{Ended, Exit};
 use super::output::{TableFormat, print_tables};
-use super::progress::StudyBar;
 use super::run::{jobs_of, load_or_shipped};
 use crate::assess::spread::{Spread, spread_of};
 use crate::golden::{GoldenFile, spread_by_group, values_of};
 use crate::record::{Record, RecordStore};
 use crate::render::spreads;
 use crate::solver::run::Kernel;
-use crate::study::{LastDigit, Study, Tier, run_case, run_studies};
+use crate::study::{LastDigit, Study, Tier, run_case};
 use std::path::PathBuf;
 
 /// Arguments of `spread`.
@@ -86,15 +86,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 }
 
 fn records_of(study: &Study, threads: usize) -> anyhow::Result<Vec<Record>> {
-    let bar = StudyBar::new(&study.name);
-    let mut reports =
-        run_studies(std::slice::from_ref(study), Tier::Ci, threads, &|progress| bar.tell(progress));
-    bar.finish();
-    let mut report = reports.pop().unwrap_or_default();
-    match report.errors.pop() {
-        Some(error) => Err(error.into()),
-        None => Ok(report.records),
-    }
+    Ok(run_quietly(std::slice::from_ref(study), threads)?.pop().unwrap_or_default())
 }
 
 /// The same cases by the kernel that visits every point.

@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         format!("cells = [{}]", arguments.cells),
         format!("points_per_cell = [{}]", arguments.points_per_cell),
     ])?;
-    let options = RunOptions { jobs: jobs_of(None), tier: Tier::Full, shard: None, resume: false };
+    let options = RunOptions::whole(Tier::Full, jobs_of(None));
     let mut report = run_study(&study, &options, None, &|_| {});
     if let Some(error) = report.errors.pop() {
         return Err(error.into());

@@ -18,8 +18,6 @@ use crate::solver::snapshot::Snapshot;
 use crate::study::Case;
 use serde::{Deserialize, Serialize};
 
-/// Hexadecimal digits of a record's digest.
-const DIGEST_DIGITS: usize = 32;
 /// Version of the record's layout.
 pub const SCHEMA: u32 = 2;
 
@@ -259,20 +257,12 @@ pub struct Record {
     pub snapshots: Vec<Snapshot>,
     /// What made this record.
     pub provenance: Provenance,
-    /// Hash over all the rest, on disk only: a record with another one was damaged.
+    /// Hash over all the text before it, on disk only: a record with another one was damaged.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub digest: String,
 }
 
 impl Record {
-    /// Hash over everything but itself.
-    fn content_digest(&self) -> String {
-        let content = Self { digest: String::new(), ..self.clone() };
-        // Serialising plain numbers and words cannot fail; were it to, an empty text still hashes.
-        let text = serde_json::to_string(&content).unwrap_or_default();
-        blake3::hash(text.as_bytes()).to_hex()[..DIGEST_DIGITS].to_owned()
-    }
-
     /// The error of a quantity, where it was measured.
     pub fn error(
         &self,

@@ -71,13 +71,15 @@ impl RecordStore {
     /// The record of a case, whichever program of this layout made it.
     pub fn kept(&self, case: &Case) -> Option<Record> {
         let text = fs::read_to_string(self.path(&case.hash(), RECORD)).ok()?;
+        if !is_whole(&text) {
+            return None;
+        }
         let mut record: Record = serde_json::from_str(&text).ok()?;
         // Without readable wall times the case is done all the same, only not timed.
         let wall = fs::read_to_string(self.path(&record.hash, WALL)).ok();
         record.wall = wall.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
-        let digest = std::mem::take(&mut record.digest);
-        let is_whole = digest == record.content_digest();
-        (is_whole && record.schema == SCHEMA && record.case == *case).then_some(record)
+        record.digest.clear();
+        (record.schema == SCHEMA && record.case == *case).then_some(record)
     }
 
     /// Whether a record of this hash is on disk.
@@ -92,8 +94,14 @@ impl RecordStore {
     /// When the file system refuses.
     pub fn write(&self, record: &Record) -> Result<(), StoreError> {
         self.write_wall(record)?;
-        let signed = Record { digest: record.content_digest(), ..record.clone() };
-        write_json(&self.path(&record.hash, RECORD), &signed)
+        let path = self.path(&record.hash, RECORD);
+        // One that was read has the seal of its file.
+        let content = if record.digest.is_empty() {
+            json_of(&path, record)?
+        } else {
+            json_of(&path, &Record { digest: String::new(), ..record.clone() })?
+        };
+        write_renamed(&path, sealed(&content).as_bytes(), |_| Ok(()))
     }
 
     /// Writes the wall times of a record alone.
@@ -106,11 +114,36 @@ impl RecordStore {
 }
 
 fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), StoreError> {
-    let text = serde_json::to_string_pretty(value)
-        .map_err(|source| StoreError::Json { path: path.to_owned(), source })?;
     // Not forced to the disk, which costs more than a small case: after a loss of power an unreadable
     // record is as good as none, and the case runs again.
-    write_renamed(path, text.as_bytes(), |_| Ok(()))
+    write_renamed(path, json_of(path, value)?.as_bytes(), |_| Ok(()))
+}
+
+fn json_of<T: serde::Serialize>(path: &Path, value: &T) -> Result<String, StoreError> {
+    serde_json::to_string_pretty(value).map_err(|source| StoreError::Json { path: path.to_owned(), source })
+}
+
+/// What ends the text of an object.
+const END: &str = "\n}";
+/// What stands before the digest, the last field of a record.
+const SEAL: &str = ",\n  \"digest\": \"";
+/// Hexadecimal digits of a digest.
+const DIGEST_DIGITS: usize = 32;
+
+/// A record's text with the digest of it: made of the text and not of the record, so that it is
+/// written and read once.
+fn sealed(content: &str) -> String {
+    let content = content.strip_suffix(END).unwrap_or(content);
+    format!("{content}{SEAL}{}\"{END}", digest_of(content))
+}
+
+/// Whether a text is as it was sealed.
+fn is_whole(text: &str) -> bool {
+    text.rsplit_once(SEAL).is_some_and(|(content, seal)| seal == format!("{}\"{END}", digest_of(content)))
+}
+
+fn digest_of(content: &str) -> String {
+    blake3::hash(content.as_bytes()).to_hex()[..DIGEST_DIGITS].to_owned()
 }
 
 /// Writes a file under a temporary name and renames it, making its folders; it is on the disk then.

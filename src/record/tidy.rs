@@ -27,30 +27,38 @@ const COLUMNS: [&str; 21] = [
     "reference",
     "value",
 ];
+/// The last of them, those of a measure.
+const MEASURE_COLUMNS: usize = 6;
 
 /// The measures of a study's records as CSV. A case that failed before its first output has one
 /// row without a measure, so that it is seen.
 ///
 /// # Errors
 /// Never for plain numbers and words; the writer's own otherwise.
-pub fn tidy_csv(study: &str, records: &[Record]) -> Result<String, csv::Error> {
+pub fn tidy_csv<'a>(
+    study: &str,
+    records: impl IntoIterator<Item = &'a Record>,
+) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(COLUMNS)?;
     for record in records {
+        let case = case_fields(study, record);
+        let mut write = |measure: &[String]| writer.write_record(case.iter().chain(measure));
         for row in &record.errors {
-            writer.write_record(fields(study, record, Some(row)))?;
+            write(&measure_fields(row))?;
         }
         if record.errors.is_empty() {
-            writer.write_record(fields(study, record, None))?;
+            write(&[const { String::new() }; MEASURE_COLUMNS])?;
         }
     }
     let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-fn fields(study: &str, record: &Record, row: Option<&ErrorRow>) -> Vec<String> {
+/// What all rows of a record begin with.
+fn case_fields(study: &str, record: &Record) -> [String; COLUMNS.len() - MEASURE_COLUMNS] {
     let case = &record.case;
-    let mut fields = vec![
+    [
         study.to_owned(),
         record.hash.clone(),
         case.method.to_string(),
@@ -66,17 +74,17 @@ fn fields(study: &str, record: &Record, row: Option<&ErrorRow>) -> Vec<String> {
         record.counters.point_updates.to_string(),
         record.status.name(),
         record.provenance.sources.clone(),
-    ];
-    match row {
-        Some(row) => fields.extend([
-            row.time_factor.to_string(),
-            row.quantity.name().to_owned(),
-            row.sample.name().to_owned(),
-            row.norm.name().to_owned(),
-            row.reference.clone(),
-            format!("{:e}", row.value),
-        ]),
-        None => fields.extend((0..6).map(|_| String::new())),
-    }
-    fields
+    ]
+}
+
+/// What a measure's row ends with.
+fn measure_fields(row: &ErrorRow) -> [String; MEASURE_COLUMNS] {
+    [
+        row.time_factor.to_string(),
+        row.quantity.name().to_owned(),
+        row.sample.name().to_owned(),
+        row.norm.name().to_owned(),
+        row.reference.clone(),
+        format!("{:e}", row.value),
+    ]
 }

@@ -9,6 +9,7 @@ pub mod junit;
 pub mod measures;
 pub mod number;
 pub mod page;
+pub mod phases;
 pub mod report;
 pub mod scores;
 mod script;

@@ -101,7 +101,7 @@ fn every_record_keeps_to_the_schema_and_misses_nothing() {
                 method = [\"GC-SRI-patch\", \"MPM\"]\ncells = [3]\ntime_step = [{ stable = 0.8 }, { stable = 1.3 }]\n";
     let study =
         Study::check(&StudySource { name: "s.toml".to_owned(), text: text.to_owned() }).expect("sound");
-    let options = RunOptions { jobs: 1, tier: Tier::Full, shard: None, resume: false };
+    let options = RunOptions::whole(Tier::Full, 1);
     let records = run_study(&study, &options, None, &|_| {}).records;
     assert!(records.iter().any(|record| matches!(record.status, crate::record::Status::Failed(_))));
     let schema = schema_of(Document::Record).expect("a schema");

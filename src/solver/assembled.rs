@@ -10,10 +10,16 @@
 //! - `U ← U + Δt v̄`, or `v⁺` without mapping back.
 //!
 //! The points are visited at outputs only. The point-wise step in `explicit` is the definition;
-//! a test holds the two together to round-off.
+//! a test holds the two together to round-off. `bands` assembles, `blocks` steps.
+
+mod bands;
+mod blocks;
 
 use super::body::{Body, ShapeFunction};
 use super::explicit::ExplicitSettings;
+use super::profile::{Phase, enter};
+use bands::assemble_bands;
+use blocks::{Blocks, LANES};
 
 /// Nodes that couple to one side: basis (1) + patch (1) + centre or composite (1).
 const REACH: usize = 3;
@@ -26,10 +32,8 @@ type BandRow = [f64; BAND];
 #[derive(Clone, Debug)]
 pub struct AssembledColumn {
     rows: Vec<NodeRow>,
-    /// Whether the projection of no node reaches beyond its neighbours.
-    projects_to_neighbours: bool,
-    /// From the first to the last node that is free: all others stand still.
-    moving: std::ops::Range<usize>,
+    /// The nodes that move, from the first to the last that is free, ready for steps of one size.
+    blocks: Blocks,
     /// Nodes that span the loaded surface, with the weights there.
     surface: Vec<(usize, f64)>,
     /// Nodes that carry the load, with the force of all else and of the whole load.
@@ -65,7 +69,8 @@ struct LoadedNode {
     load_force: f64,
 }
 
-/// Grid arrays with `REACH` empty places at both ends.
+/// Grid arrays with `REACH` empty places below the first node, and room above the last for the
+/// reach of a whole block.
 #[derive(Clone, Debug, Default)]
 struct State {
     solid_velocity: Vec<f64>,
@@ -110,13 +115,9 @@ impl AssembledColumn {
         let is_free = |row: &NodeRow| row.free > 0.0;
         let first = rows.iter().position(is_free).unwrap_or(0);
         let end = rows.iter().rposition(is_free).map_or(first, |last| last + 1);
-        let is_near = |row: &NodeRow| {
-            row.projection.iter().enumerate().all(|(k, entry)| *entry == 0.0 || k.abs_diff(REACH) <= 1)
-        };
         let mut column = Self {
-            projects_to_neighbours: rows.iter().all(is_near),
+            blocks: Blocks::of(&rows, first..end),
             rows,
-            moving: first..end,
             surface,
             loaded: Vec::new(),
             state: State::zero(count),
@@ -144,12 +145,15 @@ impl AssembledColumn {
             state.solid_velocity[node + REACH] = reference.solid_velocity[node][0];
             state.water_velocity[node + REACH] = reference.water_velocity[node][0];
         }
+        self.blocks.fill(&self.rows);
     }
 
     /// Lets a share of the load act that was there at the assembly.
     pub fn set_load_share(&mut self, share: f64) {
         for one in &self.loaded {
-            self.rows[one.node].mixture_force = one.unloaded_force + share * one.load_force;
+            let force = one.unloaded_force + share * one.load_force;
+            self.rows[one.node].mixture_force = force;
+            self.blocks.set_mixture_force(one.node, force);
         }
     }
 
@@ -165,6 +169,12 @@ impl AssembledColumn {
             row.water_from_relative = -row.drag * per_inertia;
             row.water_from_mixture = implicit * row.per_solid_mass * per_inertia;
         }
+        self.blocks.fill(&self.rows);
+    }
+
+    /// Nodes to one side that the forces on a node come from: what a step multiplies, for benches.
+    pub fn force_reach(&self) -> usize {
+        self.blocks.force_reach
     }
 
     /// One step of `dt` seconds; nothing is allocated.
@@ -174,63 +184,10 @@ impl AssembledColumn {
 
     /// One step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
-        self.forces_and_trial_velocities(kick);
-        // On a regular lattice a node shares points with its neighbours only.
-        if self.projects_to_neighbours {
-            self.advance_velocities::<1>(kick, dt, settings);
-        } else {
-            self.advance_velocities::<REACH>(kick, dt, settings);
-        }
-    }
-
-    /// Velocities mapped back over the projection's reach `R`, and the displacements they make.
-    fn advance_velocities<const R: usize>(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
-        let (flip, pic) = (settings.flip, 1.0 - settings.flip);
-        let state = &mut self.state;
-        for node in self.moving.clone() {
-            let row = &self.rows[node];
-            let at = node + REACH;
-            let solid_rate = band_within::<R>(&row.projection, &state.solid_acceleration, node);
-            let water_rate = band_within::<R>(&row.projection, &state.water_acceleration, node);
-            let mut solid = flip * (state.solid_velocity[at] + kick * solid_rate);
-            let mut water = flip * (state.water_velocity[at] + kick * water_rate);
-            if pic > 0.0 {
-                solid += pic * band(&row.projection, &state.solid_trial, node);
-                water += pic * band(&row.projection, &state.water_trial, node);
-            }
-            state.solid_velocity[at] = solid;
-            state.water_velocity[at] = water;
-            let (strain_solid, strain_water) = if settings.mapping_back {
-                (solid, water)
-            } else {
-                (state.solid_trial[at], state.water_trial[at])
-            };
-            state.strain_displacement[at] += dt * strain_solid;
-            state.flux_displacement[at] += dt * (strain_solid + row.porosity * (strain_water - strain_solid));
-            state.displacement[at] += dt * state.solid_trial[at];
-        }
-    }
-
-    fn forces_and_trial_velocities(&mut self, kick: f64) {
-        let state = &mut self.state;
-        for node in self.moving.clone() {
-            let row = &self.rows[node];
-            let at = node + REACH;
-            let pressure = band(&row.pressure_stiffness, &state.flux_displacement, node);
-            let skeleton = band(&row.skeleton_stiffness, &state.strain_displacement, node);
-            let water_force = row.water_force - pressure;
-            let mixture_force = row.mixture_force - skeleton - pressure;
-            let (solid, water) = (state.solid_velocity[at], state.water_velocity[at]);
-            let water_acceleration = row.water_from_water_force * water_force
-                + row.water_from_relative * (water - solid)
-                + row.water_from_mixture * mixture_force;
-            let solid_acceleration =
-                row.free * (mixture_force * row.per_solid_mass - row.water_share * water_acceleration);
-            state.water_acceleration[at] = water_acceleration;
-            state.solid_acceleration[at] = solid_acceleration;
-            state.solid_trial[at] = solid + kick * solid_acceleration;
-            state.water_trial[at] = water + kick * water_acceleration;
-        }
+        enter(Phase::Forces);
+        self.blocks.accelerate(&mut self.state, kick);
+        enter(Phase::Motion);
+        self.blocks.advance(&mut self.state, kick, dt, settings);
     }
 
     /// Largest nodal velocity, m/s: not finite or absurd when the run has left.
@@ -284,6 +241,7 @@ impl AssembledColumn {
             row.water_force = 0.0;
         }
         self.loaded.clear();
+        self.blocks.fill(&self.rows);
         self
     }
 
@@ -314,7 +272,7 @@ impl AssembledColumn {
 
 impl State {
     fn zero(nodes: usize) -> Self {
-        let zero = vec![0.0; nodes + 2 * REACH];
+        let zero = vec![0.0; nodes + 2 * REACH + LANES];
         Self {
             solid_velocity: zero.clone(),
             water_velocity: zero.clone(),
@@ -334,74 +292,6 @@ impl State {
             1 => &mut self.water_velocity,
             2 => &mut self.strain_displacement,
             _ => &mut self.flux_displacement,
-        }
-    }
-}
-
-/// Product of a node's band row with a padded field.
-#[inline]
-fn band(row: &BandRow, field: &[f64], node: usize) -> f64 {
-    let w = &field[node..node + BAND];
-    // Two short chains of additions and not one long one: it is their latency that a step waits for.
-    let even = (row[0] * w[0] + row[2] * w[2]) + (row[4] * w[4] + row[6] * w[6]);
-    let odd = (row[1] * w[1] + row[3] * w[3]) + row[5] * w[5];
-    even + odd
-}
-
-/// The same where the row's entries beyond `R` to either side are zero.
-#[inline]
-fn band_within<const R: usize>(row: &BandRow, field: &[f64], node: usize) -> f64 {
-    let window = &field[node..node + BAND];
-    let mut sum = 0.0;
-    for k in REACH - R..=REACH + R {
-        sum += row[k] * window[k];
-    }
-    sum
-}
-
-/// `K_σ = Σ V ∇N ⊗ E_oed G`, `K_p = Σ V ∇N ⊗ R Q D`, `P = M⁻¹ Σ N m ⊗ N`.
-fn assemble_bands<const D: usize, const W: usize, S: ShapeFunction<W>>(
-    body: &Body<D, W, S>,
-    rows: &mut [NodeRow],
-) {
-    let stride = body.grid.node_stride();
-    let modulus = body.material.oedometric_modulus();
-    let bulk = body.stiffness.lame + 2.0 / 3.0 * body.stiffness.shear;
-    let volumetric = body.volumetric_rows();
-    for point in 0..body.points.len() {
-        let volume = body.points.volume(point);
-        let solid =
-            body.points.initial_volume[point] * (1.0 - body.material.porosity) * body.material.grain_density;
-        let strain = body.strain_row(point, &volumetric);
-        let mut touched = [(0, 0.0, 0.0); 4];
-        let mut count = 0;
-        body.basis.visit(stride, point, |node, weight, gradient| {
-            touched[count] = (node, weight, gradient[0]);
-            count += 1;
-        });
-        for (node, weight, gradient) in &touched[..count] {
-            // A weight that is round-off may reach further than the band; its row is at rest.
-            let place = |column: usize| (column + REACH).checked_sub(*node).filter(|place| *place < BAND);
-            let row = &mut rows[*node];
-            for entry in &strain {
-                if let Some(place) = place(entry.node) {
-                    row.skeleton_stiffness[place] +=
-                        volume * gradient * (modulus * entry.gradient[0] + bulk * entry.dilation[0]);
-                }
-            }
-            for (site, share) in &volumetric.recovery[point] {
-                for (column, coefficient) in &volumetric.divergence[*site] {
-                    if let Some(place) = place(*column) {
-                        row.pressure_stiffness[place] +=
-                            volume * gradient * share * volumetric.coupling[*site] * coefficient[0];
-                    }
-                }
-            }
-            for (column, value, _) in &touched[..count] {
-                if let Some(place) = place(*column) {
-                    row.projection[place] += row.free * weight * solid * value * row.per_solid_mass;
-                }
-            }
         }
     }
 }

@@ -8,6 +8,7 @@
 use super::body::{Body, ShapeFunction};
 use super::explicit::ExplicitSettings;
 use super::grid::{Tensor, Vector};
+use super::profile::{Phase, enter};
 use super::stiffness::NodeBlocks;
 use super::volumetric::VolumetricRows;
 
@@ -209,8 +210,11 @@ impl<const D: usize> AssembledPlane<D> {
 
     /// One step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
+        enter(Phase::Recovery);
         self.dilations();
+        enter(Phase::Forces);
         self.accelerations(kick);
+        enter(Phase::Motion);
         let (flip, pic) = (settings.flip, 1.0 - settings.flip);
         let state = &mut self.state;
         for (row, node) in self.constants.iter().enumerate() {

@@ -261,15 +261,19 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Brings operators and masses up to the points' places and volumes: all of them where points
     /// move, what follows the volumes where weights stay on the initial configuration.
     pub fn follow_points(&mut self) {
+        self.follow_places();
+        if self.configuration.deforms() {
+            self.map_masses();
+        }
+    }
+
+    /// Brings the operators alone up to the points' places and volumes.
+    pub(super) fn follow_places(&mut self) {
         match self.configuration {
-            Configuration::Updated => {
-                self.build_operators();
-                self.map_masses();
-            }
+            Configuration::Updated => self.build_operators(),
             Configuration::Total => {
                 self.cells.sum_volumes(&self.points, self.material.porosity);
                 self.cells.average_deformation(&self.points);
-                self.map_masses();
             }
             Configuration::Frozen => {}
         }
@@ -287,7 +291,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// A stress that meets gradients on the initial configuration, `σ F⁻ᵀ`.
     #[inline]
-    fn pulled_back(&self, point: usize, stress: Tensor<D>) -> Tensor<D> {
+    pub(super) fn pulled_back(&self, point: usize, stress: Tensor<D>) -> Tensor<D> {
         if !self.is_total() {
             return stress;
         }
@@ -315,6 +319,16 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
+    /// Builds `N` and `∇N` of every point.
+    fn build_basis(&mut self) {
+        let grid = &self.grid;
+        let places = self.cells.place.iter().zip(&self.points.half_length);
+        for (point, (place, half_length)) in places.enumerate() {
+            let rows = rows_at::<D, W, S>(grid, &self.support, place, half_length);
+            self.basis.set(grid, point, &rows);
+        }
+    }
+
     /// Builds every operator of the method on the points' present places, and puts the load on
     /// the surface there.
     pub fn build_operators(&mut self) {
@@ -322,32 +336,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         if self.method.strain.is_composite() {
             self.cells.find_reached(&self.grid, &self.points);
         }
-        for point in 0..self.points.len() {
-            let position = &self.points.position[point];
-            let cell = self.grid.cell_of(position);
-            let place = self.grid.held_in_cells(position);
-            let rows = self.rows_at(&place, &cell, &self.points.half_length[point]);
-            self.basis.set(&self.grid, point, &rows);
-            self.build_strain_rows(point, &cell, &place);
-        }
+        self.build_basis();
+        self.build_strain_gradients();
         if self.method.uses_patch() {
-            self.patch.build(&self.grid, &self.cells, &self.points.position);
+            self.patch.build(&self.grid, &self.cells);
         }
         if self.is_total() {
             self.cells.average_deformation(&self.points);
         }
         self.surface.apply(&self.grid, &self.points, &mut self.nodes);
-    }
-
-    /// Rows of the basis at a place (in cells) of a cell, for a domain of half-lengths (m), without nodes
-    /// beyond held faces.
-    #[inline]
-    fn rows_at(&self, place: &Vector<D>, cell: &[usize; D], half_length: &Vector<D>) -> [Row<W>; D] {
-        let per_cell = self.grid.inverse_cell_size();
-        std::array::from_fn(|d| {
-            let row = S::row(place[d], cell[d], half_length[d] * per_cell);
-            if S::PASSES_WALLS { self.support.folded(&self.grid, d, row) } else { row }
-        })
     }
 
     /// Displacement of the skeleton at the place of a node, m: that of the node itself, but for splines,
@@ -357,8 +354,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             return self.nodes.displacement[node];
         }
         let position = self.grid.node_position(node);
-        let (place, cell) = (self.grid.held_in_cells(&position), self.grid.cell_of(&position));
-        let rows = self.rows_at(&place, &cell, &[0.0; D]);
+        let place = self.grid.held_in_cells(&position);
+        let rows = rows_at::<D, W, S>(&self.grid, &self.support, &place, &[0.0; D]);
         let mut value = [0.0; D];
         visit_block(&self.grid, &rows, |node, weight| {
             for d in 0..D {
@@ -366,99 +363,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             }
         });
         value
-    }
-
-    /// Sums masses, volumes and drag of the points to the nodes.
-    pub fn map_masses(&mut self) {
-        self.nodes.reset_masses();
-        let soil = &self.material;
-        let (solid_fraction, unit_weight) = (1.0 - soil.porosity, soil.unit_weight_of_water());
-        let nodes = &mut self.nodes;
-        for point in 0..self.points.len() {
-            let (initial, ratio) = (self.points.initial_volume[point], self.points.volume_ratio[point]);
-            let volume = initial * ratio;
-            let pore_volume = initial * (ratio - solid_fraction);
-            let solid_mass = initial * solid_fraction * soil.grain_density;
-            let water_mass = pore_volume * soil.water_density;
-            let drag = pore_volume * unit_weight / soil.hydraulic_conductivity_at(ratio);
-            self.basis.visit(self.grid.node_stride(), point, |node, weight, _| {
-                nodes.solid_mass[node] += weight * solid_mass;
-                nodes.water_mass[node] += weight * water_mass;
-                nodes.volume[node] += weight * volume;
-                nodes.porosity[node] += weight * pore_volume;
-                nodes.drag[node] += weight * drag;
-            });
-        }
-        nodes.finish_masses();
-    }
-
-    /// Maps the velocities of both phases from the points to the nodes, weighted with mass.
-    pub fn map_velocities(&mut self) {
-        let nodes = &mut self.nodes;
-        nodes.solid_velocity.fill([0.0; D]);
-        nodes.water_velocity.fill([0.0; D]);
-        let soil = &self.material;
-        let solid_fraction = 1.0 - soil.porosity;
-        // Slices of one length: the bounds of all are checked here and not at every point.
-        let count = self.points.len();
-        let (initial_volume, volume_ratio) =
-            (&self.points.initial_volume[..count], &self.points.volume_ratio[..count]);
-        let (solid_velocity, water_velocity) =
-            (&self.points.solid_velocity[..count], &self.points.water_velocity[..count]);
-        for point in 0..count {
-            // Grains weigh with (1 − n) V = (1 − n_0) V_0, water with n V.
-            let solid_mass = initial_volume[point] * solid_fraction * soil.grain_density;
-            let water_mass =
-                initial_volume[point] * (volume_ratio[point] - solid_fraction) * soil.water_density;
-            let solid_momentum = solid_velocity[point].map(|velocity| solid_mass * velocity);
-            let water_momentum = water_velocity[point].map(|velocity| water_mass * velocity);
-            self.basis.visit(self.grid.node_stride(), point, |node, weight, _| {
-                for d in 0..D {
-                    nodes.solid_velocity[node][d] += weight * solid_momentum[d];
-                    nodes.water_velocity[node][d] += weight * water_momentum[d];
-                }
-            });
-        }
-        for node in 0..nodes.len() {
-            for d in 0..D {
-                nodes.solid_velocity[node][d] *= nodes.free[node][d] * nodes.per_solid_mass[node];
-                nodes.water_velocity[node][d] *= nodes.water_free[node][d] * nodes.per_water_mass[node];
-            }
-        }
-    }
-
-    /// Forces on the mixture and on the water from the points' stresses (weak form, drained
-    /// surface natural).
-    pub fn map_forces(&mut self) {
-        self.nodes.mixture_force.copy_from_slice(&self.nodes.external_force);
-        self.nodes.water_force.fill([0.0; D]);
-        for point in 0..self.points.len() {
-            let volume = self.points.stressed_volume(point);
-            let pressure = volume * self.points.pressure[point];
-            let mut total = self.points.effective_stress[point];
-            let mut water = [[0.0; D]; D];
-            for d in 0..D {
-                for e in 0..D {
-                    total[d][e] *= volume;
-                }
-                total[d][d] -= pressure;
-                water[d][d] = pressure;
-            }
-            let (total, water) = (self.pulled_back(point, total), self.pulled_back(point, water));
-            let nodes = &mut self.nodes;
-            self.basis.visit_runs(self.grid.node_stride(), point, |first, _, gradients| {
-                let mixture_force = &mut nodes.mixture_force[first..first + W];
-                let water_force = &mut nodes.water_force[first..first + W];
-                for (k, gradient) in gradients.iter().enumerate() {
-                    for d in 0..D {
-                        for e in 0..D {
-                            mixture_force[k][d] -= total[d][e] * gradient[e];
-                            water_force[k][d] += water[d][e] * gradient[e];
-                        }
-                    }
-                }
-            });
-        }
     }
 
     /// `v_s + n (v_w − v_s)` at the nodes, with the nodal porosity: what (4) takes the divergence
@@ -493,6 +397,22 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             }
         }
     }
+}
+
+/// Rows of a basis at a place (in cells), for a domain of half-lengths (m), without nodes beyond held
+/// faces.
+#[inline]
+fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    grid: &Grid<D>,
+    support: &Support<D>,
+    place: &Vector<D>,
+    half_length: &Vector<D>,
+) -> [Row<W>; D] {
+    let (cell, per_cell) = (grid.cell_at(place), grid.inverse_cell_size());
+    std::array::from_fn(|d| {
+        let row = S::row(place[d], cell[d], half_length[d] * per_cell);
+        if S::PASSES_WALLS { support.folded(grid, d, row) } else { row }
+    })
 }
 
 impl Method {

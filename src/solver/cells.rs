@@ -1,6 +1,6 @@
 //! Cell centres: occupancy, porosity and the divergence of selective reduced integration.
 
-use super::grid::{Grid, Tensor, Vector};
+use super::grid::{GHOST_LAYERS, Grid, Tensor, Vector};
 use super::points::Points;
 
 /// Share of a cell that a domain must reach into it to count.
@@ -11,6 +11,8 @@ const LEAST_REACH: f64 = 1e-6;
 pub struct Cells<const D: usize> {
     /// Cell of each point.
     pub of_point: Vec<usize>,
+    /// Place of each point in cells, held inside the grid.
+    pub place: Vec<Vector<D>>,
     /// Lowest node of each cell.
     first_node: Vec<usize>,
     /// Points in each cell.
@@ -42,6 +44,7 @@ impl<const D: usize> Cells<D> {
         }
         Self {
             of_point: vec![0; points],
+            place: vec![[0.0; D]; points],
             first_node,
             point_count: vec![0; count],
             reached: vec![false; count],
@@ -56,10 +59,11 @@ impl<const D: usize> Cells<D> {
     pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, initial_porosity: f64) {
         self.point_count.fill(0);
         self.pressure_increment.fill(0.0);
-        for point in 0..points.len() {
-            let cell = grid.flat_cell(&grid.cell_of(&points.position[point]));
-            self.of_point[point] = cell;
-            self.point_count[cell] += 1;
+        let found = self.of_point.iter_mut().zip(&mut self.place);
+        for (position, (of_point, place)) in points.position.iter().zip(found) {
+            *place = grid.held_in_cells(position);
+            *of_point = grid.flat_cell(&grid.cell_at(place));
+            self.point_count[*of_point] += 1;
         }
         self.sum_volumes(points, initial_porosity);
     }
@@ -68,12 +72,11 @@ impl<const D: usize> Cells<D> {
     pub fn sum_volumes(&mut self, points: &Points<D>, initial_porosity: f64) {
         self.volume.fill(0.0);
         self.porosity.fill(0.0);
-        for point in 0..points.len() {
-            let cell = self.of_point[point];
-            let (initial, ratio) = (points.initial_volume[point], points.volume_ratio[point]);
-            self.volume[cell] += initial * ratio;
+        let state = points.initial_volume.iter().zip(&points.volume_ratio);
+        for (cell, (initial, ratio)) in self.of_point.iter().zip(state) {
+            self.volume[*cell] += initial * ratio;
             // n V = (J − (1 − n_0)) V_0
-            self.porosity[cell] += initial * (ratio - (1.0 - initial_porosity));
+            self.porosity[*cell] += initial * (ratio - (1.0 - initial_porosity));
         }
         for cell in 0..self.porosity.len() {
             if self.is_occupied(cell) {
@@ -85,16 +88,23 @@ impl<const D: usize> Cells<D> {
     /// Finds the cells that the points' domains reach into: a cell may have lost its last point and
     /// still carry the edge of the material.
     pub fn find_reached(&mut self, grid: &Grid<D>, points: &Points<D>) {
-        self.reached.fill(false);
-        let inset = LEAST_REACH * grid.cell_size;
-        for point in 0..points.len() {
-            self.reached[self.of_point[point]] = true;
+        for (reached, count) in self.reached.iter_mut().zip(&self.point_count) {
+            *reached = *count > 0;
+        }
+        let per_cell = grid.inverse_cell_size();
+        let found = self.of_point.iter().zip(&self.place);
+        for ((home, place), half_length) in found.zip(&points.half_length) {
+            let cell = grid.cell_at(place);
             for direction in 0..D {
-                let reach = points.half_length[point][direction] - inset;
-                for side in [-reach, reach] {
-                    let mut place = points.position[point];
-                    place[direction] += side;
-                    self.reached[grid.flat_cell(&grid.cell_of(&place))] = true;
+                // No domain is wider than a cell, so its ends are in this one or the next.
+                let reach = half_length[direction] * per_cell - LEAST_REACH;
+                let inside = place[direction] - cell[direction] as f64;
+                let stride = grid.cell_stride()[direction];
+                if inside < reach && cell[direction] > GHOST_LAYERS {
+                    self.reached[home - stride] = true;
+                }
+                if inside + reach >= 1.0 && cell[direction] + 1 < grid.cells[direction] + GHOST_LAYERS {
+                    self.reached[home + stride] = true;
                 }
             }
         }

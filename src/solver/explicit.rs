@@ -3,6 +3,7 @@
 use super::body::{Body, ShapeFunction};
 use super::grid::{Tensor, Vector};
 use super::method::{Configuration, PressureIntegration, Recovery};
+use super::profile::{Phase, enter};
 use super::scheme::Scheme;
 use serde::{Deserialize, Serialize};
 
@@ -64,13 +65,18 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         self.reset_grid(settings); // (1)
+        enter(Phase::Forces);
         self.nodal_accelerations(kick, settings.drag); // (2)
+        enter(Phase::Motion);
         self.nodal_velocities(kick, dt); // (3)
         self.advance_points(kick, dt, settings.flip); // (4)
         if settings.mapping_back {
+            enter(Phase::MapVelocities);
             self.map_velocities(); // (5)
         }
+        enter(Phase::Stresses);
         self.update_effective_stress(dt); // (6)
+        enter(Phase::Recovery);
         self.update_pressure(dt); // (7), and (8) is the next step
         if self.remembers_in_cells() {
             self.remember_in_cells();
@@ -80,8 +86,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// (1) Operators, masses and velocities on the points' places. Where nothing moves, the
     /// operators stand, and velocities mapped back by the last step are already there.
     fn reset_grid(&mut self, settings: &ExplicitSettings) {
-        self.follow_points();
-        if self.configuration.deforms() || !settings.mapping_back {
+        enter(Phase::BuildWeights);
+        self.follow_places();
+        if self.configuration.deforms() {
+            enter(Phase::MapVelocities);
+            self.map_masses_and_velocities();
+        } else if !settings.mapping_back {
+            enter(Phase::MapVelocities);
             self.map_velocities();
         }
     }
@@ -134,17 +145,31 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let moving = self.configuration.moves_points();
         let pic = 1.0 - flip;
         for point in 0..self.points.len() {
-            let at_point = |field: &[Vector<D>]| self.basis.value(self.grid.node_stride(), point, field);
-            let (solid, water) = (at_point(&nodes.solid_velocity), at_point(&nodes.water_velocity));
+            // Velocity and acceleration of the skeleton, then of the water: one pass over the block.
+            let mut at_point = [[0.0; D]; 4];
+            self.basis.visit_runs(self.grid.node_stride(), point, |first, weights, _| {
+                let fields = [
+                    &nodes.solid_velocity,
+                    &nodes.solid_acceleration,
+                    &nodes.water_velocity,
+                    &nodes.water_acceleration,
+                ];
+                for (value, field) in at_point.iter_mut().zip(fields) {
+                    for (node, weight) in field[first..first + W].iter().zip(weights) {
+                        for d in 0..D {
+                            value[d] += weight * node[d];
+                        }
+                    }
+                }
+            });
+            let [solid, solid_rate, water, water_rate] = at_point;
             let carrying = self.carrying(point, &nodes.solid_velocity, solid);
-            let solid_rate = at_point(&nodes.solid_acceleration);
-            let water_rate = at_point(&nodes.water_acceleration);
+            let points = &mut self.points;
             for d in 0..D {
-                let points = &mut self.points;
-                points.solid_velocity[point][d] =
-                    flip * (points.solid_velocity[point][d] + kick * solid_rate[d]) + pic * solid[d];
-                points.water_velocity[point][d] =
-                    flip * (points.water_velocity[point][d] + kick * water_rate[d]) + pic * water[d];
+                let (solid_velocity, water_velocity) =
+                    (&mut points.solid_velocity[point][d], &mut points.water_velocity[point][d]);
+                *solid_velocity = flip * (*solid_velocity + kick * solid_rate[d]) + pic * solid[d];
+                *water_velocity = flip * (*water_velocity + kick * water_rate[d]) + pic * water[d];
                 points.displacement[point][d] += dt * carrying[d];
                 if moving {
                     points.position[point][d] += dt * carrying[d];

@@ -3,6 +3,8 @@
 //! Two layers of ghost nodes surround the grid, so that no stencil needs a bounds case. The last
 //! direction is vertical; a column is `D = 1`, plane strain `D = 2` with `x` first.
 
+use super::shape::whole;
+
 /// A vector with one component a direction.
 pub type Vector<const D: usize> = [f64; D];
 /// A second-order tensor, row by row.
@@ -87,13 +89,8 @@ impl<const D: usize> Grid<D> {
 
     /// Index of the cell, in one direction, that holds a coordinate in cells.
     #[inline]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a point outside the grid is held inside before its cell is asked for"
-    )]
     pub fn cell_below(&self, in_cells: f64) -> usize {
-        (in_cells + FACE_TOLERANCE) as usize
+        whole(in_cells + FACE_TOLERANCE)
     }
 
     /// Whether a point lies in the grid or on its rim.
@@ -115,14 +112,19 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// Index, a direction, of the cell that holds a point; a point on the upper rim belongs to
-    /// the last cell.
+    /// Index, a direction, of the cell that holds a place in cells inside the grid; the upper rim
+    /// belongs to the last cell.
+    #[inline]
+    pub fn cell_at(&self, held_in_cells: &Vector<D>) -> [usize; D] {
+        std::array::from_fn(|direction| {
+            self.cell_below(held_in_cells[direction]).min(self.cells[direction] + GHOST_LAYERS - 1)
+        })
+    }
+
+    /// Index, a direction, of the cell that holds a point.
     #[inline]
     pub fn cell_of(&self, position: &Vector<D>) -> [usize; D] {
-        let place = self.held_in_cells(position);
-        std::array::from_fn(|direction| {
-            self.cell_below(place[direction]).min(self.cells[direction] + GHOST_LAYERS - 1)
-        })
+        self.cell_at(&self.held_in_cells(position))
     }
 
     /// Flat index of a cell.

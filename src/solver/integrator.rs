@@ -61,9 +61,10 @@ impl IntegratorKind {
             (Self::Explicit | Self::SemiImplicit, Formulation::QuasiStatic) => {
                 Some("an explicit skeleton goes by its accelerations: they cannot be left out")
             }
-            (Self::Explicit, Formulation::UP) => {
-                Some("the explicit integrator has an acceleration of the water: it solves `v-w` only")
-            }
+            (Self::Explicit, Formulation::UP) => Some(
+                "in `u-p` the water has no inertia of its own, its pressure diffuses, and explicit steps would \
+                     shrink with the square of the cell: take `v-w`, or `u-p` with `semi-implicit` or `implicit`",
+            ),
             _ => None,
         }
     }

@@ -1,6 +1,7 @@
 //! Nodal fields: lumped masses, forces, velocities and accelerations of both phases.
 
 use super::grid::{GHOST_LAYERS, Grid, Vector};
+use super::material::Material;
 use super::shape::Row;
 
 /// Nodes with less than this share of a full cell's mass carry nothing: a point on a cell face
@@ -20,10 +21,13 @@ pub struct Nodes<const D: usize> {
     pub per_water_mass: Vec<f64>,
     /// Volume of the mixture, m^D.
     pub volume: Vec<f64>,
-    /// Porosity `Σ w V n / Σ w V`; the pore volume while it is summed.
+    /// Porosity `Σ w V n / Σ w V`.
     pub porosity: Vec<f64>,
     /// Drag `n γ_w V/k`, N s/m.
     pub drag: Vec<f64>,
+    /// What the points give to each node while it is summed: volume of the grains and of the pores
+    /// (m^D) and drag.
+    pub shares: Vec<[f64; 3]>,
     /// External force on the mixture, N.
     pub external_force: Vec<Vector<D>>,
     /// Internal and external force on the mixture, N.
@@ -132,6 +136,7 @@ impl<const D: usize> Nodes<D> {
             volume: scalars.clone(),
             porosity: scalars.clone(),
             drag: scalars,
+            shares: vec![[0.0; 3]; count],
             external_force: vectors.clone(),
             mixture_force: vectors.clone(),
             water_force: vectors.clone(),
@@ -159,12 +164,28 @@ impl<const D: usize> Nodes<D> {
         self.solid_mass.is_empty()
     }
 
-    /// Clears masses before they are summed again.
-    pub fn reset_masses(&mut self) {
-        for field in
-            [&mut self.solid_mass, &mut self.water_mass, &mut self.volume, &mut self.porosity, &mut self.drag]
-        {
-            field.fill(0.0);
+    /// Turns the points' [`shares`](Self::shares) into masses, volumes and drag of the soil.
+    pub fn take_shares(&mut self, soil: &Material) {
+        for (node, [grain_volume, pore_volume, drag]) in self.shares.iter().enumerate() {
+            self.solid_mass[node] = soil.grain_density * grain_volume;
+            self.water_mass[node] = soil.water_density * pore_volume;
+            self.volume[node] = grain_volume + pore_volume;
+            self.porosity[node] = *pore_volume;
+            self.drag[node] = *drag;
+        }
+        self.finish_masses();
+    }
+
+    /// Velocities from momenta over the density of their phase, which stand in their place; zero where
+    /// a node is held or empty.
+    pub fn divide_momenta(&mut self, soil: &Material) {
+        for node in 0..self.len() {
+            let per_grain_volume = soil.grain_density * self.per_solid_mass[node];
+            let per_pore_volume = soil.water_density * self.per_water_mass[node];
+            for d in 0..D {
+                self.solid_velocity[node][d] *= self.free[node][d] * per_grain_volume;
+                self.water_velocity[node][d] *= self.water_free[node][d] * per_pore_volume;
+            }
         }
     }
 

@@ -6,6 +6,7 @@
 
 use super::cells::Cells;
 use super::grid::{Grid, Vector, power};
+use super::shape::SIXTH;
 
 /// Cells along one direction of a patch.
 const BLOCK: usize = 3;
@@ -32,21 +33,28 @@ impl<const D: usize> PatchRows<D> {
     }
 
     /// Fits the rows to the points' places and to the occupied cells.
-    pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>, position: &[Vector<D>]) {
-        for (point, place) in position.iter().enumerate() {
-            let home = grid.cell_of(place);
+    pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
+        for (point, place) in cells.place.iter().enumerate() {
+            let row = &mut self.weights[point * Self::width()..(point + 1) * Self::width()];
+            if D == 1 {
+                let home = cells.of_point[point];
+                self.first[point] = home - 1;
+                let offset = home as f64 + 0.5 - place[0];
+                let occupied = std::array::from_fn(|step| cells.is_occupied(home + step - 1));
+                row.copy_from_slice(&column_row(offset, occupied));
+                continue;
+            }
+            let home = grid.cell_at(place);
             let first = grid.flat_cell(&home.map(|index| index - 1));
             self.first[point] = first;
             let mut patch = Patch::<D>::empty();
             for block in 0..Self::width() {
                 let (cell, steps) = block_cell(grid, first, block);
                 if cells.is_occupied(cell) {
-                    let offset =
-                        std::array::from_fn(|d| (home[d] + steps[d]) as f64 - 0.5 - grid.in_cells(place[d]));
+                    let offset = std::array::from_fn(|d| (home[d] + steps[d]) as f64 - 0.5 - place[d]);
                     patch.add(block, offset);
                 }
             }
-            let row = &mut self.weights[point * Self::width()..(point + 1) * Self::width()];
             patch.rows_into(row);
         }
     }
@@ -55,6 +63,10 @@ impl<const D: usize> PatchRows<D> {
     #[inline]
     pub fn value(&self, grid: &Grid<D>, point: usize, field: &[f64]) -> f64 {
         let row = &self.weights[point * Self::width()..(point + 1) * Self::width()];
+        if D == 1 {
+            let first = self.first[point];
+            return row.iter().zip(&field[first..first + BLOCK]).map(|(weight, value)| weight * value).sum();
+        }
         let mut value = 0.0;
         for block in 0..Self::width() {
             let (cell, _) = block_cell(grid, self.first[point], block);
@@ -97,6 +109,37 @@ fn distance_weight(distance: f64) -> f64 {
         4.0 / 3.0 * rest * rest * rest
     } else {
         0.0
+    }
+}
+
+/// The row of a point in a column, whose cell's centre lies `offset` cells above it: the same fit as
+/// [`Patch`] in closed form. Moving points pay for it at every step.
+///
+/// The spline is the cubic B-spline, whose four values around a point have the moments 1, 0 and 1/3.
+/// The patch lacks the outermost, `u³/6` at the distance `2 − u` on the near side, `u = |offset|`,
+/// which gives its own moments, and the fit's weights from them.
+#[inline]
+fn column_row(offset: f64, occupied: [bool; BLOCK]) -> [f64; BLOCK] {
+    match (occupied[0], occupied[2]) {
+        (true, true) => {
+            let u = offset.abs();
+            let rest = 1.0 - u;
+            let square = u * u;
+            let far = SIXTH * rest * rest * rest;
+            let home = 2.0 / 3.0 - square + 0.5 * square * u;
+            let lacking = SIXTH * square * u;
+            let near = 1.0 - home - far - lacking;
+            let (lever, tilt) = (2.0 - u, 3.0 * lacking * (2.0 - u));
+            let scale = 1.0 / (1.0 - lacking - tilt * lever);
+            let near = near * (1.0 - tilt) * scale;
+            let far = far * (1.0 - 3.0 * tilt) * scale;
+            let (lower, upper) = if offset > 0.0 { (near, far) } else { (far, near) };
+            [lower, 1.0 - near - far, upper]
+        }
+        // Two cells: the line through both.
+        (false, true) => [0.0, 1.0 + offset, -offset],
+        (true, false) => [offset, 1.0 - offset, 0.0],
+        (false, false) => [0.0, 1.0, 0.0],
     }
 }
 
@@ -205,7 +248,7 @@ mod tests {
         let mut cells = Cells::new(grid, points.len());
         cells.locate(grid, points, 0.3);
         let mut rows = PatchRows::with_points(points.len());
-        rows.build(grid, &cells, &points.position);
+        rows.build(grid, &cells);
         let at_cells: Vec<f64> = (0..grid.cell_count()).map(|cell| field(&grid.cell_centre(cell))).collect();
         (0..points.len())
             .map(|point| (rows.value(grid, point, &at_cells), field(&points.position[point])))
@@ -234,6 +277,26 @@ mod tests {
         let points = Points::lattice(0.1, [10], 3);
         for (got, exact) in recovered(&grid, &points, |x| 2.0 - 5.0 * x[0]) {
             assert!((got - exact).abs() < 1e-14, "{got} for {exact}");
+        }
+    }
+
+    #[test]
+    fn a_column_s_closed_form_is_the_fit() {
+        for (lower, upper) in [(true, true), (true, false), (false, true), (false, false)] {
+            for step in -20..=20 {
+                let offset = f64::from(step) / 40.0;
+                let mut patch = Patch::<1>::empty();
+                for (block, is_there) in [lower, true, upper].into_iter().enumerate() {
+                    if is_there {
+                        patch.add(block, [offset + block as f64 - 1.0]);
+                    }
+                }
+                let mut row = [0.0; BLOCK];
+                patch.rows_into(&mut row);
+                for (got, fitted) in column_row(offset, [lower, true, upper]).iter().zip(&row) {
+                    assert!((got - fitted).abs() < 1e-14, "{got} for {fitted} at {offset}");
+                }
+            }
         }
     }
 

@@ -12,6 +12,7 @@ use super::method::{Basis, Configuration};
 use super::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
 use super::points::Points;
 pub use super::prediction::predicted_critical_step;
+use super::profile::{self, Phase, enter};
 use super::scheme::Rhythm;
 use super::snapshot::Snapshot;
 use super::surface::LoadedSurface;
@@ -175,8 +176,10 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         problem: Problem<D>,
         schedule: &'a Schedule,
     ) -> Self {
+        let predicted = || predicted_critical_step(&problem, &schedule.settings);
         let critical =
-            schedule.critical_step.unwrap_or_else(|| predicted_critical_step(&problem, &schedule.settings));
+            schedule.critical_step.unwrap_or_else(|| profile::within(Phase::CriticalStep, predicted));
+        enter(Phase::Setup);
         let target = schedule.rule.step(&problem, critical);
         let velocity_scale = velocity_scale(&problem);
         let (load, loading_time) = (problem.load, problem.loading_time);
@@ -293,6 +296,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
                 }
                 kick = next_kick;
             }
+            enter(Phase::Outputs);
             done += some;
             self.time = start + done as f64 * dt;
             self.counters.steps += some;

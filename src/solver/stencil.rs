@@ -40,6 +40,18 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         self.first[point] = first;
     }
 
+    /// Sets the block of a point of which only gradients are asked: one direction has no use for the
+    /// weights.
+    #[inline]
+    pub fn set_gradients(&mut self, grid: &Grid<D>, point: usize, rows: &[Row<W>; D]) {
+        if D > 1 {
+            self.set(grid, point, rows);
+            return;
+        }
+        self.gradients[point][0] = rows[0].gradients.map(|g| g * grid.inverse_cell_size());
+        self.first[point] = rows[0].first;
+    }
+
     /// Visits a point's block run by run: `W` neighbouring nodes along the first direction, with
     /// the first of them, their weights and their gradients (1/m).
     ///

@@ -2,7 +2,8 @@
 //! carries the points with it.
 
 use super::body::{Body, ShapeFunction};
-use super::grid::{Tensor, Vector};
+use super::cells::Cells;
+use super::grid::{Grid, Tensor, Vector};
 use super::method::StrainGradient;
 use super::shape::{self, Row};
 
@@ -45,44 +46,55 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// Builds the rows of a composite gradient at a point in a cell, at a place in cells.
-    #[inline]
-    pub(super) fn build_strain_rows(&mut self, point: usize, cell: &[usize; D], place: &Vector<D>) {
+    /// Builds `G` of every point where it is not that of the basis.
+    pub(super) fn build_strain_gradients(&mut self) {
         match self.method.strain {
             StrainGradient::Standard | StrainGradient::Bbar => {}
             StrainGradient::Cmpm | StrainGradient::CmpmBbar => {
-                let rows = std::array::from_fn(|d| self.composite_row(cell, d, place[d], cell[d]));
-                self.composite.set(&self.grid, point, &rows);
+                let (grid, cells) = (&self.grid, &self.cells);
+                for (point, place) in cells.place.iter().enumerate() {
+                    let cell = grid.cell_at(place);
+                    let rows =
+                        std::array::from_fn(|d| composite_row(grid, cells, &cell, d, place[d], cell[d]));
+                    self.composite.set_gradients(grid, point, &rows);
+                }
             }
             StrainGradient::CmpmEnds => {
-                let per_cell = self.grid.inverse_cell_size();
-                let rows = std::array::from_fn(|d| {
-                    let half = (self.points.half_length[point][d] * per_cell).min(0.5);
-                    let end = |side: f64| {
-                        let at = place[d] + side * half;
-                        self.composite_row(cell, d, at, self.cell_of_end(cell[d], at - side * INSET))
-                    };
-                    Row::between(&end(-1.0), &end(1.0), 2.0 * half)
-                });
-                self.between_ends.set(&self.grid, point, &rows);
+                let (grid, cells) = (&self.grid, &self.cells);
+                let per_cell = grid.inverse_cell_size();
+                for (point, place) in cells.place.iter().enumerate() {
+                    let cell = grid.cell_at(place);
+                    let rows = std::array::from_fn(|d| {
+                        let half = (self.points.half_length[point][d] * per_cell).min(0.5);
+                        let end = |side: f64| {
+                            let at = place[d] + side * half;
+                            let along = grid.cell_below(at - side * INSET).clamp(cell[d] - 1, cell[d] + 1);
+                            composite_row(grid, cells, &cell, d, at, along)
+                        };
+                        Row::between(&end(-1.0), &end(1.0), 2.0 * half)
+                    });
+                    self.between_ends.set(grid, point, &rows);
+                }
             }
         }
     }
+}
 
-    /// Cell, in one direction, of an end of a domain whose middle is in the cell `home`.
-    #[inline]
-    fn cell_of_end(&self, home: usize, at: f64) -> usize {
-        self.grid.cell_below(at).clamp(home - 1, home + 1)
-    }
-
-    /// Composite interpolation at a place of the cell `along` steps from `cell` in one direction.
-    #[inline]
-    fn composite_row(&self, cell: &[usize; D], direction: usize, at: f64, along: usize) -> Row<4> {
-        let mut place = *cell;
-        place[direction] = along;
-        let home = self.grid.flat_cell(&place);
-        let stride = self.grid.cell_stride()[direction];
-        let (lower, upper) = (self.cells.is_reached(home - stride), self.cells.is_reached(home + stride));
-        shape::composite(at, along, lower, upper)
-    }
+/// Composite interpolation at a place of the cell `along` in one direction from `cell`.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn composite_row<const D: usize>(
+    grid: &Grid<D>,
+    cells: &Cells<D>,
+    cell: &[usize; D],
+    direction: usize,
+    at: f64,
+    along: usize,
+) -> Row<4> {
+    let mut place = *cell;
+    place[direction] = along;
+    let home = grid.flat_cell(&place);
+    let stride = grid.cell_stride()[direction];
+    let (lower, upper) = (cells.is_reached(home - stride), cells.is_reached(home + stride));
+    shape::composite(at, along, lower, upper)
 }

@@ -9,6 +9,7 @@ use crate::record::{Record, RecordStore, Status, StoreError, WallSample};
 use crate::scene::{SceneProblem, column_parameters};
 use crate::solver::limits;
 use crate::solver::outcome::FailureKind;
+use crate::solver::profile::{Phase, enter};
 use crate::solver::run::{Kernel, Schedule, TimeStepRule};
 use std::cell::Cell;
 use std::sync::Mutex;
@@ -53,6 +54,22 @@ pub struct RunOptions {
     pub resume: bool,
 }
 
+impl RunOptions {
+    /// A whole tier, every case anew.
+    pub fn whole(tier: Tier, jobs: usize) -> Self {
+        Self { jobs, tier, shard: None, resume: false }
+    }
+}
+
+/// A study to run, and where its records are kept.
+#[derive(Clone, Copy, Debug)]
+pub struct Selected<'a> {
+    /// The study.
+    pub study: &'a Study,
+    /// Its store; without one nothing is kept.
+    pub store: Option<&'a RecordStore>,
+}
+
 /// What the runner tells while it works.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress {
@@ -69,6 +86,8 @@ pub enum Progress {
     Advanced(u64),
     /// A case is done.
     Finished {
+        /// Its study.
+        study: String,
         /// Label of the case.
         label: String,
         /// Failure sentence, where it failed.
@@ -131,18 +150,51 @@ pub fn run_study(
     store: Option<&RecordStore>,
     tell: &(dyn Fn(Progress) + Sync),
 ) -> RunReport {
-    let cases: Vec<&Case> = study
-        .cases(options.tier)
-        .into_iter()
+    run_studies(&[Selected { study, store }], options, tell).pop().unwrap_or_default()
+}
+
+/// Runs the cases of several studies side by side, so that the cores stay busy to the end of the
+/// last one, and keeps each record as soon as it is there. One report a study.
+pub fn run_studies(
+    studies: &[Selected<'_>],
+    options: &RunOptions,
+    tell: &(dyn Fn(Progress) + Sync),
+) -> Vec<RunReport> {
+    let found: Vec<Vec<(&Case, Option<Record>)>> =
+        studies.iter().map(|selected| cases_with_records(selected, options)).collect();
+    let missing = studies.iter().zip(&found).flat_map(|(selected, cases)| {
+        let without = cases.iter().filter(|(_, record)| record.is_none());
+        without.map(|(case, _)| Job { case, study: selected.study, store: selected.store })
+    });
+    let jobs: Vec<Job<'_>> = missing.collect();
+    let cases: usize = found.iter().map(Vec::len).sum();
+    let mut results = run_jobs(&jobs, cases - jobs.len(), options.jobs, tell).into_iter();
+    studies
+        .iter()
+        .zip(found)
+        .map(|(selected, cases)| report_of(cases, &mut results, selected.store))
+        .collect()
+}
+
+/// The cases of a study that are to be run, with the records there are of them already.
+fn cases_with_records<'a>(selected: &Selected<'a>, options: &RunOptions) -> Vec<(&'a Case, Option<Record>)> {
+    let store = selected.store.filter(|_| options.resume);
+    let cases = selected.study.cases(options.tier).into_iter();
+    cases
         .filter(|case| options.shard.is_none_or(|shard| shard.holds(case)))
-        .collect();
-    let stored = |case: &Case| store.filter(|_| options.resume).and_then(|store| store.finished(case));
-    let found: Vec<Option<Record>> = cases.iter().map(|case| stored(case)).collect();
-    let missing = cases.iter().zip(&found).filter(|(_, found)| found.is_none());
-    let jobs: Vec<Job<'_>> = missing.map(|(case, _)| Job { case, study, store }).collect();
-    let mut report = RunReport { resumed: cases.len() - jobs.len(), ..RunReport::default() };
-    let mut results = run_jobs(&jobs, report.resumed, options.jobs, tell).into_iter();
-    for found in found {
+        .map(|case| (case, store.and_then(|store| store.finished(case))))
+        .collect()
+}
+
+/// The report of a study: records from disk, and for the other cases the next results.
+fn report_of(
+    cases: Vec<(&Case, Option<Record>)>,
+    results: &mut impl Iterator<Item = Option<Result<Record, RunError>>>,
+    store: Option<&RecordStore>,
+) -> RunReport {
+    let mut report = RunReport::default();
+    for (_, found) in cases {
+        report.resumed += usize::from(found.is_some());
         match found.map(Ok).or_else(|| results.next().flatten()) {
             Some(Ok(record)) => report.records.push(record),
             Some(Err(error)) => report.errors.push(error),
@@ -157,31 +209,6 @@ pub fn run_study(
             .map(RunError::Store)
     }));
     report
-}
-
-/// Runs the cases of several studies side by side and keeps nothing: the cores stay busy to the
-/// end of the last one. One report a study.
-pub fn run_studies(
-    studies: &[Study],
-    tier: Tier,
-    threads: usize,
-    tell: &(dyn Fn(Progress) + Sync),
-) -> Vec<RunReport> {
-    let of_study =
-        |study| Study::cases(study, tier).into_iter().map(move |case| Job { case, study, store: None });
-    let jobs: Vec<Job<'_>> = studies.iter().flat_map(of_study).collect();
-    let mut results = run_jobs(&jobs, 0, threads, tell).into_iter();
-    let report_of = |study: &Study| {
-        let mut report = RunReport::default();
-        for result in results.by_ref().take(study.cases(tier).len()).flatten() {
-            match result {
-                Ok(record) => report.records.push(record),
-                Err(error) => report.errors.push(error),
-            }
-        }
-        report
-    };
-    studies.iter().map(report_of).collect()
 }
 
 /// Runs jobs, the longest first so that the last ones to finish are short; results in the order of
@@ -260,6 +287,7 @@ fn run_and_keep(
         let _ = store.write(&record);
     }
     tell(Progress::Finished {
+        study: study.name.clone(),
         label: case.label(),
         failure: match &record.status {
             Status::Ok => None,
@@ -299,6 +327,7 @@ pub fn run_case(
     let start = Instant::now();
     let outcome = problem.run(&schedule, observe);
     let seconds = start.elapsed().as_secs_f64();
+    enter(Phase::Assessment);
     let mut record = record_of(case, references, outcome)?;
     record.wall.push(WallSample { seconds, alone });
     Ok(record)
@@ -365,6 +394,20 @@ pub struct TimingReport {
     pub runs: usize,
 }
 
+/// Repeats of a case that takes long end here: their spread is small, and they would make the study
+/// wait for what it knows.
+const REPEATS_OF_LONG_CASES: usize = 3;
+/// Seconds beyond which the repeats of a case took long.
+const LONG_REPEATS: f64 = 0.25;
+
+/// Whether the wall time of a case is not known yet as well as its study asks.
+fn wants_timing(record: &Record, repeats: usize) -> bool {
+    let wall = record.wall_alone();
+    let is_long = wall.iter().sum::<f64>() > LONG_REPEATS;
+    let enough = if is_long { repeats.min(REPEATS_OF_LONG_CASES) } else { repeats };
+    record.status == Status::Ok && wall.len() < enough
+}
+
 /// Times the cases of records alone, in rounds over all of them, until each has the study's number
 /// of samples: what drifts on the machine meets every case alike.
 ///
@@ -379,7 +422,7 @@ pub fn time_study(
     let mut report = TimingReport::default();
     for _ in 0..study.timing_repeats {
         for record in &mut *records {
-            if record.status != Status::Ok || record.wall_alone().len() >= study.timing_repeats {
+            if !wants_timing(record, study.timing_repeats) {
                 continue;
             }
             let timed = run_case(&record.case, &study.references, Kernel::Fastest, true, &|_, _| true)

@@ -41,6 +41,7 @@ pub fn shipped_studies() -> Vec<StudySource> {
         ("studies/hard-early.toml", include_str!("../../studies/hard-early.toml")),
         ("studies/hard-strain.toml", include_str!("../../studies/hard-strain.toml")),
         ("studies/hard-long.toml", include_str!("../../studies/hard-long.toml")),
+        ("studies/large-strain-column.toml", include_str!("../../studies/large-strain-column.toml")),
         ("studies/large-strain-mesh.toml", include_str!("../../studies/large-strain-mesh.toml")),
         ("studies/large-strain-implicit.toml", include_str!("../../studies/large-strain-implicit.toml")),
         ("studies/large-strain-models.toml", include_str!("../../studies/large-strain-models.toml")),
@@ -48,6 +49,7 @@ pub fn shipped_studies() -> Vec<StudySource> {
         ("studies/large-strain-crossing.toml", include_str!("../../studies/large-strain-crossing.toml")),
         ("studies/large-strain-small.toml", include_str!("../../studies/large-strain-small.toml")),
         ("studies/large-strain-half.toml", include_str!("../../studies/large-strain-half.toml")),
+        ("studies/large-strain-start.toml", include_str!("../../studies/large-strain-start.toml")),
         ("studies/large-strain-limit.toml", include_str!("../../studies/large-strain-limit.toml")),
     ];
     SHIPPED

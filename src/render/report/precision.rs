@@ -149,7 +149,9 @@ fn runs_table(title: &str, runs: &[&TimedRun<'_>], precision: &WorkPrecision<'_>
 }
 
 fn next_table(levels: &[NextLevel]) -> Table {
+    let unknown = || Cell::Missing("the coarser levels predict none".to_owned());
     let rows = levels.iter().map(|level| {
+        let held = level.finest_predicted;
         vec![
             Cell::Text(level.label.clone()),
             Cell::Number(1e3 * level.finest.cost),
@@ -157,6 +159,9 @@ fn next_table(levels: &[NextLevel]) -> Table {
             Cell::Number(1e3 * level.next.cost),
             level.next.error.map_or(Cell::Missing("the series does not converge".to_owned()), Cell::Error),
             Cell::Order(level.next.cost_exponent),
+            held.map_or_else(unknown, |held| Cell::Percent(held.cost / level.finest.cost - 1.0)),
+            held.and_then(|held| held.error)
+                .map_or_else(unknown, |error| Cell::Percent(error / level.finest.error - 1.0)),
         ]
     });
     Table {
@@ -168,6 +173,8 @@ fn next_table(levels: &[NextLevel]) -> Table {
             Column::number("wall predicted").unit("ms"),
             Column::number("error predicted"),
             Column::number("cost exponent"),
+            Column::number("finest predicted by the coarser: wall off by"),
+            Column::number("error off by"),
         ],
         rows: rows.collect(),
         notes: vec![

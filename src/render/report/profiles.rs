@@ -2,7 +2,7 @@
 
 use super::StudyResults;
 use crate::assess::curves::{
-    computed_consolidation, computed_isochrone, constant_recovery_error, theory_consolidation,
+    computed_consolidation, computed_isochrone, constant_recovery_error, theory_consolidation, theory_degree,
     theory_isochrone,
 };
 use crate::assess::norms::Norm;
@@ -10,13 +10,14 @@ use crate::exact::ExactError;
 use crate::record::{Quantity, Record, Sample, Status};
 use crate::render::chart::{Axis as ChartAxis, Chart, Series, Size, Style};
 use crate::render::page::{Block, Figure, slug};
+use crate::scene::SceneKind;
 use crate::solver::method::{PressureIntegration, Recovery};
 
 /// Cells of the runs whose profiles are drawn: the paper's column.
 const SHOWN_CELLS: usize = 10;
 
-/// Points a cell of those runs.
-const SHOWN_POINTS: usize = 2;
+/// Points a cell of those runs: the first of these that a study has.
+const SHOWN_POINTS: [usize; 2] = [2, 4];
 
 /// Profiles of a study's runs on the paper's mesh, one run a method; none for studies that refine
 /// but one method.
@@ -38,10 +39,12 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
 
 /// The first sound run of each method on the paper's mesh.
 fn shown_records(records: &[Record]) -> Vec<&Record> {
-    let is_shown = |record: &&Record| {
-        let case = &record.case;
-        case.cells == SHOWN_CELLS && case.points_per_cell == SHOWN_POINTS && record.status == Status::Ok
-    };
+    let is_sound = |record: &&Record| record.case.cells == SHOWN_CELLS && record.status == Status::Ok;
+    let has =
+        |points: &usize| records.iter().filter(is_sound).any(|record| record.case.points_per_cell == *points);
+    let points_per_cell = SHOWN_POINTS.into_iter().find(has);
+    let is_shown =
+        |record: &&Record| is_sound(record) && Some(record.case.points_per_cell) == points_per_cell;
     let mut shown: Vec<&Record> = Vec::new();
     for record in records.iter().filter(is_shown) {
         if shown.iter().all(|other| other.case.method != record.case.method) {
@@ -56,7 +59,21 @@ fn compared<'a>(shown: &[&'a Record]) -> Vec<&'a Record> {
     [shown.first(), shown.last()].into_iter().flatten().copied().collect()
 }
 
-/// The paper's Fig. 3a: `p/q` against depth.
+/// Time factor of an isochrone, with the degree of consolidation where large strains make that the
+/// measure of progress.
+fn isochrone_name(
+    results: &StudyResults<'_>,
+    record: &Record,
+    time_factor: f64,
+) -> Result<String, ExactError> {
+    if results.study.scene != SceneKind::XieLeo {
+        return Ok(format!("T_v = {time_factor}"));
+    }
+    let degree = theory_degree(&record.case, results.study.references[0], time_factor)?;
+    Ok(format!("T_v = {time_factor:.3}, U = {:.0} %", 100.0 * degree))
+}
+
+/// The paper's Figs 3a and 4a: `p/q` against depth.
 fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, ExactError> {
     let own = results.study.references[0];
     let mut chart = Chart::new(
@@ -74,9 +91,12 @@ fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, Exa
             .series
             .push(Series::theory(own.name(), theory_isochrone(&record.case, own, *time_factor)?).slot(0));
         chart.series.push(
-            Series::new(format!("T_v = {time_factor}"), computed_isochrone(record, *time_factor))
-                .style(Style::Markers)
-                .slot(slot),
+            Series::new(
+                isochrone_name(results, record, *time_factor)?,
+                computed_isochrone(record, *time_factor),
+            )
+            .style(Style::Markers)
+            .slot(slot),
         );
     }
     let name = slug(&format!("{}-isochrones-{}", results.study.name, record.case.method));
@@ -87,7 +107,7 @@ fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, Exa
     Ok(Figure::new(name, chart, caption))
 }
 
-/// The paper's Fig. 3b: degree of consolidation against the time factor.
+/// The paper's Figs 3b and 4b: degree of consolidation against the time factor.
 fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Figure, ExactError> {
     let own = results.study.references[0];
     let case = &shown[0].case;

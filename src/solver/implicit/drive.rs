@@ -9,6 +9,7 @@ use crate::solver::integrator::Formulation;
 use crate::solver::method::Configuration;
 use crate::solver::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
 use crate::solver::points::Points;
+use crate::solver::profile::{Phase, enter};
 use crate::solver::run::{Observer, Schedule};
 use crate::solver::snapshot::Snapshot;
 
@@ -183,6 +184,7 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
     {
         let before = (self.time, self.march.settlement());
         let error = self.march.step(dt, most_error)?;
+        enter(Phase::Outputs);
         if error > most_error {
             return Ok(error);
         }

@@ -15,6 +15,7 @@ use super::march::{ERROR_SHARE, ErrorScales, March, StepFailure, Work};
 use crate::solver::body::{Body, ShapeFunction};
 use crate::solver::grid::Vector;
 use crate::solver::outcome::FailureKind;
+use crate::solver::profile::{Phase, enter};
 
 /// `γ = 1 − 1/√2`: both stages have the same matrix and the method is L-stable.
 pub const SDIRK_GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
@@ -53,6 +54,7 @@ pub struct LinearMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
     /// A body at its start.
     pub fn new(start: Body<D, W, S>, plan: &Plan<'_>) -> Self {
+        enter(Phase::Assembly);
         let system = LinearSystem::of(&start);
         let zero = vec![0.0; system.unknowns.count];
         Self {
@@ -77,6 +79,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
     /// Factors the matrix of steps of `dt` seconds, where it is not that of the last ones.
     fn set_step(&mut self, dt: f64) -> Result<(), StepFailure> {
         if self.factored != Some(dt) {
+            enter(Phase::Factors);
             let system = &self.system;
             let factored = self.lu.factor_combination(&system.fixed, SDIRK_GAMMA * dt, &system.proportional);
             factored.map_err(|singular| StepFailure {
@@ -91,6 +94,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
 
     /// Both stages of a step of the size last set; nothing is allocated.
     fn take_stages(&mut self, dt: f64) {
+        enter(Phase::Solve);
         let stage = SDIRK_GAMMA * dt;
         let system = &self.system;
         let sites = &system.unknowns.pressure;

@@ -9,6 +9,7 @@ use super::trial::{Skeleton, StageStart, Trial};
 use crate::solver::body::{Body, ShapeFunction};
 use crate::solver::integrator::IntegratorKind;
 use crate::solver::outcome::FailureKind;
+use crate::solver::profile::{Phase, enter};
 use crate::solver::run::lost_point;
 
 /// Iterations of a stage.
@@ -175,6 +176,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
         }
         let body = &self.trial.body;
         self.settlement_rate = -body.surface.mean_of(&body.grid, &body.points, &body.nodes.solid_velocity);
+        enter(Phase::BuildWeights);
         self.trial.commit(&self.state);
         self.time += dt;
         self.trial.body.surface_flux += flux;
@@ -240,6 +242,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
                 self.renew_tangent()?;
                 self.contraction = SLOW;
             }
+            enter(Phase::Solve);
             self.scratch.copy_from_slice(&self.residual);
             self.lu.solve(&mut self.scratch);
             let mut size: f64 = 0.0;
@@ -268,6 +271,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
 
     /// The residual at the present iterate.
     fn evaluate(&mut self) -> Result<(), StepFailure> {
+        enter(Phase::Balances);
         let grains = 1.0 - self.trial.body.material.porosity;
         self.trial.residual(&self.state, &self.start, &mut self.residual).map_err(|point| {
             let ratio = self.trial.body.points.volume_ratio[point];
@@ -279,6 +283,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
     }
 
     fn renew_tangent(&mut self) -> Result<(), StepFailure> {
+        enter(Phase::Assembly);
         let (trial, start) = (&mut self.trial, &self.start);
         self.pattern.differentiate(
             &mut self.state,
@@ -292,6 +297,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
         );
         self.work.factorisations += 1;
         self.factored = Some(start.duration);
+        enter(Phase::Factors);
         self.lu.factor(&self.tangent).map_err(|singular| {
             self.factored = None;
             StepFailure {

@@ -1,0 +1,34 @@
+//! The table of where the time of a case went.
+
+use super::table::{Cell, Column, Table};
+use crate::record::Record;
+use crate::solver::profile::PhaseTime;
+
+/// One row a phase, in the order of a run, with its share and what it costs a point and step.
+pub fn phases_table(phases: &[PhaseTime], record: &Record) -> Table {
+    let updates = record.counters.point_updates.max(1) as f64;
+    let rows = phases.iter().map(|time| {
+        vec![
+            time.phase.name().into(),
+            Cell::Percent(time.share),
+            Cell::Number(1e3 * time.seconds),
+            Cell::Number(1e9 * time.seconds / updates),
+            Cell::Count(time.entries),
+        ]
+    });
+    Table {
+        title: "where the time went".to_owned(),
+        columns: vec![
+            Column::text("phase"),
+            Column::number("share"),
+            Column::number("time").unit("ms"),
+            Column::number("a point and step").unit("ns"),
+            Column::number("entered"),
+        ],
+        rows: rows.collect(),
+        notes: vec![
+            "wall time without that of the clock, which is read where a phase begins; a run without it is faster"
+                .to_owned(),
+        ],
+    }
+}
