@@ -54,12 +54,20 @@ pub fn folder_with(study: &str) -> TempDir {
 
 /// Holds a text against its snapshot.
 pub fn assert_snapshot(name: &str, text: &str) {
+    let text = without_wall_time(text);
     settings().bind(|| insta::assert_snapshot!(name, text));
+}
+
+/// A text without what it says of slow cases: that is the machine's business.
+fn without_wall_time(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().filter(|line| !line.contains("of wall time in all")).collect();
+    lines.join("\n").trim_end().to_owned()
 }
 
 /// Holds the words of a table against its snapshot and not the numbers in it: those are for golden
 /// values and expectations to judge, and their last digits are another platform's own.
 pub fn assert_words(name: &str, text: &str) {
+    let text = without_wall_time(text);
     let mut settings = settings();
     // Not those in a name, as in `cells=4` or `L2`.
     settings.add_filter(r"([ (])[-+]?\d+(\.\d+)?(e-?\d+)?", "${1}#");
