@@ -289,16 +289,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| gradient[i][k] * inverse[k][j]).sum()))
     }
 
-    /// A stress that meets gradients on the initial configuration, `σ F⁻ᵀ`.
-    #[inline]
-    pub(super) fn pulled_back(&self, point: usize, stress: Tensor<D>) -> Tensor<D> {
-        if !self.is_total() {
-            return stress;
-        }
-        let inverse = &self.points.inverse_deformation[point];
-        std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| stress[i][k] * inverse[j][k]).sum()))
-    }
-
     /// Divergence of a nodal field at a point, on the present configuration.
     #[inline]
     pub fn divergence_at_point(&self, point: usize, field: &[Vector<D>]) -> f64 {

@@ -2,7 +2,7 @@
 
 use super::body::{Body, ShapeFunction};
 use super::grid::{Tensor, Vector};
-use super::method::{Configuration, PressureIntegration, Recovery};
+use super::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
 use super::profile::{Phase, enter};
 use super::scheme::Scheme;
 use serde::{Deserialize, Serialize};
@@ -141,38 +141,53 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// (4) Velocities and places of the points.
     fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
-        let nodes = &self.nodes;
+        if flip < 1.0 {
+            self.advance_points_by::<true>(kick, dt, flip);
+        } else {
+            self.advance_points_by::<false>(kick, dt, flip);
+        }
+    }
+
+    /// The same; where nothing is interpolated from the nodes, the water's velocities are not asked for.
+    #[inline]
+    fn advance_points_by<const PIC: bool>(&mut self, kick: f64, dt: f64, flip: f64) {
         let moving = self.configuration.moves_points();
         let pic = 1.0 - flip;
-        for point in 0..self.points.len() {
-            // Velocity and acceleration of the skeleton, then of the water: one pass over the block.
-            let mut at_point = [[0.0; D]; 4];
-            self.basis.visit_runs(self.grid.node_stride(), point, |first, weights, _| {
-                let fields = [
-                    &nodes.solid_velocity,
-                    &nodes.solid_acceleration,
-                    &nodes.water_velocity,
-                    &nodes.water_acceleration,
-                ];
-                for (value, field) in at_point.iter_mut().zip(fields) {
-                    for (node, weight) in field[first..first + W].iter().zip(weights) {
-                        for d in 0..D {
-                            value[d] += weight * node[d];
-                        }
-                    }
+        let carried_by_ends =
+            (self.method.strain == StrainGradient::CmpmEnds).then(|| self.between_ends.blocks());
+        let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
+        let nodes = &self.nodes;
+        let (solid_field, solid_rates) = (&nodes.solid_velocity[..], &nodes.solid_acceleration[..]);
+        let (water_field, water_rates) = (&nodes.water_velocity[..], &nodes.water_acceleration[..]);
+        let points = &mut self.points;
+        let count = points.len();
+        let (solid_velocity, water_velocity) =
+            (&mut points.solid_velocity[..count], &mut points.water_velocity[..count]);
+        let (displacement, position) = (&mut points.displacement[..count], &mut points.position[..count]);
+        for point in 0..count {
+            let ([mut solid, mut solid_rate], [mut water, mut water_rate]) = ([[0.0; D]; 2], [[0.0; D]; 2]);
+            basis.visit_runs(&stride, point, |first, weights, _| {
+                let run = first..first + W;
+                add_weighted(&mut solid, &solid_field[run.clone()], weights);
+                add_weighted(&mut solid_rate, &solid_rates[run.clone()], weights);
+                add_weighted(&mut water_rate, &water_rates[run.clone()], weights);
+                if PIC {
+                    add_weighted(&mut water, &water_field[run], weights);
                 }
             });
-            let [solid, solid_rate, water, water_rate] = at_point;
-            let carrying = self.carrying(point, &nodes.solid_velocity, solid);
-            let points = &mut self.points;
+            let carrying = carried_by_ends.map_or(solid, |ends| ends.value(&stride, point, solid_field));
             for d in 0..D {
                 let (solid_velocity, water_velocity) =
-                    (&mut points.solid_velocity[point][d], &mut points.water_velocity[point][d]);
-                *solid_velocity = flip * (*solid_velocity + kick * solid_rate[d]) + pic * solid[d];
-                *water_velocity = flip * (*water_velocity + kick * water_rate[d]) + pic * water[d];
-                points.displacement[point][d] += dt * carrying[d];
+                    (&mut solid_velocity[point][d], &mut water_velocity[point][d]);
+                *solid_velocity += kick * solid_rate[d];
+                *water_velocity += kick * water_rate[d];
+                if PIC {
+                    *solid_velocity = flip * *solid_velocity + pic * solid[d];
+                    *water_velocity = flip * *water_velocity + pic * water[d];
+                }
+                displacement[point][d] += dt * carrying[d];
                 if moving {
-                    points.position[point][d] += dt * carrying[d];
+                    position[point][d] += dt * carrying[d];
                 }
             }
         }
@@ -313,6 +328,16 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 self.cells.pressure_increment[cell] =
                     -dt * self.material.water_bulk_modulus / porosity * rate;
             }
+        }
+    }
+}
+
+/// Adds a run of nodal vectors with their weights.
+#[inline]
+fn add_weighted<const D: usize>(value: &mut Vector<D>, nodes: &[Vector<D>], weights: &[f64]) {
+    for (node, weight) in nodes.iter().zip(weights) {
+        for d in 0..D {
+            value[d] += weight * node[d];
         }
     }
 }
