@@ -286,9 +286,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             }
             (_, Recovery::Patch) => {
                 self.pressure_increments_of_cells(dt);
-                for point in 0..self.points.len() {
-                    self.points.pressure[point] +=
-                        self.patch.value(&self.grid, point, &self.cells.pressure_increment);
+                let increments = &self.cells.pressure_increment[..];
+                for (point, pressure) in self.points.pressure.iter_mut().enumerate() {
+                    *pressure += self.patch.value(&self.grid, point, increments);
                 }
             }
         }
