@@ -94,9 +94,10 @@ impl<const D: usize> Cells<D> {
         for cell in 0..self.point_count.len() {
             self.reached[cell] = self.is_occupied(cell);
             self.at_edge[cell] = self.is_occupied(cell)
-                && grid.cell_stride().iter().any(|stride| {
-                    !(self.is_occupied(cell - stride) && self.is_occupied(cell + stride))
-                });
+                && grid
+                    .cell_stride()
+                    .iter()
+                    .any(|stride| !(self.is_occupied(cell - stride) && self.is_occupied(cell + stride)));
         }
         let per_cell = grid.inverse_cell_size();
         let found = self.of_point.iter().zip(&self.place);

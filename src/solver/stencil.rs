@@ -83,17 +83,7 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Gradient of a nodal vector field at the point, `[component][direction]`.
     #[inline]
     pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> [[f64; D]; D] {
-        let mut gradient = [[0.0; D]; D];
-        self.blocks().visit_runs(stride, point, |first, _, gradients| {
-            for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
-                for component in 0..D {
-                    for direction in 0..D {
-                        gradient[component][direction] += node[component] * node_gradient[direction];
-                    }
-                }
-            }
-        });
-        gradient
+        self.blocks().gradient(stride, point, field)
     }
 
     /// The nodes of a point's block with their gradients (1/m), where they are not zero: the
@@ -185,6 +175,22 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
             }
         });
         value
+    }
+
+    /// Gradient of a nodal vector field at the point, `[component][direction]`.
+    #[inline]
+    pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> [[f64; D]; D] {
+        let mut gradient = [[0.0; D]; D];
+        self.visit_runs(stride, point, |first, _, gradients| {
+            for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
+                for component in 0..D {
+                    for direction in 0..D {
+                        gradient[component][direction] += node[component] * node_gradient[direction];
+                    }
+                }
+            }
+        });
+        gradient
     }
 }
 
