@@ -406,13 +406,11 @@ const MOVING_STEPS: usize = 64;
 fn print_moving_table() {
     println!("\nmoving step of GC-SRI-patch and its passes, ns per point, least of {ROUNDS} rounds");
     print!("{:>8}{:>6}", "pts/cell", "cells");
-    PASSES.iter().for_each(|pass| print!("{pass:>12}"));
-    println!();
+    println!("{}", PASSES.map(|pass| format!("{pass:>12}")).concat());
     for points_per_cell in [2, 4] {
         for cells in CELLS {
             print!("{points_per_cell:>8}{cells:>6}");
-            moving_cost(cells, points_per_cell).iter().for_each(|cost| print!("{cost:>12.1}"));
-            println!();
+            println!("{}", moving_cost(cells, points_per_cell).map(|cost| format!("{cost:>12.1}")).concat());
         }
     }
 }
