@@ -359,7 +359,8 @@ enum Following {
 
 impl Following {
     /// Factor of the volume, exact in the logarithmic strain; what follows it has followed.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     fn deform<const D: usize>(
         self,
         half_length: &mut Vector<D>,
@@ -381,7 +382,8 @@ impl Following {
 }
 
 /// Adds a run of nodal vectors with their weights.
-#[inline]
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 fn add_weighted<const D: usize>(value: &mut Vector<D>, nodes: &[Vector<D>], weights: &[f64]) {
     for (node, weight) in nodes.iter().zip(weights) {
         for d in 0..D {

@@ -164,7 +164,8 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     }
 
     /// Sum of a nodal vector field with the weights: its value at the point.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
         let mut value = [0.0; D];
         self.visit_runs(stride, point, |first, weights, _| {
@@ -178,7 +179,8 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     }
 
     /// Gradient of a nodal vector field at the point, `[component][direction]`.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> [[f64; D]; D] {
         let mut gradient = [[0.0; D]; D];
         self.visit_runs(stride, point, |first, _, gradients| {

@@ -39,7 +39,8 @@ impl<'a, const D: usize, const W: usize> StrainBlocks<'a, D, W> {
     }
 
     /// Gradient of a nodal field at a point.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub(super) fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
         match self {
             Self::Basis(blocks) => blocks.gradient(stride, point, field),
