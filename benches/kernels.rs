@@ -3,7 +3,8 @@
 //! `cargo bench --bench kernels` ends with a table of nanoseconds per point and step, the unit in
 //! which the bar is set: at most 8 for `GC-SRI-patch` in one dimension with frozen weights, 35 with
 //! moving points, 150 in two dimensions; the least of rounds in which the kernels take turns. Beside the
-//! frozen step stands its bound: as many multiply-adds and loads, with nothing to wait for.
+//! frozen step stands its bound: as many multiply-adds and loads, with nothing to wait for. Beside the
+//! moving step stand its passes one by one, and what one sum on the grid costs that waits for the last.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -49,6 +50,7 @@ fn main() {
     if std::env::args().all(|argument| argument != "--test" && argument != "--list") {
         print_table();
         print_bound();
+        print_moving_table();
         print_plane_table();
     }
 }
@@ -148,10 +150,20 @@ fn exact_degree_of_consolidation(bencher: Bencher, time_factor: f64) {
 
 /// The seed column, from its undrained start.
 fn problem(method: &str, cells: usize, configuration: Configuration) -> Problem<1> {
+    crowded_problem(method, cells, POINTS_PER_CELL, configuration)
+}
+
+/// The same with any number of points a cell.
+fn crowded_problem(
+    method: &str,
+    cells: usize,
+    points_per_cell: usize,
+    configuration: Configuration,
+) -> Problem<1> {
     let method =
         Method { configuration: Some(configuration), ..Method::named(method).expect("a known method") };
     let (column, soil) = (Column::default(), Material::default());
-    column_problem(SceneKind::Terzaghi, &column, &soil, method, cells, POINTS_PER_CELL)
+    column_problem(SceneKind::Terzaghi, &column, &soil, method, cells, points_per_cell)
         .expect("the seed column")
 }
 
@@ -313,6 +325,8 @@ fn least_of_rounds<const N: usize>(works: &mut [Box<dyn FnMut()>; N]) -> [f64; N
 
 /// Nodes whose coefficients lie side by side, as in the frozen step.
 const LANES: usize = 4;
+/// Sums that do not wait for each other in the bound.
+const CHAINS: usize = 4;
 /// Multiply-adds of a node beside those of its bands: projections of two accelerations over three
 /// nodes, and what follows from forces.
 const OTHER_TERMS: usize = 6 + 14;
@@ -352,24 +366,81 @@ fn force_reach(method: &str, cells: usize) -> usize {
 /// `STEPS` passes over the nodes with so many multiply-adds each.
 fn streaming(cells: usize, terms: usize) -> Box<dyn FnMut()> {
     let blocks = cells.div_ceil(LANES);
+    let terms = terms.next_multiple_of(CHAINS);
     let coefficients = vec![[1e-3; LANES]; blocks * terms];
-    let field = vec![[1.0; LANES]; blocks];
+    let mut field = vec![[1.0; LANES]; blocks];
     let mut sums = vec![[0.0; LANES]; blocks];
     Box::new(move || {
         for _ in 0..STEPS {
             for (block, sum) in sums.iter_mut().enumerate() {
-                let mut chains = [[0.0; LANES]; 4];
-                let value = black_box(&field)[block];
-                for (k, row) in coefficients[block * terms..][..terms].iter().enumerate() {
-                    for lane in 0..LANES {
-                        chains[k % 4][lane] += row[lane] * value[lane];
+                // Four chains of sums hide the latency of an addition.
+                let mut chains = [[0.0; LANES]; CHAINS];
+                let value = field[block];
+                for rows in coefficients[block * terms..][..terms].chunks_exact(CHAINS) {
+                    for (chain, row) in chains.iter_mut().zip(rows) {
+                        for lane in 0..LANES {
+                            chain[lane] += row[lane] * value[lane];
+                        }
                     }
                 }
                 for lane in 0..LANES {
                     sum[lane] = chains.iter().map(|chain| chain[lane]).sum();
                 }
             }
-            black_box(&mut sums);
+            black_box((&mut sums, &mut field));
         }
     })
+}
+
+/// Passes of the moving step, in the order of the table.
+const PASSES: [&str; 6] = ["step", "operators", "masses", "velocities", "forces", "waiting"];
+/// Steps an iteration of the moving table.
+const MOVING_STEPS: usize = 64;
+
+/// The moving step of `GC-SRI-patch` and its passes.
+///
+/// The step takes the masses and the velocities in one pass and maps velocities back in another, so that
+/// passes and step need not add up; what is left are the points' motion, their stresses and their
+/// pressures. `waiting` is what bounds a pass from points to nodes: neighbours give to the same node, so
+/// every sum is stored, loaded and added to before the next; it is measured with one number a point.
+fn print_moving_table() {
+    println!("\nmoving step of GC-SRI-patch and its passes, ns per point, least of {ROUNDS} rounds");
+    print!("{:>8}{:>6}", "pts/cell", "cells");
+    println!("{}", PASSES.map(|pass| format!("{pass:>12}")).concat());
+    for points_per_cell in [2, 4] {
+        for cells in CELLS {
+            print!("{points_per_cell:>8}{cells:>6}");
+            println!("{}", moving_cost(cells, points_per_cell).map(|cost| format!("{cost:>12.1}")).concat());
+        }
+    }
+}
+
+/// Nanoseconds per point of the step and of each pass, which take turns.
+fn moving_cost(cells: usize, points_per_cell: usize) -> [f64; PASSES.len()] {
+    let problem = crowded_problem("GC-SRI-patch", cells, points_per_cell, Configuration::Updated);
+    let settings = ExplicitSettings::default();
+    let dt = 0.5 * predicted_critical_step(&problem, &settings);
+    let mut body = Body::<1, 3, Gimp>::new(problem);
+    let count = body.points.len();
+    let mut node_sums = vec![0.0; cells + 1];
+    let mut least = [f64::INFINITY; PASSES.len()];
+    for _ in 0..ROUNDS {
+        let mut time = |pass: usize, one: &mut dyn FnMut()| {
+            let start = Instant::now();
+            (0..MOVING_STEPS).for_each(|_| one());
+            least[pass] = least[pass].min(start.elapsed().as_secs_f64());
+        };
+        time(0, &mut || body.explicit_step(black_box(dt), &settings));
+        time(1, &mut || body.build_operators());
+        time(2, &mut || body.map_masses());
+        time(3, &mut || body.map_velocities());
+        time(4, &mut || body.map_forces());
+        time(5, &mut || {
+            for point in 0..count {
+                let node = &mut node_sums[point / points_per_cell];
+                *black_box(node) += 1.0;
+            }
+        });
+    }
+    least.map(|seconds| 1e9 * seconds / (MOVING_STEPS * count) as f64)
 }

@@ -80,6 +80,11 @@ pub fn comparable_errors(run: &TimedRun<'_>) -> [Option<f64>; 3] {
     })
 }
 
+/// Whether some of the runs have what the peers' errors can be held against: elsewhere they say nothing.
+pub fn solve_their_column(runs: &[TimedRun<'_>]) -> bool {
+    runs.iter().any(|run| comparable_errors(run).iter().any(Option::is_some))
+}
+
 /// A peer beside the fastest run that is nowhere worse than it.
 #[derive(Clone, Debug)]
 pub struct Comparison<'a, 'b> {

@@ -285,18 +285,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         if !self.is_total() {
             return gradient;
         }
-        let inverse = &self.points.inverse_deformation[point];
-        std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| gradient[i][k] * inverse[k][j]).sum()))
-    }
-
-    /// A stress that meets gradients on the initial configuration, `σ F⁻ᵀ`.
-    #[inline]
-    pub(super) fn pulled_back(&self, point: usize, stress: Tensor<D>) -> Tensor<D> {
-        if !self.is_total() {
-            return stress;
-        }
-        let inverse = &self.points.inverse_deformation[point];
-        std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| stress[i][k] * inverse[j][k]).sum()))
+        pushed_forward(&self.points.inverse_deformation[point], &gradient)
     }
 
     /// Divergence of a nodal field at a point, on the present configuration.
@@ -397,6 +386,17 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             }
         }
     }
+}
+
+/// `∇₀v F⁻¹`.
+#[inline]
+pub(super) fn pushed_forward<const D: usize>(
+    inverse_deformation: &Tensor<D>,
+    gradient: &Tensor<D>,
+) -> Tensor<D> {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| (0..D).map(|k| gradient[i][k] * inverse_deformation[k][j]).sum())
+    })
 }
 
 /// Rows of a basis at a place (in cells), for a domain of half-lengths (m), without nodes beyond held

@@ -19,6 +19,8 @@ pub struct Cells<const D: usize> {
     point_count: Vec<u32>,
     /// Whether a point's domain reaches into each cell.
     reached: Vec<bool>,
+    /// Whether each cell is occupied and has an empty neighbour.
+    at_edge: Vec<bool>,
     /// Current volume of each cell's points, m^D.
     volume: Vec<f64>,
     /// Volume-weighted mean porosity of each occupied cell's points.
@@ -48,6 +50,7 @@ impl<const D: usize> Cells<D> {
             first_node,
             point_count: vec![0; count],
             reached: vec![false; count],
+            at_edge: vec![false; count],
             volume: vec![0.0; count],
             porosity: vec![0.0; count],
             inverse_deformation: vec![[[0.0; D]; D]; count],
@@ -88,12 +91,20 @@ impl<const D: usize> Cells<D> {
     /// Finds the cells that the points' domains reach into: a cell may have lost its last point and
     /// still carry the edge of the material.
     pub fn find_reached(&mut self, grid: &Grid<D>, points: &Points<D>) {
-        for (reached, count) in self.reached.iter_mut().zip(&self.point_count) {
-            *reached = *count > 0;
+        for cell in 0..self.point_count.len() {
+            self.reached[cell] = self.is_occupied(cell);
+            self.at_edge[cell] = self.is_occupied(cell)
+                && grid
+                    .cell_stride()
+                    .iter()
+                    .any(|stride| !(self.is_occupied(cell - stride) && self.is_occupied(cell + stride)));
         }
         let per_cell = grid.inverse_cell_size();
         let found = self.of_point.iter().zip(&self.place);
         for ((home, place), half_length) in found.zip(&points.half_length) {
+            if !self.at_edge[*home] {
+                continue;
+            }
             let cell = grid.cell_at(place);
             for direction in 0..D {
                 // No domain is wider than a cell, so its ends are in this one or the next.

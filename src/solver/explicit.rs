@@ -1,10 +1,11 @@
 //! The explicit integrator: the eight steps of Zheng et al. (2021), section 4.
 
-use super::body::{Body, ShapeFunction};
+use super::body::{Body, ShapeFunction, pushed_forward};
 use super::grid::{Tensor, Vector};
-use super::method::{Configuration, PressureIntegration, Recovery};
+use super::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
 use super::profile::{Phase, enter};
 use super::scheme::Scheme;
+use super::strain::StrainBlocks;
 use serde::{Deserialize, Serialize};
 
 /// Time level at which the drag between skeleton and water is taken.
@@ -141,38 +142,53 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// (4) Velocities and places of the points.
     fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
-        let nodes = &self.nodes;
+        if flip < 1.0 {
+            self.advance_points_by::<true>(kick, dt, flip);
+        } else {
+            self.advance_points_by::<false>(kick, dt, flip);
+        }
+    }
+
+    /// The same; where nothing is interpolated from the nodes, the water's velocities are not asked for.
+    #[inline]
+    fn advance_points_by<const PIC: bool>(&mut self, kick: f64, dt: f64, flip: f64) {
         let moving = self.configuration.moves_points();
         let pic = 1.0 - flip;
-        for point in 0..self.points.len() {
-            // Velocity and acceleration of the skeleton, then of the water: one pass over the block.
-            let mut at_point = [[0.0; D]; 4];
-            self.basis.visit_runs(self.grid.node_stride(), point, |first, weights, _| {
-                let fields = [
-                    &nodes.solid_velocity,
-                    &nodes.solid_acceleration,
-                    &nodes.water_velocity,
-                    &nodes.water_acceleration,
-                ];
-                for (value, field) in at_point.iter_mut().zip(fields) {
-                    for (node, weight) in field[first..first + W].iter().zip(weights) {
-                        for d in 0..D {
-                            value[d] += weight * node[d];
-                        }
-                    }
+        let carried_by_ends =
+            (self.method.strain == StrainGradient::CmpmEnds).then(|| self.between_ends.blocks());
+        let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
+        let nodes = &self.nodes;
+        let (solid_field, solid_rates) = (&nodes.solid_velocity[..], &nodes.solid_acceleration[..]);
+        let (water_field, water_rates) = (&nodes.water_velocity[..], &nodes.water_acceleration[..]);
+        let points = &mut self.points;
+        let count = points.len();
+        let (solid_velocity, water_velocity) =
+            (&mut points.solid_velocity[..count], &mut points.water_velocity[..count]);
+        let (displacement, position) = (&mut points.displacement[..count], &mut points.position[..count]);
+        for point in 0..count {
+            let ([mut solid, mut solid_rate], [mut water, mut water_rate]) = ([[0.0; D]; 2], [[0.0; D]; 2]);
+            basis.visit_runs(&stride, point, |first, weights, _| {
+                let run = first..first + W;
+                add_weighted(&mut solid, &solid_field[run.clone()], weights);
+                add_weighted(&mut solid_rate, &solid_rates[run.clone()], weights);
+                add_weighted(&mut water_rate, &water_rates[run.clone()], weights);
+                if PIC {
+                    add_weighted(&mut water, &water_field[run], weights);
                 }
             });
-            let [solid, solid_rate, water, water_rate] = at_point;
-            let carrying = self.carrying(point, &nodes.solid_velocity, solid);
-            let points = &mut self.points;
+            let carrying = carried_by_ends.map_or(solid, |ends| ends.value(&stride, point, solid_field));
             for d in 0..D {
                 let (solid_velocity, water_velocity) =
-                    (&mut points.solid_velocity[point][d], &mut points.water_velocity[point][d]);
-                *solid_velocity = flip * (*solid_velocity + kick * solid_rate[d]) + pic * solid[d];
-                *water_velocity = flip * (*water_velocity + kick * water_rate[d]) + pic * water[d];
-                points.displacement[point][d] += dt * carrying[d];
+                    (&mut solid_velocity[point][d], &mut water_velocity[point][d]);
+                *solid_velocity += kick * solid_rate[d];
+                *water_velocity += kick * water_rate[d];
+                if PIC {
+                    *solid_velocity = flip * *solid_velocity + pic * solid[d];
+                    *water_velocity = flip * *water_velocity + pic * water[d];
+                }
+                displacement[point][d] += dt * carrying[d];
                 if moving {
-                    points.position[point][d] += dt * carrying[d];
+                    position[point][d] += dt * carrying[d];
                 }
             }
         }
@@ -185,59 +201,75 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         if is_bbar {
             self.recover_dilation_rates();
         }
-        for point in 0..self.points.len() {
-            let gradient =
-                self.pushed_forward(point, self.strain_gradient(point, &self.nodes.solid_velocity));
+        let (following, is_total) = (self.following(), self.configuration == Configuration::Total);
+        let blocks = StrainBlocks::of(self.method.strain, &self.basis, &self.composite, &self.between_ends);
+        let stride = *self.grid.node_stride();
+        let (field, recovered) = (&self.nodes.solid_velocity[..], &self.recovered.at_points[..]);
+        let (law, stiffness) = (self.material.law, self.stiffness);
+        let points = &mut self.points;
+        let count = points.len();
+        let (volume_ratio, half_length) =
+            (&mut points.volume_ratio[..count], &mut points.half_length[..count]);
+        let (inverse_deformation, effective_stress) =
+            (&mut points.inverse_deformation[..count], &mut points.effective_stress[..count]);
+        for point in 0..count {
+            let mut gradient = blocks.gradient(&stride, point, field);
+            if is_total {
+                gradient = pushed_forward(&inverse_deformation[point], &gradient);
+            }
             let mut increment = gradient.map(|row| row.map(|rate| dt * rate));
-            let before = self.points.volume_ratio[point];
+            let before = volume_ratio[point];
             if deforms {
-                self.deform(point, &increment);
+                volume_ratio[point] *=
+                    following.deform(&mut half_length[point], &mut inverse_deformation[point], &increment);
             }
             let mut shared = 0.0;
             if is_bbar {
                 // Of the kinematics only the volume goes the way of the water's.
                 let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
-                let dilation = dt * (self.recovered.at_points[point] - trace);
+                let dilation = dt * (recovered[point] - trace);
                 if deforms {
-                    self.points.volume_ratio[point] *= stretch_of(dilation);
+                    volume_ratio[point] *= stretch_of(dilation);
                 }
                 for d in 0..D {
                     increment[d][d] += dilation / D as f64;
                 }
-                shared = self.stiffness.shared_dilation_stress::<D>(dilation);
+                shared = stiffness.shared_dilation_stress::<D>(dilation);
             }
+            let mut stress = effective_stress[point];
             if deforms && D > 1 {
-                let stress = &mut self.points.effective_stress[point];
-                *stress = rotated(stress, &increment);
+                stress = rotated(&stress, &increment);
             }
-            let modulus = self.material.law.modulus_ratio(before, self.points.volume_ratio[point]);
-            let stress = self.stiffness.stress(&increment);
+            let modulus = law.modulus_ratio(before, volume_ratio[point]);
+            let change = stiffness.stress(&increment);
             for d in 0..D {
                 for e in 0..D {
-                    self.points.effective_stress[point][d][e] += modulus * stress[d][e];
+                    stress[d][e] += modulus * change[d][e];
                 }
-                self.points.effective_stress[point][d][d] += modulus * shared;
+                stress[d][d] += modulus * shared;
             }
+            effective_stress[point] = stress;
         }
     }
 
     /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
     #[inline]
     pub(super) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
-        let stretch: Vector<D> = std::array::from_fn(|d| stretch_of(increment[d][d]));
+        let following = self.following();
         let points = &mut self.points;
-        points.volume_ratio[point] *= stretch.iter().product::<f64>();
+        points.volume_ratio[point] *= following.deform(
+            &mut points.half_length[point],
+            &mut points.inverse_deformation[point],
+            increment,
+        );
+    }
+
+    #[inline]
+    fn following(&self) -> Following {
         match self.configuration {
-            Configuration::Updated if self.method.domains_follow() => {
-                for d in 0..D {
-                    points.half_length[point][d] *= stretch[d];
-                }
-            }
-            Configuration::Total => {
-                let inverse = &mut points.inverse_deformation[point];
-                *inverse = relaxed(inverse, increment);
-            }
-            Configuration::Updated | Configuration::Frozen => {}
+            Configuration::Updated if self.method.domains_follow() => Following::Domain,
+            Configuration::Total => Following::InverseDeformation,
+            Configuration::Updated | Configuration::Frozen => Following::Nothing,
         }
     }
 
@@ -271,9 +303,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             }
             (_, Recovery::Patch) => {
                 self.pressure_increments_of_cells(dt);
-                for point in 0..self.points.len() {
-                    self.points.pressure[point] +=
-                        self.patch.value(&self.grid, point, &self.cells.pressure_increment);
+                let increments = &self.cells.pressure_increment[..];
+                for (point, pressure) in self.points.pressure.iter_mut().enumerate() {
+                    *pressure += self.patch.value(&self.grid, point, increments);
                 }
             }
         }
@@ -313,6 +345,49 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 self.cells.pressure_increment[cell] =
                     -dt * self.material.water_bulk_modulus / porosity * rate;
             }
+        }
+    }
+}
+
+/// What follows the deformation of a point beside its volume.
+#[derive(Clone, Copy)]
+enum Following {
+    Domain,
+    InverseDeformation,
+    Nothing,
+}
+
+impl Following {
+    /// Factor of the volume, exact in the logarithmic strain; what follows it has followed.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn deform<const D: usize>(
+        self,
+        half_length: &mut Vector<D>,
+        inverse_deformation: &mut Tensor<D>,
+        increment: &Tensor<D>,
+    ) -> f64 {
+        let stretch: Vector<D> = std::array::from_fn(|d| stretch_of(increment[d][d]));
+        match self {
+            Self::Domain => {
+                for d in 0..D {
+                    half_length[d] *= stretch[d];
+                }
+            }
+            Self::InverseDeformation => *inverse_deformation = relaxed(inverse_deformation, increment),
+            Self::Nothing => {}
+        }
+        stretch.iter().product()
+    }
+}
+
+/// Adds a run of nodal vectors with their weights.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn add_weighted<const D: usize>(value: &mut Vector<D>, nodes: &[Vector<D>], weights: &[f64]) {
+    for (node, weight) in nodes.iter().zip(weights) {
+        for d in 0..D {
+            value[d] += weight * node[d];
         }
     }
 }

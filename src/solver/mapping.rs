@@ -4,6 +4,8 @@
 //! slice, so that its bounds are checked once, and sums side by side what belongs to one node.
 
 use super::body::{Body, ShapeFunction};
+use super::grid::Tensor;
+use super::method::Configuration;
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Sums masses, volumes and drag of the points to the nodes.
@@ -31,6 +33,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             (&self.points.initial_volume[..count], &self.points.volume_ratio[..count]);
         let (solid_velocity, water_velocity) =
             (&self.points.solid_velocity[..count], &self.points.water_velocity[..count]);
+        let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
         if MASSES {
             nodes.shares.fill([0.0; 3]);
         }
@@ -38,6 +41,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             nodes.solid_velocity.fill([0.0; D]);
             nodes.water_velocity.fill([0.0; D]);
         }
+        let shares = &mut nodes.shares[..];
+        let (solid_momenta, water_momenta) = (&mut nodes.solid_velocity[..], &mut nodes.water_velocity[..]);
         for point in 0..count {
             // Grains fill (1 − n) V = (1 − n_0) V_0, water n V.
             let (initial, ratio) = (initial_volume[point], volume_ratio[point]);
@@ -47,17 +52,17 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 if MASSES { pore_volume * unit_weight / soil.hydraulic_conductivity_at(ratio) } else { 0.0 };
             let solid_flux = solid_velocity[point].map(|velocity| grain_volume * velocity);
             let water_flux = water_velocity[point].map(|velocity| pore_volume * velocity);
-            self.basis.visit_runs(self.grid.node_stride(), point, |first, weights, _| {
+            basis.visit_runs(&stride, point, |first, weights, _| {
                 if MASSES {
-                    for (share, weight) in nodes.shares[first..first + W].iter_mut().zip(weights) {
+                    for (share, weight) in shares[first..first + W].iter_mut().zip(weights) {
                         share[0] += weight * grain_volume;
                         share[1] += weight * pore_volume;
                         share[2] += weight * drag;
                     }
                 }
                 if VELOCITIES {
-                    let solid = &mut nodes.solid_velocity[first..first + W];
-                    let water = &mut nodes.water_velocity[first..first + W];
+                    let solid = &mut solid_momenta[first..first + W];
+                    let water = &mut water_momenta[first..first + W];
                     for (k, weight) in weights.iter().enumerate() {
                         for d in 0..D {
                             solid[k][d] += weight * solid_flux[d];
@@ -78,12 +83,21 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Forces on the mixture and on the water from the points' stresses (weak form, drained
     /// surface natural).
     pub fn map_forces(&mut self) {
-        self.nodes.mixture_force.copy_from_slice(&self.nodes.external_force);
-        self.nodes.water_force.fill([0.0; D]);
-        for point in 0..self.points.len() {
-            let volume = self.points.stressed_volume(point);
-            let pressure = volume * self.points.pressure[point];
-            let mut total = self.points.effective_stress[point];
+        let (nodes, points) = (&mut self.nodes, &self.points);
+        nodes.mixture_force.copy_from_slice(&nodes.external_force);
+        nodes.water_force.fill([0.0; D]);
+        let (mixture_forces, water_forces) = (&mut nodes.mixture_force[..], &mut nodes.water_force[..]);
+        let count = points.len();
+        let (initial_volume, volume_ratio, stressed_share) =
+            (&points.initial_volume[..count], &points.volume_ratio[..count], &points.stressed_share[..count]);
+        let (effective_stress, pressure) = (&points.effective_stress[..count], &points.pressure[..count]);
+        let inverse_deformation = &points.inverse_deformation[..count];
+        let is_total = self.configuration == Configuration::Total;
+        let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
+        for point in 0..count {
+            let volume = initial_volume[point] * volume_ratio[point] * stressed_share[point];
+            let pressure = volume * pressure[point];
+            let mut total = effective_stress[point];
             let mut water = [[0.0; D]; D];
             for d in 0..D {
                 for e in 0..D {
@@ -92,11 +106,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 total[d][d] -= pressure;
                 water[d][d] = pressure;
             }
-            let (total, water) = (self.pulled_back(point, total), self.pulled_back(point, water));
-            let nodes = &mut self.nodes;
-            self.basis.visit_runs(self.grid.node_stride(), point, |first, _, gradients| {
-                let mixture_force = &mut nodes.mixture_force[first..first + W];
-                let water_force = &mut nodes.water_force[first..first + W];
+            if is_total {
+                [total, water] =
+                    [total, water].map(|stress| pulled_back(&inverse_deformation[point], &stress));
+            }
+            basis.visit_runs(&stride, point, |first, _, gradients| {
+                let mixture_force = &mut mixture_forces[first..first + W];
+                let water_force = &mut water_forces[first..first + W];
                 for (k, gradient) in gradients.iter().enumerate() {
                     for d in 0..D {
                         for e in 0..D {
@@ -108,4 +124,12 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             });
         }
     }
+}
+
+/// A stress that meets gradients on the initial configuration, `σ F⁻ᵀ`.
+#[inline]
+fn pulled_back<const D: usize>(inverse_deformation: &Tensor<D>, stress: &Tensor<D>) -> Tensor<D> {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| (0..D).map(|k| stress[i][k] * inverse_deformation[j][k]).sum())
+    })
 }

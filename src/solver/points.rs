@@ -102,12 +102,6 @@ impl<const D: usize> Points<D> {
     pub fn volume(&self, point: usize) -> f64 {
         self.initial_volume[point] * self.volume_ratio[point]
     }
-
-    /// Volume that a point's stress fills in the internal force, m^D.
-    #[inline]
-    pub fn stressed_volume(&self, point: usize) -> f64 {
-        self.volume(point) * self.stressed_share[point]
-    }
 }
 
 /// The unit tensor.

@@ -12,6 +12,8 @@ use super::shape::SIXTH;
 const BLOCK: usize = 3;
 /// Most cells of a patch, over the dimensions there are.
 const MOST_CELLS: usize = BLOCK * BLOCK;
+/// Points of a column whose rows are worked out side by side.
+const LANES: usize = 4;
 
 /// Recovery weights of every point over the `3^D` cells around its own.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,16 +36,12 @@ impl<const D: usize> PatchRows<D> {
 
     /// Fits the rows to the points' places and to the occupied cells.
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
+        if D == 1 {
+            self.build_in_column(cells);
+            return;
+        }
         for (point, place) in cells.place.iter().enumerate() {
             let row = &mut self.weights[point * Self::width()..(point + 1) * Self::width()];
-            if D == 1 {
-                let home = cells.of_point[point];
-                self.first[point] = home - 1;
-                let offset = home as f64 + 0.5 - place[0];
-                let occupied = std::array::from_fn(|step| cells.is_occupied(home + step - 1));
-                row.copy_from_slice(&column_row(offset, occupied));
-                continue;
-            }
             let home = grid.cell_at(place);
             let first = grid.flat_cell(&home.map(|index| index - 1));
             self.first[point] = first;
@@ -56,6 +54,28 @@ impl<const D: usize> PatchRows<D> {
                 }
             }
             patch.rows_into(row);
+        }
+    }
+
+    /// The rows of a column in closed form: some points side by side, as if every patch were whole, and
+    /// then those that are not.
+    fn build_in_column(&mut self, cells: &Cells<D>) {
+        let (rows, _) = self.weights.as_chunks_mut::<BLOCK>();
+        let points = cells.of_point.chunks(LANES).zip(cells.place.chunks(LANES));
+        let out = self.first.chunks_mut(LANES).zip(rows.chunks_mut(LANES));
+        for ((homes, places), (first, rows)) in points.zip(out) {
+            let mut offsets = [0.0; LANES];
+            for (offset, (home, place)) in offsets.iter_mut().zip(homes.iter().zip(places)) {
+                *offset = *home as f64 + 0.5 - place[0];
+            }
+            let [lower, middle, upper] = whole_column_rows(&offsets);
+            for (lane, home) in homes.iter().enumerate() {
+                first[lane] = home - 1;
+                rows[lane] = match (cells.is_occupied(home - 1), cells.is_occupied(home + 1)) {
+                    (true, true) => [lower[lane], middle[lane], upper[lane]],
+                    sides => cut_column_row(offsets[lane], sides),
+                };
+            }
         }
     }
 
@@ -112,34 +132,43 @@ fn distance_weight(distance: f64) -> f64 {
     }
 }
 
-/// The row of a point in a column, whose cell's centre lies `offset` cells above it: the same fit as
-/// [`Patch`] in closed form. Moving points pay for it at every step.
+/// The rows of points in a column, whose cells' centres lie `offsets` cells above them, where all cells of
+/// the patch are occupied: the same fit as [`Patch`] in closed form. Moving points pay for it at every
+/// step.
 ///
 /// The spline is the cubic B-spline, whose four values around a point have the moments 1, 0 and 1/3.
 /// The patch lacks the outermost, `u³/6` at the distance `2 − u` on the near side, `u = |offset|`,
 /// which gives its own moments, and the fit's weights from them.
 #[inline]
-fn column_row(offset: f64, occupied: [bool; BLOCK]) -> [f64; BLOCK] {
-    match (occupied[0], occupied[2]) {
-        (true, true) => {
-            let u = offset.abs();
-            let rest = 1.0 - u;
-            let square = u * u;
-            let far = SIXTH * rest * rest * rest;
-            let home = 2.0 / 3.0 - square + 0.5 * square * u;
-            let lacking = SIXTH * square * u;
-            let near = 1.0 - home - far - lacking;
-            let (lever, tilt) = (2.0 - u, 3.0 * lacking * (2.0 - u));
-            let scale = 1.0 / (1.0 - lacking - tilt * lever);
-            let near = near * (1.0 - tilt) * scale;
-            let far = far * (1.0 - 3.0 * tilt) * scale;
-            let (lower, upper) = if offset > 0.0 { (near, far) } else { (far, near) };
-            [lower, 1.0 - near - far, upper]
-        }
-        // Two cells: the line through both.
+fn whole_column_rows(offsets: &[f64; LANES]) -> [[f64; LANES]; BLOCK] {
+    let mut rows = [[0.0; LANES]; BLOCK];
+    for (lane, offset) in offsets.iter().enumerate() {
+        let u = offset.abs();
+        let rest = 1.0 - u;
+        let square = u * u;
+        let far = SIXTH * rest * rest * rest;
+        let home = 2.0 / 3.0 - square + 0.5 * square * u;
+        let lacking = SIXTH * square * u;
+        let near = 1.0 - home - far - lacking;
+        let (lever, tilt) = (2.0 - u, 3.0 * lacking * (2.0 - u));
+        let scale = 1.0 / (1.0 - lacking - tilt * lever);
+        let near = near * (1.0 - tilt) * scale;
+        let far = far * (1.0 - 3.0 * tilt) * scale;
+        rows[0][lane] = if *offset > 0.0 { near } else { far };
+        rows[1][lane] = 1.0 - near - far;
+        rows[2][lane] = if *offset > 0.0 { far } else { near };
+    }
+    rows
+}
+
+/// The row of a point in a column whose patch lacks a cell: the line through two cells, or the value of
+/// the only one.
+#[inline]
+fn cut_column_row(offset: f64, (has_lower, has_upper): (bool, bool)) -> [f64; BLOCK] {
+    match (has_lower, has_upper) {
         (false, true) => [0.0, 1.0 + offset, -offset],
         (true, false) => [offset, 1.0 - offset, 0.0],
-        (false, false) => [0.0, 1.0, 0.0],
+        _ => [0.0, 1.0, 0.0],
     }
 }
 
@@ -293,7 +322,11 @@ mod tests {
                 }
                 let mut row = [0.0; BLOCK];
                 patch.rows_into(&mut row);
-                for (got, fitted) in column_row(offset, [lower, true, upper]).iter().zip(&row) {
+                let closed = match (lower, upper) {
+                    (true, true) => whole_column_rows(&[offset; LANES]).map(|lanes| lanes[LANES - 1]),
+                    sides => cut_column_row(offset, sides),
+                };
+                for (got, fitted) in closed.iter().zip(&row) {
                     assert!((got - fitted).abs() < 1e-14, "{got} for {fitted} at {offset}");
                 }
             }

@@ -52,6 +52,77 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         self.first[point] = rows[0].first;
     }
 
+    /// The blocks of all points, borrowed once for a loop over them.
+    #[inline]
+    pub fn blocks(&self) -> Blocks<'_, D, W> {
+        Blocks { first: &self.first, weights: &self.weights, gradients: &self.gradients }
+    }
+
+    /// Visits the nodes of a point's block with weight and gradient (1/m).
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn visit(
+        &self,
+        stride: &[usize; D],
+        point: usize,
+        mut node_visitor: impl FnMut(usize, f64, &Vector<D>),
+    ) {
+        self.blocks().visit_runs(stride, point, |first, weights, gradients| {
+            for k in 0..W {
+                node_visitor(first + k, weights[k], &gradients[k]);
+            }
+        });
+    }
+
+    /// Value of a nodal vector field at the point.
+    #[inline]
+    pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
+        self.blocks().value(stride, point, field)
+    }
+
+    /// Gradient of a nodal vector field at the point, `[component][direction]`.
+    #[inline]
+    pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> [[f64; D]; D] {
+        self.blocks().gradient(stride, point, field)
+    }
+
+    /// The nodes of a point's block with their gradients (1/m), where they are not zero: the
+    /// divergence at the point as a functional of a nodal field.
+    pub fn gradient_row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, Vector<D>)> {
+        let mut row = Vec::with_capacity(power(W, D));
+        self.visit(grid.node_stride(), point, |node, _, gradient| {
+            if *gradient != [0.0; D] {
+                row.push((node, *gradient));
+            }
+        });
+        row
+    }
+
+    /// Divergence of a nodal vector field at the point.
+    #[inline]
+    pub fn divergence(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> f64 {
+        let mut divergence = 0.0;
+        self.blocks().visit_runs(stride, point, |first, _, gradients| {
+            for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
+                for direction in 0..D {
+                    divergence += node[direction] * node_gradient[direction];
+                }
+            }
+        });
+        divergence
+    }
+}
+
+/// [`Stencils`] as slices: a loop that writes nodal fields reads their places once, and not anew after
+/// every store.
+#[derive(Clone, Copy, Debug)]
+pub struct Blocks<'a, const D: usize, const W: usize> {
+    first: &'a [usize],
+    weights: &'a [[[f64; W]; D]],
+    gradients: &'a [[[f64; W]; D]],
+}
+
+impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     /// Visits a point's block run by run: `W` neighbouring nodes along the first direction, with
     /// the first of them, their weights and their gradients (1/m).
     ///
@@ -92,24 +163,9 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         }
     }
 
-    /// Visits the nodes of a point's block with weight and gradient (1/m).
+    /// Sum of a nodal vector field with the weights: its value at the point.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn visit(
-        &self,
-        stride: &[usize; D],
-        point: usize,
-        mut node_visitor: impl FnMut(usize, f64, &Vector<D>),
-    ) {
-        self.visit_runs(stride, point, |first, weights, gradients| {
-            for k in 0..W {
-                node_visitor(first + k, weights[k], &gradients[k]);
-            }
-        });
-    }
-
-    /// Sum of a nodal vector field with the weights: its value at the point.
-    #[inline]
     pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
         let mut value = [0.0; D];
         self.visit_runs(stride, point, |first, weights, _| {
@@ -123,7 +179,8 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     }
 
     /// Gradient of a nodal vector field at the point, `[component][direction]`.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> [[f64; D]; D] {
         let mut gradient = [[0.0; D]; D];
         self.visit_runs(stride, point, |first, _, gradients| {
@@ -136,32 +193,6 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
             }
         });
         gradient
-    }
-
-    /// The nodes of a point's block with their gradients (1/m), where they are not zero: the
-    /// divergence at the point as a functional of a nodal field.
-    pub fn gradient_row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, Vector<D>)> {
-        let mut row = Vec::with_capacity(power(W, D));
-        self.visit(grid.node_stride(), point, |node, _, gradient| {
-            if *gradient != [0.0; D] {
-                row.push((node, *gradient));
-            }
-        });
-        row
-    }
-
-    /// Divergence of a nodal vector field at the point.
-    #[inline]
-    pub fn divergence(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> f64 {
-        let mut divergence = 0.0;
-        self.visit_runs(stride, point, |first, _, gradients| {
-            for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
-                for direction in 0..D {
-                    divergence += node[direction] * node_gradient[direction];
-                }
-            }
-        });
-        divergence
     }
 }
 

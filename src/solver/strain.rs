@@ -6,6 +6,7 @@ use super::cells::Cells;
 use super::grid::{Grid, Tensor, Vector};
 use super::method::StrainGradient;
 use super::shape::{self, Row};
+use super::stencil::{Blocks, Stencils};
 
 /// Nodes a direction between the ends of a domain: four at either end, at most one cell apart.
 pub const ENDS_WIDTH: usize = 5;
@@ -13,16 +14,51 @@ pub const ENDS_WIDTH: usize = 5;
 /// domain's cell.
 const INSET: f64 = 1e-9;
 
+/// `G` of all points by the method's choice.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum StrainBlocks<'a, const D: usize, const W: usize> {
+    Basis(Blocks<'a, D, W>),
+    Composite(Blocks<'a, D, 4>),
+    BetweenEnds(Blocks<'a, D, ENDS_WIDTH>),
+}
+
+impl<'a, const D: usize, const W: usize> StrainBlocks<'a, D, W> {
+    /// Those of a choice; only its own stencils are set.
+    #[inline]
+    pub(super) fn of(
+        strain: StrainGradient,
+        basis: &'a Stencils<D, W>,
+        composite: &'a Stencils<D, 4>,
+        between_ends: &'a Stencils<D, ENDS_WIDTH>,
+    ) -> Self {
+        match strain {
+            StrainGradient::Standard | StrainGradient::Bbar => Self::Basis(basis.blocks()),
+            StrainGradient::Cmpm | StrainGradient::CmpmBbar => Self::Composite(composite.blocks()),
+            StrainGradient::CmpmEnds => Self::BetweenEnds(between_ends.blocks()),
+        }
+    }
+
+    /// Gradient of a nodal field at a point.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub(super) fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
+        match self {
+            Self::Basis(blocks) => blocks.gradient(stride, point, field),
+            Self::Composite(blocks) => blocks.gradient(stride, point, field),
+            Self::BetweenEnds(blocks) => blocks.gradient(stride, point, field),
+        }
+    }
+}
+
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Gradient of a nodal field at a point, from which the effective stress takes its strain.
     #[inline]
     pub fn strain_gradient(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        let stride = self.grid.node_stride();
-        match self.method.strain {
-            StrainGradient::Standard | StrainGradient::Bbar => self.basis.gradient(stride, point, field),
-            StrainGradient::Cmpm | StrainGradient::CmpmBbar => self.composite.gradient(stride, point, field),
-            StrainGradient::CmpmEnds => self.between_ends.gradient(stride, point, field),
-        }
+        StrainBlocks::of(self.method.strain, &self.basis, &self.composite, &self.between_ends).gradient(
+            self.grid.node_stride(),
+            point,
+            field,
+        )
     }
 
     /// Visits the nodes that a point's strain depends on, with their gradients, 1/m.

@@ -104,6 +104,8 @@ fn verdicts(standings: &[Standing]) -> Vec<String> {
             standings.iter().filter(|one| is(one)).map(|one| one.method.to_string()).collect();
         if found.is_empty() { "none".to_owned() } else { found.join(", ") }
     };
+    let is_independent =
+        |one: &Standing| one.spread.is_some_and(|spread| spread < 0.02) && one.class != Some(Class::Locked);
     vec![
         format!(
             "**Locked under the water's incompressibility** (less than half of the displacement on every mesh): {}.",
@@ -112,16 +114,16 @@ fn verdicts(standings: &[Standing]) -> Vec<String> {
         format!(
             "**Displacement error independent of the water's stiffness** (within 2 % from K_w/E = 10³ on, and not \
              locked): {}.",
-            names(&|one| one.spread.is_some_and(|spread| spread < 0.02) && one.class != Some(Class::Locked))
+            names(&is_independent)
         ),
         format!(
-            "**Holds where the skeleton is nearly incompressible too** (no more than twice its errors of displacement and \
-             pressure at ν = 0.25): {}.",
+            "**Holds where the skeleton is nearly incompressible too** (of those, no more than twice the errors of \
+             displacement and pressure at ν = 0.25): {}.",
             names(&|one| {
                 let keeps = |stiff: Option<f64>, plain: Option<f64>| {
                     stiff.zip(plain).is_some_and(|(stiff, plain)| stiff < 2.0 * plain)
                 };
-                one.class != Some(Class::Locked)
+                is_independent(one)
                     && keeps(one.stiff_skeleton, one.displacement)
                     && keeps(one.stiff_skeleton_pressure, one.pressure)
             })

@@ -31,8 +31,9 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
     if !precision.next_levels.is_empty() {
         blocks.push(Block::Table(next_table(&precision.next_levels)));
     }
-    let compared = peers::compare(&precision.runs);
-    blocks.push(Block::Table(peers_table(&compared)));
+    if peers::solve_their_column(&precision.runs) {
+        blocks.push(Block::Table(peers_table(&peers::compare(&precision.runs))));
+    }
     let all: Vec<&TimedRun<'_>> = precision.runs.iter().collect();
     blocks.push(Block::Details {
         summary: format!("All {} timed runs", all.len()),
