@@ -274,11 +274,7 @@ fn plane_cost(name: &str, cells: usize) -> PlaneCost {
     let points = body.points.len() as f64;
     let mut least = [f64::INFINITY; 3];
     for _ in 0..PLANE_ROUNDS {
-        let mut time = |kind: usize, one: &mut dyn FnMut()| {
-            let start = Instant::now();
-            (0..PLANE_STEPS).for_each(|_| one());
-            least[kind] = least[kind].min(start.elapsed().as_secs_f64());
-        };
+        let mut time = |kind: usize, one: &mut dyn FnMut()| keep_least(&mut least[kind], PLANE_STEPS, one);
         time(0, &mut || body.explicit_step(black_box(dt), &settings));
         time(1, &mut || plane.step(black_box(dt), &settings));
         time(2, &mut || {
@@ -290,6 +286,13 @@ fn plane_cost(name: &str, cells: usize) -> PlaneCost {
         bytes: plane.bytes_a_step() as f64 / points,
         products: plane.products_a_step() as f64 / points,
     }
+}
+
+/// Times so many repeats of a work, and keeps the seconds where they are the least so far.
+fn keep_least(least: &mut f64, repeats: usize, work: &mut dyn FnMut()) {
+    let start = Instant::now();
+    (0..repeats).for_each(|_| work());
+    *least = least.min(start.elapsed().as_secs_f64());
 }
 
 /// A sum in eight chains, so that loads and not the latency of additions are timed.
@@ -315,9 +318,7 @@ fn least_of_rounds<const N: usize>(works: &mut [Box<dyn FnMut()>; N]) -> [f64; N
     let mut least = [f64::INFINITY; N];
     for _ in 0..ROUNDS {
         for (work, least) in works.iter_mut().zip(&mut least) {
-            let start = Instant::now();
-            work();
-            *least = least.min(start.elapsed().as_secs_f64());
+            keep_least(least, 1, work);
         }
     }
     least
@@ -425,11 +426,7 @@ fn moving_cost(cells: usize, points_per_cell: usize) -> [f64; PASSES.len()] {
     let mut node_sums = vec![0.0; cells + 1];
     let mut least = [f64::INFINITY; PASSES.len()];
     for _ in 0..ROUNDS {
-        let mut time = |pass: usize, one: &mut dyn FnMut()| {
-            let start = Instant::now();
-            (0..MOVING_STEPS).for_each(|_| one());
-            least[pass] = least[pass].min(start.elapsed().as_secs_f64());
-        };
+        let mut time = |pass: usize, one: &mut dyn FnMut()| keep_least(&mut least[pass], MOVING_STEPS, one);
         time(0, &mut || body.explicit_step(black_box(dt), &settings));
         time(1, &mut || body.build_operators());
         time(2, &mut || body.map_masses());
