@@ -33,8 +33,8 @@ pub struct ColumnParameters {
     pub hydraulic_conductivity: f64,
     /// Gravity in the drag, m/s².
     pub gravity: f64,
-    /// Time over which the load grows linearly, s; 0 where it acts at once. Only the column with
-    /// inertia heeds it.
+    /// Time over which the load grows linearly, s; 0 where it acts at once. The column with inertia
+    /// and large strain in general heed it.
     pub loading_time: f64,
 }
 

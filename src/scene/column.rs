@@ -144,6 +144,8 @@ pub fn column_problem<const D: usize>(
             start_single_mode(&mut points, column, soil)?;
             (0.0, 0.0)
         }
+        // A load that grows finds the soil at rest without stress.
+        SceneKind::XieLeo if column.loading_time > 0.0 => (column.load, 0.0),
         SceneKind::XieLeo => (column.load, start_undrained_finite(&mut points, soil, column.load)),
         // At rest without stress; a layer's body then finds its equilibrium by its own operators.
         SceneKind::DynamicColumn | SceneKind::CosineLayer => (column.load, 0.0),

@@ -102,6 +102,14 @@ impl SceneKind {
         }
     }
 
+    /// Those that hold for a column: Xie & Leo's load acts at once.
+    pub fn references_of(self, column: &Column) -> &'static [ReferenceKind] {
+        match self {
+            Self::XieLeo if column.loading_time > 0.0 => &[LARGE_STRAIN],
+            _ => self.references(),
+        }
+    }
+
     /// A reference as it holds for a soil: the large-strain one takes the soil's own law and
     /// continuity, and is of the equations that the solver solves.
     pub fn reference_for(kind: ReferenceKind, soil: &Material) -> ReferenceKind {
@@ -162,6 +170,11 @@ impl SceneKind {
             Self::XieLeo => Configuration::Updated,
             _ => Configuration::Frozen,
         }
+    }
+
+    /// Whether its load may take time to come on.
+    pub fn takes_loading_time(self) -> bool {
+        matches!(self, Self::XieLeo | Self::DynamicColumn)
     }
 
     /// Whether the problem is one of two dimensions only.

@@ -141,7 +141,7 @@ impl Checker<'_> {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
         };
-        let references = self.references(&file.output, scene);
+        let references = self.references(&file.output, scene.references_of(&column));
         if file.sweep.is_empty() {
             let end = self.source.text.trim_end().len();
             let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
@@ -229,8 +229,7 @@ impl Checker<'_> {
         factors
     }
 
-    fn references(&mut self, table: &OutputTable, scene: SceneKind) -> Vec<ReferenceKind> {
-        let own = scene.references();
+    fn references(&mut self, table: &OutputTable, own: &[ReferenceKind]) -> Vec<ReferenceKind> {
         let Some(list) = &table.references else { return own.to_vec() };
         let names: Vec<&str> = own.iter().map(|kind| kind.name()).collect();
         list.get_ref()

@@ -115,11 +115,13 @@ pub struct Diffusion {
     compliance: f64,
 }
 
-/// Coefficients of `β r_T = r_ζζ − G r_ζ²`.
+/// Coefficients of `β r_T = r_ζζ − G r_ζ² + β_s λ_T` under the share `λ` of the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
     /// Storage over conductance, `β = (E_oed/(dσ'/dJ) + nJ E_oed/K_w)/κ` with `κ = k/(k_0 J)`.
     pub storage: f64,
+    /// The skeleton's part of it, `β_s`, the first term.
+    pub skeleton_storage: f64,
     /// `G = [−κ_J/κ + n_J/n] dJ/dr`, the last term with (4') only.
     pub steepening: f64,
 }
@@ -145,9 +147,10 @@ impl Diffusion {
         Ok(diffusion)
     }
 
-    /// `1 − J` at the pressure ratio `r`, where `σ' = q(r − 1)`.
-    pub fn shrinkage(&self, ratio: f64) -> f64 {
-        let compression = self.load * (1.0 - ratio);
+    /// `1 − J` where the skeleton lacks the share `lacking` of the full load, `σ' = q(lacking − 1)`:
+    /// the pressure ratio under the full load.
+    pub fn shrinkage(&self, lacking: f64) -> f64 {
+        let compression = self.load * (1.0 - lacking);
         match self.model.law {
             SoilLaw::LogLinear | SoilLaw::Engineering => -libm::expm1(-compression),
             SoilLaw::PorosityDependent => compression / (1.0 + compression),
@@ -155,13 +158,17 @@ impl Diffusion {
         }
     }
 
-    /// Coefficients at the pressure ratio `r`.
-    pub fn coefficients(&self, ratio: f64) -> Coefficients {
-        let volume = 1.0 - self.shrinkage(ratio);
+    /// Coefficients where the skeleton lacks the share `lacking` of the full load.
+    pub fn coefficients(&self, lacking: f64) -> Coefficients {
+        let volume = 1.0 - self.shrinkage(lacking);
         // dσ'/dJ over E_oed, k/(k_0 J) and its logarithmic derivative.
         let (tangent, conductance, growth) = match self.model.law {
             SoilLaw::Linear => {
-                return Coefficients { storage: 1.0 + self.porosity * self.compliance, steepening: 0.0 };
+                return Coefficients {
+                    storage: 1.0 + self.porosity * self.compliance,
+                    skeleton_storage: 1.0,
+                    steepening: 0.0,
+                };
             }
             SoilLaw::LogLinear | SoilLaw::Engineering => (volume.recip(), volume, volume.recip()),
             SoilLaw::PorosityDependent => ((volume * volume).recip(), volume, volume.recip()),
@@ -173,6 +180,7 @@ impl Diffusion {
         };
         Coefficients {
             storage: (tangent.recip() + pores * self.compliance) / conductance,
+            skeleton_storage: (tangent * conductance).recip(),
             steepening: (dropped - growth) * self.load / tangent,
         }
     }

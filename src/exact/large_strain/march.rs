@@ -5,7 +5,8 @@ use nalgebra::{DMatrix, DVector};
 use super::chebyshev;
 use super::grid::EvenGrid;
 use super::law::Diffusion;
-use super::radau::{STAGES, weights};
+use super::loading::{LoadAt, Loading};
+use super::radau::{POINTS, STAGES, weights};
 use super::similarity::{Front, with_slopes};
 
 /// Simplified Newton iterations before a step is halved.
@@ -30,6 +31,7 @@ pub struct State {
 #[derive(Clone, Debug)]
 pub struct March {
     diffusion: Diffusion,
+    loading: Loading,
     grid: EvenGrid,
     weights: [[f64; STAGES]; STAGES],
     /// Longest step over the time that has passed.
@@ -63,8 +65,13 @@ impl Profile {
 
 impl March {
     /// A march on `order` points with steps of up to `growth` times the time that has passed.
-    pub fn new(diffusion: Diffusion, order: usize, growth: f64) -> Self {
-        Self { diffusion, grid: EvenGrid::new(order), weights: weights(), growth }
+    pub fn new(diffusion: Diffusion, loading: Loading, order: usize, growth: f64) -> Self {
+        Self { diffusion, loading, grid: EvenGrid::new(order), weights: weights(), growth }
+    }
+
+    /// Before any load: no pressure at all.
+    pub fn rest(&self) -> State {
+        State { time_factor: 0.0, ratio: DVector::zeros(self.grid.heights.len() - 1) }
     }
 
     /// State at a time factor at which the front has not reached the base.
@@ -77,7 +84,9 @@ impl March {
     /// Functions of the depth through a state.
     pub fn profile(&self, state: &State) -> Profile {
         let values: Vec<f64> = core::iter::once(0.0).chain(state.ratio.iter().copied()).collect();
-        let shrinkage: Vec<f64> = values.iter().map(|&ratio| self.diffusion.shrinkage(ratio)).collect();
+        let absent = 1.0 - self.loading.share(state.time_factor);
+        let shrinkage: Vec<f64> =
+            values.iter().map(|&ratio| self.diffusion.shrinkage(ratio + absent)).collect();
         Profile { ratio: chebyshev::coefficients(&values), shrinkage: chebyshev::coefficients(&shrinkage) }
     }
 
@@ -88,19 +97,27 @@ impl March {
 
     /// Marches from a state to a later time factor; `None` where Newton's iteration fails.
     pub fn advance(&self, state: &State, time_factor: f64) -> Option<State> {
+        match self.loading.kink_between(state.time_factor, time_factor) {
+            Some(kink) => self.advance_smoothly(&self.advance_smoothly(state, kink)?, time_factor),
+            None => self.advance_smoothly(state, time_factor),
+        }
+    }
+
+    /// Marches to a time before which the growth of the load does not change.
+    fn advance_smoothly(&self, state: &State, time_factor: f64) -> Option<State> {
         let mut now = state.clone();
         let mut halvings = 0;
         let mut shortened = 1.0;
         while now.time_factor < time_factor {
-            if now.ratio.amax() < ENDED {
+            if now.ratio.amax() < ENDED && self.loading.rate(now.time_factor) == 0.0 {
                 now.time_factor = time_factor;
                 break;
             }
             let left = time_factor - now.time_factor;
-            let step = shortened * (self.growth * now.time_factor).min(LONGEST_STEP);
+            let step = shortened * (self.growth * self.loading.age(now.time_factor)).min(LONGEST_STEP);
             // Even out the last steps: none is a sliver.
             let step = left / (left / step).ceil();
-            match self.step(&now.ratio, step) {
+            match self.step(&now, step) {
                 Some(ratio) => {
                     now.ratio = ratio;
                     let last = step >= left;
@@ -116,42 +133,46 @@ impl March {
         Some(now)
     }
 
-    /// `r_T = (r_ζζ − G r_ζ²)/β` at the points.
-    fn rate(&self, ratio: &DVector<f64>) -> DVector<f64> {
+    /// `r_T = (r_ζζ − G r_ζ² + β_s λ_T)/β` at the points.
+    fn rate(&self, ratio: &DVector<f64>, load: LoadAt) -> DVector<f64> {
         let slope = &self.grid.first * ratio;
         let mut rate = &self.grid.second * ratio;
         for i in 0..ratio.len() {
-            let coefficients = self.diffusion.coefficients(ratio[i]);
+            let coefficients = self.diffusion.coefficients(ratio[i] + load.absent);
             let squared = self.grid.metric[i] * slope[i] * slope[i];
-            rate[i] = (rate[i] - coefficients.steepening * squared) / coefficients.storage;
+            let squeezed = coefficients.skeleton_storage * load.rate;
+            rate[i] = (rate[i] - coefficients.steepening * squared + squeezed) / coefficients.storage;
         }
         rate
     }
 
     /// Derivative of the rate.
-    fn jacobian(&self, ratio: &DVector<f64>) -> DMatrix<f64> {
+    fn jacobian(&self, ratio: &DVector<f64>, load: LoadAt) -> DMatrix<f64> {
         let slope = &self.grid.first * ratio;
         let curvature = &self.grid.second * ratio;
         let mut jacobian = self.grid.second.clone();
         for i in 0..ratio.len() {
-            let ([storage, steepening], [storage_slope, steepening_slope]) =
-                with_slopes(&self.diffusion, ratio[i]);
+            let ([storage, steepening, skeleton], [storage_slope, steepening_slope, skeleton_slope]) =
+                with_slopes(&self.diffusion, ratio[i] + load.absent);
             let weighted = self.grid.metric[i] * slope[i];
             let squared = weighted * slope[i];
-            let rate = (curvature[i] - steepening * squared) / storage;
+            let rate = (curvature[i] - steepening * squared + skeleton * load.rate) / storage;
             for j in 0..ratio.len() {
                 jacobian[(i, j)] -= 2.0 * steepening * weighted * self.grid.first[(i, j)];
                 jacobian[(i, j)] /= storage;
             }
-            jacobian[(i, i)] -= (steepening_slope * squared + storage_slope * rate) / storage;
+            let change = skeleton_slope * load.rate - steepening_slope * squared - storage_slope * rate;
+            jacobian[(i, i)] += change / storage;
         }
         jacobian
     }
 
     /// One step of Radau IIA, by simplified Newton iteration on all stages at once.
-    fn step(&self, ratio: &DVector<f64>, step: f64) -> Option<DVector<f64>> {
+    fn step(&self, now: &State, step: f64) -> Option<DVector<f64>> {
+        let ratio = &now.ratio;
         let order = ratio.len();
-        let jacobian = self.jacobian(ratio);
+        let loads = POINTS.map(|point| self.loading.within_step(now.time_factor, point * step));
+        let jacobian = self.jacobian(ratio, self.loading.within_step(now.time_factor, 0.0));
         let mut system = DMatrix::identity(STAGES * order, STAGES * order);
         for (i, row) in self.weights.iter().enumerate() {
             for (j, weight) in row.iter().enumerate() {
@@ -164,7 +185,7 @@ impl March {
         let mut last = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {
             let rates: Vec<DVector<f64>> = (0..STAGES)
-                .map(|stage| self.rate(&(ratio + increments.rows(stage * order, order))))
+                .map(|stage| self.rate(&(ratio + increments.rows(stage * order, order)), loads[stage]))
                 .collect();
             let mut residual = -&increments;
             for (i, row) in self.weights.iter().enumerate() {

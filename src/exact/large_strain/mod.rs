@@ -3,6 +3,7 @@
 mod chebyshev;
 mod grid;
 mod law;
+mod loading;
 mod march;
 mod radau;
 mod similarity;
@@ -13,6 +14,7 @@ use super::error::{ExactError, checked_depth, checked_time_factor};
 use super::parameters::ColumnParameters;
 use super::reference::{Accuracy, FieldValues};
 use law::Diffusion;
+use loading::Loading;
 use march::{March, Profile, State};
 use similarity::Front;
 
@@ -38,16 +40,20 @@ const LOAD_SHARES: u32 = 4;
 /// w = −(k/(γ_w J)) ∂p/∂Y
 /// ```
 ///
-/// is `β(r) ∂r/∂T_v = ∂²r/∂ζ² − G(r) (∂r/∂ζ)²` for `r = p/q`. Until the front reaches the base the
-/// solution is a function of `ζ/√T_v`; from there Chebyshev collocation marches with Radau IIA.
+/// is `β ∂r/∂T_v = ∂²r/∂ζ² − G (∂r/∂ζ)² + β_s dλ/dT_v` for `r = p/q` under the share `λ` of the load,
+/// with `β`, its skeleton's part `β_s` and `G` functions of `σ'/q = r − λ`. Under a load at once, until
+/// the front reaches the base, the solution is a function of `ζ/√T_v`; from there, or from rest under a
+/// load that grows, Chebyshev collocation marches with Radau IIA.
 #[derive(Clone, Debug)]
 pub struct LargeStrain {
     parameters: ColumnParameters,
     model: LargeStrainModel,
     diffusion: Diffusion,
-    front: Front,
+    loading: Loading,
+    /// The first front; none where the load grows.
+    front: Option<Front>,
     march: March,
-    /// States at the prepared time factors after the front, in order, the first at its end.
+    /// States at the prepared time factors, in order, the first at the front's end or at rest.
     states: Vec<(State, Profile)>,
     /// Largest difference between the last two resolutions, over the load.
     difference: f64,
@@ -56,7 +62,7 @@ pub struct LargeStrain {
 
 /// What one resolution gives.
 struct Attempt {
-    front: Front,
+    front: Option<Front>,
     march: March,
     states: Vec<(State, Profile)>,
 }
@@ -79,11 +85,12 @@ impl LargeStrain {
         times.sort_by(f64::total_cmp);
         times.dedup();
         let diffusion = Diffusion::new(model, parameters, 1.0)?;
+        let loading = Loading::over(parameters.time_factor(parameters.loading_time));
         let mut before: Option<Attempt> = None;
         let mut difference = f64::INFINITY;
         let mut resolution = 0;
         for (order, growth) in RESOLUTIONS {
-            let Ok(attempt) = Attempt::new(parameters, model, diffusion, order, growth, &times) else {
+            let Ok(attempt) = Attempt::new(parameters, model, diffusion, loading, (order, growth), &times) else {
                 continue;
             };
             if let Some(before) = &before {
@@ -100,6 +107,7 @@ impl LargeStrain {
                 parameters: *parameters,
                 model,
                 diffusion,
+                loading,
                 front: attempt.front,
                 march: attempt.march,
                 states: attempt.states,
@@ -130,11 +138,8 @@ impl LargeStrain {
 
     /// `p/q` and `∫_ζ^1 (1 − J) dζ` at a depth.
     fn ratio_and_shrinkage(&self, time_factor: f64, zeta: f64) -> Result<(f64, f64), ExactError> {
-        if time_factor <= self.front.valid_until() {
-            return Ok((
-                self.front.pressure_ratio(time_factor, zeta),
-                self.front.shrinkage_below(time_factor, zeta),
-            ));
+        if let Some(front) = self.front.as_ref().filter(|front| time_factor <= front.valid_until()) {
+            return Ok((front.pressure_ratio(time_factor, zeta), front.shrinkage_below(time_factor, zeta)));
         }
         let profile = self.profile(time_factor)?;
         Ok((profile.pressure_ratio(zeta), profile.shrinkage_below(zeta)))
@@ -147,7 +152,7 @@ impl LargeStrain {
     pub fn volume_ratio(&self, time_factor: f64, zeta: f64) -> Result<f64, ExactError> {
         let (zeta, time_factor) = (checked_depth(zeta)?, checked_time_factor(time_factor)?);
         let (ratio, _) = self.ratio_and_shrinkage(time_factor, zeta)?;
-        Ok(1.0 - self.diffusion.shrinkage(ratio))
+        Ok(1.0 - self.diffusion.shrinkage(ratio + 1.0 - self.loading.share(time_factor)))
     }
 
     /// Pressure, effective (Cauchy) stress and displacement at a Lagrangian relative depth.
@@ -161,7 +166,7 @@ impl LargeStrain {
         let load = self.parameters.load;
         Ok(FieldValues {
             pressure: load * ratio,
-            effective_stress: load * (ratio - 1.0),
+            effective_stress: load * (ratio - self.loading.share(time_factor)),
             displacement: -self.parameters.height * shrinkage,
         })
     }
@@ -200,21 +205,23 @@ impl Attempt {
         parameters: &ColumnParameters,
         model: LargeStrainModel,
         diffusion: Diffusion,
-        order: usize,
-        growth: f64,
+        loading: Loading,
+        (order, growth): (usize, f64),
         times: &[f64],
     ) -> Result<Self, ExactError> {
-        // A steep front is reached by way of smaller loads.
-        let mut front: Option<Front> = None;
-        for share in 1..=LOAD_SHARES {
-            let share = f64::from(share) / f64::from(LOAD_SHARES);
-            let partly = Diffusion::new(model, parameters, share)?;
-            front = Some(Front::new(&partly, 2 * order + 8, front.as_ref())?);
-        }
         let failed = ExactError::NotConverged { difference: f64::INFINITY };
-        let front = front.ok_or(failed.clone())?;
-        let march = March::new(diffusion, order, growth);
-        let first = march.start(&front, front.valid_until());
+        let march = March::new(diffusion, loading, order, growth);
+        let mut front: Option<Front> = None;
+        if !loading.is_gradual() {
+            // A steep front is reached by way of smaller loads.
+            for share in 1..=LOAD_SHARES {
+                let share = f64::from(share) / f64::from(LOAD_SHARES);
+                let partly = Diffusion::new(model, parameters, share)?;
+                front = Some(Front::new(&partly, 2 * order + 8, front.as_ref())?);
+            }
+        }
+        let first =
+            front.as_ref().map_or_else(|| march.rest(), |front| march.start(front, front.valid_until()));
         let mut states = vec![(first.clone(), march.profile(&first))];
         let mut now = first;
         for &time_factor in times {
@@ -228,9 +235,12 @@ impl Attempt {
 
     /// Largest difference of the pressure ratio from another resolution's at all its times.
     fn difference(&self, other: &Self) -> f64 {
-        let early = self.march.depths().map(|zeta| {
-            let time_factor = self.front.valid_until();
-            self.front.pressure_ratio(time_factor, zeta) - other.front.pressure_ratio(time_factor, zeta)
+        let fronts = self.front.iter().zip(&other.front);
+        let early = fronts.flat_map(|(fine, coarse)| {
+            let end = fine.valid_until();
+            self.march
+                .depths()
+                .map(move |zeta| fine.pressure_ratio(end, zeta) - coarse.pressure_ratio(end, zeta))
         });
         let late = self.states.iter().zip(&other.states).flat_map(|((_, fine), (_, coarse))| {
             self.march.depths().map(|zeta| fine.pressure_ratio(zeta) - coarse.pressure_ratio(zeta))

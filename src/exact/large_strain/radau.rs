@@ -6,7 +6,7 @@ use super::super::quadrature::integrate;
 pub const STAGES: usize = 5;
 
 /// Right Radau points on [0, 1]: zeros of `P_5 − P_4` (Hairer & Wanner 1996, section IV.5).
-const POINTS: [f64; STAGES] = [
+pub const POINTS: [f64; STAGES] = [
     0.057_104_196_114_517_68,
     0.276_843_013_638_123_8,
     0.583_590_432_368_916_8,

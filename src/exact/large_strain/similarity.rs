@@ -137,13 +137,14 @@ impl Front {
     }
 }
 
-/// `[β, G]` and their slopes at a pressure ratio, for Newton's matrix.
-pub fn with_slopes(diffusion: &Diffusion, ratio: f64) -> ([f64; 2], [f64; 2]) {
+/// `[β, G, β_s]` and their slopes where the skeleton lacks a share of the full load, for Newton's
+/// matrix.
+pub fn with_slopes(diffusion: &Diffusion, lacking: f64) -> ([f64; 3], [f64; 3]) {
     let step = 1e-5;
-    let values = |ratio| {
-        let coefficients = diffusion.coefficients(ratio);
-        [coefficients.storage, coefficients.steepening]
+    let values = |lacking| {
+        let coefficients = diffusion.coefficients(lacking);
+        [coefficients.storage, coefficients.steepening, coefficients.skeleton_storage]
     };
-    let (before, after) = (values(ratio - step), values(ratio + step));
-    (values(ratio), [0, 1].map(|i| (after[i] - before[i]) / (2.0 * step)))
+    let (before, after) = (values(lacking - step), values(lacking + step));
+    (values(lacking), [0, 1, 2].map(|i| (after[i] - before[i]) / (2.0 * step)))
 }

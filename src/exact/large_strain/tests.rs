@@ -1,5 +1,6 @@
 //! The large-strain reference against closed forms and its own balances.
 
+use super::super::quadrature::integrate;
 use super::super::terzaghi::Terzaghi;
 use super::super::xie_leo::XieLeo;
 use super::*;
@@ -124,7 +125,7 @@ fn front_is_handed_over_smoothly() {
     for &continuity in Continuity::ALL {
         let steep = model(SoilLaw::PorosityDependent, continuity, Water::Compressible);
         let general = LargeStrain::new(&column, steep, &[0.05]).unwrap();
-        let end = general.front.valid_until();
+        let end = general.front.as_ref().expect("a load at once has a front").valid_until();
         for zeta in [0.001, 0.02, 0.1, 0.4, 1.0] {
             let before = general.fields(end, zeta).unwrap();
             let after = general.fields(end * (1.0 + 1e-14), zeta).unwrap();
@@ -218,4 +219,82 @@ fn loads_near_the_limit_still_converge() {
     }
     let closing = LargeStrain::new(&column(4.4e5), LargeStrainModel::default(), &[]);
     assert!(closing.is_err());
+}
+
+/// A linear ramp of Terzaghi's column by superposition: the mean of the step's answers so far.
+#[test]
+fn a_growing_load_at_small_strain_is_terzaghi_s_mean() {
+    let column = ColumnParameters { water_bulk_modulus: 1.0e7, ..column(3.0e3) };
+    let duration = 0.08;
+    let growing = ColumnParameters { loading_time: column.time(duration), ..column };
+    let linear = model(SoilLaw::Linear, Continuity::Conservative, Water::Compressible);
+    let times = [0.004, 0.05, 0.08, 0.0801, 0.3, 2.0];
+    let general = LargeStrain::new(&growing, linear, &times).unwrap();
+    let step = Terzaghi::compressible(&column).unwrap();
+    for time_factor in times {
+        // In u² the integrand is smooth at the moment that each share of the load comes on.
+        let since = (time_factor - duration).max(0.0).sqrt();
+        let mean = |value: &dyn Fn(f64) -> f64| {
+            integrate(|u| 2.0 * u * value(u * u), since, time_factor.sqrt(), 400) / duration
+        };
+        for zeta in [0.0, 0.03, 0.4, 1.0] {
+            let fields = general.fields(time_factor, zeta).unwrap();
+            let pressure = mean(&|t| step.fields(t, zeta).unwrap().pressure);
+            let displacement = mean(&|t| step.fields(t, zeta).unwrap().displacement);
+            assert!((fields.pressure - pressure).abs() < 1e-9 * column.load, "{time_factor} {zeta}");
+            assert!((fields.displacement - displacement).abs() < 1e-9 * column.final_settlement());
+            let total = fields.pressure - fields.effective_stress;
+            assert!((total / column.load - (time_factor / duration).min(1.0)).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_load_that_grows_ends_where_one_at_once_does_and_is_refined_to_its_bound() {
+    let sudden = ColumnParameters { porosity: 0.7, load: 8.4e5, height: 1.0, ..ColumnParameters::default() };
+    let growing = ColumnParameters { loading_time: sudden.time(0.05), ..sudden };
+    let times = [0.01, 0.05, 0.2, 1.0, 8.0];
+    for &continuity in Continuity::ALL {
+        let model = model(SoilLaw::LogLinear, continuity, Water::Compressible);
+        let general = LargeStrain::new(&growing, model, &times).unwrap();
+        assert!(general.accuracy(0.2).unwrap().tail_bound < 1e-8, "{:?}", general.accuracy(0.2));
+        let at_once = LargeStrain::new(&sudden, model, &times).unwrap();
+        let gap = |time_factor: f64| {
+            at_once.settlement(time_factor).unwrap() - general.settlement(time_factor).unwrap()
+        };
+        assert!(gap(0.05) > 0.01 && gap(0.2) > 0.0 && gap(8.0).abs() < 1e-9);
+        // After a short ramp it is as if the load had acted at once in the middle of it.
+        let short = ColumnParameters { loading_time: sudden.time(1e-3), ..sudden };
+        let short = LargeStrain::new(&short, model, &times).unwrap();
+        let moved = short.settlement(0.2).unwrap() - at_once.settlement(0.2 - 5e-4).unwrap();
+        assert!(moved.abs() < 1e-5, "{moved:e}");
+    }
+}
+
+#[test]
+fn governing_equation_holds_while_the_load_grows() {
+    let column = ColumnParameters { water_bulk_modulus: 1.0e7, ..column(2.0e5) };
+    let growing = ColumnParameters { loading_time: column.time(0.3), ..column };
+    let (time_factor, zeta, dt, dz) = (0.15, 0.3, 1e-4, 1e-3);
+    let general = LargeStrain::new(
+        &growing,
+        LargeStrainModel::default(),
+        &[time_factor - dt, time_factor, time_factor + dt],
+    )
+    .unwrap();
+    let volume = |t: f64, z: f64| general.volume_ratio(t, z).unwrap();
+    let pressure = |t: f64, z: f64| general.fields(t, z).unwrap().pressure;
+    let discharge = |z: f64| {
+        let gradient =
+            -(pressure(time_factor, z + dz) - pressure(time_factor, z - dz)) / (2.0 * dz * column.height);
+        let conductivity = column.hydraulic_conductivity * volume(time_factor, z);
+        -conductivity / column.unit_weight_of_water() * gradient
+    };
+    let outflow = -(discharge(zeta + dz) - discharge(zeta - dz)) / (2.0 * dz * column.height);
+    let rate = |f: &dyn Fn(f64, f64) -> f64| {
+        (f(time_factor + dt, zeta) - f(time_factor - dt, zeta)) / column.time(2.0 * dt)
+    };
+    let pores = volume(time_factor, zeta) - (1.0 - column.porosity);
+    let stored = rate(&volume) + pores / column.water_bulk_modulus * rate(&pressure);
+    assert!(((stored + outflow) / outflow).abs() < 2e-5, "{}", (stored + outflow) / outflow);
 }

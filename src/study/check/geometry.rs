@@ -52,11 +52,11 @@ impl Checker<'_> {
 
     pub(super) fn column(&mut self, table: &ColumnTable, scene: SceneKind) -> Column {
         let seed = Column::default();
-        if let Some(typed) = table.loading_time.as_ref().filter(|_| scene != SceneKind::DynamicColumn) {
+        if let Some(typed) = table.loading_time.as_ref().filter(|_| !scene.takes_loading_time()) {
             self.complain(
                 typed.span(),
                 format!("the load of `{}` acts at once", scene.name()),
-                "a load that grows belongs to the scene \"dynamic-column\"",
+                "a load that grows belongs to the scenes \"xie-leo\" and \"dynamic-column\"",
             );
         }
         Column {
