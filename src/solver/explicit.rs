@@ -5,6 +5,7 @@ use super::grid::{Tensor, Vector};
 use super::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
 use super::profile::{Phase, enter};
 use super::scheme::Scheme;
+use super::shape::SIXTH;
 use super::strain::StrainBlocks;
 use serde::{Deserialize, Serialize};
 
@@ -392,11 +393,13 @@ fn add_weighted<const D: usize>(value: &mut Vector<D>, nodes: &[Vector<D>], weig
     }
 }
 
+const PER_24: f64 = 1.0 / 24.0;
+
 /// `exp(ε)`: a step's strain is so small that four terms are exact to round-off.
 #[inline]
 fn stretch_of(strain: f64) -> f64 {
     if strain.abs() < 1e-4 {
-        1.0 + strain * (1.0 + strain * (0.5 + strain * (1.0 / 6.0 + strain / 24.0)))
+        1.0 + strain * (1.0 + strain * (0.5 + strain * (SIXTH + strain * PER_24)))
     } else {
         strain.exp()
     }

@@ -35,14 +35,12 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             (&self.points.solid_velocity[..count], &self.points.water_velocity[..count]);
         let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
         if MASSES {
-            nodes.shares.fill([0.0; 3]);
+            nodes.sums.masses.fill([0.0; 4]);
         }
         if VELOCITIES {
-            nodes.solid_velocity.fill([0.0; D]);
-            nodes.water_velocity.fill([0.0; D]);
+            nodes.sums.momenta.fill([[0.0; D]; 2]);
         }
-        let shares = &mut nodes.shares[..];
-        let (solid_momenta, water_momenta) = (&mut nodes.solid_velocity[..], &mut nodes.water_velocity[..]);
+        let (nodal_masses, nodal_momenta) = (&mut nodes.sums.masses[..], &mut nodes.sums.momenta[..]);
         for point in 0..count {
             // Grains fill (1 − n) V = (1 − n_0) V_0, water n V.
             let (initial, ratio) = (initial_volume[point], volume_ratio[point]);
@@ -50,33 +48,35 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             let pore_volume = initial * (ratio - solid_fraction);
             let drag =
                 if MASSES { pore_volume * unit_weight / soil.hydraulic_conductivity_at(ratio) } else { 0.0 };
-            let solid_flux = solid_velocity[point].map(|velocity| grain_volume * velocity);
-            let water_flux = water_velocity[point].map(|velocity| pore_volume * velocity);
+            let masses = [grain_volume, pore_volume, drag, 0.0];
+            let momenta = [
+                solid_velocity[point].map(|velocity| grain_volume * velocity),
+                water_velocity[point].map(|velocity| pore_volume * velocity),
+            ];
             basis.visit_runs(&stride, point, |first, weights, _| {
                 if MASSES {
-                    for (share, weight) in shares[first..first + W].iter_mut().zip(weights) {
-                        share[0] += weight * grain_volume;
-                        share[1] += weight * pore_volume;
-                        share[2] += weight * drag;
+                    for (node, weight) in nodal_masses[first..first + W].iter_mut().zip(weights) {
+                        for (sum, mass) in node.iter_mut().zip(&masses) {
+                            *sum += weight * mass;
+                        }
                     }
                 }
                 if VELOCITIES {
-                    let solid = &mut solid_momenta[first..first + W];
-                    let water = &mut water_momenta[first..first + W];
-                    for (k, weight) in weights.iter().enumerate() {
-                        for d in 0..D {
-                            solid[k][d] += weight * solid_flux[d];
-                            water[k][d] += weight * water_flux[d];
+                    for (node, weight) in nodal_momenta[first..first + W].iter_mut().zip(weights) {
+                        for (sum, momentum) in node.iter_mut().zip(&momenta) {
+                            for d in 0..D {
+                                sum[d] += weight * momentum[d];
+                            }
                         }
                     }
                 }
             });
         }
         if MASSES {
-            nodes.take_shares(soil);
+            nodes.take_masses(soil);
         }
         if VELOCITIES {
-            nodes.divide_momenta(soil);
+            nodes.take_velocities(soil);
         }
     }
 
@@ -84,9 +84,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// surface natural).
     pub fn map_forces(&mut self) {
         let (nodes, points) = (&mut self.nodes, &self.points);
-        nodes.mixture_force.copy_from_slice(&nodes.external_force);
-        nodes.water_force.fill([0.0; D]);
-        let (mixture_forces, water_forces) = (&mut nodes.mixture_force[..], &mut nodes.water_force[..]);
+        for (forces, external) in nodes.sums.forces.iter_mut().zip(&nodes.external_force) {
+            *forces = [*external, [0.0; D]];
+        }
+        let nodal_forces = &mut nodes.sums.forces[..];
         let count = points.len();
         let (initial_volume, volume_ratio, stressed_share) =
             (&points.initial_volume[..count], &points.volume_ratio[..count], &points.stressed_share[..count]);
@@ -97,31 +98,31 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         for point in 0..count {
             let volume = initial_volume[point] * volume_ratio[point] * stressed_share[point];
             let pressure = volume * pressure[point];
-            let mut total = effective_stress[point];
+            // What each unit of gradient gives to the mixture, −σ V, and to the water, p V.
+            let mut mixture = effective_stress[point].map(|row| row.map(|stress| -(volume * stress)));
             let mut water = [[0.0; D]; D];
             for d in 0..D {
-                for e in 0..D {
-                    total[d][e] *= volume;
-                }
-                total[d][d] -= pressure;
+                mixture[d][d] += pressure;
                 water[d][d] = pressure;
             }
+            let mut given = [mixture, water];
             if is_total {
-                [total, water] =
-                    [total, water].map(|stress| pulled_back(&inverse_deformation[point], &stress));
+                given = given.map(|stress| pulled_back(&inverse_deformation[point], &stress));
             }
             basis.visit_runs(&stride, point, |first, _, gradients| {
-                let mixture_force = &mut mixture_forces[first..first + W];
-                let water_force = &mut water_forces[first..first + W];
-                for (k, gradient) in gradients.iter().enumerate() {
-                    for d in 0..D {
-                        for e in 0..D {
-                            mixture_force[k][d] -= total[d][e] * gradient[e];
-                            water_force[k][d] += water[d][e] * gradient[e];
+                for (node, gradient) in nodal_forces[first..first + W].iter_mut().zip(gradients) {
+                    for (force, given) in node.iter_mut().zip(&given) {
+                        for d in 0..D {
+                            for e in 0..D {
+                                force[d] += given[d][e] * gradient[e];
+                            }
                         }
                     }
                 }
             });
+        }
+        for (node, forces) in nodes.sums.forces.iter().enumerate() {
+            [nodes.mixture_force[node], nodes.water_force[node]] = *forces;
         }
     }
 }

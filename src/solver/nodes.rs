@@ -25,9 +25,8 @@ pub struct Nodes<const D: usize> {
     pub porosity: Vec<f64>,
     /// Drag `n γ_w V/k`, N s/m.
     pub drag: Vec<f64>,
-    /// What the points give to each node while it is summed: volume of the grains and of the pores
-    /// (m^D) and drag.
-    pub shares: Vec<[f64; 3]>,
+    /// What the points give to each node, while it is summed.
+    pub sums: NodalSums<D>,
     /// External force on the mixture, N.
     pub external_force: Vec<Vector<D>>,
     /// Internal and external force on the mixture, N.
@@ -56,6 +55,20 @@ pub struct Nodes<const D: usize> {
     /// The water's supports alone.
     water_supports: Vec<Vector<D>>,
     mass_cut_off: f64,
+}
+
+/// What the points give to the nodes, while it is summed.
+///
+/// What a pass sums side by side lies side by side and in pairs: the next point's run may begin a node
+/// later and still finds the last one's sums whole, where it would wait for halves of two stores.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NodalSums<const D: usize> {
+    /// Volume of the grains and of the pores (m^D), drag (N s/m), and nothing.
+    pub masses: Vec<[f64; 4]>,
+    /// Volume times velocity of the grains and of the pores, m^D m/s.
+    pub momenta: Vec<[Vector<D>; 2]>,
+    /// Forces on the mixture and on the water, N.
+    pub forces: Vec<[Vector<D>; 2]>,
 }
 
 /// Faces of the grid whose normal velocity is zero for both phases.
@@ -136,7 +149,11 @@ impl<const D: usize> Nodes<D> {
             volume: scalars.clone(),
             porosity: scalars.clone(),
             drag: scalars,
-            shares: vec![[0.0; 3]; count],
+            sums: NodalSums {
+                masses: vec![[0.0; 4]; count],
+                momenta: vec![[[0.0; D]; 2]; count],
+                forces: vec![[[0.0; D]; 2]; count],
+            },
             external_force: vectors.clone(),
             mixture_force: vectors.clone(),
             water_force: vectors.clone(),
@@ -164,9 +181,9 @@ impl<const D: usize> Nodes<D> {
         self.solid_mass.is_empty()
     }
 
-    /// Turns the points' [`shares`](Self::shares) into masses, volumes and drag of the soil.
-    pub fn take_shares(&mut self, soil: &Material) {
-        for (node, [grain_volume, pore_volume, drag]) in self.shares.iter().enumerate() {
+    /// Turns the points' [`sums`](Self::sums) into masses, volumes and drag of the soil.
+    pub fn take_masses(&mut self, soil: &Material) {
+        for (node, [grain_volume, pore_volume, drag, _]) in self.sums.masses.iter().enumerate() {
             self.solid_mass[node] = soil.grain_density * grain_volume;
             self.water_mass[node] = soil.water_density * pore_volume;
             self.volume[node] = grain_volume + pore_volume;
@@ -176,15 +193,15 @@ impl<const D: usize> Nodes<D> {
         self.finish_masses();
     }
 
-    /// Velocities from momenta over the density of their phase, which stand in their place; zero where
-    /// a node is held or empty.
-    pub fn divide_momenta(&mut self, soil: &Material) {
+    /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held or empty.
+    pub fn take_velocities(&mut self, soil: &Material) {
         for node in 0..self.len() {
+            let [solid, water] = self.sums.momenta[node];
             let per_grain_volume = soil.grain_density * self.per_solid_mass[node];
             let per_pore_volume = soil.water_density * self.per_water_mass[node];
             for d in 0..D {
-                self.solid_velocity[node][d] *= self.free[node][d] * per_grain_volume;
-                self.water_velocity[node][d] *= self.water_free[node][d] * per_pore_volume;
+                self.solid_velocity[node][d] = solid[d] * (self.free[node][d] * per_grain_volume);
+                self.water_velocity[node][d] = water[d] * (self.water_free[node][d] * per_pore_volume);
             }
         }
     }

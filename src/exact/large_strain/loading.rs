@@ -26,33 +26,33 @@ impl Loading {
     }
 
     /// Whether it takes time.
-    pub fn is_gradual(&self) -> bool {
+    pub fn is_gradual(self) -> bool {
         self.duration > 0.0
     }
 
     /// Share `λ` of the full load at a time factor.
-    pub fn share(&self, time_factor: f64) -> f64 {
+    pub fn share(self, time_factor: f64) -> f64 {
         if time_factor < self.duration { time_factor / self.duration } else { 1.0 }
     }
 
     /// `dλ/dT_v` from a time factor on.
-    pub fn rate(&self, time_factor: f64) -> f64 {
+    pub fn rate(self, time_factor: f64) -> f64 {
         if time_factor < self.duration { self.duration.recip() } else { 0.0 }
     }
 
     /// The load `later` after a time factor, with the growth that it has there: a step may end where
     /// the growth does.
-    pub fn within_step(&self, time_factor: f64, later: f64) -> LoadAt {
+    pub fn within_step(self, time_factor: f64, later: f64) -> LoadAt {
         LoadAt { absent: 1.0 - self.share(time_factor + later), rate: self.rate(time_factor) }
     }
 
     /// The time factor strictly between two at which the growth changes.
-    pub fn kink_between(&self, from: f64, to: f64) -> Option<f64> {
+    pub fn kink_between(self, from: f64, to: f64) -> Option<f64> {
         (from < self.duration && self.duration < to).then_some(self.duration)
     }
 
     /// Time since the growth last changed, from which the size of a step follows.
-    pub fn age(&self, time_factor: f64) -> f64 {
+    pub fn age(self, time_factor: f64) -> f64 {
         let since = if time_factor < self.duration { 0.0 } else { self.duration };
         (time_factor - since).max(FIRST_AGE * self.duration)
     }

@@ -90,7 +90,8 @@ impl LargeStrain {
         let mut difference = f64::INFINITY;
         let mut resolution = 0;
         for (order, growth) in RESOLUTIONS {
-            let Ok(attempt) = Attempt::new(parameters, model, diffusion, loading, (order, growth), &times) else {
+            let Ok(attempt) = Attempt::new(parameters, model, diffusion, loading, (order, growth), &times)
+            else {
                 continue;
             };
             if let Some(before) = &before {
