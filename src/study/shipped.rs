@@ -50,6 +50,8 @@ pub fn shipped_studies() -> Vec<StudySource> {
         ("studies/large-strain-small.toml", include_str!("../../studies/large-strain-small.toml")),
         ("studies/large-strain-half.toml", include_str!("../../studies/large-strain-half.toml")),
         ("studies/large-strain-start.toml", include_str!("../../studies/large-strain-start.toml")),
+        ("studies/large-strain-ramp.toml", include_str!("../../studies/large-strain-ramp.toml")),
+        ("studies/large-strain-ramp-half.toml", include_str!("../../studies/large-strain-ramp-half.toml")),
         ("studies/large-strain-limit.toml", include_str!("../../studies/large-strain-limit.toml")),
     ];
     SHIPPED
