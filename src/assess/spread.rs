@@ -46,7 +46,7 @@ pub fn spread_of(
         study: study.to_owned(),
         source: source.to_owned(),
         values: 0,
-        unpaired: one.len().abs_diff(other.len()),
+        unpaired: names_missing(one, other) + names_missing(other, one),
         differing: 0,
         absolute: 0.0,
         relative: 0.0,
@@ -76,6 +76,11 @@ pub fn spread_of(
     spread
 }
 
+/// How many values of one run the other does not name.
+fn names_missing(one: &BTreeMap<String, f64>, other: &BTreeMap<String, f64>) -> usize {
+    one.keys().filter(|name| !other.contains_key(*name)).count()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -88,10 +93,11 @@ mod tests {
     fn the_widest_pair_is_named() {
         let one = values(&[("a", 1.0), ("b", 2.0), ("c", 3.0)]);
         let same = spread_of("s", "again", &one, &one);
-        assert_eq!((same.differing, same.relative, same.place), (0, 0.0, None));
+        assert_eq!((same.differing, same.relative, &same.place), (0, 0.0, &None));
         let other = values(&[("a", 1.0), ("b", 2.0 + 2e-9), ("d", 1.0)]);
         let spread = spread_of("s", "kernel", &one, &other);
         assert_eq!((spread.values, spread.differing, spread.place.as_deref()), (2, 1, Some("b")));
+        assert_eq!((same.unpaired, spread.unpaired), (0, 2), "a renamed value is missing on both sides");
         assert!((spread.tolerance() / 1e-8 - 1.0).abs() < 1e-6);
         let tiny = spread_of("s", "kernel", &values(&[("a", 1e-15)]), &values(&[("a", -2e-15)]));
         assert_eq!((tiny.differing, tiny.relative), (1, 0.0), "round-off of zero");
