@@ -58,6 +58,47 @@ fn the_start_is_the_undrained_equilibrium_of_every_model() {
     }
 }
 
+const GROWING: &str = "[column]\nload = 200e3\nloading_time = 4.0";
+
+#[test]
+fn a_growing_load_finds_the_soil_at_rest_and_has_its_own_reference() {
+    let references = study(GROWING, "method = [\"GIMP\"]").expect("a good study").references;
+    assert_eq!(references.iter().map(|kind| kind.name()).collect::<Vec<_>>(), ["large-strain"]);
+    for integrator in ["explicit", "implicit"] {
+        let sweep = format!(
+            "method = [\"TL-GC-SRI-patch\"]\nintegrator = [\"{integrator}\"]\ntime_factors = [0.0, 0.03, 0.05]"
+        );
+        let record = record(GROWING, &sweep);
+        assert_eq!(record.status, Status::Ok);
+        let at_rest = &record.snapshots[0];
+        assert!(at_rest.points.pressure.iter().chain(&at_rest.points.effective_stress).all(|p| *p == 0.0));
+        let norm = oedometer::assess::norms::Norm::L2;
+        for (time_factor, most) in [(0.03, 0.08), (0.05, 0.06)] {
+            let error = record.error(Quantity::Pressure, Sample::Points, norm, "large-strain", time_factor);
+            let error = error.expect("an error").value;
+            assert!(error < most, "{integrator} {time_factor}: {error}");
+        }
+    }
+}
+
+#[test]
+fn the_reference_of_a_load_at_once_is_refused_for_one_that_grows() {
+    let told = Study::check(&StudySource {
+        name: "typed.toml".to_owned(),
+        text: format!(
+            "title = \"t\"\nscene = \"xie-leo\"\n{GROWING}\n[output]\nreferences = [\"xie-leo\"]\n[[sweep]]\n\
+             cells = [5]\nmethod = [\"GIMP\"]\n"
+        ),
+    })
+    .expect_err("a refusal")
+    .to_string();
+    assert!(
+        told.contains("acts at once, and this column's grows") && told.contains("large-strain"),
+        "{told}"
+    );
+    assert!(told.contains("typed.toml:7") && told.contains('^'), "{told}");
+}
+
 #[test]
 fn every_model_comes_near_its_own_reference_and_keeps_its_water() {
     for law in [Law::LogLinear, Law::PorosityDependent, Law::Engineering] {
