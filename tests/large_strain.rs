@@ -58,6 +58,47 @@ fn the_start_is_the_undrained_equilibrium_of_every_model() {
     }
 }
 
+const GROWING: &str = "[column]\nload = 200e3\nloading_time = 4.0";
+
+#[test]
+fn a_growing_load_finds_the_soil_at_rest_and_has_its_own_reference() {
+    let references = study(GROWING, "method = [\"GIMP\"]").expect("a good study").references;
+    assert_eq!(references.iter().map(|kind| kind.name()).collect::<Vec<_>>(), ["large-strain"]);
+    for integrator in ["explicit", "implicit"] {
+        let sweep = format!(
+            "method = [\"TL-GC-SRI-patch\"]\nintegrator = [\"{integrator}\"]\ntime_factors = [0.0, 0.03, 0.05]"
+        );
+        let record = record(GROWING, &sweep);
+        assert_eq!(record.status, Status::Ok);
+        let at_rest = &record.snapshots[0];
+        assert!(at_rest.points.pressure.iter().chain(&at_rest.points.effective_stress).all(|p| *p == 0.0));
+        let norm = oedometer::assess::norms::Norm::L2;
+        for (time_factor, most) in [(0.03, 0.08), (0.05, 0.06)] {
+            let error = record.error(Quantity::Pressure, Sample::Points, norm, "large-strain", time_factor);
+            let error = error.expect("an error").value;
+            assert!(error < most, "{integrator} {time_factor}: {error}");
+        }
+    }
+}
+
+#[test]
+fn the_reference_of_a_load_at_once_is_refused_for_one_that_grows() {
+    let told = Study::check(&StudySource {
+        name: "typed.toml".to_owned(),
+        text: format!(
+            "title = \"t\"\nscene = \"xie-leo\"\n{GROWING}\n[output]\nreferences = [\"xie-leo\"]\n[[sweep]]\n\
+             cells = [5]\nmethod = [\"GIMP\"]\n"
+        ),
+    })
+    .expect_err("a refusal")
+    .to_string();
+    assert!(
+        told.contains("acts at once, and this column's grows") && told.contains("large-strain"),
+        "{told}"
+    );
+    assert!(told.contains("typed.toml:7") && told.contains('^'), "{told}");
+}
+
 #[test]
 fn every_model_comes_near_its_own_reference_and_keeps_its_water() {
     for law in [Law::LogLinear, Law::PorosityDependent, Law::Engineering] {
@@ -78,6 +119,33 @@ fn every_model_comes_near_its_own_reference_and_keeps_its_water() {
                 assert!(balance.water_imbalance.abs() < 1e-3, "{balance:?}");
             }
             assert!(balance.solid_mass_drift.abs() < 1e-12, "{balance:?}");
+        }
+    }
+}
+
+#[test]
+fn splines_end_at_the_surface_wherever_it_is() {
+    // The surface of eight cells of 12.5 cm passes the middle of its cell at 6.2 cm: a spline that kept the
+    // node beyond it would close the pores of the last points there.
+    for basis in ["bspline2", "bspline3"] {
+        // Half a spline is lighter than the start's: the explicit step leaves room for it.
+        for (integrator, step) in [("implicit", "growth = 0.05"), ("explicit", "stable = 0.4")] {
+            let sweep = format!(
+                "method = [{{ basis = \"{basis}\", strain = \"standard\", pressure = \"sri\", recovery = \"patch\" }}]\n\
+                 integrator = [\"{integrator}\"]\ntime_step = [{{ {step} }}]\ntime_factors = [0.2]"
+            );
+            let study = study(LOADED, &sweep).expect("a good study");
+            let mut case = study.planned[0].case.clone();
+            (case.cells, case.points_per_cell) = (8, 4);
+            let record =
+                run_case(&case, &study.references, Kernel::Fastest, false, &|_, _| true).expect("runs");
+            assert_eq!(record.status, Status::Ok, "{}", case.label());
+            let settled = record.snapshots[0].settlement;
+            assert!(settled > 0.07, "past the middle of the cell: {settled}");
+            let norm = oedometer::assess::norms::Norm::L2;
+            let error = record.error(Quantity::Pressure, Sample::Points, norm, "large-strain", 0.2);
+            let error = error.expect("an error").value;
+            assert!(error < 0.02, "{}: {error}", case.label());
         }
     }
 }

@@ -110,3 +110,48 @@ pub fn compare<'a, 'b>(runs: &'b [TimedRun<'a>]) -> Vec<Comparison<'a, 'b>> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assess::work_precision::WorkPrecision;
+    use crate::record::{Record, WallSample};
+    use crate::study::{RunOptions, Study, StudySource, Tier, run_study};
+
+    /// Runs of a scene on two meshes, with a cost that is the same on every machine.
+    fn runs_of(scene: &str, table: &str) -> Vec<Record> {
+        let text = format!(
+            "title = \"Peers\"\nscene = \"{scene}\"\n{table}\n[output]\ntime_factors = [0.05, 0.2, 1.0]\n\
+             [[sweep]]\nmethod = [\"GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = [8, 16]\n\
+             time_step = [{{ growth = 0.02 }}]\n"
+        );
+        let study =
+            Study::check(&StudySource { name: "peers.toml".to_owned(), text }).expect("a sound study");
+        let mut records = run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records;
+        for record in &mut records {
+            let seconds = 1e-9 * record.counters.point_updates as f64;
+            record.wall = vec![WallSample { seconds, alone: true }; 2];
+        }
+        records
+    }
+
+    #[test]
+    fn peers_stand_beside_their_own_column_only() {
+        let column = runs_of("terzaghi", "");
+        let precision = WorkPrecision::of(&column, "terzaghi").expect("timed runs");
+        assert!(solve_their_column(&precision.runs));
+        let fastest = &precision.runs[0];
+        for comparison in compare(&precision.runs) {
+            let (ahead, errors) = comparison.ahead.expect("sixteen cells are ahead of every peer");
+            assert!(comparison.peer.errors.iter().zip(errors).all(|(theirs, own)| match (theirs, own) {
+                (Some(theirs), Some(own)) => own <= *theirs,
+                (theirs, _) => theirs.is_none(),
+            }));
+            assert!(ahead.wall.median >= fastest.wall.median);
+        }
+        // Large strain has no error against Terzaghi's solution, so nothing to hold theirs against.
+        let squeezed = runs_of("xie-leo", "[column]\nload = 1e5");
+        let precision = WorkPrecision::of(&squeezed, "large-strain").expect("timed runs");
+        assert!(!solve_their_column(&precision.runs));
+    }
+}

@@ -44,6 +44,15 @@ pub enum ExactError {
         /// Initial porosity `n_0`.
         porosity: f64,
     },
+    /// A load that grows, where the solution's acts at once.
+    #[error(
+        "Xie & Leo's load acts at once, and this one takes {loading_time} s: the reference `large-strain` has a \
+         load that grows"
+    )]
+    LoadGrows {
+        /// Time over which the load grows, s.
+        loading_time: f64,
+    },
     /// The same for another soil law.
     #[error(
         "the load would press out more water than the pores hold: the volume would shrink by \

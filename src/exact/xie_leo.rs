@@ -48,7 +48,7 @@ impl XieLeo {
     /// The column with a choice of drained ends.
     ///
     /// # Errors
-    /// When the parameters are impossible, or `m_vl q ≥ −ln(1 − n_0)`: the porosity
+    /// When the parameters are impossible, the load grows, or `m_vl q ≥ −ln(1 − n_0)`: the porosity
     /// `n = 1 − (1 − n_0)/J` would end below zero.
     pub fn drained(parameters: &ColumnParameters, drainage: Drainage) -> Result<Self, ExactError> {
         parameters.validate()?;
@@ -57,6 +57,9 @@ impl XieLeo {
         let limit = -libm::log1p(-parameters.porosity);
         if strain >= limit {
             return Err(ExactError::LoadClosesPores { load: strain, limit, porosity: parameters.porosity });
+        }
+        if parameters.loading_time > 0.0 {
+            return Err(ExactError::LoadGrows { loading_time: parameters.loading_time });
         }
         Ok(Self { parameters: *parameters, strain, drainage })
     }

@@ -160,6 +160,8 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     pub cell_memory: CellMemory<D>,
     /// Faces that are held.
     support: Support<D>,
+    /// Whether the basis reaches beyond a surface that moves through the grid.
+    splines_end_at_surface: bool,
     /// `R` of the patch recovery.
     pub patch: PatchRows<D>,
     /// Values on their way from the sites of `D` to the points, where a method needs them kept.
@@ -206,6 +208,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             between_ends: Stencils::with_points(ends_rows),
             cell_memory: CellMemory::new(&grid),
             support,
+            splines_end_at_surface: S::PASSES_WALLS && configuration.moves_points(),
             patch: PatchRows::with_points(patch_rows),
             recovered: Recovered::of(&grid, count, &method),
             surface_flux: 0.0,
@@ -325,6 +328,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         if self.method.strain.is_composite() {
             self.cells.find_reached(&self.grid, &self.points);
         }
+        if self.splines_end_at_surface {
+            self.support = self.surface.end_splines(&self.grid, &self.points);
+            self.cells.end_at(&self.grid, self.support.outermost.unwrap_or(usize::MAX));
+        }
         self.build_basis();
         self.build_strain_gradients();
         if self.method.uses_patch() {
@@ -334,6 +341,11 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             self.cells.average_deformation(&self.points);
         }
         self.surface.apply(&self.grid, &self.points, &mut self.nodes);
+    }
+
+    /// Last node of splines that end at a surface on its way through the grid.
+    pub fn last_spline_node(&self) -> Option<usize> {
+        self.support.outermost
     }
 
     /// Displacement of the skeleton at the place of a node, m: that of the node itself, but for splines,

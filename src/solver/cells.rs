@@ -15,6 +15,9 @@ pub struct Cells<const D: usize> {
     pub place: Vec<Vector<D>>,
     /// Lowest node of each cell.
     first_node: Vec<usize>,
+    /// Lowest node of the cell whose divergence each cell takes: its own, but for those beyond the end of
+    /// splines at a free surface, where the field goes on as a line.
+    divergence_node: Vec<usize>,
     /// Points in each cell.
     point_count: Vec<u32>,
     /// Whether a point's domain reaches into each cell.
@@ -47,6 +50,7 @@ impl<const D: usize> Cells<D> {
         Self {
             of_point: vec![0; points],
             place: vec![[0.0; D]; points],
+            divergence_node: first_node.clone(),
             first_node,
             point_count: vec![0; count],
             reached: vec![false; count],
@@ -164,12 +168,21 @@ impl<const D: usize> Cells<D> {
         (0..self.point_count.len()).filter(|cell| self.is_occupied(*cell))
     }
 
+    /// Lets cells above a last node take the divergence of the cell below it.
+    pub fn end_at(&mut self, grid: &Grid<D>, outermost: usize) {
+        let (cell_stride, node_stride) = (grid.cell_stride()[D - 1], grid.node_stride()[D - 1]);
+        for (cell, first_node) in self.first_node.iter().enumerate() {
+            let above = (cell / cell_stride + 1).saturating_sub(outermost);
+            self.divergence_node[cell] = first_node - above * node_stride;
+        }
+    }
+
     /// Divergence of a nodal field at the centre of a cell, by the linear shape functions, 1/m of
     /// the field.
     #[inline]
     pub fn centre_divergence(&self, grid: &Grid<D>, cell: usize, field: &[Vector<D>]) -> f64 {
         let mut divergence = 0.0;
-        for (corner, node) in grid.corners(self.first_node[cell]).enumerate() {
+        for (corner, node) in grid.corners(self.divergence_node[cell]).enumerate() {
             for direction in 0..D {
                 divergence += side(corner, direction) * field[node][direction];
             }
@@ -184,7 +197,7 @@ impl<const D: usize> Cells<D> {
         cell: usize,
         mut node_visitor: impl FnMut(usize, &Vector<D>),
     ) {
-        for (corner, node) in grid.corners(self.first_node[cell]).enumerate() {
+        for (corner, node) in grid.corners(self.divergence_node[cell]).enumerate() {
             node_visitor(node, &std::array::from_fn(|d| side(corner, d) * share_of_corner(grid)));
         }
     }
@@ -195,7 +208,7 @@ impl<const D: usize> Cells<D> {
     pub fn deformed_centre_divergence(&self, grid: &Grid<D>, cell: usize, field: &[Vector<D>]) -> f64 {
         let inverse = &self.inverse_deformation[cell];
         let mut divergence = 0.0;
-        for (corner, node) in grid.corners(self.first_node[cell]).enumerate() {
+        for (corner, node) in grid.corners(self.divergence_node[cell]).enumerate() {
             for direction in 0..D {
                 for component in 0..D {
                     divergence +=

@@ -80,6 +80,9 @@ pub struct Support<const D: usize> {
     pub upper: [bool; D],
     /// Whether the skeleton sticks to the base: no displacement along it either.
     pub rough_base: bool,
+    /// Last node below the free surface that has enough of the material to stand alone, where splines
+    /// reach beyond the surface: those above it follow its line.
+    pub outermost: Option<usize>,
 }
 
 impl<const D: usize> Support<D> {
@@ -87,16 +90,16 @@ impl<const D: usize> Support<D> {
     pub fn oedometer() -> Self {
         let mut upper = [true; D];
         upper[D - 1] = false;
-        Self { lower: [true; D], upper, rough_base: false }
+        Self { lower: [true; D], upper, rough_base: false, outermost: None }
     }
 
     /// Nothing held at all.
     pub fn free() -> Self {
-        Self { lower: [false; D], upper: [false; D], rough_base: false }
+        Self { lower: [false; D], upper: [false; D], rough_base: false, outermost: None }
     }
 
-    /// A row along a direction without nodes beyond held faces: those behind a wall have no freedom of
-    /// their own.
+    /// A row along a direction without nodes beyond held faces, nor far beyond a free surface: those
+    /// have no freedom of their own.
     #[inline]
     #[must_use]
     pub fn folded<const W: usize>(&self, grid: &Grid<D>, direction: usize, mut row: Row<W>) -> Row<W> {
@@ -106,6 +109,9 @@ impl<const D: usize> Support<D> {
         }
         if self.upper[direction] {
             row.fold_at(highest, |node| node > highest);
+        }
+        if let Some(outermost) = self.outermost.filter(|_| direction == D - 1) {
+            row.straighten_beyond(outermost);
         }
         row
     }

@@ -125,11 +125,34 @@ impl<const W: usize> Row<W> {
         for k in 0..W {
             let node = self.first + k;
             if is_beyond(node) {
-                let (at_wall, mirrored) = (wall - self.first, 2 * wall - node - self.first);
+                // A row that lies behind the wall altogether is of a run that is lost, and stays as it is.
+                let at_wall = wall.wrapping_sub(self.first);
+                let mirrored = (2 * wall).wrapping_sub(node + self.first);
+                if at_wall >= W || mirrored >= W {
+                    continue;
+                }
                 for side in [&mut self.weights, &mut self.gradients] {
                     let beyond = std::mem::replace(&mut side[k], 0.0);
                     side[at_wall] += 2.0 * beyond;
                     side[mirrored] -= beyond;
+                }
+            }
+        }
+    }
+
+    /// Takes the nodes above a last one out of the row: their values go on along the line through the last
+    /// two. Linear fields are still met exactly, and the weights still add up to one. A row that would be
+    /// left with one node keeps two.
+    #[inline]
+    pub fn straighten_beyond(&mut self, last: usize) {
+        let last = last.saturating_sub(self.first).max(1);
+        for k in 0..W {
+            let beyond = k.saturating_sub(last) as f64;
+            if beyond > 0.0 {
+                for side in [&mut self.weights, &mut self.gradients] {
+                    let share = std::mem::replace(&mut side[k], 0.0);
+                    side[last] += (1.0 + beyond) * share;
+                    side[last - 1] -= beyond * share;
                 }
             }
         }
@@ -259,6 +282,30 @@ mod tests {
             prop_assert!((cubic.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
             prop_assert!((0..3).all(|k| !held(quadratic.first + k) || quadratic.weights[k] == 0.0));
             prop_assert!((0..4).all(|k| !held(cubic.first + k) || cubic.weights[k] == 0.0));
+        }
+
+        #[test]
+        fn a_row_behind_a_wall_stays_as_it_is(place in 2.5..4.4f64) {
+            let (mut quadratic, mut cubic) = (quadratic_spline(place), cubic_spline(place, whole(place)));
+            let before = quadratic;
+            quadratic.fold_at(7, |node| node < 7);
+            cubic.fold_at(7, |node| node < 7);
+            prop_assert_eq!(before, quadratic);
+            prop_assert!((cubic.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+        }
+
+        #[test]
+        fn rows_that_end_at_a_surface_meet_linear_fields(place in 5.0..6.0f64, above in 0.0..0.5f64) {
+            let linear = |x: f64| 2.0 + 3.0 * x;
+            let (mut quadratic, mut cubic) = (quadratic_spline(place), cubic_spline(place, 5));
+            // The surface lies a little above the place, and the last node beside it.
+            let last = whole(place + above + 0.5);
+            quadratic.straighten_beyond(last.max(quadratic.first + 1));
+            cubic.straighten_beyond(5);
+            for (row, end) in [(moments(&quadratic, linear), last), (moments(&cubic, linear), 5)] {
+                prop_assert!((row.0 - linear(place)).abs() < 1e-12 && (row.1 - 3.0).abs() < 1e-12, "{end}");
+            }
+            prop_assert_eq!(&cubic.weights[2..], &[0.0, 0.0]);
         }
 
         #[test]

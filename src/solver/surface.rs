@@ -65,6 +65,9 @@ struct Spot {
 /// Gauss points of an edge: exact for the hats times a line.
 const EDGE_SPOTS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
 
+/// A surface this near to a face, in cells, lies on it.
+const ON_A_FACE: f64 = 1e-9;
+
 impl<const D: usize> LoadedSurface<D> {
     /// The surface of a lattice: the highest points of the initial configuration.
     pub fn of(points: &Points<D>, load: f64) -> Self {
@@ -128,8 +131,8 @@ impl<const D: usize> LoadedSurface<D> {
     /// Visits the nodes that carry a place of the surface, with their weights.
     #[inline]
     fn visit_nodes(&self, grid: &Grid<D>, place: &Vector<D>, node_visitor: impl FnMut(usize, f64)) {
-        let cell = grid.cell_of(place);
-        let at: Vector<D> = std::array::from_fn(|d| grid.in_cells(place[d]));
+        let at = grid.held_in_cells(place);
+        let cell = grid.cell_at(&at);
         match self.basis {
             Basis::Hat | Basis::Ugimp | Basis::Cpgimp | Basis::Cpdi => {
                 let rows: [Row<2>; D] = std::array::from_fn(|d| shape::hat(at[d], cell[d]));
@@ -146,6 +149,23 @@ impl<const D: usize> LoadedSurface<D> {
                 visit_block(grid, &rows, node_visitor);
             }
         }
+    }
+
+    /// Ends splines at the surface where the points have carried it, and returns the faces with that end.
+    ///
+    /// A spline whose support the surface has all but left keeps its share of the load and loses the
+    /// points that would carry it: their pores close. It then follows the line of those inside (extended
+    /// B-splines, Höllig, Reif & Wipper 2001; for material points Yamaguchi, Moriguchi & Terada 2021).
+    pub fn end_splines(&mut self, grid: &Grid<D>, points: &Points<D>) -> Support<D> {
+        let height = |spot| grid.held_in_cells(&self.place(points, spot))[D - 1];
+        let highest = self.spots.iter().map(height).fold(0.0, f64::max);
+        self.support.outermost = match self.basis {
+            Basis::Bspline2 => Some(shape::whole(highest + 0.5)),
+            // The upper node of the cell that the surface is in; one on a face is in the cell below.
+            Basis::Bspline3 => Some(shape::whole(highest - ON_A_FACE) + 1),
+            Basis::Hat | Basis::Ugimp | Basis::Cpgimp | Basis::Cpdi => None,
+        };
+        self.support
     }
 
     /// Height of the surface now, m, as much of it as has the load's shape: the mean over the

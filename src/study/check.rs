@@ -141,7 +141,7 @@ impl Checker<'_> {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
         };
-        let references = self.references(&file.output, scene.references_of(&column));
+        let references = self.references(&file.output, scene, &column);
         if file.sweep.is_empty() {
             let end = self.source.text.trim_end().len();
             let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
@@ -229,13 +229,24 @@ impl Checker<'_> {
         factors
     }
 
-    fn references(&mut self, table: &OutputTable, own: &[ReferenceKind]) -> Vec<ReferenceKind> {
+    fn references(&mut self, table: &OutputTable, scene: SceneKind, column: &Column) -> Vec<ReferenceKind> {
+        let own = scene.references_of(column);
         let Some(list) = &table.references else { return own.to_vec() };
-        let names: Vec<&str> = own.iter().map(|kind| kind.name()).collect();
-        list.get_ref()
-            .iter()
-            .filter_map(|typed| self.word(typed, "reference", &names))
-            .map(|i| own[i])
-            .collect()
+        let names: Vec<&str> = scene.references().iter().map(|kind| kind.name()).collect();
+        let mut references = Vec::new();
+        for typed in list.get_ref() {
+            let Some(index) = self.word(typed, "reference", &names) else { continue };
+            let kind = scene.references()[index];
+            if own.contains(&kind) {
+                references.push(kind);
+            } else {
+                self.complain(
+                    typed.span(),
+                    format!("the load of `{kind}` acts at once, and this column's grows"),
+                    format!("hold it against \"{}\"", own[0]),
+                );
+            }
+        }
+        references
     }
 }

@@ -20,6 +20,7 @@ pub fn shipped_studies() -> Vec<StudySource> {
         ("studies/dynamic-mode.toml", include_str!("../../studies/dynamic-mode.toml")),
         ("studies/standing-wave-mesh.toml", include_str!("../../studies/standing-wave-mesh.toml")),
         ("studies/standing-wave-step.toml", include_str!("../../studies/standing-wave-step.toml")),
+        ("studies/column-in-the-plane.toml", include_str!("../../studies/column-in-the-plane.toml")),
         ("studies/layer-locking.toml", include_str!("../../studies/layer-locking.toml")),
         ("studies/layer-mesh.toml", include_str!("../../studies/layer-mesh.toml")),
         ("studies/stability-conductivity.toml", include_str!("../../studies/stability-conductivity.toml")),

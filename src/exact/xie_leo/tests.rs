@@ -86,6 +86,13 @@ fn a_load_that_closes_the_pores_is_refused() {
 }
 
 #[test]
+fn a_load_that_grows_is_refused_with_the_way_out() {
+    let growing = ColumnParameters { loading_time: 3.0, ..column(0.1, 0.3) };
+    let error = XieLeo::new(&growing).unwrap_err().to_string();
+    assert!(error.contains("acts at once") && error.contains("`large-strain`"), "{error}");
+}
+
+#[test]
 fn two_drained_ends_are_two_half_columns() {
     let whole = XieLeo::drained(&column(0.2, 0.4), Drainage::TopAndBase).unwrap();
     let half = ColumnParameters { height: 0.5, ..column(0.2, 0.4) };

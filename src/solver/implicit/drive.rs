@@ -261,3 +261,25 @@ impl<'a> History<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_noted_exactly_at_every_time_that_is_due() {
+        let settlement = |time: f64| 0.3 + 2.0 * time - 0.7 * time * time;
+        let rate = |time: f64| 2.0 - 1.4 * time;
+        let due = [0.1, 0.15, 0.2, 0.75, 1.0];
+        let mut history = History::of(&due);
+        // Steps with three times, with none, and with one inside and one at its end.
+        for [start, end] in [[0.0, 0.2], [0.2, 0.5], [0.5, 1.0]] {
+            history.note((start, settlement(start)), (end, settlement(end)), rate(end));
+        }
+        assert_eq!(history.noted.len(), due.len());
+        for (point, time) in history.noted.iter().zip(due) {
+            assert_eq!(point.time, time);
+            assert!((point.settlement - settlement(time)).abs() < 1e-15, "{point:?}");
+        }
+    }
+}

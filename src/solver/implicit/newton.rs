@@ -28,6 +28,8 @@ struct Structure {
     composite: Vec<usize>,
     between_ends: Vec<usize>,
     cells: Vec<usize>,
+    /// Splines that end at the surface lose a node without any point's row beginning elsewhere.
+    last_node: Option<usize>,
 }
 
 impl Structure {
@@ -37,6 +39,7 @@ impl Structure {
             composite: body.composite.first.clone(),
             between_ends: body.between_ends.first.clone(),
             cells: body.cells.of_point.clone(),
+            last_node: body.last_spline_node(),
         }
     }
 
@@ -45,6 +48,7 @@ impl Structure {
             && self.composite == body.composite.first
             && self.between_ends == body.between_ends.first
             && self.cells == body.cells.of_point
+            && self.last_node == body.last_spline_node()
     }
 }
 
