@@ -5,6 +5,7 @@
 
 use super::series::Undefined;
 use super::two_terms::{Exponent, both, minimum};
+use crate::elementary;
 
 /// The fit of a dip.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,14 +34,14 @@ pub(super) fn fit_cancelling(points: &[(f64, f64)]) -> Result<CancellingFit, Und
             let column = |(index, (size, error)): (usize, &(f64, f64))| {
                 let sign = if index < negative_from { 1.0 } else { -1.0 };
                 let error = sign * error / first_error;
-                (1.0 / error, (size / first_size).powf(order) / error)
+                (1.0 / error, elementary::powf(size / first_size, order) / error)
             };
             points.iter().enumerate().map(column).collect()
         };
         let solve = |order: f64| {
             let columns = columns(order);
             let (floor, coefficient) = both(&columns)?;
-            let off = |(u, v): &(f64, f64)| (floor * u + coefficient * v - 1.0).powi(2);
+            let off = |(u, v): &(f64, f64)| elementary::powi(floor * u + coefficient * v - 1.0, 2);
             let square = columns.iter().map(off).sum::<f64>() / levels as f64;
             Some((-floor, coefficient, square.sqrt()))
         };
@@ -56,9 +57,9 @@ pub(super) fn fit_cancelling(points: &[(f64, f64)]) -> Result<CancellingFit, Und
         .ok_or(Undefined::NotDetermined)?;
     Ok(CancellingFit {
         order,
-        coefficient: coefficient * first_error / first_size.powf(order),
+        coefficient: coefficient * first_error / elementary::powf(first_size, order),
         floor: floor * first_error,
-        cancels_at: first_size * (floor / coefficient).powf(1.0 / order),
+        cancels_at: first_size * elementary::powf(floor / coefficient, 1.0 / order),
     })
 }
 

@@ -7,6 +7,7 @@ use super::limiter::{Limiter, LimiterKind, advice, identify};
 use super::orders::{WINDOW, log_ratio, slope_of};
 use super::series::{ErrorSeries, Undefined};
 use super::wording::short;
+use crate::elementary;
 
 /// A series that can be evaluated, with what the checks share.
 pub(super) struct Case<'a> {
@@ -73,7 +74,7 @@ impl<'a> Case<'a> {
         let limiter = identify(fit.floor, &self.limiters);
         let limits_from = self.points.iter().find(|(_, error)| *error <= 2.0 * fit.floor);
         let limits_from = limits_from.map_or(self.finest().0, |point| point.0);
-        let target = 0.1 * fit.coefficient * self.finest().0.powf(fit.order);
+        let target = 0.1 * fit.coefficient * elementary::powf(self.finest().0, fit.order);
         let cause = limiter.map_or_else(String::new, |limiter| format!(", by {}", limiter.name));
         Classification {
             class: Class::FloorLimited,
@@ -102,7 +103,7 @@ impl<'a> Case<'a> {
         let (size, error) = self.finest();
         let value = fit.map_or(error, |fit| fit.floor);
         let from = self.points.iter().find(|point| point.1 <= 2.0 * value);
-        let converging = fit.map(|fit| fit.coefficient * size.powf(fit.order));
+        let converging = fit.map(|fit| fit.coefficient * elementary::powf(size, fit.order));
         let limiter = identify(value, &self.limiters);
         let target = converging.map(|part| 0.1 * part).filter(|target| *target > 0.0);
         let limits_from = from.map_or(size, |point| point.0);

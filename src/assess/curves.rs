@@ -1,5 +1,6 @@
 //! Curves that a figure holds beside a run: theory lines and what they are drawn over.
 
+use crate::elementary;
 use crate::exact::{ExactError, Reference, ReferenceKind};
 use crate::record::Record;
 use crate::scene::column_parameters;
@@ -39,8 +40,9 @@ pub fn theory_consolidation(
     end: f64,
 ) -> Result<Vec<(f64, f64)>, ExactError> {
     let parameters = column_parameters(&case.column, &case.material);
-    let growth = (end / CURVE_START).ln() / f64::from(LINE_POINTS);
-    let times: Vec<f64> = (0..=LINE_POINTS).map(|i| CURVE_START * (growth * f64::from(i)).exp()).collect();
+    let growth = elementary::ln(end / CURVE_START) / f64::from(LINE_POINTS);
+    let times: Vec<f64> =
+        (0..=LINE_POINTS).map(|i| CURVE_START * elementary::exp(growth * f64::from(i))).collect();
     let reference = Reference::new(kind, &parameters, &times)?;
     times.iter().map(|time| Ok((*time, reference.degree_of_consolidation(*time)?))).collect()
 }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::least_squares::solve;
 use super::series::Undefined;
 use super::two_terms::{Exponent, minimum};
+use crate::elementary;
 
 /// The error models of the procedure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -111,7 +112,7 @@ pub fn least_squares_uncertainty(
     let credible = (0.5..1.05 * formal_order).contains(&observed_order);
     let safety_factor = if good && credible { 1.25 } else { 3.0 };
     let estimate = |(size, value): &(f64, f64)| {
-        let part = |(exponent, c): &(f64, f64)| c * (size / largest).powf(*exponent);
+        let part = |(exponent, c): &(f64, f64)| c * elementary::powf(size / largest, *exponent);
         let error: f64 = fit.terms.iter().map(part).sum();
         let misfit = value - fit.limit - error;
         let uncertainty = if good {
@@ -147,7 +148,9 @@ fn fit(grids: &[(f64, f64)], model: ErrorModel, weighted: bool) -> Option<Fit> {
     let values: Vec<_> = grids.iter().map(|grid| grid.1).collect();
     let solution = |exponents: &[f64]| {
         let mut columns = vec![vec![1.0; grids.len()]];
-        columns.extend(exponents.iter().map(|p| grids.iter().map(|(size, _)| size.powf(*p)).collect()));
+        columns.extend(
+            exponents.iter().map(|p| grids.iter().map(|(size, _)| elementary::powf(*size, *p)).collect()),
+        );
         solve(&columns, &values, &weights)
     };
     let (exponents, freedom) = match model {

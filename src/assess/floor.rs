@@ -1,11 +1,12 @@
 //! The floor under a converging error, `e = C h^p + F`.
 
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::orders::slope_of;
 use super::series::{ErrorSeries, Undefined};
+use super::student::quantile_975;
 use super::two_terms::{Exponent, TwoTerms, fit_two_terms};
+use crate::elementary;
 
 /// Orders looked for in a floor fit.
 pub const ORDER_RANGE: (f64, f64) = (0.1, 12.0);
@@ -42,7 +43,7 @@ impl FloorFit {
 
     /// Share of the floor in the fitted error at a size.
     pub fn share(&self, size: f64) -> f64 {
-        self.floor / (self.floor + self.coefficient * size.powf(self.order))
+        self.floor / (self.floor + self.coefficient * elementary::powf(size, self.order))
     }
 }
 
@@ -108,17 +109,19 @@ fn is_significant(points: &[(f64, f64)], fit: &TwoTerms, parameters: usize) -> R
     let straight = if parameters == 3 {
         // The straight fit on logarithms is the floor fit with the floor left out.
         let line = slope_of(points)?;
-        let off = |(h, e): &(f64, f64)| (line.coefficient * h.powf(line.order) / e - 1.0).powi(2);
+        let off = |(h, e): &(f64, f64)| {
+            elementary::powi(line.coefficient * elementary::powf(*h, line.order) / e - 1.0, 2)
+        };
         points.iter().map(off).sum::<f64>()
     } else {
-        let only = |(h, e): &(f64, f64)| h.powf(fit.high) / e;
+        let only = |(h, e): &(f64, f64)| elementary::powf(*h, fit.high) / e;
         let (sum, square) = points.iter().map(only).fold((0.0, 0.0), |(s, q), x| (s + x, q + x * x));
-        points.iter().map(|point| (sum / square * only(point) - 1.0).powi(2)).sum::<f64>()
+        points.iter().map(|point| elementary::powi(sum / square * only(point) - 1.0, 2)).sum::<f64>()
     };
-    let with_floor = (fit.residual * fit.residual * count).max(count * f64::EPSILON.powi(2));
+    let with_floor = (fit.residual * fit.residual * count).max(count * elementary::powi(f64::EPSILON, 2));
     let ratio = (straight - with_floor) / (with_floor / freedom);
-    let chance = FisherSnedecor::new(1.0, freedom).map_err(|_| Undefined::NotDetermined)?;
-    Ok(ratio.is_finite() && chance.cdf(ratio.max(0.0)) > 0.95)
+    let quantile = quantile_975(points.len().saturating_sub(parameters)).ok_or(Undefined::NotDetermined)?;
+    Ok(ratio.is_finite() && ratio > quantile * quantile)
 }
 
 #[cfg(test)]

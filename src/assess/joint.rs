@@ -12,6 +12,7 @@ use thiserror::Error;
 use super::least_squares::solve_nonnegative;
 use super::pattern_search::least;
 use super::two_terms::Exponent;
+use crate::elementary;
 
 /// What a run varies, and its error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -192,8 +193,8 @@ pub fn fit_jointly(runs: &[Run], exponents: &Exponents) -> Result<JointFit, NoJo
 fn tied(varied: &[Varied]) -> bool {
     let count = varied[0].values.len();
     let column = |j: usize| {
-        let mean = varied[j].values.iter().map(|value| value.ln()).sum::<f64>() / count as f64;
-        let logs: Vec<_> = varied[j].values.iter().map(|value| value.ln() - mean).collect();
+        let mean = varied[j].values.iter().map(|value| elementary::ln(*value)).sum::<f64>() / count as f64;
+        let logs: Vec<_> = varied[j].values.iter().map(|value| elementary::ln(*value) - mean).collect();
         let norm = logs.iter().map(|log| log * log).sum::<f64>().sqrt();
         logs.into_iter().map(move |log| log / norm).collect::<Vec<_>>()
     };
@@ -205,7 +206,7 @@ fn tied(varied: &[Varied]) -> bool {
 /// Coefficients of the terms (floor last) and the sum of squared relative residuals.
 fn project(varied: &[Varied], errors: &[f64], orders: &[f64]) -> Option<(Vec<f64>, f64)> {
     let column = |(axis, order): (&Varied, &f64)| -> Vec<f64> {
-        axis.values.iter().zip(errors).map(|(x, error)| x.powf(*order) / error).collect()
+        axis.values.iter().zip(errors).map(|(x, error)| elementary::powf(*x, *order) / error).collect()
     };
     let mut columns: Vec<_> = varied.iter().zip(orders).map(column).collect();
     columns.push(errors.iter().map(|error| 1.0 / error).collect());
@@ -240,14 +241,15 @@ fn describe(
         .zip(coefficients.iter().zip(orders))
         .map(|(axis, (coefficient, order))| Term {
             axis: axis.axis,
-            coefficient: coefficient / axis.largest.powf(*order),
+            coefficient: coefficient / elementary::powf(axis.largest, *order),
             order: *order,
         })
         .collect();
     let floor = *coefficients.last()?;
     terms.push(Term { axis: Axis::Floor, coefficient: floor, order: 0.0 });
     let shares = |run: usize| {
-        let part = |(axis, (c, order)): (&Varied, (&f64, &f64))| c * axis.values[run].powf(*order);
+        let part =
+            |(axis, (c, order)): (&Varied, (&f64, &f64))| c * elementary::powf(axis.values[run], *order);
         let mut parts: Vec<_> = varied.iter().zip(coefficients.iter().zip(orders)).map(part).collect();
         parts.push(floor);
         let total: f64 = parts.iter().sum();

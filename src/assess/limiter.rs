@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::wording::short;
+use crate::elementary;
 
 /// Kinds of limits that refining the mesh does not move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -41,14 +42,14 @@ const AGREEMENT: f64 = 3.0;
 /// The candidate that fits a floor: the nearest in height, or the only one of unknown height.
 pub fn identify(floor: f64, candidates: &[Limiter]) -> Option<&Limiter> {
     let distance = |candidate: &&Limiter| {
-        let ratio = (candidate.magnitude? / floor).ln().abs();
+        let ratio = elementary::ln(candidate.magnitude? / floor).abs();
         ratio.is_finite().then_some(ratio)
     };
     let near = candidates
         .iter()
         .filter_map(|candidate| Some((distance(&candidate)?, candidate)))
         .min_by(|a, b| a.0.total_cmp(&b.0))
-        .filter(|(distance, _)| *distance <= AGREEMENT.ln());
+        .filter(|(distance, _)| *distance <= elementary::ln(AGREEMENT));
     if let Some((_, candidate)) = near {
         return Some(candidate);
     }
@@ -71,9 +72,9 @@ pub fn advice(floor: f64, target: Option<f64>, limiter: Option<&Limiter>, candid
         return format!("no known cause fits: vary one at a time of {suspects}");
     };
     let order = limiter.order.filter(|order| order.is_finite() && *order > 0.0).unwrap_or(1.0);
-    let factor = target.map_or(4.0, |target| (floor / target).powf(1.0 / order));
+    let factor = target.map_or(4.0, |target| elementary::powf(floor / target, 1.0 / order));
     // Rounded up to a power of two, as people halve things.
-    let factor = factor.clamp(2.0, 1e9).log2().ceil().exp2();
+    let factor = elementary::exp2(elementary::log2(factor.clamp(2.0, 1e9)).ceil());
     match limiter.kind {
         LimiterKind::Step => format!("lower the time step by {factor}"),
         LimiterKind::Mesh => format!("refine the mesh by {factor}"),

@@ -1,6 +1,7 @@
 //! From a run to its record: errors against every reference, start checks, balances, groups.
 
 use super::norms::{self, Norm};
+use crate::elementary;
 use crate::exact::cosine_layer::{LayerFields, LayerState};
 use crate::exact::{ExactError, Reference, ReferenceKind};
 use crate::record::{
@@ -326,7 +327,7 @@ fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) -> B
     let applied = if case.scene.is_loaded() { load } else { 0.0 };
     let stresses = now.points.effective_stress.iter().zip(&now.points.pressure);
     let squares: f64 =
-        stresses.map(|(stress, pressure)| ((stress - pressure + applied) / load).powi(2)).sum();
+        stresses.map(|(stress, pressure)| elementary::powi((stress - pressure + applied) / load, 2)).sum();
     let outflow = now.totals.surface_flux + now.settlement - start.settlement;
     let surface = case.column.volume() / case.column.height;
     let excess = now.totals.surface_flux - now.totals.water_expansion / surface;
@@ -354,7 +355,7 @@ fn curve_gap(curve: &[HistoryRow], time_factor: f64, degree: f64) -> f64 {
         return 0.0;
     }
     let through = |rows: &[HistoryRow]| -> f64 {
-        let at = |row: &HistoryRow| (row.time_factor / time_factor).ln();
+        let at = |row: &HistoryRow| elementary::ln(row.time_factor / time_factor);
         let lagrange = |row: &HistoryRow| -> f64 {
             let others = rows.iter().filter(|other| other.time_factor != row.time_factor);
             others.map(|other| at(other) / (at(other) - at(row))).product()

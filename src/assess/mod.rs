@@ -37,6 +37,7 @@ pub mod spread;
 pub mod stability_map;
 pub mod statistics;
 pub mod stiffness_sweep;
+mod student;
 pub mod study_check;
 pub mod summary;
 pub mod two_terms;

@@ -10,6 +10,8 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::elementary;
+
 /// How the error of a field is turned into one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -185,7 +187,7 @@ fn mean_norm(norm: Norm, field: &[f64], volumes: &[f64]) -> f64 {
     let mean = |power: i32| {
         let total: f64 = counted().map(|(_, volume)| volume / largest_volume).sum();
         let sum: f64 = counted()
-            .map(|(value, volume)| volume / largest_volume * (value / largest).abs().powi(power))
+            .map(|(value, volume)| volume / largest_volume * elementary::powi((value / largest).abs(), power))
             .sum();
         sum / total
     };

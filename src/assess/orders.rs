@@ -6,9 +6,10 @@
 //! [`classify`](super::classify) first.
 
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::series::{ErrorSeries, Level, Undefined};
+use super::student::quantile_975;
+use crate::elementary;
 
 /// Levels in the finest window, over which an order is judged.
 pub const WINDOW: usize = 3;
@@ -71,7 +72,7 @@ fn pair_order(coarse: &Level, fine: &Level) -> Result<f64, Undefined> {
 /// of logarithms serves where it leaves the range of a double.
 pub(super) fn log_ratio(a: f64, b: f64) -> f64 {
     let quotient = a / b;
-    if quotient.is_normal() { quotient.ln() } else { a.ln() - b.ln() }
+    if quotient.is_normal() { elementary::ln(quotient) } else { elementary::ln(a) - elementary::ln(b) }
 }
 
 /// Least-squares slope of `ln e` on `ln h` over all levels, with its Student-t 95 % interval.
@@ -93,22 +94,18 @@ pub(super) fn slope_of(points: &[(f64, f64)]) -> Result<SlopeFit, Undefined> {
     };
     let mean_x = logs().map(|(x, _)| x).sum::<f64>() / count as f64;
     let mean_y = logs().map(|(_, y)| y).sum::<f64>() / count as f64;
-    let spread: f64 = logs().map(|(x, _)| (x - mean_x).powi(2)).sum();
+    let spread: f64 = logs().map(|(x, _)| elementary::powi(x - mean_x, 2)).sum();
     let order = logs().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum::<f64>() / spread;
-    let residual: f64 = logs().map(|(x, y)| (y - mean_y - order * (x - mean_x)).powi(2)).sum();
+    let residual: f64 = logs().map(|(x, y)| elementary::powi(y - mean_y - order * (x - mean_x), 2)).sum();
     let half_width = if count > 2 {
-        let freedom = (count - 2) as f64;
-        student_975(freedom).map(|t| t * (residual / freedom / spread).sqrt())
+        let freedom = count - 2;
+        quantile_975(freedom).map(|t| t * (residual / freedom as f64 / spread).sqrt())
     } else {
         None
     };
-    let coefficient = (mean_y - order * (mean_x + first.0.ln()) + first.1.ln()).exp();
+    let coefficient =
+        elementary::exp(mean_y - order * (mean_x + elementary::ln(first.0)) + elementary::ln(first.1));
     Ok(SlopeFit { order, coefficient, half_width, levels: count })
-}
-
-/// 97.5 % quantile of Student's t for this number of degrees of freedom.
-fn student_975(freedom: f64) -> Option<f64> {
-    StudentsT::new(0.0, 1.0, freedom).ok().map(|student| student.inverse_cdf(0.975))
 }
 
 /// The order on the finest [`WINDOW`] levels of a series.

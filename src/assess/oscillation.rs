@@ -9,6 +9,8 @@ use std::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::elementary;
+
 /// Measures of the wiggle of one profile.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Oscillation {
@@ -170,7 +172,7 @@ fn short_wave_share(error: &[f64], samples_per_cell: f64) -> Option<f64> {
             .map(|(index, value)| {
                 // The angle in whole half-steps of the period, so that large products stay exact.
                 let half_steps = (mode * (2 * index + 1)) % (4 * count);
-                value / largest * (PI * half_steps as f64 / (2 * count) as f64).cos()
+                value / largest * elementary::cos(PI * half_steps as f64 / (2 * count) as f64)
             })
             .sum();
         let energy = amplitude * amplitude * if mode == 0 { 0.5 } else { 1.0 };

@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::class::{Class, Classification};
 use super::orders::{WINDOW, log_ratio, slope_of};
 use super::wording::short;
+use crate::elementary;
 
 /// What a run cost and how far off it was.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -153,7 +154,7 @@ pub fn cost_to_tolerance(levels: &[CostLevel], tolerance: f64) -> Result<CostToT
     // An error of exactly zero has no logarithm: then only the level itself is sure.
     let way = log_ratio(coarse.error, tolerance) / log_ratio(coarse.error, fine.error);
     let way = if fine.error > 0.0 && way.is_finite() { way } else { 1.0 };
-    let cost = coarse.cost * (way * log_ratio(fine.cost, coarse.cost)).exp();
+    let cost = coarse.cost * elementary::exp(way * log_ratio(fine.cost, coarse.cost));
     Ok(CostToTolerance { cost, basis: CostBasis::Interpolated })
 }
 
@@ -198,7 +199,7 @@ pub fn predict_next(
     let costs: Vec<_> = window.iter().map(|level| (level.size, level.point.cost)).collect();
     let slope = slope_of(&costs).map_err(|_| NoCost::NotUsable)?;
     let finest = window[window.len() - 1];
-    let cost = finest.point.cost * ratio.powf(-slope.order);
+    let cost = finest.point.cost * elementary::powf(ratio, -slope.order);
     let settled = !matches!(
         classification.class,
         Class::Divergent | Class::Oscillatory | Class::NotEvaluable | Class::Exact
@@ -206,7 +207,7 @@ pub fn predict_next(
     let floor = classification.floor.as_ref().map_or(0.0, |floor| floor.value);
     let converging = (finest.point.error - floor).max(0.0);
     let error = match classification.order.filter(|_| settled) {
-        Some(order) => Some(floor + converging * ratio.powf(-order)),
+        Some(order) => Some(floor + converging * elementary::powf(ratio, -order)),
         // A floor without a fitted order: the error stays where it is.
         None => classification.floor.as_ref().map(|_| finest.point.error),
     };

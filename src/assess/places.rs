@@ -1,5 +1,7 @@
 //! Which places carry an error.
 
+use crate::elementary;
+
 /// One place's part in the error of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contribution {
@@ -16,7 +18,7 @@ pub fn contributions(computed: &[f64], exact: &[f64], volumes: &[f64]) -> Vec<Co
     // Scaled by the largest, so that the squares of tiny errors do not vanish.
     let errors: Vec<f64> = computed.iter().zip(exact).map(|(computed, exact)| computed - exact).collect();
     let largest = errors.iter().fold(0.0_f64, |largest, error| largest.max(error.abs()));
-    let weight = |index: usize| volumes[index] * (errors[index] / largest).powi(2);
+    let weight = |index: usize| volumes[index] * elementary::powi(errors[index] / largest, 2);
     let total: f64 = (0..errors.len().min(volumes.len())).map(weight).sum();
     if !(total.is_finite() && total > 0.0) {
         return Vec::new();

@@ -7,6 +7,8 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::elementary;
+
 /// Why a statistic has no value.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 pub enum UndefinedStatistic {
@@ -138,7 +140,7 @@ pub fn compare(ratio: &PairedRatio, noise_floor: f64) -> Timing {
 /// Rank `k` such that the `k`-th smallest and `k`-th largest of `count` samples enclose the median
 /// with at least 95 %: the largest with `P(Binomial(count, ½) < k) ≤ 2.5 %`.
 fn median_rank(count: usize) -> Option<usize> {
-    let mut term = 0.5_f64.powi(i32::try_from(count).ok()?);
+    let mut term = elementary::powi(0.5, i32::try_from(count).ok()?);
     let (mut below, mut rank) = (0.0, 0);
     while below + term <= 0.025 && rank < count {
         below += term;

@@ -9,6 +9,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::series::Undefined;
+use crate::elementary;
 
 /// Two powers fitted to an error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,14 +48,16 @@ impl Exponent {
 impl TwoTerms {
     /// Share of the lower-order term in the fitted error at a size, from 0 to 1.
     pub fn low_share(&self, size: f64) -> f64 {
-        let low = self.low_coefficient * size.powf(self.low);
-        low / (low + self.high_coefficient * size.powf(self.high))
+        let low = self.low_coefficient * elementary::powf(size, self.low);
+        low / (low + self.high_coefficient * elementary::powf(size, self.high))
     }
 
     /// Size at which both terms are equal; the lower order governs below it.
     pub fn crossover(&self) -> Option<f64> {
         let both = self.low_coefficient > 0.0 && self.high_coefficient > 0.0;
-        both.then(|| (self.low_coefficient / self.high_coefficient).powf(1.0 / (self.high - self.low)))
+        both.then(|| {
+            elementary::powf(self.low_coefficient / self.high_coefficient, 1.0 / (self.high - self.low))
+        })
     }
 }
 
@@ -83,7 +86,8 @@ pub fn fit_two_terms(points: &[(f64, f64)], low: Exponent, high: Exponent) -> Re
     };
     let low = minimum(low, |low| project(&scaled, low, best_high(low)).residual);
     let fit = project(&scaled, low, best_high(low));
-    let unscale = |coefficient: f64, exponent: f64| coefficient * reference.1 / reference.0.powf(exponent);
+    let unscale =
+        |coefficient: f64, exponent: f64| coefficient * reference.1 / elementary::powf(reference.0, exponent);
     let fit = TwoTerms {
         low_coefficient: unscale(fit.low_coefficient, fit.low),
         high_coefficient: unscale(fit.high_coefficient, fit.high),
@@ -98,9 +102,10 @@ pub const GAP: f64 = 0.25;
 
 /// The best coefficients for given exponents.
 fn project(points: &[(f64, f64)], low: f64, high: f64) -> TwoTerms {
-    let columns: Vec<_> = points.iter().map(|(h, e)| (h.powf(low) / e, h.powf(high) / e)).collect();
+    let columns: Vec<_> =
+        points.iter().map(|(h, e)| (elementary::powf(*h, low) / e, elementary::powf(*h, high) / e)).collect();
     let residual = |a: f64, b: f64| {
-        let sum: f64 = columns.iter().map(|(u, v)| (a * u + b * v - 1.0).powi(2)).sum();
+        let sum: f64 = columns.iter().map(|(u, v)| elementary::powi(a * u + b * v - 1.0, 2)).sum();
         (sum / columns.len() as f64).sqrt()
     };
     let alone = |pick: fn(&(f64, f64)) -> f64| {

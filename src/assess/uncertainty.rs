@@ -8,6 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::series::Undefined;
+use crate::elementary;
 
 /// Safety factor of the index for three grids and an order that agrees with the formal one, or
 /// where no formal order is known (Roache 1998; Celik et al. 2008).
@@ -94,7 +95,7 @@ pub fn three_grids(grids: [(f64, f64); 3], formal_order: Option<f64>) -> Result<
         return Err(Undefined::NotFinite { size: h1 });
     }
     let round_off = 8.0 * f64::EPSILON * f1.abs().max(f2.abs()).max(f3.abs());
-    let ratio = fine / coarse * r32.ln() / r21.ln();
+    let ratio = fine / coarse * elementary::ln(r32) / elementary::ln(r21);
     let mut found = ThreeGrids {
         behaviour: Behaviour::Equal,
         convergence_ratio: ratio.is_finite().then_some(ratio),
@@ -147,22 +148,24 @@ fn estimate(values: [f64; 3], r21: f64, r32: f64, order: f64, formal_order: Opti
         index_fine: safety_factor * fine(order_used),
         index_medium: safety_factor * medium(order_used),
         relative_index_fine: (f1 != 0.0).then(|| safety_factor * fine(order_used) / f1.abs()),
-        asymptotic_ratio: formal_order.map(|p| medium(p) / (r21.powf(p) * fine(p))),
+        asymptotic_ratio: formal_order.map(|p| medium(p) / (elementary::powf(r21, p) * fine(p))),
     }
 }
 
 /// `r^p − 1` without cancellation.
 fn power_less_one(ratio: f64, order: f64) -> f64 {
-    (order * ratio.ln()).exp_m1()
+    elementary::exp_m1(order * elementary::ln(ratio))
 }
 
 /// The order `p` at which `r21^p (r32^p − 1)/(r21^p − 1)` is the given ratio of differences;
 /// the left side rises with `p` from `ln r32/ln r21`, so bisection finds it.
 fn order_of(differences: f64, r21: f64, r32: f64) -> Option<f64> {
-    let (a, b) = (r21.ln(), r32.ln());
+    let (a, b) = (elementary::ln(r21), elementary::ln(r32));
     // The logarithm of the left side, which stays in range for large orders.
-    let side = |p: f64| b * p + (-(-b * p).exp_m1()).ln() - (-(-a * p).exp_m1()).ln();
-    let wanted = differences.ln();
+    let side = |p: f64| {
+        b * p + elementary::ln(-elementary::exp_m1(-b * p)) - elementary::ln(-elementary::exp_m1(-a * p))
+    };
+    let wanted = elementary::ln(differences);
     let (mut low, mut high) = (0.0, LARGEST_ORDER);
     if side(high) <= wanted {
         return None;

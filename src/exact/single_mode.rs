@@ -5,6 +5,7 @@ use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 use super::error::{ExactError, checked_depth, checked_time_factor};
 use super::parameters::ColumnParameters;
 use super::reference::{Accuracy, FieldValues};
+use crate::elementary;
 
 /// Decay of `p = σ' = p_0 sin(M_0 ζ)`, `M_0 = π/2`, without any load.
 ///
@@ -57,12 +58,12 @@ impl SingleMode {
     pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let (zeta, time_factor) = (checked_depth(zeta)?, checked_time_factor(time_factor)?);
         let exponent = self.decay_exponent(time_factor);
-        let pressure = self.parameters.load * libm::sin(FRAC_PI_2 * zeta) * libm::exp(-exponent);
+        let pressure = self.parameters.load * elementary::sin(FRAC_PI_2 * zeta) * elementary::exp(-exponent);
         let amplitude = self.parameters.final_settlement() / FRAC_PI_2;
         Ok(FieldValues {
             pressure,
             effective_stress: pressure,
-            displacement: amplitude * from_base(zeta) * libm::expm1(-exponent),
+            displacement: amplitude * from_base(zeta) * elementary::exp_m1(-exponent),
         })
     }
 
@@ -76,7 +77,7 @@ impl SingleMode {
     pub fn velocities(&self, time_factor: f64, zeta: f64) -> Result<PhaseVelocities, ExactError> {
         let (zeta, time_factor) = (checked_depth(zeta)?, checked_time_factor(time_factor)?);
         let column = &self.parameters;
-        let profile = from_base(zeta) * libm::exp(-self.decay_exponent(time_factor));
+        let profile = from_base(zeta) * elementary::exp(-self.decay_exponent(time_factor));
         // M_0 k p_0/(γ_w H), the specific discharge through the drained surface.
         let discharge = FRAC_PI_2 * column.hydraulic_conductivity * column.load
             / (column.unit_weight_of_water() * column.height)
@@ -91,7 +92,7 @@ impl SingleMode {
     /// When `time_factor` is negative or not finite.
     pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
         let time_factor = checked_time_factor(time_factor)?;
-        Ok(-libm::expm1(-self.decay_exponent(time_factor)))
+        Ok(-elementary::exp_m1(-self.decay_exponent(time_factor)))
     }
 
     /// Settlement of the surface since `t = 0`, downward positive, m; in the end `2 m_v p_0 H/π`.
@@ -114,7 +115,7 @@ impl SingleMode {
 
 /// `cos(M_0 ζ)`, written from the base so that it vanishes there.
 fn from_base(zeta: f64) -> f64 {
-    libm::sin(FRAC_PI_2 * (1.0 - zeta))
+    elementary::sin(FRAC_PI_2 * (1.0 - zeta))
 }
 
 #[cfg(test)]

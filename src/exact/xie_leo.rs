@@ -5,6 +5,7 @@ use super::error::{ExactError, checked_time_factor, positive};
 use super::parameters::ColumnParameters;
 use super::quadrature::integrate;
 use super::reference::{Accuracy, FieldValues};
+use crate::elementary;
 
 /// Xie & Leo (2004): consolidation at large strain of a soil with constant
 /// `m_vl = −(1/(1 + e)) de/dσ'` and `k = k_0 J²`, incompressible water.
@@ -54,7 +55,7 @@ impl XieLeo {
         parameters.validate()?;
         let strain =
             positive("load over the oedometric modulus", parameters.load / parameters.oedometric_modulus())?;
-        let limit = -libm::log1p(-parameters.porosity);
+        let limit = -elementary::ln_1p(-parameters.porosity);
         if strain >= limit {
             return Err(ExactError::LoadClosesPores { load: strain, limit, porosity: parameters.porosity });
         }
@@ -74,7 +75,7 @@ impl XieLeo {
 
     /// Final settlement over the height, `1 − e^{−m}`.
     pub fn final_strain(&self) -> f64 {
-        -libm::expm1(-self.strain)
+        -elementary::exp_m1(-self.strain)
     }
 
     /// Volume ratio `J` at a relative depth.
@@ -101,7 +102,7 @@ impl XieLeo {
     fn pressure(&self, time_factor: f64, zeta: f64) -> Result<f64, ExactError> {
         let (time_factor, zeta) = self.equivalent(time_factor, zeta);
         let isochrone = isochrone(zeta, time_factor)?.value;
-        let pressure = libm::log1p(libm::expm1(self.strain) * isochrone);
+        let pressure = elementary::ln_1p(elementary::exp_m1(self.strain) * isochrone);
         Ok(self.parameters.load * (pressure / self.strain))
     }
 
@@ -148,7 +149,7 @@ impl XieLeo {
             isochrone(zeta, time_factor).map_or(f64::NAN, |isochrone| {
                 // 1 − p/q in its own right: deep and early it is a small difference of ones.
                 let lost = self.final_strain() * (1.0 - isochrone.value);
-                -libm::log1p(-lost) / self.strain
+                -elementary::ln_1p(-lost) / self.strain
             })
         };
         // Twelve diffusion lengths below the surface W is 1 to round-off.
@@ -175,7 +176,7 @@ impl XieLeo {
         // |∂p/∂W| ≤ (e^m − 1)/m_vl, reached at the drained surface.
         Ok(Accuracy {
             terms: base.terms,
-            tail_bound: libm::expm1(self.strain) / self.strain * base.tail_bound,
+            tail_bound: elementary::exp_m1(self.strain) / self.strain * base.tail_bound,
         })
     }
 }

@@ -2,6 +2,7 @@
 use super::chart::gallery::gallery;
 use super::page::{Block, Figure, Page, Section, figures, render_html, render_markdown};
 use super::table::{Cell, Column, Mood, Table};
+use crate::elementary;
 
 fn orders() -> Table {
     let mut table = Table::new(
@@ -21,7 +22,7 @@ fn orders() -> Table {
     );
     for (i, name) in ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "TL-GC-SRI-patch"].into_iter().enumerate()
     {
-        let e = 10f64.powi(-1) / (1.0 + f64::from(u8::try_from(i).unwrap_or(0)));
+        let e = elementary::powi(10.0, -1) / (1.0 + f64::from(u8::try_from(i).unwrap_or(0)));
         let missing = || Cell::Missing("left the stable range at step 812 (t = 3.1e-4 s)".into());
         let unstable = i == 0;
         table.rows.push(vec![
@@ -33,7 +34,7 @@ fn orders() -> Table {
             if unstable { missing() } else { Cell::Order(1.0 + f64::from(u8::from(i > 2))) },
             if unstable { missing() } else { Cell::OrderWithin(1.02, 0.04) },
             Cell::Count(817_500 << i),
-            Cell::Seconds(0.012 * 3f64.powi(i32::from(i > 2))),
+            Cell::Seconds(0.012 * elementary::powi(3.0, i32::from(i > 2))),
             match i {
                 0 => Cell::Verdict(Mood::Fail, "not-evaluable".into()),
                 4 => Cell::Verdict(Mood::Pass, "asymptotic".into()),

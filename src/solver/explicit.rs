@@ -7,6 +7,7 @@ use super::profile::{Phase, enter};
 use super::scheme::Scheme;
 use super::shape::SIXTH;
 use super::strain::StrainBlocks;
+use crate::elementary;
 use serde::{Deserialize, Serialize};
 
 /// Time level at which the drag between skeleton and water is taken.
@@ -401,7 +402,7 @@ fn stretch_of(strain: f64) -> f64 {
     if strain.abs() < 1e-4 {
         1.0 + strain * (1.0 + strain * (0.5 + strain * (SIXTH + strain * PER_24)))
     } else {
-        strain.exp()
+        elementary::exp(strain)
     }
 }
 

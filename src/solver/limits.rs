@@ -2,6 +2,7 @@
 
 use super::explicit::Drag;
 use super::material::Material;
+use crate::elementary;
 
 /// Speed, m/s, of the fastest wave of the undamped two-phase column at a porosity: the
 /// out-of-phase wave, from the largest eigenvalue of `M⁻¹K` (theory, section 4).
@@ -10,7 +11,7 @@ pub fn fastest_wave_speed(soil: &Material, porosity: f64) -> f64 {
     let (solid, water) = ((1.0 - n) * soil.grain_density, n * soil.water_density);
     let ss = (soil.oedometric_modulus() + coupling * (1.0 - n) * (1.0 - n)) / solid;
     let ww = coupling * n * n / water;
-    let sw_squared = (coupling * n * (1.0 - n)).powi(2) / (solid * water);
+    let sw_squared = elementary::powi(coupling * n * (1.0 - n), 2) / (solid * water);
     let mean = 0.5 * (ss + ww);
     (mean + (0.25 * (ss - ww) * (ss - ww) + sw_squared).sqrt()).sqrt()
 }

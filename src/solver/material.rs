@@ -1,6 +1,7 @@
 //! Saturated soil: its parameters, the stiffness of the skeleton and the drag of the water.
 
 use super::grid::Tensor;
+use crate::elementary;
 use serde::{Deserialize, Serialize};
 
 /// Stress–strain law of the skeleton and the conductivity that goes with it.
@@ -49,7 +50,7 @@ impl Law {
     /// engineering strain `J − 1`, which may be tiny: the integral of the rate form.
     pub fn uniaxial_stress_ratio(self, strain: f64) -> f64 {
         match self {
-            Self::Linear | Self::LogLinear | Self::Engineering => strain.ln_1p(),
+            Self::Linear | Self::LogLinear | Self::Engineering => elementary::ln_1p(strain),
             Self::PorosityDependent => strain / (1.0 + strain),
         }
     }
@@ -163,7 +164,7 @@ impl Material {
     /// Pore pressure, Pa, of the undrained water at the engineering strain `J − 1`:
     /// `ṗ = −(K_w/n) J̇/J` with `nJ = J − (1 − n_0)` integrates to `−K_w ln(nJ/n_0)`.
     pub fn undrained_pressure_at(&self, strain: f64) -> f64 {
-        -self.water_bulk_modulus * (strain / self.porosity).ln_1p()
+        -self.water_bulk_modulus * elementary::ln_1p(strain / self.porosity)
     }
 
     /// The skeleton's stiffness as the stress update uses it.

@@ -16,6 +16,7 @@ use super::profile::{self, Phase, enter};
 use super::scheme::Rhythm;
 use super::snapshot::Snapshot;
 use super::surface::LoadedSurface;
+use crate::elementary;
 use serde::{Deserialize, Serialize};
 
 /// Steps between two looks at whether the run has left, and between two calls of the observer.
@@ -377,7 +378,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             None => self.body.largest_velocity(),
         };
         if velocity.is_finite() && self.watched_velocity > 0.0 && velocity > 0.0 {
-            self.growth = Some((velocity / self.watched_velocity).powf(1.0 / steps as f64));
+            self.growth = Some(elementary::powf(velocity / self.watched_velocity, 1.0 / steps as f64));
         }
         self.watched_velocity = velocity;
     }

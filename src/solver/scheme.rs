@@ -7,6 +7,7 @@
 //! Wanner 2003): second order for the same work. The drag must then be centred too.
 
 use super::explicit::{Drag, ExplicitSettings};
+use crate::elementary;
 use serde::{Deserialize, Serialize};
 
 /// Time levels of velocities and stresses.
@@ -77,7 +78,7 @@ impl Drag {
 
 #[inline]
 fn fitted_weight(z: f64) -> f64 {
-    if z < 1e-2 { 0.5 + z / 12.0 - z * z * z / 720.0 } else { -1.0 / (-z).exp_m1() - 1.0 / z }
+    if z < 1e-2 { 0.5 + z / 12.0 - z * z * z / 720.0 } else { -1.0 / elementary::exp_m1(-z) - 1.0 / z }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::assembled::{AssembledColumn, STATE_FIELDS};
 use super::assembled_plane::AssembledPlane;
 use super::explicit::ExplicitSettings;
+use crate::elementary;
 use nalgebra::DMatrix;
 
 /// Growth a step that counts as none: eigenvalues one in exact arithmetic scatter by round-off,
@@ -34,14 +35,14 @@ pub fn spectral_radius(operator: &DMatrix<f64>) -> f64 {
         if !norm.is_finite() {
             return f64::INFINITY;
         }
-        log_radius += share * norm.ln();
+        log_radius += share * elementary::ln(norm);
         power /= norm;
         power.mul_to(&power, &mut square);
         std::mem::swap(&mut power, &mut square);
         share *= 0.5;
     }
     let norm = power.norm();
-    if norm > 0.0 { (log_radius + share * norm.ln()).exp() } else { 0.0 }
+    if norm > 0.0 { elementary::exp(log_radius + share * elementary::ln(norm)) } else { 0.0 }
 }
 
 /// The step operator of an assembled column, loads removed: velocities of both phases, straining

@@ -5,6 +5,7 @@ use super::method::Basis;
 use super::nodes::{Nodes, Support};
 use super::points::Points;
 use super::shape::{self, Row};
+use crate::elementary;
 
 /// How a load varies along the surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,7 +25,7 @@ impl LoadShape {
     fn at(self, distance: f64) -> f64 {
         match self {
             Self::Uniform => 1.0,
-            Self::Cosine { length } => (std::f64::consts::PI * distance / length).cos(),
+            Self::Cosine { length } => elementary::cos(std::f64::consts::PI * distance / length),
         }
     }
 }

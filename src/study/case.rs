@@ -1,5 +1,6 @@
 //! A case: everything that decides a run, as plain data with an identity.
 
+use crate::elementary;
 use crate::scene::{Arrangement, Column, SceneKind};
 use crate::solver::explicit::{Drag, ExplicitSettings};
 use crate::solver::integrator::{Formulation, IntegratorKind};
@@ -106,7 +107,7 @@ impl Case {
         let across = self.column.cells_across(self.cells).unwrap_or(1) as f64;
         let (short, long) = (across.min(self.cells as f64), across.max(self.cells as f64));
         let dimensions = self.column.dimensions as f64;
-        let points_a_cell = (self.points_per_cell as f64).powf(dimensions);
+        let points_a_cell = elementary::powf(self.points_per_cell as f64, dimensions);
         let sites = if self.method.pressure.is_by_cells() { 1.0 } else { points_a_cell };
         // Unknowns of one row of cells across the layer; a node couples to four rows above and below.
         let row = short * (dimensions + sites);

@@ -4,6 +4,7 @@ use super::case::{Case, Task};
 use super::check::Study;
 use super::tier::Tier;
 use crate::assess::measure::{record_of, record_of_critical_step};
+use crate::elementary;
 use crate::exact::{ExactError, ReferenceKind};
 use crate::record::{Record, RecordStore, Status, StoreError, WallSample};
 use crate::scene::{SceneProblem, column_parameters};
@@ -349,8 +350,10 @@ fn schedule_of(case: &Case, kernel: Kernel) -> Schedule {
     let parameters = column_parameters(&case.column, &case.material);
     let end = case.time_factors.last().copied().unwrap_or(0.0);
     let history = if end > HISTORY_START {
-        let growth = (end / HISTORY_START).ln() / (HISTORY_POINTS - 1) as f64;
-        (0..HISTORY_POINTS).map(|i| parameters.time(HISTORY_START * (growth * i as f64).exp())).collect()
+        let growth = elementary::ln(end / HISTORY_START) / (HISTORY_POINTS - 1) as f64;
+        (0..HISTORY_POINTS)
+            .map(|i| parameters.time(HISTORY_START * elementary::exp(growth * i as f64)))
+            .collect()
     } else {
         Vec::new()
     };
@@ -380,8 +383,8 @@ pub fn estimated_updates(case: &Case) -> u64 {
         TimeStepRule::Seconds(seconds) => seconds,
         TimeStepRule::Tolerance(tolerance) => end * tolerance.sqrt() / 20.0,
         TimeStepRule::Growth(growth) => {
-            let first = parameters.time((case.cells as f64).powi(-2));
-            growth * end / (2.0 + (end / first).max(1.0).ln())
+            let first = parameters.time(elementary::powi(case.cells as f64, -2));
+            growth * end / (2.0 + elementary::ln((end / first).max(1.0)))
         }
     };
     (end / step * case.expected_points() as f64).max(1.0) as u64

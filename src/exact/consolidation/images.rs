@@ -7,6 +7,7 @@
 use core::f64::consts::FRAC_2_SQRT_PI;
 
 use super::SeriesValue;
+use crate::elementary;
 
 /// Terms below this are left out: a tenth of the round-off of 1.
 const ABSOLUTE_TAIL: f64 = 2.2e-17;
@@ -17,7 +18,7 @@ fn integral_of_erfc(x: f64) -> f64 {
         // Below 1e-390; keeps infinite arguments from giving NaN.
         return 0.0;
     }
-    0.5 * FRAC_2_SQRT_PI * libm::exp(-x * x) - x * libm::erfc(x)
+    0.5 * FRAC_2_SQRT_PI * elementary::exp(-x * x) - x * elementary::erfc(x)
 }
 
 /// Sum of `(−1)^m term(m)`, smallest first, where `bound(m) ≥ |term(m)|` bounds the tail from `m` on.
@@ -40,11 +41,11 @@ pub fn isochrone(zeta: f64, time_factor: f64) -> SeriesValue {
     let images = sum_images(
         |m| {
             let place = 2.0 * m + 2.0;
-            libm::erfc((place - zeta) / width) - libm::erfc((place + zeta) / width)
+            elementary::erfc((place - zeta) / width) - elementary::erfc((place + zeta) / width)
         },
-        |m| libm::erfc((2.0 * m + 2.0 - zeta) / width),
+        |m| elementary::erfc((2.0 * m + 2.0 - zeta) / width),
     );
-    SeriesValue { value: libm::erf(zeta / width) - images.value, terms: images.terms + 1, ..images }
+    SeriesValue { value: elementary::erf(zeta / width) - images.value, terms: images.terms + 1, ..images }
 }
 
 /// `∫_ζ^1 (1 − W) dζ` for `T ≥ 0`; `U(T)` at `ζ = 0`:
@@ -67,7 +68,7 @@ pub fn consolidated_below(zeta: f64, time_factor: f64) -> SeriesValue {
 
 /// `dU/dT = [1 + 2 Σ_{m≥1} (−1)^m exp(−m²/T)]/√(πT)` for `T > 0`.
 pub fn consolidation_rate(time_factor: f64) -> f64 {
-    let image = |m: f64| 2.0 * libm::exp(-(m + 1.0) * (m + 1.0) / time_factor);
+    let image = |m: f64| 2.0 * elementary::exp(-(m + 1.0) * (m + 1.0) / time_factor);
     let images = sum_images(image, image);
     (1.0 - images.value) * 0.5 * FRAC_2_SQRT_PI / time_factor.sqrt()
 }

@@ -4,6 +4,7 @@ use core::f64::consts::PI;
 
 use super::super::error::ExactError;
 use super::{SWITCH, images, series};
+use crate::elementary;
 
 /// Newton's iteration converges quadratically from both starts; this is far more than it takes.
 const MOST_STEPS: usize = 60;
@@ -50,10 +51,10 @@ fn early(degree: f64) -> f64 {
 
 /// Newton in `ln(1 − U)`, which is nearly linear in `T`.
 fn late(remaining: f64) -> f64 {
-    let mut time_factor = (-4.0 / (PI * PI) * libm::log(remaining * PI * PI / 8.0)).max(SWITCH / 2.0);
+    let mut time_factor = (-4.0 / (PI * PI) * elementary::ln(remaining * PI * PI / 8.0)).max(SWITCH / 2.0);
     for _ in 0..MOST_STEPS {
         let value = series::isochrone_integral(0.0, time_factor).value;
-        let step = value * libm::log(value / remaining) / series::consolidation_rate(time_factor);
+        let step = value * elementary::ln(value / remaining) / series::consolidation_rate(time_factor);
         time_factor += step;
         if step.abs() <= f64::EPSILON * time_factor {
             break;

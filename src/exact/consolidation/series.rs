@@ -3,6 +3,7 @@
 use core::f64::consts::PI;
 
 use super::SeriesValue;
+use crate::elementary;
 
 /// Terms below this share of the first are left out: a quarter of `f64`'s round-off.
 const RELATIVE_TAIL: f64 = 2.8e-17;
@@ -21,12 +22,12 @@ fn sum_modes(
 ) -> SeriesValue {
     let bound = |mode: usize| {
         let m = eigenvalue(mode);
-        envelope(m) * libm::exp(-m * m * time_factor)
+        envelope(m) * elementary::exp(-m * m * time_factor)
     };
     // M² grows by at least M_{j+1}² − M_j² a mode, so the tail is below a geometric series.
     let tail = |mode: usize| {
         let (m, next) = (eigenvalue(mode), eigenvalue(mode + 1));
-        bound(mode) / -libm::expm1(-(next * next - m * m) * time_factor)
+        bound(mode) / -elementary::exp_m1(-(next * next - m * m) * time_factor)
     };
     let allowed = RELATIVE_TAIL * bound(0);
     let mut terms = 1;
@@ -37,7 +38,7 @@ fn sum_modes(
         .rev()
         .map(|mode| {
             let m = eigenvalue(mode);
-            amplitude(mode, m) * libm::exp(-m * m * time_factor)
+            amplitude(mode, m) * elementary::exp(-m * m * time_factor)
         })
         .sum();
     SeriesValue { value, terms, tail_bound: tail(terms) }
@@ -45,7 +46,7 @@ fn sum_modes(
 
 /// `W(ζ, T)` for `T > 0`.
 pub fn isochrone(zeta: f64, time_factor: f64) -> SeriesValue {
-    sum_modes(time_factor, |m| 2.0 / m, |_, m| 2.0 / m * libm::sin(m * zeta))
+    sum_modes(time_factor, |m| 2.0 / m, |_, m| 2.0 / m * elementary::sin(m * zeta))
 }
 
 /// `I(ζ, T) = ∫_ζ^1 W dζ` for `T > 0`; `1 − U(T)` at `ζ = 0`, to full relative accuracy.
@@ -56,7 +57,7 @@ pub fn isochrone_integral(zeta: f64, time_factor: f64) -> SeriesValue {
         // cos(M_j ζ) = ± sin(M_j (1 − ζ)), which is exact at the base, where it vanishes.
         |mode, m| {
             let sign = if mode % 2 == 0 { 1.0 } else { -1.0 };
-            2.0 / (m * m) * sign * libm::sin(m * (1.0 - zeta))
+            2.0 / (m * m) * sign * elementary::sin(m * (1.0 - zeta))
         },
     )
 }

@@ -4,6 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::super::error::ExactError;
 use super::Base;
+use crate::elementary;
 
 /// Elastic and hydraulic constants of the layer, SI.
 #[derive(Clone, Copy, Debug)]
@@ -89,7 +90,7 @@ impl Solution {
             Regime::Transformed(s) => {
                 let diffusivity = constants.mobility / (1.0 / modulus + constants.storage);
                 let beta = constants.wave_number;
-                let alpha = (s / diffusivity + beta * beta).sqrt();
+                let alpha = elementary::sqrt_complex(s / diffusivity + beta * beta);
                 Some((alpha, (s / diffusivity * modulus).inv()))
             }
         };
@@ -139,7 +140,7 @@ impl Solution {
             },
             4 => top.pressure,
             _ => {
-                let scale = self.layer.map_or(1.0, |(alpha, _)| alpha.norm());
+                let scale = self.layer.map_or(1.0, |(alpha, _)| elementary::modulus(alpha));
                 base.pressure_slope / scale
             }
         }
@@ -159,7 +160,7 @@ impl Solution {
         };
         let (beta, shear) = (self.constants.wave_number, self.constants.shear);
         let away = y - from;
-        let decay = libm::exp(sign * beta * away);
+        let decay = elementary::exp(sign * beta * away);
         match index / 2 {
             0 => {
                 // Without volume change or pressure; of unit stress.
@@ -189,7 +190,7 @@ impl Solution {
                 }
             }
             _ => self.layer.map_or_else(Local::default, |(alpha, potential)| {
-                let pressure = (alpha * (sign * away)).exp();
+                let pressure = elementary::exp_complex(alpha * (sign * away));
                 let slope = alpha * sign * pressure;
                 Local {
                     horizontal: -pressure * potential * beta,

@@ -11,6 +11,7 @@ use super::error::{ExactError, checked_depth, checked_time_factor, positive};
 use super::large_strain::Water;
 use super::parameters::ColumnParameters;
 use super::reference::{Accuracy, FieldValues};
+use crate::elementary;
 use elastic::{Constants, Local, Regime, Solution};
 
 /// `B T_v` from which on the slowest mode is below round-off, and the contour so near the origin
@@ -79,7 +80,7 @@ impl LayerFields {
     /// Fields at the phase `βx` of amplitudes.
     #[must_use]
     pub fn at(&self, phase: f64) -> Self {
-        let (sine, cosine) = (libm::sin(phase), libm::cos(phase));
+        let (sine, cosine) = (elementary::sin(phase), elementary::cos(phase));
         let [xx, yy, zz, xy] = self.effective_stress;
         Self {
             displacement: [self.displacement[0] * sine, self.displacement[1] * cosine],

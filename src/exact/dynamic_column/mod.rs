@@ -12,6 +12,7 @@ use super::error::{ExactError, checked_depth, checked_time_factor, positive};
 use super::parameters::ColumnParameters;
 use super::reference::{Accuracy, FieldValues};
 use super::single_mode::PhaseVelocities;
+use crate::elementary;
 use steady::{Steady, steady};
 use summation::Snapshot;
 
@@ -116,9 +117,9 @@ impl DynamicColumn {
         for (mode, amplitude) in snapshot.amplitudes.iter().enumerate().rev() {
             let m = self.wave_number(mode);
             // sin(M_j y/H) and cos(M_j y/H) = ± sin(M_j ζ) vanish exactly at base and surface.
-            let sine = libm::sin(eigenvalue(mode) * (1.0 - zeta));
+            let sine = elementary::sin(eigenvalue(mode) * (1.0 - zeta));
             let sign = if mode % 2 == 0 { 1.0 } else { -1.0 };
-            let cosine = sign * libm::sin(eigenvalue(mode) * zeta);
+            let cosine = sign * elementary::sin(eigenvalue(mode) * zeta);
             state.solid += amplitude.solid * sine;
             state.mixture += amplitude.mixture * sine;
             state.solid_rate += amplitude.solid_rate * sine;
@@ -128,7 +129,7 @@ impl DynamicColumn {
         }
         let mut fields = self.assemble(&state);
         if self.start.is_release() {
-            let sine = libm::sin(eigenvalue(0) * (1.0 - zeta));
+            let sine = elementary::sin(eigenvalue(0) * (1.0 - zeta));
             let [solid, water] = self.released().displacement;
             fields.solid.displacement -= solid * sine;
             fields.water_displacement -= water * sine;

@@ -4,6 +4,8 @@ use core::f64::consts::TAU;
 
 use nalgebra::Complex;
 
+use crate::elementary::{self, modulus};
+
 use super::super::parameters::ColumnParameters;
 use super::quartic;
 
@@ -160,20 +162,20 @@ impl Mode {
 
     /// Adds `weight · N(s) exp(s t)` and what belongs to it.
     fn add(&self, amplitude: &mut Amplitude, drive: Drive, time: f64, s: Complex<f64>, weight: Complex<f64>) {
-        let factor = weight * (s * time).exp();
+        let factor = weight * elementary::exp_complex(s * time);
         let [solid, mixture] = self.numerators(s, drive).map(|numerator| numerator * factor);
         amplitude.solid += solid.re;
         amplitude.mixture += mixture.re;
         amplitude.solid_rate += (solid * s).re;
         amplitude.mixture_rate += (mixture * s).re;
         amplitude.envelope +=
-            self.wave_number * (self.coupling * mixture.norm()).max(self.modulus * solid.norm());
+            self.wave_number * (self.coupling * modulus(mixture)).max(self.modulus * modulus(solid));
     }
 
     /// The pair of roots that lie too close together for their residues to be told apart.
     fn cluster(&self) -> Option<(usize, usize)> {
         let distance = |a: usize, b: usize| {
-            (self.roots[a] - self.roots[b]).norm() / self.roots[a].norm().max(self.roots[b].norm())
+            modulus(self.roots[a] - self.roots[b]) / modulus(self.roots[a]).max(modulus(self.roots[b]))
         };
         let mut closest = (0, 1);
         for a in 0..4 {
@@ -191,14 +193,14 @@ impl Mode {
         let centre = (self.roots[a] + self.roots[b]) * 0.5;
         let nearest = (0..4)
             .filter(|&other| other != a && other != b)
-            .map(|other| (self.roots[other] - centre).norm())
-            .fold(centre.norm(), f64::min);
+            .map(|other| modulus(self.roots[other] - centre))
+            .fold(modulus(centre), f64::min);
         // Far from the pair inside and from the other roots and the pole at 0 outside.
-        let inner = 0.5 * (self.roots[a] - self.roots[b]).norm();
+        let inner = 0.5 * modulus(self.roots[a] - self.roots[b]);
         let radius = (inner * nearest).sqrt().max(0.15 * nearest);
         for point in 0..CONTOUR_POINTS {
             let angle = TAU * (point as f64 + 0.5) / CONTOUR_POINTS as f64;
-            let arm = Complex::from_polar(radius, angle);
+            let arm = elementary::polar(radius, angle);
             let s = centre + arm;
             let (value, _) = quartic::evaluate(&self.characteristic, s);
             self.add(amplitude, drive, time, s, arm / value / CONTOUR_POINTS as f64);

@@ -4,10 +4,14 @@ use core::f64::consts::PI;
 
 use nalgebra::DMatrix;
 
+use crate::elementary;
+
 /// Lobatto points `cos(jπ/N)`, from 1 down to −1.
 pub fn points(order: usize) -> Vec<f64> {
     // As sines, which are exactly odd about the middle.
-    (0..=order).map(|j| libm::sin(PI * (order as f64 - 2.0 * j as f64) / (2.0 * order as f64))).collect()
+    (0..=order)
+        .map(|j| elementary::sin(PI * (order as f64 - 2.0 * j as f64) / (2.0 * order as f64)))
+        .collect()
 }
 
 /// Matrix of the first derivative at the Lobatto points (Trefethen 2000, program `cheb`).
@@ -37,7 +41,7 @@ pub fn coefficients(values: &[f64]) -> Vec<f64> {
                 .iter()
                 .enumerate()
                 .map(|(j, value)| {
-                    halved(j) * value * libm::cos(PI * ((k * j) % (2 * order)) as f64 / order as f64)
+                    halved(j) * value * elementary::cos(PI * ((k * j) % (2 * order)) as f64 / order as f64)
                 })
                 .sum();
             2.0 / order as f64 * halved(k) * sum
@@ -56,10 +60,10 @@ pub fn evaluate(coefficients: &[f64], x: f64) -> f64 {
 
 /// Integral of a series from `x` to 1.
 pub fn integral_to_one(coefficients: &[f64], x: f64) -> f64 {
-    let angle = libm::acos(x.clamp(-1.0, 1.0));
+    let angle = elementary::acos(x.clamp(-1.0, 1.0));
     // ∫ T_n = T_{n+1}/(2(n+1)) − T_{n−1}/(2(n−1)), written as the departure from its value at 1.
     let fall = |n: f64| {
-        if n == 0.0 { 0.0 } else { (1.0 - libm::cos(n * angle)) / (2.0 * n) }
+        if n == 0.0 { 0.0 } else { (1.0 - elementary::cos(n * angle)) / (2.0 * n) }
     };
     coefficients
         .iter()
@@ -80,8 +84,8 @@ pub fn integral_to_one(coefficients: &[f64], x: f64) -> f64 {
 /// Integral from 0 to `x` of `Σ a_k T_k(2x² − 1) = Σ a_k T_{2k}(x)`, an even function of `x`.
 pub fn even_integral_from_zero(coefficients: &[f64], x: f64) -> f64 {
     // T_n(x) = ± sin(n asin x) for odd n, exact at 0.
-    let angle = libm::asin(x.clamp(-1.0, 1.0));
-    let odd = |k: f64, sign: f64| sign * libm::sin((2.0 * k + 1.0) * angle) / (2.0 * k + 1.0);
+    let angle = elementary::asin(x.clamp(-1.0, 1.0));
+    let odd = |k: f64, sign: f64| sign * elementary::sin((2.0 * k + 1.0) * angle) / (2.0 * k + 1.0);
     coefficients
         .iter()
         .enumerate()

@@ -5,6 +5,7 @@ use core::str::FromStr;
 
 use super::super::error::{ExactError, positive};
 use super::super::parameters::ColumnParameters;
+use crate::elementary;
 
 /// Relation of vertical effective stress and conductivity to the volume ratio `J`.
 ///
@@ -152,7 +153,7 @@ impl Diffusion {
     pub fn shrinkage(&self, lacking: f64) -> f64 {
         let compression = self.load * (1.0 - lacking);
         match self.model.law {
-            SoilLaw::LogLinear | SoilLaw::Engineering => -libm::expm1(-compression),
+            SoilLaw::LogLinear | SoilLaw::Engineering => -elementary::exp_m1(-compression),
             SoilLaw::PorosityDependent => compression / (1.0 + compression),
             SoilLaw::Linear => compression,
         }
@@ -198,7 +199,7 @@ impl Diffusion {
         }
         while {
             let middle = 0.5 * (low + high);
-            let water = -libm::log1p(-self.shrinkage(middle) / self.porosity) / self.compliance;
+            let water = -elementary::ln_1p(-self.shrinkage(middle) / self.porosity) / self.compliance;
             if water > self.load * middle {
                 low = middle;
             } else {

@@ -5,6 +5,7 @@ use nalgebra::DVector;
 use super::super::error::ExactError;
 use super::chebyshev;
 use super::law::Diffusion;
+use crate::elementary;
 
 /// Front in `η = ζ/(2√T)`: `f'' − G f'² + 2ηβ f' = 0`, `f(0) = 0`, `f(∞) = r_0`.
 #[derive(Clone, Debug)]
@@ -44,7 +45,7 @@ impl Front {
             order + 1,
             eta.iter().map(|&eta| match guess {
                 Some(front) => front.ratio(eta) * undrained / front.undrained,
-                None => undrained * libm::erf(eta * far),
+                None => undrained * elementary::erf(eta * far),
             }),
         );
         let mut last = f64::INFINITY;
@@ -99,7 +100,7 @@ impl Front {
     /// Time factor up to which the front has not felt the base.
     pub fn valid_until(&self) -> f64 {
         let far = REACH / self.reach;
-        (far / (2.0 * HAND_OVER)).powi(2)
+        elementary::powi(far / (2.0 * HAND_OVER), 2)
     }
 
     /// Pressure ratio at `η`.

@@ -10,6 +10,7 @@ use super::palette::{DARK, QUIET, WHITE, marker};
 use super::space::Space;
 use super::triangle::draw_triangles;
 use super::words::{draw_annotations, draw_rules, draw_tag};
+use crate::elementary;
 use crate::render::RenderError;
 
 /// Radius of markers. Later ones are smaller, so that points that coincide are seen to be several,
@@ -60,7 +61,7 @@ impl Chart {
             draw_bar(canvas, layout, |share| {
                 let value = match span.kind {
                     super::Scale::Linear => span.low + share * (span.high - span.low),
-                    super::Scale::Log10 => span.low * (span.high / span.low).powf(share),
+                    super::Scale::Log10 => span.low * elementary::powf(span.high / span.low, share),
                 };
                 field.colour(&span, value)
             });

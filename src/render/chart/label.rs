@@ -1,4 +1,5 @@
 //! Numbers on axes.
+use crate::elementary;
 use crate::render::script::exponent;
 
 /// A number as `1.5·10⁻³`, down to the decimal place `digits` if that is given.
@@ -6,11 +7,11 @@ pub(super) fn power(value: f64, digits: Option<f64>) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    let mut n = value.abs().log10().floor();
-    if (value.abs() / 10f64.powf(n)) >= 9.999_999_99 {
+    let mut n = elementary::log10(value.abs()).floor();
+    if (value.abs() / elementary::powf(10.0, n)) >= 9.999_999_99 {
         n += 1.0;
     }
-    let mantissa = value / 10f64.powf(n);
+    let mantissa = value / elementary::powf(10.0, n);
     let text = match digits {
         Some(d) => {
             let decimals = decimals(d - n);

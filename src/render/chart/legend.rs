@@ -2,6 +2,7 @@
 use super::canvas::{Canvas, Hold, Px, Rgb, Type};
 use super::describe::{Chart, Style};
 use super::palette::{DARK, QUIET, TEXT, colour, dash, marker};
+use crate::elementary;
 use crate::render::script::{width, wrap};
 
 pub(super) const FONT: f64 = 12.0;
@@ -188,7 +189,7 @@ pub(super) fn stroke(canvas: &mut Canvas, pieces: &[Vec<Px>], look: Look) {
 fn thinned(piece: &[Px]) -> Vec<Px> {
     let mut out: Vec<Px> = Vec::new();
     for (i, &p) in piece.iter().enumerate() {
-        let near = out.last().is_some_and(|q| (p.0 - q.0).hypot(p.1 - q.1) < 0.4);
+        let near = out.last().is_some_and(|q| elementary::hypot(p.0 - q.0, p.1 - q.1) < 0.4);
         if !near || i + 1 == piece.len() {
             out.push(p);
         }

@@ -1,5 +1,6 @@
 //! From values to pixels.
 use super::describe::{Range, Scale as Kind};
+use crate::elementary;
 
 /// Beyond these, no picture of the rest would be left.
 const HUGE: f64 = 1e150;
@@ -61,10 +62,10 @@ impl Span {
             (None, Kind::Log10) => (0.1, 10.0),
             (Some((low, high)), Kind::Linear) => widen(low, high, margin),
             (Some((low, high)), Kind::Log10) => {
-                let (a, b) = (low.log10(), high.log10());
+                let (a, b) = (elementary::log10(low), elementary::log10(high));
                 let room = (margin * (b - a)).max(if b - a < 0.3 && margin > 0.0 { 0.15 } else { 0.0 });
                 let room = if a == b { room.max(0.15) } else { room };
-                (10f64.powf(a - room), 10f64.powf(b + room))
+                (elementary::powf(10.0, a - room), elementary::powf(10.0, b + room))
             }
         };
         Self { kind, low, high }
@@ -74,7 +75,7 @@ impl Span {
     pub fn share(&self, value: f64) -> f64 {
         match self.kind {
             Kind::Linear => (value - self.low) / (self.high - self.low),
-            Kind::Log10 => (value / self.low).log10() / (self.high / self.low).log10(),
+            Kind::Log10 => elementary::log10(value / self.low) / elementary::log10(self.high / self.low),
         }
     }
 }
@@ -87,7 +88,7 @@ fn widen(low: f64, high: f64, margin: f64) -> (f64, f64) {
         return (low - room, high + room);
     }
     let round = |v: f64| {
-        let step = 10f64.powf((span.log10() - 0.3).floor()) / 2.0;
+        let step = elementary::powf(10.0, (elementary::log10(span) - 0.3).floor()) / 2.0;
         (v / step - (v / step).round()).abs() < 1e-9
     };
     (

@@ -1,6 +1,7 @@
 //! Finds room for words and triangles among the data.
 use super::canvas::Px;
 use super::clip::Frame;
+use crate::elementary;
 
 /// What is in the way, and how much it matters.
 #[derive(Debug, Default)]
@@ -74,7 +75,7 @@ pub(super) fn trail(piece: &[Px], step: f64) -> Vec<Px> {
     let mut out: Vec<Px> = piece.first().copied().into_iter().collect();
     for pair in piece.windows(2) {
         let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
-        let n = (dx.hypot(dy) / step).ceil().clamp(1.0, 2000.0);
+        let n = (elementary::hypot(dx, dy) / step).ceil().clamp(1.0, 2000.0);
         let mut i = 1.0;
         while i <= n {
             out.push((pair[0].0 + dx * i / n, pair[0].1 + dy * i / n));

@@ -2,6 +2,7 @@
 use super::describe::Scale as Kind;
 use super::label::{decimals, minus, power, whole};
 use super::scale::{Ruler, Span, drawable};
+use crate::elementary;
 use crate::render::script::{exponent, width};
 
 /// A tick; without a label it is a minor one.
@@ -60,7 +61,7 @@ fn automatic(ruler: &Ruler, room: Room) -> Vec<Tick> {
     let most = (ruler.length() / apart).clamp(2.0, 12.0);
     match span.kind {
         Kind::Linear => even(&span, most),
-        Kind::Log10 if (span.high / span.low).log10() < 0.75 => even(&span, most),
+        Kind::Log10 if elementary::log10(span.high / span.low) < 0.75 => even(&span, most),
         Kind::Log10 => decades(&span, most),
     }
 }
@@ -68,10 +69,12 @@ fn automatic(ruler: &Ruler, room: Room) -> Vec<Tick> {
 /// Multiples of 1, 2 or 5 times a power of ten.
 fn even(span: &Span, most: f64) -> Vec<Tick> {
     let rough = (span.high - span.low) / most;
-    let base = rough.log10().floor();
-    let mantissa =
-        [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * 10f64.powf(base) >= rough * 0.999).unwrap_or(10.0);
-    let step = mantissa * 10f64.powf(base);
+    let base = elementary::log10(rough).floor();
+    let mantissa = [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .find(|m| m * elementary::powf(10.0, base) >= rough * 0.999)
+        .unwrap_or(10.0);
+    let step = mantissa * elementary::powf(10.0, base);
     let first = (span.low / step - 1e-9).ceil();
     let count = ((span.high / step + 1e-9).floor() - first).clamp(0.0, 40.0);
     let largest = span.low.abs().max(span.high.abs());
@@ -81,7 +84,11 @@ fn even(span: &Span, most: f64) -> Vec<Tick> {
     while i <= count {
         let whole = (first + i) * mantissa;
         // Dividing by a whole power of ten keeps 0.3 from being 0.30000000000000004.
-        let value = if base < 0.0 { whole / 10f64.powf(-base) } else { whole * 10f64.powf(base) };
+        let value = if base < 0.0 {
+            whole / elementary::powf(10.0, -base)
+        } else {
+            whole * elementary::powf(10.0, base)
+        };
         let label = if largest >= 1e5 || step < 0.999e-4 {
             power(value, Some(digits))
         } else {
@@ -96,14 +103,14 @@ fn even(span: &Span, most: f64) -> Vec<Tick> {
 
 /// Powers of ten, labelled all or every so many, with minor ticks between them where they fit.
 fn decades(span: &Span, most: f64) -> Vec<Tick> {
-    let (a, b) = (span.low.log10(), span.high.log10());
+    let (a, b) = (elementary::log10(span.low), elementary::log10(span.high));
     let (first, last) = (whole((a - 1e-9).floor()), whole((b + 1e-9).ceil()));
     let stride = whole(((b - a) / most).ceil().max(1.0));
     let plain = a > -3.2 && b < 3.2;
     let label = |m: i32, n: i32| {
         if plain {
             let decimals = usize::try_from(-n).unwrap_or(0);
-            format!("{:.decimals$}", f64::from(m) * 10f64.powi(n))
+            format!("{:.decimals$}", f64::from(m) * elementary::powi(10.0, n))
         } else if m == 1 {
             format!("10{}", exponent(n))
         } else {
@@ -127,7 +134,7 @@ fn decades(span: &Span, most: f64) -> Vec<Tick> {
 }
 
 fn value_of(m: i32, n: i32) -> f64 {
-    if n < 0 { f64::from(m) / 10f64.powi(-n) } else { f64::from(m) * 10f64.powi(n) }
+    if n < 0 { f64::from(m) / elementary::powi(10.0, -n) } else { f64::from(m) * elementary::powi(10.0, n) }
 }
 
 /// Drops the labels that would touch a neighbour; powers of ten hold their place first.
@@ -152,7 +159,7 @@ fn thin(ticks: &mut [Tick], ruler: &Ruler, room: Room) {
 }
 
 fn is_power(value: f64) -> bool {
-    let n = value.abs().log10();
+    let n = elementary::log10(value.abs());
     (n - n.round()).abs() < 1e-9
 }
 

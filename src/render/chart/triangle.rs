@@ -7,6 +7,7 @@ use super::palette::{DARK, QUIET};
 use super::scale::Ruler;
 use super::space::{Offer, Space};
 use super::words::write;
+use crate::elementary;
 
 /// A triangle with its right angle at the second corner.
 #[derive(Debug, Clone, Copy)]
@@ -83,7 +84,7 @@ fn reach(t: &Triangle) -> Frame {
 
 /// Triangles below and above a place on a curve, at several distances.
 fn beside(at: Px, slope: f64, layout: &Layout, distances: &[f64]) -> Vec<(Triangle, f64)> {
-    let decade = |r: &Ruler| (r.to - r.from) / (r.span.high / r.span.low).log10();
+    let decade = |r: &Ruler| (r.to - r.from) / elementary::log10(r.span.high / r.span.low);
     let (dx, dy) = (decade(&layout.x.ruler), decade(&layout.y.ruler));
     // Pixels down for one pixel to the right along the wanted slope.
     let steep = slope * dy / dx;
@@ -93,7 +94,7 @@ fn beside(at: Px, slope: f64, layout: &Layout, distances: &[f64]) -> Vec<(Triang
     for &distance in distances {
         for below in [true, false] {
             // Away from the curve, at a right angle to the slope.
-            let norm = steep.hypot(1.0);
+            let norm = elementary::hypot(steep, 1.0);
             let side = if below { 1.0 } else { -1.0 };
             let (ox, oy) = (-side * distance * steep / norm, side * distance / norm);
             let middle = (at.0 + ox, at.1 + oy);

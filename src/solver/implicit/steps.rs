@@ -1,5 +1,7 @@
 //! Step sizes of the implicit integrators: few distinct ones, so that factors can be kept.
 
+use crate::elementary;
+
 /// Step sizes grow by this factor from one level to the next.
 const LEVEL_RATIO: f64 = std::f64::consts::SQRT_2;
 
@@ -46,8 +48,8 @@ impl StepLimit {
             Self::Growing { first, growth, most } => {
                 let allowed = (growth * time).max(first).min(most);
                 // A time that is a level's beginning up to round-off is in that level.
-                let level = ((allowed / first).ln() / LEVEL_RATIO.ln() + 1e-9).floor();
-                let size = first * LEVEL_RATIO.powf(level);
+                let level = (elementary::ln(allowed / first) / elementary::ln(LEVEL_RATIO) + 1e-9).floor();
+                let size = first * elementary::powf(LEVEL_RATIO, level);
                 let grown =
                     if size * LEVEL_RATIO > most { f64::INFINITY } else { size * LEVEL_RATIO / growth };
                 // Not worth an end of its own where the output is a step away.

@@ -4,6 +4,7 @@
 use super::assembly::Scales;
 use super::tensor::{identity, inverse, strain_between};
 use super::unknowns::Unknowns;
+use crate::elementary;
 use crate::solver::body::{Body, ShapeFunction};
 use crate::solver::grid::{Tensor, Vector};
 use crate::solver::integrator::Formulation;
@@ -160,7 +161,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
             points.inverse_deformation[point] = inverse_after;
             let ratio = inverse(&after).1 / inverse(before).1;
             points.volume_ratio[point] = anchor.volume_ratio[point] * ratio;
-            strain = strain_between(before, &after, ratio.ln());
+            strain = strain_between(before, &after, elementary::ln(ratio));
             modulus =
                 self.body.material.law.modulus_ratio(anchor.volume_ratio[point], points.volume_ratio[point]);
         }

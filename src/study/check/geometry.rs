@@ -1,6 +1,7 @@
 //! Checks of where the soil is and what loads it: the tables `[column]` and `[layer]`.
 
 use super::Checker;
+use crate::elementary;
 use crate::exact::ExactError;
 use crate::exact::cosine_layer::Base;
 use crate::exact::xie_leo::XieLeo;
@@ -89,7 +90,7 @@ impl Checker<'_> {
             let typed = file.column.load.as_ref().or(file.material.porosity.as_ref());
             let typed = typed.or(file.material.youngs_modulus.as_ref()).map(Spanned::span);
             let most = limit * soil.oedometric_modulus();
-            let least = -(-column.load / soil.oedometric_modulus()).exp_m1();
+            let least = -elementary::exp_m1(-column.load / soil.oedometric_modulus());
             self.complain(
                 typed.unwrap_or_else(|| file.scene.span()),
                 error.to_string(),
