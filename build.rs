@@ -1,4 +1,5 @@
 //! Tells the program what it was built from: a hash of its sources, commit, compiler, target.
+#![allow(clippy::print_stdout, reason = "Cargo reads it")]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

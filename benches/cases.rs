@@ -1,4 +1,5 @@
 //! Whole cases: the seed column to `T_v` = 0.05, from the problem to its measured errors.
+#![allow(clippy::print_stdout, reason = "a benchmark prints what it measured")]
 
 use divan::Bencher;
 use divan::counter::ItemsCount;

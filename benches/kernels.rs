@@ -5,6 +5,7 @@
 //! moving points, 150 in two dimensions; the least of rounds in which the kernels take turns. Beside the
 //! frozen step stands its bound: as many multiply-adds and loads, with nothing to wait for. Beside the
 //! moving step stand its passes one by one, and what one sum on the grid costs that waits for the last.
+#![allow(clippy::print_stdout, reason = "a benchmark prints what it measured")]
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};

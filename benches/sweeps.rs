@@ -4,6 +4,7 @@
 //! disk, and prints what each took beyond its solve; then it runs a sweep of longer cases by one and by
 //! two threads in turns. What other work does meanwhile is in the figures: the least of the rounds is
 //! what counts.
+#![allow(clippy::print_stdout, reason = "a benchmark prints what it measured")]
 
 use oedometer::record::RecordStore;
 use oedometer::study::{RunOptions, Selected, Study, StudySource, Tier, run_studies};

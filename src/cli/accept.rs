@@ -1,8 +1,10 @@
 //! `oedometer accept`: the present values of a study become its golden values.
 
 use super::check::run_quietly;
+use super::destination::is_on;
 use super::exit::{Ended, Exit};
 use super::run::{jobs_of, load};
+use super::stream::say;
 use crate::golden::{GoldenFile, spread_by_group, values_of};
 use crate::record::Provenance;
 use crate::study::{LastDigit, Study};
@@ -59,7 +61,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 /// # Errors
 /// A sentence that says which.
 pub fn refuse_without_origin() -> anyhow::Result<()> {
-    if std::env::var_os("CI").is_some() {
+    if is_on("CI") {
         return Err(Ended::usage(
             "golden values are never taken in CI: look at them first, on your own machine",
         ));
@@ -74,6 +76,6 @@ pub fn refuse_without_origin() -> anyhow::Result<()> {
 
 fn keep(golden: &GoldenFile, arguments: &Arguments) -> anyhow::Result<()> {
     let path = golden.write(&arguments.golden)?;
-    eprintln!("{}: {} values in {}", golden.study, golden.values.len(), path.display());
+    say!("{}: {} values in {}", golden.study, golden.values.len(), path.display());
     Ok(())
 }

@@ -1,18 +1,19 @@
 //! `oedometer check`: the CI tier again, judged by its expectations and by its golden values.
 
-use super::exit::{Ended, Exit};
-use super::output::{TableFormat, coloured};
+use super::destination::{append, is_on, path_in, write_document};
+use super::exit::{Ended, Exit, sentence};
+use super::output::{TableFormat, coloured, json_of};
 use super::progress::StudyBar;
 use super::run::{jobs_of, load_or_shipped};
+use super::stream::{print_data, say};
 use crate::assess::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::assess::summary::Judgement;
 use crate::golden::{CaseChange, Difference, GoldenFile, REFERENCES};
-use crate::record::{Record, write_whole};
+use crate::record::Record;
 use crate::render::annotations::annotations_of;
 use crate::render::{junit, verdicts};
 use crate::study::{RunOptions, Selected, Study, Tier, run_studies};
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Folder of the golden values.
 pub const GOLDEN: &str = "golden";
@@ -36,11 +37,11 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
     /// Append a summary in Markdown; $`GITHUB_STEP_SUMMARY` where that is set
-    #[arg(long, value_name = "FILE", env = "GITHUB_STEP_SUMMARY", hide_env = true)]
+    #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
     /// Annotate the lines of the studies on standard error, as GitHub reads it; done by itself in its
     /// workflows
-    #[arg(long, env = "GITHUB_ACTIONS", hide_env = true)]
+    #[arg(long)]
     annotate: bool,
     /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]
@@ -54,19 +55,25 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if checks.is_empty() {
         return Err(Ended::with(Exit::NothingSelected, "no study has a case in the CI tier"));
     }
-    print(&checks, arguments.format)?;
+    let verdict = checks.iter().map(|check| exit_of(check.end())).fold(Exit::Pass, worse);
+    // The verdict first; what could not be written is told after it, and hides it nowhere.
+    let mut refused = Vec::new();
+    refused.extend(print(&checks, arguments.format).err());
     if let Some(path) = &arguments.junit {
-        write_whole(path, junit::report_of(&checks)?.as_bytes())?;
+        refused.extend(write_document(path, &junit::report_of(&checks)?).err());
     }
-    if let Some(path) = &arguments.summary {
-        append(path, &verdicts::markdown_of(&checks)?)?;
+    if let Some(path) = arguments.summary.clone().or_else(|| path_in("GITHUB_STEP_SUMMARY")) {
+        refused.extend(append(&path, &verdicts::markdown_of(&checks)?).err());
     }
-    if arguments.annotate {
+    if arguments.annotate || is_on("GITHUB_ACTIONS") {
         for line in annotations_of(&checks, |study| file_of(study, &arguments.studies)) {
-            eprintln!("{line}");
+            say!("{line}");
         }
     }
-    Ok(checks.iter().map(|check| exit_of(check.end())).fold(Exit::Pass, worse))
+    for error in &refused {
+        say!("{}", sentence(error));
+    }
+    Ok(if verdict == Exit::Pass { refused.first().map_or(Exit::Pass, Exit::of) } else { verdict })
 }
 
 /// The studies that have cases in the CI tier, and the exact solutions where they are wanted.
@@ -140,21 +147,16 @@ struct CheckJson<'a> {
 }
 
 fn print(checks: &[StudyCheck], format: TableFormat) -> anyhow::Result<()> {
-    let mut out = std::io::stdout().lock();
-    match format {
+    let text = match format {
         TableFormat::Table => {
-            for check in checks {
-                write!(out, "{}", coloured(&verdicts::text_of(check)?))?;
-            }
+            let texts: Result<Vec<String>, _> = checks.iter().map(verdicts::text_of).collect();
+            coloured(&texts?.concat())
         }
-        TableFormat::Markdown => write!(out, "{}", verdicts::markdown_of(checks)?)?,
-        TableFormat::Csv => write!(out, "{}", verdicts::all_judgements(checks).to_csv()?)?,
-        TableFormat::Json => {
-            let all: Vec<CheckJson<'_>> = checks.iter().map(CheckJson::of).collect();
-            writeln!(out, "{}", serde_json::to_string_pretty(&all)?)?;
-        }
-    }
-    Ok(())
+        TableFormat::Markdown => verdicts::markdown_of(checks)?,
+        TableFormat::Csv => verdicts::all_judgements(checks).to_csv()?,
+        TableFormat::Json => json_of(&checks.iter().map(CheckJson::of).collect::<Vec<_>>())?,
+    };
+    print_data(&text)
 }
 
 impl<'a> CheckJson<'a> {
@@ -182,12 +184,4 @@ fn file_of(study: &str, named: &[PathBuf]) -> Option<String> {
     let stem = |path: &PathBuf| path.file_stem().is_some_and(|stem| stem.to_string_lossy() == study);
     let named = named.iter().find(|path| stem(path)).map(|path| path.display().to_string());
     Some(named.unwrap_or_else(|| format!("studies/{study}.toml")))
-}
-
-fn append(path: &Path, text: &str) -> anyhow::Result<()> {
-    let mut file = std::fs::OpenOptions::new().create(true).append(true).open(path).map_err(|error| {
-        Ended::with(Exit::CaseFailed, format!("cannot write {}: {error}", path.display()))
-    })?;
-    file.write_all(text.as_bytes())?;
-    Ok(())
 }

@@ -1,6 +1,7 @@
 //! `oedometer completions`: what a shell needs to complete the command line.
 
 use super::exit::Exit;
+use super::stream::print_data;
 use clap::CommandFactory;
 use clap_complete::Shell;
 
@@ -12,8 +13,10 @@ pub struct Arguments {
 }
 
 /// Prints the script of a shell.
-pub fn run(arguments: &Arguments) -> Exit {
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let mut command = super::Arguments::command();
-    clap_complete::generate(arguments.shell, &mut command, "oedometer", &mut std::io::stdout());
-    Exit::Pass
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut command, "oedometer", &mut script);
+    print_data(&String::from_utf8(script)?)?;
+    Ok(Exit::Pass)
 }

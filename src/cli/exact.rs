@@ -1,13 +1,14 @@
 //! `oedometer exact`: an exact solution as numbers.
 
 use super::exit::{Ended, Exit};
+use super::output::json_of;
 use super::overrides::{self, StudyLines};
+use super::stream::{print_data, say};
 use crate::exact::cosine_layer::LayerFields;
 use crate::exact::{ColumnParameters, Reference, ReferenceKind, consolidation};
 use crate::scene::{SceneKind, column_parameters};
 use crate::study::Purpose;
 use clap::ValueEnum;
-use std::io::Write;
 
 /// Depths printed where none are asked for.
 const DEFAULT_DEPTHS: &str = "0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1";
@@ -174,20 +175,16 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let truncation = reference.accuracy(time_factor)?;
         accuracy.push(Truncation { time_factor, terms: truncation.terms, tail_bound: truncation.tail_bound });
     }
-    let mut out = std::io::stdout().lock();
     match arguments.format {
         Format::Csv => {
-            out.write_all(csv_of(&rows)?.as_bytes())?;
+            print_data(&csv_of(&rows)?)?;
             for one in &accuracy {
-                eprintln!(
-                    "T_v = {}: {} terms, tail below {:.1e}",
-                    one.time_factor, one.terms, one.tail_bound
-                );
+                say!("T_v = {}: {} terms, tail below {:.1e}", one.time_factor, one.terms, one.tail_bound);
             }
         }
         Format::Json => {
             let json = ExactJson { reference: reference.name(), rows: &rows, accuracy: &accuracy };
-            writeln!(out, "{}", serde_json::to_string_pretty(&json)?)?;
+            print_data(&json_of(&json)?)?;
         }
     }
     Ok(Exit::Pass)

@@ -55,32 +55,16 @@ impl Ended {
     }
 }
 
-/// What an error means for the exit.
-pub struct Failure {
-    /// Exit code.
-    pub exit: Exit,
-    /// Whether there is nobody left to read a message.
-    pub is_silent: bool,
-}
-
-impl Failure {
+impl Exit {
     /// The exit of an error, by what caused it.
     pub fn of(error: &anyhow::Error) -> Self {
-        let broken_pipe = error
-            .chain()
-            .filter_map(|cause| cause.downcast_ref::<std::io::Error>())
-            .any(|cause| cause.kind() == std::io::ErrorKind::BrokenPipe);
-        if broken_pipe {
-            return Self { exit: Exit::Pass, is_silent: true };
-        }
-        let exit = match error.downcast_ref::<Ended>() {
+        match error.downcast_ref::<Ended>() {
             Some(ended) => ended.exit,
             None if error.is::<StudyError>() || error.is::<ExactError>() || error.is::<ImportError>() => {
-                Exit::Usage
+                Self::Usage
             }
-            None => Exit::CaseFailed,
-        };
-        Self { exit, is_silent: false }
+            None => Self::CaseFailed,
+        }
     }
 }
 

@@ -2,8 +2,9 @@
 //! other levels, what changed against the golden values, and the command that runs it again.
 
 use super::exit::{Ended, Exit};
-use super::output::{TableFormat, print_tables};
+use super::output::{TableFormat, json_of, print_tables};
 use super::run::{DEFAULT_RESULTS, load_or_shipped};
+use super::stream::{print_data, say};
 use crate::assess::explain::explain;
 use crate::golden::{GoldenError, GoldenFile};
 use crate::record::{Record, RecordStore};
@@ -51,12 +52,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let siblings = study.cases(Tier::Full);
     let found = explain(&record, &siblings, golden.as_ref(), focus)?;
     if arguments.format == TableFormat::Json {
-        println!("{}", serde_json::to_string_pretty(&found)?);
+        print_data(&json_of(&found)?)?;
     } else {
         print_tables(&explanation::tables_of(&record, &found), arguments.format)?;
     }
-    eprintln!("{}: {}", study.name, explanation::golden_sentence(&found));
-    eprintln!("run it again: {}", rerun(study, case, &arguments.studies));
+    say!("{}: {}", study.name, explanation::golden_sentence(&found));
+    say!("run it again: {}", rerun(study, case, &arguments.studies));
     Ok(Exit::Pass)
 }
 

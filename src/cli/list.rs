@@ -1,15 +1,16 @@
 //! `oedometer list`: what there is to choose from.
 
 use super::exit::Exit;
+use super::stream::print_data;
 use crate::exact::ReferenceKind;
 use crate::scene::SceneKind;
 use crate::solver::method::Method;
 use crate::study::{IntegratorKind, Study, shipped_studies};
-use std::io::Write;
+use std::fmt::Write;
 
 /// Prints scenes, methods, integrators, references and shipped studies.
 pub fn run() -> anyhow::Result<Exit> {
-    let mut out = std::io::stdout().lock();
+    let mut out = String::new();
     writeln!(out, "scenes")?;
     for scene in SceneKind::ALL {
         writeln!(out, "  {:<26} {}", scene.name(), scene.summary())?;
@@ -32,5 +33,6 @@ pub fn run() -> anyhow::Result<Exit> {
         let study = Study::check(&source)?;
         writeln!(out, "  {:<26} {}", study.name, study.title)?;
     }
+    print_data(&out)?;
     Ok(Exit::Pass)
 }

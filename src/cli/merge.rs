@@ -2,6 +2,7 @@
 
 use super::exit::{Ended, Exit};
 use super::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped, write_table};
+use super::stream::say;
 use crate::record::{Record, RecordStore};
 use crate::study::{Case, Study};
 use std::path::PathBuf;
@@ -65,13 +66,13 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
     let there = cases.len() - holes.len();
     if there > 0 {
         let table = write_table(study, &target, &[])?;
-        eprintln!("{}: {there} of {} cases, {}", study.name, cases.len(), table.display());
+        say!("{}: {there} of {} cases, {}", study.name, cases.len(), table.display());
     }
     for case in holes.iter().take(MOST_HOLES) {
-        eprintln!("{}: no result of {} {}", study.name, case.hash(), case.label());
+        say!("{}: no result of {} {}", study.name, case.hash(), case.label());
     }
     if holes.len() > MOST_HOLES {
-        eprintln!("{}: and {} more", study.name, holes.len() - MOST_HOLES);
+        say!("{}: and {} more", study.name, holes.len() - MOST_HOLES);
     }
     Ok(holes.len())
 }

@@ -5,6 +5,7 @@
 mod accept;
 mod check;
 mod completions;
+mod destination;
 mod exact;
 mod exit;
 mod explain;
@@ -21,11 +22,14 @@ mod score;
 mod solve;
 mod spread;
 mod stability;
+mod stream;
 
 pub use exit::Exit;
 
 use clap::{Parser, Subcommand};
+use std::io::Write;
 use std::process::ExitCode;
+use stream::{say, written};
 
 /// Verifies coupled material point solvers for saturated soil against exact solutions.
 #[derive(Debug, Parser)]
@@ -75,12 +79,19 @@ pub fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version are asked for, and no usage error.
-            let exit = if error.use_stderr() { Exit::Usage } else { Exit::Pass };
-            let _ = error.print();
-            return exit.into();
+            let said = error.print().and_then(|()| std::io::stdout().flush());
+            return match written(said) {
+                _ if error.use_stderr() => Exit::Usage.into(),
+                Ok(()) => Exit::Pass.into(),
+                Err(refused) => end_of(Err(refused)),
+            };
         }
     };
-    let result = match arguments.command {
+    end_of(run(arguments.command))
+}
+
+fn run(command: Command) -> anyhow::Result<Exit> {
+    match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
@@ -95,16 +106,17 @@ pub fn main() -> ExitCode {
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Spread(arguments) => spread::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
-        Command::Completions(arguments) => Ok(completions::run(&arguments)),
-    };
+        Command::Completions(arguments) => completions::run(&arguments),
+    }
+}
+
+/// The exit code of a command; why it failed goes to standard error.
+fn end_of(result: anyhow::Result<Exit>) -> ExitCode {
     match result {
         Ok(exit) => exit.into(),
         Err(error) => {
-            let failure = exit::Failure::of(&error);
-            if !failure.is_silent {
-                eprintln!("{}", exit::sentence(&error));
-            }
-            failure.exit.into()
+            say!("{}", exit::sentence(&error));
+            Exit::of(&error).into()
         }
     }
 }

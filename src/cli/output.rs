@@ -1,8 +1,9 @@
 //! Tables on standard output: their formats, and colour on a terminal only.
 
+use super::stream::print_data;
 use crate::render::table::Table;
 use clap::ValueEnum;
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 
 /// How a table is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -23,15 +24,15 @@ pub fn print_tables(tables: &[Table], format: TableFormat) -> anyhow::Result<()>
         TableFormat::Table => tables.iter().map(Table::to_text).collect::<Result<_, _>>()?,
         TableFormat::Markdown => tables.iter().map(Table::to_markdown).collect::<Result<_, _>>()?,
         TableFormat::Csv => tables.iter().map(Table::to_csv).collect::<Result<_, _>>()?,
-        TableFormat::Json => vec![
-            serde_json::to_string_pretty(&tables.iter().map(rows_of).collect::<anyhow::Result<Vec<_>>>()?)?
-                + "\n",
-        ],
+        TableFormat::Json => vec![json_of(&tables.iter().map(rows_of).collect::<anyhow::Result<Vec<_>>>()?)?],
     };
     let text = texts.join("\n");
-    let mut out = std::io::stdout().lock();
-    write!(out, "{}", if format == TableFormat::Table { coloured(&text) } else { text })?;
-    Ok(())
+    print_data(&if format == TableFormat::Table { coloured(&text) } else { text })
+}
+
+/// A value as JSON for programs, with an end of line.
+pub fn json_of(value: &impl serde::Serialize) -> anyhow::Result<String> {
+    Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
 /// The rows of a table by their headers, in the words of its CSV.

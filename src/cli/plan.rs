@@ -2,8 +2,8 @@
 
 use super::exit::Exit;
 use super::run::{TierArgument, load_or_shipped};
+use super::stream::print_data;
 use crate::study::estimated_updates;
-use std::io::Write;
 use std::path::PathBuf;
 
 /// Arguments of `plan`.
@@ -21,7 +21,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // Every file is judged before anything is printed.
     let studies = load_or_shipped(&arguments.studies)?;
-    let mut writer = csv::Writer::from_writer(std::io::stdout().lock());
+    let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(["study", "case", "estimated_point_updates", "label"])?;
     let mut exit = Exit::NothingSelected;
     for study in studies {
@@ -31,6 +31,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             writer.write_record([study.name.as_str(), &case.hash(), &updates, &case.label()])?;
         }
     }
-    writer.into_inner().map_err(csv::IntoInnerError::into_error)?.flush()?;
+    print_data(&String::from_utf8(writer.into_inner()?)?)?;
     Ok(exit)
 }

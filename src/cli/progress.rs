@@ -1,6 +1,7 @@
 //! Progress of long work on standard error: a bar with an estimate on a terminal, nothing but
 //! failures elsewhere.
 
+use super::stream::say;
 use crate::study::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -36,7 +37,7 @@ impl StudyBar {
             Progress::Advanced(work) => self.bar.inc(work),
             Progress::Finished { study, label, failure } => {
                 if let Some(failure) = failure {
-                    self.bar.suspend(|| eprintln!("{study}: {label}: {failure}"));
+                    self.bar.suspend(|| say!("{study}: {label}: {failure}"));
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 use super::exit::Exit;
 use super::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
+use super::stream::say;
 use crate::record::write_whole;
 use crate::render::page::{figures, render_html, render_markdown};
 use crate::render::report::{StudyResults, page_of};
@@ -42,6 +43,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     for (name, svg) in figures(&page)? {
         write_whole(&arguments.out.join("figures").join(name), svg.as_bytes())?;
     }
-    eprintln!("the report is {}", html.display());
+    say!("the report is {}", html.display());
     Ok(Exit::Pass)
 }

@@ -2,6 +2,7 @@
 
 use super::exit::{Ended, Exit};
 use super::progress::StudyBar;
+use super::stream::say;
 use crate::record::{Provenance, Record, RecordStore, tidy_csv, write_whole};
 use crate::study::{
     Case, Purpose, RunOptions, RunReport, Selected, Shard, Study, StudySource, Tier, run_studies,
@@ -135,7 +136,7 @@ pub fn run_and_store(
 }
 
 fn tell_of(study: &Study, report: &RunReport, table: &Path) {
-    eprintln!(
+    say!(
         "{}: {} cases ({} from disk, {} failed), {}",
         study.name,
         report.records.len(),
@@ -159,7 +160,7 @@ pub fn write_table(study: &Study, store: &RecordStore, at_hand: &[Record]) -> an
     let own = Provenance::of_this_program().sources;
     let foreign = records.iter().filter(|record| record.provenance.sources != own).count();
     if foreign > 0 {
-        eprintln!("{}: {foreign} older records in the table are of other sources", study.name);
+        say!("{}: {foreign} older records in the table are of other sources", study.name);
     }
     let table = store.folder().join(format!("{}.csv", study.name));
     write_whole(&table, tidy_csv(&study.name, records.iter().map(AsRef::as_ref))?.as_bytes())?;
@@ -183,7 +184,7 @@ pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
 pub fn checked(source: &StudySource, purpose: Purpose) -> anyhow::Result<Study> {
     let study = Study::check_for(source, purpose)?;
     for warning in &study.warnings {
-        eprintln!("{warning}");
+        say!("{warning}");
     }
     Ok(study)
 }

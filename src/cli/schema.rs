@@ -1,6 +1,8 @@
 //! `oedometer schema`: JSON Schemas of study files, records and mappings.
 
 use super::exit::Exit;
+use super::output::json_of;
+use super::stream::print_data;
 use crate::schema::{Document, schema_of};
 
 /// Arguments of `schema`.
@@ -13,6 +15,6 @@ pub struct Arguments {
 
 /// Prints the schema.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    println!("{}", serde_json::to_string_pretty(&schema_of(arguments.document)?)?);
+    print_data(&json_of(&schema_of(arguments.document)?)?)?;
     Ok(Exit::Pass)
 }

@@ -1,8 +1,9 @@
 //! `oedometer score`: hold somebody else's result against the references of a scene.
 
 use super::exit::{Ended, Exit};
-use super::output::{TableFormat, print_tables};
+use super::output::{TableFormat, json_of, print_tables};
 use super::overrides::{self, StudyLines};
+use super::stream::{print_data, say};
 use crate::assess::norms::Norm;
 use crate::assess::score::{Score, score, series_of};
 use crate::exact::ReferenceKind;
@@ -49,7 +50,7 @@ pub struct Arguments {
 /// Scores and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.show_mapping {
-        print!("{CONVENTION}");
+        print_data(CONVENTION)?;
         return Ok(Exit::Pass);
     }
     let mapping = mapping_of(arguments.mapping.as_deref())?;
@@ -79,18 +80,18 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         tables.push(scores::series_table(&series_of(&levels, case.column.height), &cells));
     }
     match arguments.format {
-        TableFormat::Json => println!("{}", serde_json::to_string_pretty(&scores)?),
-        TableFormat::Csv => print!("{}", csv_of(&scores, &arguments.results)?),
+        TableFormat::Json => print_data(&json_of(&scores)?)?,
+        TableFormat::Csv => print_data(&csv_of(&scores, &arguments.results)?)?,
         _ => print_tables(&tables, arguments.format)?,
     }
-    eprintln!("{}", groups_of(case));
+    say!("{}", groups_of(case));
     judge(arguments.below, &scores, references.first().map(|kind| kind.name()))
 }
 
 /// The declared meaning of the columns.
 fn mapping_of(path: Option<&Path>) -> anyhow::Result<Mapping> {
     let Some(path) = path else {
-        eprintln!(
+        say!(
             "note: no --mapping, so t is in s, y is the initial height over the base in m, p is in Pa and positive \
              in compression, u_y is in m and positive upward; --show-mapping prints this as a file to change"
         );
@@ -190,7 +191,7 @@ fn judge(below: Option<f64>, scores: &[Score], reference: Option<&str>) -> anyho
         let passes = row.value.abs() < bound;
         if !passes {
             let unit = if row.quantity == Quantity::Settlement { "relative" } else { "L2" };
-            eprintln!(
+            say!(
                 "fail: {} at T_v = {} has a {unit} error of {:.3e}, not below {bound:e}",
                 row.quantity.name(),
                 row.time_factor,

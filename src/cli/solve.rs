@@ -1,7 +1,9 @@
 //! `oedometer solve`: one case from the command line, its errors on standard output.
 
 use super::exit::{Ended, Exit};
+use super::output::json_of;
 use super::overrides::{self, StudyLines};
+use super::stream::{print_data, say};
 use crate::record::{ERROR_COLUMNS, ErrorRow, Record, Status};
 use crate::render::measures;
 use crate::render::phases::phases_table;
@@ -9,7 +11,6 @@ use crate::solver::profile::{PhaseTime, profiled};
 use crate::solver::run::Kernel;
 use crate::study::{IntegratorKind, Study, run_case};
 use clap::ValueEnum;
-use std::io::Write;
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -75,18 +76,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let solve = || run_case(&planned.case, &study.references, kernel, true, &|_, _| true);
     let (record, phases) = if arguments.profile { profiled(solve) } else { (solve(), Vec::new()) };
     let record = record?;
-    let mut out = std::io::stdout().lock();
     match arguments.format {
-        Format::Csv => out.write_all(csv_of(&record)?.as_bytes())?,
-        Format::Json => writeln!(out, "{}", serde_json::to_string_pretty(&SolveJson::of(&record, &phases))?)?,
-        Format::Table => write!(out, "{}", measures::table_of(&record)?)?,
+        Format::Csv => print_data(&csv_of(&record)?)?,
+        Format::Json => print_data(&json_of(&SolveJson::of(&record, &phases))?)?,
+        Format::Table => print_data(&measures::table_of(&record)?)?,
     }
     // A CSV is of one kind of row; its profile goes where notes go.
     match arguments.format {
         Format::Table if arguments.profile => {
-            write!(out, "\n{}", phases_table(&phases, &record).to_text()?)?;
+            print_data(&format!("\n{}", phases_table(&phases, &record).to_text()?))?;
         }
-        Format::Csv if arguments.profile => eprint!("{}", phases_table(&phases, &record).to_text()?),
+        Format::Csv if arguments.profile => say!("{}", phases_table(&phases, &record).to_text()?.trim_end()),
         _ => {}
     }
     if let Status::Failed(failure) = &record.status {

@@ -4,8 +4,9 @@
 use super::accept::refuse_without_origin;
 use super::check::run_quietly;
 use super::exit::{Ended, Exit};
-use super::output::{TableFormat, print_tables};
+use super::output::{TableFormat, json_of, print_tables};
 use super::run::{jobs_of, load_or_shipped};
+use super::stream::print_data;
 use crate::assess::spread::{Spread, spread_of};
 use crate::golden::{GoldenFile, spread_by_group, values_of};
 use crate::record::{Record, RecordStore};
@@ -79,7 +80,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Err(Ended::with(Exit::NothingSelected, "no study has a case in the CI tier"));
     }
     match arguments.format {
-        TableFormat::Json => println!("{}", serde_json::to_string_pretty(&spreads)?),
+        TableFormat::Json => print_data(&json_of(&spreads)?)?,
         format => print_tables(&[spreads::table_of(&spreads)], format)?,
     }
     Ok(Exit::Pass)

@@ -1,14 +1,15 @@
 //! `oedometer stability`: the critical step of a case, predicted and observed.
 
 use super::exit::Exit;
+use super::output::json_of;
 use super::overrides::{self, StudyLines};
 use super::run::jobs_of;
 use super::solve::Format;
+use super::stream::print_data;
 use crate::record::Record;
 use crate::render::stability;
 use crate::solver::critical::CriticalStep;
 use crate::study::{RunOptions, Tier, run_study};
-use std::io::Write;
 
 /// Difference of observed from predicted step up to which they agree.
 const AGREEMENT: f64 = 0.02;
@@ -59,13 +60,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if let Some(error) = report.errors.pop() {
         return Err(error.into());
     }
-    let mut out = std::io::stdout().lock();
     match arguments.format {
-        Format::Table => writeln!(out, "{}", stability::table_of(&report.records).to_text()?)?,
-        Format::Csv => out.write_all(csv_of(&report.records)?.as_bytes())?,
+        Format::Table => print_data(&(stability::table_of(&report.records).to_text()? + "\n"))?,
+        Format::Csv => print_data(&csv_of(&report.records)?)?,
         Format::Json => {
             let rows: Vec<_> = report.records.iter().map(StabilityJson::of).collect();
-            writeln!(out, "{}", serde_json::to_string_pretty(&rows)?)?;
+            print_data(&json_of(&rows)?)?;
         }
     }
     let agree = report.records.iter().filter_map(|record| record.stability.as_ref()).all(|found| {

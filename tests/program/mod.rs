@@ -11,7 +11,7 @@ use tempfile::TempDir;
 /// Longest that any call of a test may take.
 const LONGEST: Duration = Duration::from_secs(600);
 /// Variables of a CI that must not reach a test from the one that runs it.
-const OF_A_CI: [&str; 4] = ["CI", "GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY", "NO_COLOR"];
+pub const OF_A_CI: [&str; 4] = ["CI", "GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY", "NO_COLOR"];
 
 /// What a call of the program came to.
 pub struct Told {

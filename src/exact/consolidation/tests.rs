@@ -1,4 +1,5 @@
 //! Terzaghi's functions against 20-digit values made by `src/exact/data/make_consolidation.py`.
+#![allow(clippy::print_stderr, reason = "a test tells how far it was off")]
 
 use proptest::prelude::*;
 

@@ -1,4 +1,5 @@
 //! The dynamic column against 20-digit values and its own limits.
+#![allow(clippy::print_stderr, reason = "a test tells how far it was off")]
 
 use super::super::single_mode::SingleMode;
 use super::super::terzaghi::Terzaghi;

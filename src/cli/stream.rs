@@ -1,0 +1,80 @@
+//! The one way to standard output and standard error. A reader who has seen enough closes the pipe: that
+//! is no failure, and the command goes on to the exit code that stands. A full device under standard
+//! output is one, for data are lost; what cannot be said on standard error stays unsaid and stops nothing.
+
+use super::exit::{Ended, Exit};
+use std::fmt::Arguments;
+use std::io::{ErrorKind, Result, Write};
+
+/// Says a line on standard error, in the words of `format!`.
+macro_rules! say {
+    ($($words:tt)*) => {
+        $crate::cli::stream::say_line(format_args!($($words)*))
+    };
+}
+pub(super) use say;
+
+/// Writes data to standard output, down to the last byte.
+///
+/// # Errors
+/// When the device refuses; a pipe that nobody reads any more is no error.
+pub fn print_data(text: &str) -> anyhow::Result<()> {
+    written(write_out(std::io::stdout().lock(), text))
+}
+
+/// What came of writing to standard output, as an error of the command.
+///
+/// # Errors
+/// The same, unless the reader has gone.
+pub fn written(result: Result<()>) -> anyhow::Result<()> {
+    match result {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Ended::with(Exit::CaseFailed, format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes and flushes: what is left in a buffer at the end of a program is lost without a word.
+fn write_out(mut out: impl Write, text: &str) -> Result<()> {
+    out.write_all(text.as_bytes())?;
+    out.flush()
+}
+
+/// Says words and an end of line on standard error, if anyone listens.
+pub fn say_line(words: Arguments<'_>) {
+    let _ = writeln!(std::io::stderr().lock(), "{words}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A device that refuses in its own way.
+    struct Device(ErrorKind);
+
+    impl Write for Device {
+        fn write(&mut self, _: &[u8]) -> Result<usize> {
+            Err(self.0.into())
+        }
+
+        fn flush(&mut self) -> Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_reader_who_left_is_no_error_and_a_full_device_is() {
+        let end = |kind| written(write_out(Device(kind), "data"));
+        assert!(end(ErrorKind::BrokenPipe).is_ok());
+        let error = end(ErrorKind::StorageFull).expect_err("data are lost");
+        assert!(error.to_string().starts_with("cannot write to standard output: "), "{error}");
+        assert_eq!(Exit::of(&error), Exit::CaseFailed);
+    }
+
+    #[test]
+    fn what_waits_in_a_buffer_is_written_before_the_end() {
+        let buffered = std::io::LineWriter::new(Device(ErrorKind::StorageFull));
+        assert!(write_out(buffered, "no end of line").is_err());
+    }
+}
