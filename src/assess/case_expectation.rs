@@ -4,6 +4,7 @@
 use super::class::{Class, Classification};
 use super::summary::Judgement;
 use super::verdict::{Check, Outcome, Verdict};
+use super::wording::typed;
 use crate::record::{Record, Status};
 use crate::solver::explicit::Drag;
 use crate::solver::integrator::IntegratorKind;
@@ -189,15 +190,16 @@ fn error_found(range: &ErrorRange, record: &Record) -> Check {
     let row =
         record.error(measure.quantity, measure.sample, measure.norm, &measure.reference, measure.time_factor);
     let Some(error) = row.map(|row| row.value.abs()) else {
-        return check("error", false, None, format!("no error at T_v = {}", measure.time_factor));
+        return check("error", false, None, format!("no error at T_v = {}", typed(measure.time_factor)));
     };
     let pass = error < range.below && error >= range.above;
+    let inside = if pass { "in" } else { "outside" };
     let reason = format!(
-        "{} {} {} at T_v = {}: {error:.3e} in {:.1e} … {:.1e}",
+        "{} {} {} at T_v = {}: {error:.3e} {inside} {:.1e} … {:.1e}",
         measure.quantity.name(),
         measure.norm,
         measure.sample.name(),
-        measure.time_factor,
+        typed(measure.time_factor),
         range.above,
         range.below
     );
@@ -208,5 +210,7 @@ fn drift_found(what: &str, found: Option<f64>, below: f64) -> Check {
     let Some(drift) = found else {
         return check("drift", false, None, format!("no balance of the {what}"));
     };
-    check("drift", drift < below, Some(drift), format!("{what}: drift {drift:.1e}, below {below:.0e}"))
+    let pass = drift < below;
+    let relation = if pass { "below" } else { "not below" };
+    check("drift", pass, Some(drift), format!("{what}: drift {drift:.1e}, {relation} {below:.0e}"))
 }

@@ -127,12 +127,28 @@ pub struct FieldError<'a> {
     pub reference: &'a str,
     /// What absolute errors are divided by, in the unit of the field.
     pub scale: f64,
+    /// Share of the scale down to which the reference tells a field from zero: see [`resolution`].
+    pub resolution: f64,
+}
+
+/// Exact values below this share of their scale are lost in the round-off of a run, whose pressures
+/// and displacements are of the size of the scale: an error relative to them means nothing.
+pub const UNRESOLVED: f64 = 1e4 * f64::EPSILON;
+
+/// Share of the load, or of the final settlement, below which a reference has no value to hold an
+/// error against: its own accuracy at that time, and round-off at least.
+pub fn resolution(reference: &Reference, time_factor: f64) -> f64 {
+    let accuracy = reference.accuracy(time_factor).map_or(0.0, |accuracy| accuracy.tail_bound);
+    accuracy.max(UNRESOLVED)
 }
 
 impl FieldError<'_> {
-    /// The error in every norm of fields in which it is defined.
+    /// The error in every norm of fields in which it is defined; in none where the exact field is zero
+    /// or too small to be told from it.
     pub fn rows(self, computed: &[f64], exact: &[f64], volume: &[f64]) -> impl Iterator<Item = ErrorRow> {
-        FIELD_NORMS.into_iter().filter_map(move |norm| {
+        let largest = exact.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let is_lost = largest <= self.resolution * self.scale.abs();
+        FIELD_NORMS.into_iter().filter(move |_| !is_lost).filter_map(move |norm| {
             Some(ErrorRow {
                 time_factor: self.time_factor,
                 quantity: self.quantity,
@@ -146,7 +162,8 @@ impl FieldError<'_> {
     }
 }
 
-/// The signed error of a settlement, m, where it is defined; absolute over a scale, m.
+/// The signed error of a settlement, m, where it is defined and the exact one is no round-off;
+/// absolute over a scale, m.
 ///
 /// # Errors
 /// When the reference refuses the time factor.
@@ -157,6 +174,9 @@ pub fn settlement_error(
     scale: f64,
 ) -> Result<Option<ErrorRow>, ExactError> {
     let exact = reference.settlement(time_factor)?;
+    if exact.abs() <= resolution(reference, time_factor) * scale.abs() {
+        return Ok(None);
+    }
     let value = settlement / exact - 1.0;
     Ok(value.is_finite().then(|| ErrorRow {
         time_factor,
@@ -170,7 +190,7 @@ pub fn settlement_error(
 }
 
 /// Every error of a snapshot against a reference; where a relative error is not defined, for the
-/// exact field is zero, there is no row.
+/// exact field is zero or below round-off, there is no row.
 fn snapshot_errors(
     case: &Case,
     reference: &Reference,
@@ -179,6 +199,7 @@ fn snapshot_errors(
 ) -> Result<Vec<ErrorRow>, ExactError> {
     let load = case.column.load;
     let final_settlement = reference.settlement(LONG_AFTER)?;
+    let resolution = resolution(reference, time_factor);
     let mut rows = Vec::new();
     for (sample, samples) in [
         (Sample::Points, &snapshot.points),
@@ -199,7 +220,8 @@ fn snapshot_errors(
             ),
             (Quantity::Displacement, &displacements.0, &displacements.1, &volumes, final_settlement),
         ] {
-            let field = FieldError { time_factor, quantity, sample, reference: reference.name(), scale };
+            let reference = reference.name();
+            let field = FieldError { time_factor, quantity, sample, reference, scale, resolution };
             rows.extend(field.rows(computed, exact, volume));
         }
     }

@@ -1,6 +1,7 @@
 //! What must hold of every record, whatever it is expected to show and whatever the golden values
 //! say: a lost point or a reference that is no better than the result spoils any verdict.
 
+use super::wording::typed;
 use crate::record::{Quantity, Record};
 
 /// Drift of conserved quantities that round-off explains.
@@ -23,7 +24,7 @@ pub fn complaints(record: &Record) -> Vec<String> {
             // Written so that what is no number is told.
             let holds = value.abs() <= bound;
             if !holds {
-                let time_factor = balance.time_factor;
+                let time_factor = typed(balance.time_factor);
                 found.push(format!("{what} is {value:.2e} at T_v = {time_factor}, more than {bound:.0e}"));
             }
         };

@@ -8,7 +8,7 @@ use super::body::Problem;
 use super::explicit::ExplicitSettings;
 use super::integrator::{Formulation, IntegratorKind};
 use super::limits;
-use super::outcome::{Failure, RunStatus};
+use super::outcome::{Failure, FailureKind, RunStatus};
 use super::prediction::predict;
 use super::run::{Kernel, Schedule, TimeStepRule, run};
 use serde::{Deserialize, Serialize};
@@ -68,16 +68,23 @@ pub struct CriticalStep {
 }
 
 impl Probe {
-    /// Whether it ran below the predicted step, or left above it.
+    /// Whether it ran below the predicted step, or left above it: a run that somebody or a time limit
+    /// stopped did neither.
     pub fn is_as_predicted(&self) -> bool {
-        (self.share < 1.0) == self.failure.is_none()
+        match &self.failure {
+            None => self.share < 1.0,
+            Some(failure) => {
+                self.share > 1.0 && !matches!(failure.kind, FailureKind::Stopped | FailureKind::TimedOut)
+            }
+        }
     }
 }
 
 impl CriticalStep {
-    /// Whether the runs on both sides of the prediction did as predicted.
+    /// Whether the runs on both sides of the prediction did as predicted; without either side, no.
     pub fn probes_agree(&self) -> bool {
-        self.probes.iter().all(Probe::is_as_predicted)
+        let has = |side: fn(f64) -> bool| self.probes.iter().any(|probe| side(probe.share));
+        has(|share| share < 1.0) && has(|share| share > 1.0) && self.probes.iter().all(Probe::is_as_predicted)
     }
 
     /// Observed over predicted step, minus one.
