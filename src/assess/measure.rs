@@ -397,3 +397,68 @@ fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, Exa
     }
     Ok(entry)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::ColumnParameters;
+
+    /// `U = a √T_v` at seven rows from 0.01 to 0.64.
+    fn curve() -> Vec<HistoryRow> {
+        let row = |step: i32| {
+            let time_factor = 0.01 * 2_f64.powi(step);
+            HistoryRow { time_factor, degree_of_consolidation: time_factor.sqrt() }
+        };
+        (0..7).map(row).collect()
+    }
+
+    #[test]
+    fn a_settlement_off_its_curve_has_a_gap_on_either_side() {
+        let curve = curve();
+        for time_factor in [0.015, 0.03, 0.1, 0.5] {
+            let on_curve = f64::sqrt(time_factor);
+            assert_eq!(curve_gap(&curve, time_factor, on_curve), 0.0, "{time_factor}");
+            for off in [0.1, -0.1] {
+                let gap = curve_gap(&curve, time_factor, on_curve + off);
+                // What interpolation explains, the cubic's distance from the straight line, is let go.
+                assert!(gap > 0.075 && gap <= 0.1 + 1e-3, "{gap} at {time_factor} for {off}");
+            }
+        }
+        // At a row of the curve nothing is left to interpolation.
+        assert!((curve_gap(&curve, 0.04, 0.2 + 0.01) - 0.01).abs() < 1e-9);
+        assert_eq!(curve_gap(&curve, 0.005, 5.0), 0.0, "before the first row there is no curve");
+        assert_eq!(curve_gap(&curve, 0.9, 5.0), 0.0, "nor beyond the last");
+    }
+
+    fn field(scale: f64, resolution: f64) -> FieldError<'static> {
+        let (quantity, sample) = (Quantity::Pressure, Sample::Points);
+        FieldError { time_factor: 1.0, quantity, sample, reference: "terzaghi", scale, resolution }
+    }
+
+    #[test]
+    fn an_exact_field_below_the_resolution_has_no_relative_error() {
+        let rows = |exact: f64, resolution: f64| {
+            field(100.0, resolution).rows(&[1e-11, 2e-11], &[exact, 0.5 * exact], &[1.0, 1.0]).count()
+        };
+        assert_eq!(rows(1e-50, UNRESOLVED), 0);
+        assert_eq!(rows(0.9 * 100.0 * UNRESOLVED, UNRESOLVED), 0);
+        assert_eq!(rows(1.1 * 100.0 * UNRESOLVED, UNRESOLVED), FIELD_NORMS.len());
+        // A reference that is good to 1e-6 of the load resolves no pressure of 1e-7 of it.
+        assert_eq!(rows(1e-5, 1e-6), 0);
+        assert_eq!(rows(1e-3, 1e-6), FIELD_NORMS.len());
+    }
+
+    #[test]
+    fn long_after_the_end_pressures_have_no_error_and_the_settlement_has() {
+        let column = ColumnParameters::default();
+        let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[50.0]).expect("the seed column");
+        assert_eq!(resolution(&reference, 50.0), UNRESOLVED);
+        assert!(reference.fields(50.0, 1.0).expect("inside").pressure < 1e-40 * column.load);
+        let settled = column.final_settlement();
+        let row = settlement_error(&reference, 50.0, 1.01 * settled, settled).expect("a time");
+        assert!((row.expect("an error").value - 0.01).abs() < 1e-9);
+        // A settlement that round-off could have made has none.
+        let nothing = settlement_error(&reference, 50.0, settled, 1e13 * settled).expect("a time");
+        assert_eq!(nothing, None);
+    }
+}
