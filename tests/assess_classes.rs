@@ -109,7 +109,7 @@ fn round_off_is_exact_and_not_an_order() {
 #[test]
 fn standing_still_is_a_floor() {
     assert_eq!(class(&listed(&[0.3; 6])), both(Class::FloorLimited));
-    assert_eq!(class(&listed(&[0.3; 3])), both(Class::FloorLimited));
+    assert_eq!(class(&listed(&[0.3; 4])), both(Class::FloorLimited));
     assert_eq!(class(&listed(&[4e-2, 1e-2, 2.7e-3, 2.2e-3])), both(Class::FloorLimited));
     let noisy = listed(&[4e-2, 1e-2, 2.6e-3, 2.1e-3, 2.5e-3, 2.2e-3]);
     assert_eq!(class(&noisy), both(Class::FloorLimited));
@@ -118,6 +118,109 @@ fn standing_still_is_a_floor() {
     let dip = classify(&series(|h| (h * h - 2e-4).abs()), &formal(2.0));
     assert_eq!(dip.class, Class::FloorLimited, "{dip:?}");
     assert!((dip.floor.unwrap().value - 2e-4).abs() < 1e-9);
+}
+
+/// Errors of an element code in backward Euler steps of 0.001 in T_v, on 10, 20, … cells: the step leaves
+/// a limit, which the mesh approaches at second order. The first two as measured; of the others the
+/// errors on 10 and 40 cells were, and what lies between and beyond follows from the order.
+const GO_TO_A_LIMIT: [(&[f64], f64); 5] = [
+    (&[2.70e-5, 2.29e-3, 2.85e-3, 3.00e-3, 3.03e-3], 3.04e-3),
+    (&[1.71e-3, -1.45e-3, -2.23e-3, -2.43e-3], -2.49e-3),
+    (&[9.0e-4, -7.0e-4, -1.1e-3, -1.2e-3], -1.23e-3),
+    (&[2.0e-4, -1.2e-4, -2.0e-4, -2.2e-4], -2.27e-4),
+    (&[1.04e-3, 1.40e-3, 1.49e-3, 1.5125e-3], 1.52e-3),
+];
+
+fn with_signs(values: &[f64]) -> (ErrorSeries, Context) {
+    let sizes = [10.0, 20.0, 40.0, 80.0, 160.0_f64].map(f64::recip);
+    let points: Vec<_> = sizes.into_iter().zip(values.iter().map(|value| value.abs())).collect();
+    (ErrorSeries::of(&points), Context { signed: values.to_vec(), ..Context::default() })
+}
+
+#[test]
+fn a_limit_other_than_zero_is_a_floor_from_either_side() {
+    for (values, limit) in GO_TO_A_LIMIT {
+        for formal_order in [None, Some(2.0)] {
+            let (series, context) = with_signs(values);
+            let found = classify(&series, &Context { formal_order, ..context });
+            assert_eq!(found.class, Class::FloorLimited, "{found:?}");
+            let floor = found.floor.expect("a floor");
+            assert!((floor.value / f64::abs(limit) - 1.0).abs() < 0.02 && floor.fitted, "{floor:?}");
+            assert!((found.order.expect("an order") - 2.0).abs() < 0.3, "{values:?}");
+            // The same on three levels is told, and is no floor and no divergence.
+            let (series, context) = with_signs(&values[..3]);
+            let found = classify(&series, &Context { formal_order, ..context });
+            assert_eq!(found.class, Class::PreAsymptotic, "{found:?}");
+            assert!(found.reason.contains("3 levels cannot tell a limit from growth"), "{found:?}");
+            assert!(found.advice.expect("advice").contains("add a level: at size 0.0125"));
+        }
+    }
+}
+
+#[test]
+fn signs_decide_only_where_they_belong_to_the_errors() {
+    // Of a settlement +0.4, +0.1, +0.025 % falls to zero; through zero it goes to a limit.
+    let (series, context) = with_signs(&[4e-3, 1e-3, 2.5e-4, 6.25e-5]);
+    assert_eq!(classify(&series, &context).class, Class::Asymptotic);
+    let (series, context) = with_signs(&[1.2e-2, 2.61e-3, 3.47e-4, -2.16e-4]);
+    assert_eq!(classify(&series, &context).class, Class::FloorLimited);
+    // Signs of other values than the errors are none.
+    let strange = Context { signed: vec![1.0, -1.0, 1.0, -1.0], ..Context::default() };
+    assert_eq!(classify(&series, &strange), classify(&series, &Context::default()));
+    let short = Context { signed: context.signed[..3].to_vec(), ..Context::default() };
+    assert_eq!(classify(&series, &short), classify(&series, &Context::default()));
+}
+
+#[test]
+fn three_levels_claim_no_floor_and_four_do() {
+    for formal_order in [None, Some(2.0)] {
+        let context = Context { formal_order, ..Context::default() };
+        for errors in [[0.3, 0.3, 0.3], [4e-3, 1.2e-3, 1.0e-3], [3e-3, 3.6e-4, 8.9e-5]] {
+            let found = classify(&listed(&errors), &context);
+            assert!(found.floor.is_none() && found.class != Class::FloorLimited, "{found:?}");
+        }
+    }
+    let floored = |levels: usize| {
+        let points: Vec<_> = SIZES[..levels].iter().map(|h| (*h, h * h + 1e-3)).collect();
+        classify(&ErrorSeries::of(&points), &formal(2.0))
+    };
+    let three = floored(3);
+    assert_eq!(three.class, Class::PreAsymptotic, "{three:?}");
+    assert!(three.reason.contains("3 levels cannot tell a floor of about 1e-3"), "{three:?}");
+    assert!(three.advice.expect("advice").contains("add a finer level"));
+    assert_eq!(floored(4).class, Class::FloorLimited);
+    // What three levels took for a floor of 8.9e-5, two more show to be none.
+    let falls_on = listed(&[1.3e-3, 1.6e-4, 8.9e-5, 3.3e-5, 1.1e-5]);
+    assert_ne!(classify(&falls_on, &formal(2.0)).class, Class::FloorLimited);
+    let before = classify(&listed(&[1.3e-3, 1.6e-4, 8.9e-5]), &formal(2.0));
+    assert_ne!(before.class, Class::FloorLimited, "{before:?}");
+}
+
+#[test]
+fn of_two_classes_that_fit_the_documented_one_is_given() {
+    let of = |errors: &[f64], context: Context| classify(&listed(errors), &context).class;
+    let plain = Context::default;
+    // Nonsense in the context before round-off, and round-off before everything else.
+    let all_round_off = Context { round_off: Some(1e-12), ..plain() };
+    assert_eq!(of(&[1e-15, 4e-15, 2e-14, 9e-14], all_round_off.clone()), Class::Exact);
+    let nonsense = Context { formal_order: Some(-1.0), ..all_round_off.clone() };
+    assert_eq!(of(&[1e-15, 4e-15, 2e-14, 9e-14], nonsense), Class::NotEvaluable);
+    // A locked body is locked, whatever its errors do; but a hole is told before.
+    let stuck = Context { mobility: vec![0.01, 0.02, 0.03], ..plain() };
+    assert_eq!(of(&[1.0, 2.0, 4.0], stuck.clone()), Class::Locked);
+    assert_eq!(of(&[1.0, f64::NAN, 4.0], stuck.clone()), Class::NotEvaluable);
+    assert_eq!(of(&[1e-15; 3], Context { round_off: Some(1e-12), ..stuck }), Class::Exact);
+    // One level of round-off is a floor before it is an order, on three levels too.
+    assert_eq!(of(&[1e-6, 1e-9, 1e-13], all_round_off), Class::FloorLimited);
+    // A limit comes before growth, and growth before a standstill.
+    assert_eq!(of(&[1.0, 2.0, 2.5, 2.75], plain()), Class::FloorLimited);
+    assert_eq!(of(&[1.0, 1.1, 1.2, 1.3, 1.4, 1.5], plain()), Class::Divergent);
+    // Ups and downs come before an alternating order.
+    assert_eq!(of(&[1.0, 0.5, 1.0, 0.5, 1.0], plain()), Class::Oscillatory);
+    // A poor reference unmakes an order, not a divergence.
+    let poor = Context { reference_accuracy: Some(1.0), ..plain() };
+    assert_eq!(of(&[4e-2, 1e-2, 2.5e-3, 6.25e-4], poor.clone()), Class::NotEvaluable);
+    assert_eq!(of(&[1.0, 2.0, 4.0, 8.0], poor), Class::Divergent);
 }
 
 #[test]
@@ -196,8 +299,14 @@ fn a_floor_is_put_down_to_what_fits_it_with_advice() {
     let found = floored(1.4e-4, &[step.clone(), model]);
     assert_eq!(found.floor.clone().unwrap().limiter, Some(LimiterKind::Model));
     assert!(found.advice.unwrap().contains("its own equations"));
-    let found = floored(1e-2, &[step]);
+    let found = floored(1e-2, std::slice::from_ref(&step));
     assert_eq!(found.floor.unwrap().limiter, None);
+    // A step rule of unknown height is put forward where nothing else is left, and only as likely.
+    let rule = limiter(LimiterKind::Step, "`tolerance`", None);
+    let found = floored(1e-2, &[step, rule]);
+    assert_eq!(found.floor.unwrap().limiter, Some(LimiterKind::Step));
+    assert!(found.reason.contains("most likely by `tolerance`"), "{}", found.reason);
+    assert!(found.advice.unwrap().starts_with("lower `tolerance` by"));
 }
 
 #[test]

@@ -102,6 +102,51 @@ fn a_doubled_constant_keeps_the_order_and_fails_the_level() {
 }
 
 #[test]
+fn a_result_that_is_too_good_fails_the_level() {
+    let at = |above, below| Expectation {
+        at: Some(ErrorBound { size: 0.1, below, above }),
+        ..Expectation::default()
+    };
+    let squares = series(|h| h * h);
+    let error = squares.at(0.1).and_then(|level| level.error).expect("a level");
+    assert!(verdict(&at(9e-3, 1.1e-2), &squares).pass);
+    assert!(verdict(&at(error, 1.1e-2), &squares).pass, "the lower end belongs to the bounds");
+    assert!(!verdict(&at(1e-3, error), &squares).pass, "the upper end does not");
+    let good = verdict(&at(1.1e-2, 1.2e-2), &squares);
+    assert!(!good.pass, "{good:?}");
+    assert_eq!(good.reason, "error 0.01 at size 0.1 too good: expected between 0.011 and 0.012");
+    // Bounds that shut everything out are no expectation.
+    let crossed = verdict(&at(1.2e-2, 1.1e-2), &squares);
+    assert!(!crossed.pass && crossed.reason.contains("`above` of `at`"), "{crossed:?}");
+    for above in [f64::NAN, -1.0] {
+        assert!(!verdict(&at(above, 1.0), &squares).pass, "{above}");
+    }
+}
+
+#[test]
+fn a_spread_counts_the_levels_from_its_size_on() {
+    let spread = |size, below| Expectation {
+        spread: Some(ErrorBound { size, below, above: 0.0 }),
+        ..Expectation::default()
+    };
+    // 0.2, 0.1, 0.05, …: apart by 50 % at the coarsest, by 1 % from 0.1 on.
+    let settled = series(|h| if h > 0.15 { 1.5 } else { 1.0 + 0.1 * h });
+    assert!(verdict(&spread(0.1, 0.011), &settled).pass);
+    assert!(!verdict(&spread(0.1, 0.009), &settled).pass);
+    assert!(!verdict(&spread(0.2, 0.011), &settled).pass);
+    assert!(!verdict(&spread(0.00625, 1.0), &settled).pass, "one level has no spread");
+}
+
+#[test]
+fn three_levels_have_no_floor_to_judge() {
+    let floor = Expectation { floor: Some(FloorBand { above: 0.0, below: 1.0 }), ..Expectation::default() };
+    let levels = series(|h| h * h).levels().to_vec();
+    let three = verdict(&floor, &ErrorSeries::new(levels[..3].to_vec()));
+    assert!(!three.pass && three.reason.contains("3 levels cannot tell one from none"), "{three:?}");
+    assert!(verdict(&floor, &ErrorSeries::new(levels[..4].to_vec())).pass);
+}
+
+#[test]
 fn a_floor_is_held_between_its_bounds() {
     let floor =
         |above, below| Expectation { floor: Some(FloorBand { above, below }), ..Expectation::default() };

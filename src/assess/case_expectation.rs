@@ -4,6 +4,7 @@
 use super::class::{Class, Classification};
 use super::summary::Judgement;
 use super::verdict::{Check, Outcome, Verdict};
+use super::wording::typed;
 use crate::record::{Record, Status};
 use crate::solver::explicit::Drag;
 use crate::solver::integrator::IntegratorKind;
@@ -189,15 +190,16 @@ fn error_found(range: &ErrorRange, record: &Record) -> Check {
     let row =
         record.error(measure.quantity, measure.sample, measure.norm, &measure.reference, measure.time_factor);
     let Some(error) = row.map(|row| row.value.abs()) else {
-        return check("error", false, None, format!("no error at T_v = {}", measure.time_factor));
+        return check("error", false, None, format!("no error at T_v = {}", typed(measure.time_factor)));
     };
     let pass = error < range.below && error >= range.above;
+    let inside = if pass { "in" } else { "outside" };
     let reason = format!(
-        "{} {} {} at T_v = {}: {error:.3e} in {:.1e} … {:.1e}",
+        "{} {} {} at T_v = {}: {error:.3e} {inside} {:.1e} … {:.1e}",
         measure.quantity.name(),
         measure.norm,
         measure.sample.name(),
-        measure.time_factor,
+        typed(measure.time_factor),
         range.above,
         range.below
     );
@@ -208,5 +210,69 @@ fn drift_found(what: &str, found: Option<f64>, below: f64) -> Check {
     let Some(drift) = found else {
         return check("drift", false, None, format!("no balance of the {what}"));
     };
-    check("drift", drift < below, Some(drift), format!("{what}: drift {drift:.1e}, below {below:.0e}"))
+    let pass = drift < below;
+    let relation = if pass { "below" } else { "not below" };
+    check("drift", pass, Some(drift), format!("{what}: drift {drift:.1e}, {relation} {below:.0e}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::{RunOptions, Study, StudySource, run_study};
+
+    const STUDY: &str = r#"title = "One case"
+scene = "terzaghi"
+output = { time_factors = [0.05] }
+
+[[sweep]]
+method = ["GC-SRI-patch"]
+integrator = ["implicit"]
+cells = [10]
+time_step = [{ growth = 0.05 }]
+"#;
+
+    fn record() -> Record {
+        let source = StudySource { name: "one.toml".to_owned(), text: STUDY.to_owned() };
+        let study = Study::check(&source).expect("a sound study");
+        run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records.remove(0)
+    }
+
+    #[test]
+    fn an_error_is_held_from_both_sides_and_a_missing_one_fails() {
+        let mut record = record();
+        let row = record.errors[0].clone();
+        let measure = Measure {
+            quantity: row.quantity,
+            sample: row.sample,
+            norm: row.norm,
+            reference: row.reference.clone(),
+            time_factor: row.time_factor,
+            probe: None,
+        };
+        let error = row.value.abs();
+        let found = |record: &Record, above: f64, below: f64| {
+            error_found(&ErrorRange { measure: measure.clone(), above, below }, record)
+        };
+        assert!(found(&record, 0.9 * error, 1.1 * error).pass);
+        assert!(found(&record, error, 1.1 * error).pass, "the lower end belongs to the range");
+        let too_good = found(&record, 1.1 * error, 2.0 * error);
+        assert!(!too_good.pass && too_good.reason.contains("outside"), "{}", too_good.reason);
+        assert!(!found(&record, 0.0, error).pass, "the upper end does not");
+        record.errors[0].value = f64::NAN;
+        assert!(!found(&record, 0.0, 1e9).pass);
+        record.errors.clear();
+        assert!(!found(&record, 0.0, 1e9).pass);
+    }
+
+    #[test]
+    fn drifts_are_judged_at_every_output_and_say_on_which_side_they_are() {
+        let mut record = record();
+        let demand = CaseDemand { solid_drift_below: Some(1e-9), ..CaseDemand::default() };
+        assert!(demand.checks(&record)[0].pass);
+        record.balance[0].solid_mass_drift = -2e-9;
+        let check = demand.checks(&record).remove(0);
+        assert!(!check.pass && check.reason.contains("not below"), "{}", check.reason);
+        record.balance.clear();
+        assert!(!demand.checks(&record)[0].pass, "without a balance there is no drift to pass");
+    }
 }

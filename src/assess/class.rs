@@ -16,11 +16,13 @@ pub enum Class {
     Asymptotic,
     /// The error falls, and its order has not settled yet.
     PreAsymptotic,
-    /// Something else than the refined size limits the error.
+    /// Something else than the refined size limits the error: it stands still, or goes to a limit that
+    /// is not zero. Four levels at least say so, for a floor is a claim that one more level can refute;
+    /// only round-off, whose height is known, is a floor to fewer.
     FloorLimited,
     /// The error goes up and down, or its order does.
     Oscillatory,
-    /// The error grows under refinement.
+    /// The error grows under refinement, and goes to no limit.
     Divergent,
     /// The order is steady and well above the formal one.
     Superconvergent,
@@ -101,6 +103,9 @@ pub struct Context {
     pub limiters: Vec<Limiter>,
     /// Displacement over the exact one at each level, coarse to fine, where it is known.
     pub mobility: Vec<f64>,
+    /// The errors with their signs, coarse to fine, where they have one: those of a settlement. Empty
+    /// for norms of fields.
+    pub signed: Vec<f64>,
 }
 
 /// The class of a series, and why.

@@ -1,11 +1,21 @@
 //! Puts a series of errors into a class, before any order is quoted.
 //!
-//! The checks run in a fixed order and the first that applies decides: what cannot be evaluated,
-//! round-off, growth, plateaus, ups and downs, alternating orders; what is left falls steadily,
-//! and is judged on its finest window in [`window`](super::window).
+//! The checks run in a fixed order and the first that applies decides:
+//!
+//! 1. a context of nonsense (`not-evaluable`), errors that are all round-off (`exact`), levels that are
+//!    missing, too few or too close (`not-evaluable`), a body that hardly moves (`locked`);
+//! 2. a finest error of round-off, and a limit that is not zero (`floor-limited`; `pre-asymptotic` where
+//!    only three levels say so), before any growth;
+//! 3. growth (`divergent`), plateaus (`floor-limited`; `pre-asymptotic` on three levels), ups and downs
+//!    (`oscillatory`, `divergent`), alternating orders (`oscillatory`);
+//! 4. what is left falls steadily, and is judged on its finest window in [`window`](super::window).
+//!
+//! Last, evidence of a reference no better than the smallest error makes a class of step 4, or a
+//! `pre-asymptotic` one, `not-evaluable`.
 
+use super::approach::{Limit, limit_of};
 use super::cancelling::fit_cancelling;
-use super::case::{Case, advised, plain};
+use super::case::{Case, FLOOR_LEVELS, advised, plain};
 use super::class::{Class, Classification, Context};
 use super::limiter::LimiterKind;
 use super::orders::WINDOW;
@@ -124,13 +134,23 @@ fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
 impl Case<'_> {
     fn classify(&self, context: &Context) -> Classification {
         let found = self
-            .growth()
-            .or_else(|| self.round_off(context))
+            .round_off(context)
+            .or_else(|| self.limit())
+            .or_else(|| self.growth())
             .or_else(|| self.plateau())
             .or_else(|| self.ups_and_downs())
             .or_else(|| self.alternation())
             .unwrap_or_else(|| judge_window(self));
         self.poor_reference(context, &found).unwrap_or(found)
+    }
+
+    /// A limit that is not zero, approached from either side.
+    fn limit(&self) -> Option<Classification> {
+        Some(match limit_of(&self.values)? {
+            Limit::Confirmed(found) => self.approaching(&found),
+            Limit::Suggested(found) => self.may_approach(&found),
+            Limit::Reached => self.limited(&self.standstill()),
+        })
     }
 
     /// Rises that no fall makes up for.
@@ -181,15 +201,22 @@ impl Case<'_> {
         let fell = self.coarsest().1 > PLATEAU * highest;
         let still = self.pairs.iter().all(|order| order.abs() <= FLAT);
         (stalled || still || (level && fell)).then(|| {
-            let ((size, error), (before, earlier)) = (self.finest(), self.points[self.points.len() - 2]);
-            self.limited(&format!(
-                "refining from size {} to {} leaves the error at {} (was {})",
-                short(before),
-                short(size),
-                short(error),
-                short(earlier)
-            ))
+            if self.points.len() < FLOOR_LEVELS {
+                return self.may_be_limited(&self.standstill(), self.finest().1);
+            }
+            self.limited(&self.standstill())
         })
+    }
+
+    fn standstill(&self) -> String {
+        let ((size, error), (before, earlier)) = (self.finest(), self.points[self.points.len() - 2]);
+        format!(
+            "refining from size {} to {} leaves the error at {} (was {})",
+            short(before),
+            short(size),
+            short(error),
+            short(earlier)
+        )
     }
 
     /// Changes of direction, standstills left out.

@@ -28,7 +28,7 @@ pub enum LimiterKind {
 pub struct Limiter {
     /// Its kind.
     pub kind: LimiterKind,
-    /// What it is in words, such as "the water's storage".
+    /// What it is in words, such as "the water's storage"; of a step rule what one would lower.
     pub name: String,
     /// The floor it is known to cause, in the unit of the errors.
     pub magnitude: Option<f64>,
@@ -76,7 +76,7 @@ pub fn advice(floor: f64, target: Option<f64>, limiter: Option<&Limiter>, candid
     // Rounded up to a power of two, as people halve things.
     let factor = elementary::exp2(elementary::log2(factor.clamp(2.0, 1e9)).ceil());
     match limiter.kind {
-        LimiterKind::Step => format!("lower the time step by {factor}"),
+        LimiterKind::Step => format!("lower {} by {factor}", limiter.name),
         LimiterKind::Mesh => format!("refine the mesh by {factor}"),
         LimiterKind::PointsPerCell => format!("raise the points per cell by {factor}"),
         LimiterKind::Reference => {
@@ -116,11 +116,12 @@ mod tests {
     #[test]
     fn the_advice_counts_with_the_order_of_the_cause() {
         let mut step = candidate(LimiterKind::Step, None);
+        step.name = "the time step".to_owned();
         assert_eq!(advice(4e-4, Some(1e-4), Some(&step), &[]), "lower the time step by 4");
         assert_eq!(advice(5e-4, Some(1e-4), Some(&step), &[]), "lower the time step by 8");
         step.order = Some(2.0);
         assert_eq!(advice(4e-4, Some(1e-4), Some(&step), &[]), "lower the time step by 2");
         assert_eq!(advice(4e-4, None, Some(&step), &[]), "lower the time step by 4");
-        assert!(advice(1.0, None, None, &[step]).contains("Step"));
+        assert!(advice(1.0, None, None, &[step]).contains("the time step"));
     }
 }

@@ -128,12 +128,28 @@ pub struct FieldError<'a> {
     pub reference: &'a str,
     /// What absolute errors are divided by, in the unit of the field.
     pub scale: f64,
+    /// Share of the scale down to which the reference tells a field from zero: see [`resolution`].
+    pub resolution: f64,
+}
+
+/// Exact values below this share of their scale are lost in the round-off of a run, whose pressures
+/// and displacements are of the size of the scale: an error relative to them means nothing.
+pub const UNRESOLVED: f64 = 1e4 * f64::EPSILON;
+
+/// Share of the load, or of the final settlement, below which a reference has no value to hold an
+/// error against: its own accuracy at that time, and round-off at least.
+pub fn resolution(reference: &Reference, time_factor: f64) -> f64 {
+    let accuracy = reference.accuracy(time_factor).map_or(0.0, |accuracy| accuracy.tail_bound);
+    accuracy.max(UNRESOLVED)
 }
 
 impl FieldError<'_> {
-    /// The error in every norm of fields in which it is defined.
+    /// The error in every norm of fields in which it is defined; in none where the exact field is zero
+    /// or too small to be told from it.
     pub fn rows(self, computed: &[f64], exact: &[f64], volume: &[f64]) -> impl Iterator<Item = ErrorRow> {
-        FIELD_NORMS.into_iter().filter_map(move |norm| {
+        let largest = exact.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let is_lost = largest <= self.resolution * self.scale.abs();
+        FIELD_NORMS.into_iter().filter(move |_| !is_lost).filter_map(move |norm| {
             Some(ErrorRow {
                 time_factor: self.time_factor,
                 quantity: self.quantity,
@@ -147,7 +163,8 @@ impl FieldError<'_> {
     }
 }
 
-/// The signed error of a settlement, m, where it is defined; absolute over a scale, m.
+/// The signed error of a settlement, m, where it is defined and the exact one is no round-off;
+/// absolute over a scale, m.
 ///
 /// # Errors
 /// When the reference refuses the time factor.
@@ -158,6 +175,9 @@ pub fn settlement_error(
     scale: f64,
 ) -> Result<Option<ErrorRow>, ExactError> {
     let exact = reference.settlement(time_factor)?;
+    if exact.abs() <= resolution(reference, time_factor) * scale.abs() {
+        return Ok(None);
+    }
     let value = settlement / exact - 1.0;
     Ok(value.is_finite().then(|| ErrorRow {
         time_factor,
@@ -171,7 +191,7 @@ pub fn settlement_error(
 }
 
 /// Every error of a snapshot against a reference; where a relative error is not defined, for the
-/// exact field is zero, there is no row.
+/// exact field is zero or below round-off, there is no row.
 fn snapshot_errors(
     case: &Case,
     reference: &Reference,
@@ -180,6 +200,7 @@ fn snapshot_errors(
 ) -> Result<Vec<ErrorRow>, ExactError> {
     let load = case.column.load;
     let final_settlement = reference.settlement(LONG_AFTER)?;
+    let resolution = resolution(reference, time_factor);
     let mut rows = Vec::new();
     for (sample, samples) in [
         (Sample::Points, &snapshot.points),
@@ -200,7 +221,8 @@ fn snapshot_errors(
             ),
             (Quantity::Displacement, &displacements.0, &displacements.1, &volumes, final_settlement),
         ] {
-            let field = FieldError { time_factor, quantity, sample, reference: reference.name(), scale };
+            let reference = reference.name();
+            let field = FieldError { time_factor, quantity, sample, reference, scale, resolution };
             rows.extend(field.rows(computed, exact, volume));
         }
     }
@@ -375,4 +397,69 @@ fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, Exa
         entry.tail_bound = entry.tail_bound.max(accuracy.tail_bound);
     }
     Ok(entry)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::ColumnParameters;
+
+    /// `U = a √T_v` at seven rows from 0.01 to 0.64.
+    fn curve() -> Vec<HistoryRow> {
+        let row = |step: i32| {
+            let time_factor = 0.01 * 2_f64.powi(step);
+            HistoryRow { time_factor, degree_of_consolidation: time_factor.sqrt() }
+        };
+        (0..7).map(row).collect()
+    }
+
+    #[test]
+    fn a_settlement_off_its_curve_has_a_gap_on_either_side() {
+        let curve = curve();
+        for time_factor in [0.015, 0.03, 0.1, 0.5] {
+            let on_curve = f64::sqrt(time_factor);
+            assert_eq!(curve_gap(&curve, time_factor, on_curve), 0.0, "{time_factor}");
+            for off in [0.1, -0.1] {
+                let gap = curve_gap(&curve, time_factor, on_curve + off);
+                // What interpolation explains, the cubic's distance from the straight line, is let go.
+                assert!(gap > 0.075 && gap <= 0.1 + 1e-3, "{gap} at {time_factor} for {off}");
+            }
+        }
+        // At a row of the curve nothing is left to interpolation.
+        assert!((curve_gap(&curve, 0.04, 0.2 + 0.01) - 0.01).abs() < 1e-9);
+        assert_eq!(curve_gap(&curve, 0.005, 5.0), 0.0, "before the first row there is no curve");
+        assert_eq!(curve_gap(&curve, 0.9, 5.0), 0.0, "nor beyond the last");
+    }
+
+    fn field(scale: f64, resolution: f64) -> FieldError<'static> {
+        let (quantity, sample) = (Quantity::Pressure, Sample::Points);
+        FieldError { time_factor: 1.0, quantity, sample, reference: "terzaghi", scale, resolution }
+    }
+
+    #[test]
+    fn an_exact_field_below_the_resolution_has_no_relative_error() {
+        let rows = |exact: f64, resolution: f64| {
+            field(100.0, resolution).rows(&[1e-11, 2e-11], &[exact, 0.5 * exact], &[1.0, 1.0]).count()
+        };
+        assert_eq!(rows(1e-50, UNRESOLVED), 0);
+        assert_eq!(rows(0.9 * 100.0 * UNRESOLVED, UNRESOLVED), 0);
+        assert_eq!(rows(1.1 * 100.0 * UNRESOLVED, UNRESOLVED), FIELD_NORMS.len());
+        // A reference that is good to 1e-6 of the load resolves no pressure of 1e-7 of it.
+        assert_eq!(rows(1e-5, 1e-6), 0);
+        assert_eq!(rows(1e-3, 1e-6), FIELD_NORMS.len());
+    }
+
+    #[test]
+    fn long_after_the_end_pressures_have_no_error_and_the_settlement_has() {
+        let column = ColumnParameters::default();
+        let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[50.0]).expect("the seed column");
+        assert_eq!(resolution(&reference, 50.0), UNRESOLVED);
+        assert!(reference.fields(50.0, 1.0).expect("inside").pressure < 1e-40 * column.load);
+        let settled = column.final_settlement();
+        let row = settlement_error(&reference, 50.0, 1.01 * settled, settled).expect("a time");
+        assert!((row.expect("an error").value - 0.01).abs() < 1e-9);
+        // A settlement that round-off could have made has none.
+        let nothing = settlement_error(&reference, 50.0, settled, 1e13 * settled).expect("a time");
+        assert_eq!(nothing, None);
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::class::{Classification, Context};
 use super::classify::classify;
-use super::measure::{FieldError, settlement_error};
+use super::measure::{FieldError, resolution, settlement_error};
 use super::norms::Norm;
 use super::orders::{FinestOrder, finest_order};
 use super::places::contributions;
@@ -116,6 +116,7 @@ impl Score {
                 sample,
                 reference: reference.name(),
                 scale: *scale,
+                resolution: resolution(reference, time_factor),
             };
             self.errors.extend(field.rows(computed, exact, &state.volume));
             let worst = contributions(computed, exact, &state.volume).first().copied();
@@ -175,7 +176,17 @@ pub fn series_of(levels: &[(usize, Score)], height: f64) -> Vec<ScoredSeries> {
             error: score.error(measure).map(|row| row.value.abs()),
         };
         let series = ErrorSeries::new(levels.iter().map(level).collect());
-        let context = Context { round_off: Some(ROUND_OFF), ..Context::default() };
+        // A settlement's error has a sign; levels are put from coarse to fine as the series is.
+        let mut signed: Vec<(usize, f64)> = match measure.norm {
+            Norm::Relative => {
+                let value = |(cells, score): &(usize, Score)| Some((*cells, score.error(measure)?.value));
+                levels.iter().filter_map(value).collect()
+            }
+            _ => Vec::new(),
+        };
+        signed.sort_by_key(|(cells, _)| *cells);
+        let signed = signed.into_iter().map(|(_, value)| value).collect();
+        let context = Context { round_off: Some(ROUND_OFF), signed, ..Context::default() };
         ScoredSeries {
             measure: measure.clone(),
             finest: finest_order(&series),

@@ -1,6 +1,7 @@
 //! What must hold of every record, whatever it is expected to show and whatever the golden values
 //! say: a lost point or a reference that is no better than the result spoils any verdict.
 
+use super::wording::typed;
 use crate::record::{Quantity, Record};
 
 /// Drift of conserved quantities that round-off explains.
@@ -23,7 +24,7 @@ pub fn complaints(record: &Record) -> Vec<String> {
             // Written so that what is no number is told.
             let holds = value.abs() <= bound;
             if !holds {
-                let time_factor = balance.time_factor;
+                let time_factor = typed(balance.time_factor);
                 found.push(format!("{what} is {value:.2e} at T_v = {time_factor}, more than {bound:.0e}"));
             }
         };
@@ -52,4 +53,69 @@ pub fn complaints(record: &Record) -> Vec<String> {
         }
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::{RunOptions, Study, StudySource, Tier, run_study};
+
+    const STUDY: &str = r#"title = "Sound"
+scene = "terzaghi"
+output = { time_factors = [0.05, 0.2] }
+
+[[sweep]]
+method = ["GC-SRI-patch"]
+integrator = ["implicit"]
+cells = [10]
+time_step = [{ growth = 0.05 }]
+"#;
+
+    fn sound() -> Record {
+        let source = StudySource { name: "sound.toml".to_owned(), text: STUDY.to_owned() };
+        let study = Study::check(&source).expect("a sound study");
+        run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records.remove(0)
+    }
+
+    /// What is said of a record that differs from a sound one.
+    fn said(change: impl Fn(&mut Record)) -> String {
+        let mut record = sound();
+        assert_eq!(complaints(&record), Vec::<String>::new());
+        change(&mut record);
+        complaints(&record).join("; ")
+    }
+
+    #[test]
+    fn a_reference_must_be_ten_times_better_than_the_least_pressure_error() {
+        let smallest = |record: &Record| {
+            let own = record.references[0].name.clone();
+            let pressures =
+                record.errors.iter().filter(|row| row.quantity == Quantity::Pressure && row.reference == own);
+            pressures.map(|row| row.absolute).fold(f64::INFINITY, f64::min)
+        };
+        let bound = |share: f64| said(|record| record.references[0].tail_bound = share * smallest(record));
+        assert_eq!(bound(0.09), "");
+        assert!(bound(0.11).contains("the reference terzaghi is good to"), "{}", bound(0.11));
+        // Of two references the poor one is named.
+        let second = said(|record| record.references[1].tail_bound = 1.0);
+        assert!(second.contains("the reference terzaghi-incompressible"), "{second}");
+    }
+
+    #[test]
+    fn lost_points_drifts_and_gaps_are_told_with_their_bounds() {
+        let lost = said(|record| record.start.as_mut().expect("a start").points -= 1);
+        assert_eq!(lost, "19 points at the start instead of 20");
+        for drift in [2e-9, -2e-9, f64::NAN] {
+            let mass = said(|record| record.balance[1].solid_mass_drift = drift);
+            assert!(mass.contains("the mass of solids") && mass.contains("at T_v = 0.2"), "{mass}");
+            let forces = said(|record| record.balance[0].internal_force_imbalance = drift);
+            assert!(forces.contains("the internal forces") && forces.contains("at T_v = 0.05"), "{forces}");
+        }
+        assert_eq!(said(|record| record.balance[0].solid_mass_drift = 0.9e-9), "");
+        let gap = said(|record| record.balance[0].settlement_curve_gap = 2.1e-3);
+        assert!(gap.contains("the gap between the settlement and the settlement curve is 2.10e-3"), "{gap}");
+        assert_eq!(said(|record| record.balance[0].settlement_curve_gap = 1.9e-3), "");
+        let nonsense = said(|record| record.errors[0].value = f64::NAN);
+        assert!(nonsense.contains("is NaN"), "{nonsense}");
+    }
 }

@@ -13,7 +13,10 @@ use super::verdict::{Beside, Verdict, judge};
 use crate::exact::{Reference, ReferenceKind};
 use crate::record::{Quantity, Record, Sample};
 use crate::scene::{SceneKind, column_parameters};
+use crate::solver::explicit::Drag;
 use crate::solver::material::Material;
+use crate::solver::run::TimeStepRule;
+use crate::solver::scheme::Scheme;
 use crate::solver::snapshot::{Samples, Snapshot};
 use crate::study::{
     Axis, Case, Expectation, IntegratorKind, Measure, NEXT_FINER, NO_REFERENCE, Study, Tier, step_label,
@@ -151,9 +154,46 @@ impl<'a> Path<'a> {
             formal_order: (self.axis == Axis::Cells).then(|| formal_order(case, measure)).flatten(),
             round_off: Some(ROUND_OFF),
             reference_accuracy: used.map(|used| used.tail_bound),
-            limiters: model_limiter(finest, measure).into_iter().chain(self.mesh_limiter(measure)).collect(),
+            limiters: model_limiter(finest, measure)
+                .into_iter()
+                .chain(self.mesh_limiter(measure))
+                .chain(self.held_limiters(measure))
+                .collect(),
             mobility: self.mobility(measure),
+            signed: self.signed(measure),
         }
+    }
+
+    /// The errors with their signs, where they are of a single number.
+    fn signed(&self, measure: &Measure) -> Vec<f64> {
+        if measure.norm != Norm::Relative {
+            return Vec::new();
+        }
+        let value = |record: &&Record| {
+            let (quantity, sample) = (measure.quantity, measure.sample);
+            let row =
+                record.error(quantity, sample, measure.norm, &measure.reference, measure.time_factor)?;
+            Some(row.value)
+        };
+        self.records.iter().filter_map(value).collect()
+    }
+
+    /// What a series over meshes holds while the mesh falls: a step rule that does not follow the mesh,
+    /// and the points per cell where they move through it. How high a floor they make nobody knows
+    /// without varying them.
+    fn held_limiters(&self, measure: &Measure) -> Vec<Limiter> {
+        if self.axis != Axis::Cells || measure.reference == NEXT_FINER {
+            return Vec::new();
+        }
+        let case = &self.records[0].case;
+        let points =
+            case.method.configuration_or(case.scene.configuration()).moves_points().then(|| Limiter {
+                kind: LimiterKind::PointsPerCell,
+                name: "the points per cell".to_owned(),
+                magnitude: None,
+                order: None,
+            });
+        step_limiter(case).into_iter().chain(points).collect()
     }
 
     /// Settlement over the exact one at each level, for the errors of displacements: a locked body
@@ -254,6 +294,26 @@ fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
         | (Quantity::Displacement, Sample::Nodes) => Some(2.0),
         _ => None,
     }
+}
+
+/// The floor that the error in time puts under errors on ever finer meshes, where the step does not fall
+/// with the cells.
+fn step_limiter(case: &Case) -> Option<Limiter> {
+    let of_second_order = match case.integrator {
+        IntegratorKind::Implicit => true,
+        IntegratorKind::SemiImplicit => false,
+        IntegratorKind::Explicit => {
+            case.settings.scheme == Scheme::Leapfrog && case.settings.drag == Drag::Centred
+        }
+    };
+    let of_steps = if of_second_order { 2.0 } else { 1.0 };
+    let (name, order) = match case.time_step {
+        TimeStepRule::Stable(_) | TimeStepRule::Courant(_) => return None,
+        TimeStepRule::Seconds(_) => ("the time step", Some(of_steps)),
+        TimeStepRule::Growth(_) => ("`growth`", Some(of_steps)),
+        TimeStepRule::Tolerance(_) => ("`tolerance`", None),
+    };
+    Some(Limiter { kind: LimiterKind::Step, name: name.to_owned(), magnitude: None, order })
 }
 
 /// The floor that a reference of other equations puts under an error: its own distance from the

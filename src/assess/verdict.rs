@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::bend::{Bend, explain};
+use super::case::FLOOR_LEVELS;
 use super::class::{Class, Classification, Context};
 use super::classify::classify;
 use super::expectation::{Band, ErrorBound, Expectation, FloorBand};
@@ -221,6 +222,11 @@ fn floor_found(band: FloorBand, series: &ErrorSeries, formal: Option<f64>, found
     let without = [Class::NotEvaluable, Class::Divergent, Class::Oscillatory];
     if without.contains(&found.class) {
         let reason = format!("no floor to judge: the series is {}", found.class);
+        return check("floor", false, None, reason);
+    }
+    let levels = series.levels().len();
+    if found.floor.is_none() && levels < FLOOR_LEVELS {
+        let reason = format!("no floor to judge: {levels} levels cannot tell one from none, add a level");
         return check("floor", false, None, reason);
     }
     let floor = found.floor.as_ref().map_or_else(|| hidden_floor(series, formal), |floor| floor.value);

@@ -1,7 +1,7 @@
 //! The class of a steadily falling error, judged on its finest window.
 
 use super::bend::{Bend, explain};
-use super::case::{Case, plain};
+use super::case::{Case, FLOOR_LEVELS, plain};
 use super::class::{Class, Classification};
 use super::wording::{order, orders, short};
 
@@ -101,6 +101,9 @@ fn governed(case: &Case, bend: &Bend, window: &str) -> Option<Classification> {
     }
     let percent = 100.0 * share;
     match bend {
+        Bend::Floor(_) if case.points.len() < FLOOR_LEVELS => {
+            Some(case.may_be_limited(window, terms.low_coefficient))
+        }
         Bend::Floor(_) => {
             Some(case.limited(&format!("{window}, and a floor makes up {percent:.0} % of the finest error")))
         }

@@ -2,6 +2,8 @@
 
 /// A number with four significant digits at most, without trailing zeros.
 pub fn short(value: f64) -> String {
+    // No sign at zero.
+    let value = value + 0.0;
     let magnitude = value.abs();
     if value == 0.0 || !value.is_finite() || (1e-3..1e5).contains(&magnitude) {
         let rounded = format!("{value:.3e}").parse().unwrap_or(value);
@@ -16,6 +18,15 @@ pub fn short(value: f64) -> String {
         None => text,
     }
 }
+
+/// A number as a person typed it; one that would take a line of zeros, with a power of ten.
+pub fn typed(value: f64) -> String {
+    let text = format!("{}", value + 0.0);
+    if text.len() > LONGEST { format!("{value:e}") } else { text }
+}
+
+/// Most characters of a number without a power of ten: all digits of a double, sign and point.
+const LONGEST: usize = 24;
 
 /// An order of convergence with two decimals; -0.00 is written 0.00.
 pub fn order(value: f64) -> String {
@@ -40,7 +51,10 @@ mod tests {
         assert_eq!(short(2.345_67e-7), "2.35e-7");
         assert_eq!(short(-2e-4), "-2e-4");
         assert_eq!(short(0.0), "0");
+        assert_eq!(short(-0.0), "0");
         assert_eq!(short(f64::NAN), "NaN");
+        assert_eq!([0.05, 1e-4, -0.0, 50.0].map(typed), ["0.05", "0.0001", "0", "50"]);
+        assert_eq!([1e-300, 1e300].map(typed), ["1e-300", "1e300"]);
         assert_eq!(orders(&[2.0, -0.001, 1.234]), "2.00, 0.00, 1.23");
     }
 }

@@ -227,7 +227,8 @@ fn time_factors_of(
     };
     // By settlement: degree = 1 − B + B U(B T_v); the first 1 − B is there at once.
     let one = |degree: &f64| {
-        let at_once = 1.0 - storage;
+        // No sign at zero.
+        let at_once = 1.0 - storage + 0.0;
         if !(*degree >= at_once && *degree < 1.0) {
             return Err(Ended::usage(format!(
                 "a degree of consolidation of {degree} has no time factor: it must be at least {at_once:.3e}, \

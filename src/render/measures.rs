@@ -57,9 +57,12 @@ const MEASURES: [(Quantity, Sample, Norm); 5] = [
     (Quantity::Settlement, Sample::Surface, Norm::Relative),
 ];
 
+/// Why a relative error has no value.
+pub(super) const NOT_RESOLVED: &str = "the exact value is zero, or below what round-off of the run and the accuracy of the reference leave of it";
+
 fn missing_reason(record: &Record) -> String {
     match &record.status {
-        Status::Ok => "the exact field is zero".to_owned(),
+        Status::Ok => NOT_RESOLVED.to_owned(),
         Status::Failed(failure) => format!("{} at step {}", failure.kind.name(), failure.step),
     }
 }

@@ -35,6 +35,8 @@ pub fn seconds(value: f64) -> String {
     finite(value, |v| {
         let (scale, unit) = match v.abs() {
             0.0 => (1.0, "s"),
+            // Beyond what a clock shows, a power of ten and not a line of digits.
+            a if !(1e-12..1e12).contains(&a) => return format!("{v:.2e} s"),
             a if a < 0.9995e-6 => (1e9, "ns"),
             a if a < 0.9995e-3 => (1e6, "µs"),
             a if a < 0.9995 => (1e3, "ms"),
@@ -115,6 +117,14 @@ mod tests {
     #[test]
     fn errors_have_three_digits() {
         assert_eq!([5.62e-3, 1.0, 0.0, -2.5e-10].map(error), ["5.62e-3", "1.00e0", "0", "-2.50e-10"]);
+    }
+
+    #[test]
+    fn times_beyond_any_clock_have_a_power_of_ten() {
+        assert_eq!(
+            [1e308, 1e-308, 3600.0, 2e-9].map(seconds),
+            ["1.00e308 s", "1.00e-308 s", "60.0 min", "2.00 ns"]
+        );
     }
 
     #[test]

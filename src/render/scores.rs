@@ -1,5 +1,6 @@
 //! Tables of somebody else's result held against references.
 
+use super::measures::NOT_RESOLVED;
 use super::table::{Cell, Column, Table};
 use crate::assess::norms::Norm;
 use crate::assess::score::{Score, ScoredSeries, WorstPlace};
@@ -53,7 +54,7 @@ fn error_cell(row: Option<&ErrorRow>) -> Cell {
     match row {
         Some(row) if row.quantity == Quantity::Settlement => Cell::Percent(row.value),
         Some(row) => Cell::Error(row.value),
-        None => Cell::Missing("the exact field is zero".to_owned()),
+        None => Cell::Missing(NOT_RESOLVED.to_owned()),
     }
 }
 

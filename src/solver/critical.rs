@@ -8,7 +8,7 @@ use super::body::Problem;
 use super::explicit::ExplicitSettings;
 use super::integrator::{Formulation, IntegratorKind};
 use super::limits;
-use super::outcome::{Failure, RunStatus};
+use super::outcome::{Failure, FailureKind, RunStatus};
 use super::prediction::predict;
 use super::run::{Kernel, Schedule, TimeStepRule, run};
 use serde::{Deserialize, Serialize};
@@ -68,16 +68,23 @@ pub struct CriticalStep {
 }
 
 impl Probe {
-    /// Whether it ran below the predicted step, or left above it.
+    /// Whether it ran below the predicted step, or left above it: a run that somebody or a time limit
+    /// stopped did neither.
     pub fn is_as_predicted(&self) -> bool {
-        (self.share < 1.0) == self.failure.is_none()
+        match &self.failure {
+            None => self.share < 1.0,
+            Some(failure) => {
+                self.share > 1.0 && !matches!(failure.kind, FailureKind::Stopped | FailureKind::TimedOut)
+            }
+        }
     }
 }
 
 impl CriticalStep {
-    /// Whether the runs on both sides of the prediction did as predicted.
+    /// Whether the runs on both sides of the prediction did as predicted; without either side, no.
     pub fn probes_agree(&self) -> bool {
-        self.probes.iter().all(Probe::is_as_predicted)
+        let has = |side: fn(f64) -> bool| self.probes.iter().any(|probe| side(probe.share));
+        has(|share| share < 1.0) && has(|share| share > 1.0) && self.probes.iter().all(Probe::is_as_predicted)
     }
 
     /// Observed over predicted step, minus one.
@@ -198,4 +205,55 @@ fn leaves<const D: usize>(
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
 fn steps_to(end: f64, step: f64) -> u64 {
     (end / step).ceil().max(1.0) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn probe(share: f64, failure: Option<FailureKind>) -> Probe {
+        let failed = |kind| Failure {
+            kind,
+            step: 7,
+            time: 1.0,
+            growth: None,
+            reason: "as the test wants it".to_owned(),
+        };
+        let failure = failure.map(failed);
+        Probe { share, step: share, predicted_growth: None, steps: 10, reaches_end: true, failure }
+    }
+
+    fn agree(probes: &[Probe]) -> bool {
+        let found = CriticalStep {
+            predicted: 1.0,
+            creeping_from: None,
+            observed: Some(1.0),
+            wave_limit: 1.0,
+            drag_limit: 1.0,
+            combined_limit: 1.0,
+            probes: probes.to_vec(),
+        };
+        found.probes_agree()
+    }
+
+    #[test]
+    fn below_the_limit_a_run_holds_and_above_it_leaves_by_a_name() {
+        let unstable = Some(FailureKind::Unstable);
+        let [below, above] = SHARES;
+        assert!(below < 1.0 && above > 1.0);
+        assert!(agree(&[probe(below, None), probe(above, unstable)]));
+        assert!(!agree(&[probe(below, unstable), probe(above, unstable)]), "it left below its limit");
+        assert!(!agree(&[probe(below, None), probe(above, None)]), "it held above its limit");
+        for stopped in [FailureKind::Stopped, FailureKind::TimedOut] {
+            assert!(!agree(&[probe(below, None), probe(above, Some(stopped))]), "a stop is no leaving");
+            assert!(!agree(&[probe(below, Some(stopped)), probe(above, unstable)]));
+        }
+    }
+
+    #[test]
+    fn one_side_alone_agrees_with_nothing() {
+        assert!(!agree(&[]));
+        assert!(!agree(&[probe(SHARES[0], None)]));
+        assert!(!agree(&[probe(SHARES[1], Some(FailureKind::Unstable))]));
+    }
 }

@@ -3,6 +3,7 @@
 use super::tier::Tier;
 use crate::assess::expectation::Expectation as Demand;
 use crate::assess::norms::Norm;
+use crate::assess::wording::typed;
 use crate::exact::ReferenceKind;
 use crate::record::{Quantity, Sample};
 use crate::solver::explicit::Drag;
@@ -82,7 +83,7 @@ impl fmt::Display for Measure {
             }
             _ => write!(out, "{} {norm} {} against {reference}", quantity.name(), sample.name())?,
         }
-        write!(out, " at T_v = {time_factor}")
+        write!(out, " at T_v = {}", typed(*time_factor))
     }
 }
 

@@ -155,20 +155,15 @@ fn figure(
     if shows_orders(axis, reference) {
         add_triangles(&mut chart, &summaries, &labels.each);
     }
-    let floors: Vec<f64> = summaries
-        .iter()
-        .filter_map(|summary| summary.classification.floor.as_ref().map(|floor| floor.value))
-        .collect();
-    // A floor of one method among many is told in the table; one that most share is the figure's.
-    let is_shared = 2 * floors.len() >= summaries.len();
-    if let Some(floor) = floors.first().filter(|_| axis == Axis::Cells && is_shared) {
+    if axis == Axis::Cells
+        && let Some((at, whose)) = shared_floor(&summaries, &labels.each)
+    {
         let kind: Option<ReferenceKind> = reference.parse().ok();
-        let cause = kind
-            .and_then(|kind| {
-                results.study.scene.model_difference(kind, &summaries[0].path.records[0].case.material)
-            })
-            .unwrap_or("of unknown cause");
-        chart.rules.push(Rule { axis: Direction::Y, at: *floor, label: format!("floor: {cause}") });
+        let cause = kind.and_then(|kind| {
+            results.study.scene.model_difference(kind, &summaries[0].path.records[0].case.material)
+        });
+        let cause = cause.map_or_else(String::new, |cause| format!(": {cause}"));
+        chart.rules.push(Rule { axis: Direction::Y, at, label: format!("floor of {whose}{cause}") });
     }
     let name = slug(&format!(
         "{}-{}-{}-{}-{reference}",
@@ -191,6 +186,27 @@ fn figure(
 fn shows_orders(axis: Axis, reference: &str) -> bool {
     axis == Axis::Cells || axis == Axis::TimeStep && reference == NEXT_FINER
 }
+
+/// The floor that a figure can show as one line, and whose it is: that of its only limited series, or of
+/// all its series where they end within a tenth of each other. Others are told in the table alone.
+fn shared_floor(summaries: &[SeriesSummary<'_>], labels: &[String]) -> Option<(f64, String)> {
+    let floor = |summary: &SeriesSummary<'_>| Some(summary.classification.floor.as_ref()?.value);
+    let floors: Vec<(f64, &String)> =
+        summaries.iter().zip(labels).filter_map(|(summary, label)| Some((floor(summary)?, label))).collect();
+    let (lowest, highest) = floors
+        .iter()
+        .fold((f64::INFINITY, 0.0_f64), |(low, high), (floor, _)| (low.min(*floor), high.max(*floor)));
+    match floors.as_slice() {
+        [(only, label)] => Some((*only, (*label).clone())),
+        [_, _, ..] if floors.len() == summaries.len() && highest <= SAME_FLOOR * lowest => {
+            Some(((lowest * highest).sqrt(), "all series".to_owned()))
+        }
+        _ => None,
+    }
+}
+
+/// Floors within this factor are one line in a figure.
+const SAME_FLOOR: f64 = 1.1;
 
 /// One triangle for each order that a series comes near.
 fn add_triangles(chart: &mut Chart, summaries: &[SeriesSummary<'_>], labels: &[String]) {

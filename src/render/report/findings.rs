@@ -4,6 +4,7 @@ use super::{StudyResults, labels};
 use crate::assess::class::Class;
 use crate::assess::orders::WINDOW;
 use crate::assess::summary::{Path, first_norm, paths};
+use crate::assess::wording::typed;
 use crate::record::{Quantity, Sample};
 use crate::render::number;
 use crate::render::page::{Block, Section};
@@ -62,7 +63,7 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
                         time_factor: *time_factor,
                         probe: None,
                     };
-                    quote(path, &measure, &mut floors)
+                    quote(&one.study.name, path, &measure, &mut floors)
                 });
                 // Against another theory than its own a run is quoted where that is the question.
                 if *reference == one.study.references[0] || one.asks_for(reference.name()) {
@@ -110,16 +111,17 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
 }
 
 /// Order and error of one series in a few characters; its floor, where there is one, is told at
-/// length.
-fn quote(path: &Path<'_>, measure: &Measure, floors: &mut Vec<String>) -> Cell {
+/// length, with its study.
+fn quote(study: &str, path: &Path<'_>, measure: &Measure, floors: &mut Vec<String>) -> Cell {
     let summary = path.summary(measure);
     let class = &summary.classification;
     let is_pressure = (measure.quantity, measure.sample) == (Quantity::Pressure, Sample::Points);
     if let Some(floor) = class.floor.as_ref().filter(|_| is_pressure) {
         floors.push(format!(
-            "**{}**, {} against `{}`: {}. {}",
+            "`{study}`, **{}**, {} at T_v = {} against `{}`: {}. {}",
             path.label(),
             labels::measure(measure),
+            typed(measure.time_factor),
             measure.reference,
             class.reason,
             capitalised(class.advice.as_deref())
