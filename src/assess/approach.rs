@@ -6,6 +6,7 @@
 
 use super::least_squares::solve;
 use super::two_terms::{Exponent, minimum};
+use crate::elementary::powf;
 
 /// Orders at which differences between levels may fall; slower ones are no approach.
 const ORDERS: (f64, f64) = (0.4, 12.0);
@@ -41,7 +42,7 @@ pub(super) enum Limit {
 impl Approach {
     /// The value at a size.
     pub(super) fn at(&self, size: f64) -> f64 {
-        self.limit + self.coefficient * size.powf(self.order)
+        self.limit + self.coefficient * powf(size, self.order)
     }
 
     /// The curve through three levels whose differences fall and keep their sign.
@@ -50,7 +51,7 @@ impl Approach {
         // Sizes in units of the coarsest keep powers in range.
         let (r2, r3) = (h2 / h1, h3 / h1);
         let wanted = (e1 - e2) / (e2 - e3);
-        let ratio = |order: f64| (1.0 - r2.powf(order)) / (r2.powf(order) - r3.powf(order));
+        let ratio = |order: f64| (1.0 - powf(r2, order)) / (powf(r2, order) - powf(r3, order));
         let (mut low, mut high) = ORDERS;
         let falls = wanted.is_finite() && wanted >= ratio(low) && wanted <= ratio(high);
         if !falls {
@@ -61,8 +62,8 @@ impl Approach {
             if ratio(middle) < wanted { low = middle } else { high = middle }
         }
         let order = f64::midpoint(low, high);
-        let scaled = (e2 - e3) / (r2.powf(order) - r3.powf(order));
-        Some(Self { limit: e3 - scaled * r3.powf(order), coefficient: scaled / h1.powf(order), order })
+        let scaled = (e2 - e3) / (powf(r2, order) - powf(r3, order));
+        Some(Self { limit: e3 - scaled * powf(r3, order), coefficient: scaled / powf(h1, order), order })
     }
 
     /// The best curve for more than three levels.
@@ -71,13 +72,13 @@ impl Approach {
         let target: Vec<f64> = levels.iter().map(|level| level.1).collect();
         let weights = vec![1.0; levels.len()];
         let project = |order: f64| {
-            let powers = levels.iter().map(|level| (level.0 / first).powf(order)).collect();
+            let powers = levels.iter().map(|level| powf(level.0 / first, order)).collect();
             solve(&[vec![1.0; levels.len()], powers], &target, &weights)
         };
         let off = |order: f64| project(order).map_or(f64::INFINITY, |(_, square)| square);
         let order = minimum(Exponent::Between(ORDERS.0, ORDERS.1), off);
         let (found, _) = project(order)?;
-        Some(Self { limit: found[0], coefficient: found[1] / first.powf(order), order })
+        Some(Self { limit: found[0], coefficient: found[1] / powf(first, order), order })
     }
 }
 

@@ -11,7 +11,7 @@ use crate::record::{
 use crate::scene::{SceneKind, column_parameters};
 use crate::solver::critical::CriticalStep;
 use crate::solver::limits;
-use crate::solver::outcome::{Counters, Outcome, RunStatus, StepSizes};
+use crate::solver::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
 use crate::solver::snapshot::{PlaneSamples, Samples, Snapshot};
 use crate::study::Case;
 use std::collections::BTreeMap;
@@ -110,6 +110,27 @@ pub fn record_of_critical_step(case: &Case, found: CriticalStep) -> Record {
         provenance: Provenance::of_this_program(),
         digest: String::new(),
     }
+}
+
+/// The record of a case whose search for the critical step was stopped from outside.
+pub fn record_of_stopped_search(case: &Case) -> Record {
+    let none = CriticalStep {
+        predicted: 0.0,
+        creeping_from: None,
+        observed: None,
+        wave_limit: 0.0,
+        drag_limit: 0.0,
+        combined_limit: 0.0,
+        probes: Vec::new(),
+    };
+    let failure = Failure {
+        kind: FailureKind::Stopped,
+        step: 0,
+        time: 0.0,
+        growth: None,
+        reason: "stopped from outside".to_owned(),
+    };
+    Record { status: Status::Failed(failure), stability: None, ..record_of_critical_step(case, none) }
 }
 
 /// Time factor by which every column is consolidated to round-off.

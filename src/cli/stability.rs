@@ -1,12 +1,12 @@
 //! `oedometer stability`: the critical step of a case, predicted and observed.
 
-use super::exit::Exit;
+use super::exit::{Ended, Exit};
 use super::output::json_of;
 use super::overrides::{self, StudyLines};
 use super::run::jobs_of;
 use super::solve::Format;
 use super::stream::print_data;
-use crate::record::Record;
+use crate::record::{Record, Status};
 use crate::render::stability;
 use crate::solver::critical::CriticalStep;
 use crate::study::{RunOptions, Tier, run_study};
@@ -67,6 +67,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             let rows: Vec<_> = report.records.iter().map(StabilityJson::of).collect();
             print_data(&json_of(&rows)?)?;
         }
+    }
+    if let Some((record, failure)) = report.records.iter().find_map(|record| match &record.status {
+        Status::Ok => None,
+        Status::Failed(failure) => Some((record, failure)),
+    }) {
+        let label = record.case.label();
+        return Err(Ended::with(Exit::CaseFailed, format!("{label}: {}: {}", failure.kind.name(), failure.reason)));
     }
     let agree = report.records.iter().filter_map(|record| record.stability.as_ref()).all(|found| {
         found.deviation().is_some_and(|deviation| deviation.abs() <= AGREEMENT) && found.probes_agree()

@@ -109,6 +109,14 @@ pub(super) fn positive(quantity: &'static str, value: f64) -> Result<f64, ExactE
     }
 }
 
+/// Passes a positive `value` on that has all its digits, refuses any other.
+///
+/// # Errors
+/// [`ExactError::NotPositive`] where it is not positive, not finite, or so small that digits are lost.
+pub fn normal(quantity: &'static str, value: f64) -> Result<f64, ExactError> {
+    if value.is_normal() && value > 0.0 { Ok(value) } else { Err(ExactError::NotPositive { quantity, value }) }
+}
+
 /// Passes a finite `time_factor ≥ 0` on, refuses any other.
 pub(super) fn checked_time_factor(time_factor: f64) -> Result<f64, ExactError> {
     if time_factor.is_finite() && time_factor >= 0.0 {

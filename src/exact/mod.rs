@@ -18,6 +18,6 @@ pub mod single_mode;
 pub mod terzaghi;
 pub mod xie_leo;
 
-pub use error::ExactError;
+pub use error::{ExactError, normal};
 pub use parameters::ColumnParameters;
 pub use reference::{Accuracy, FieldValues, Reference, ReferenceKind};

@@ -1,7 +1,7 @@
 //! The column and its material, as plain SI numbers.
 
 use super::cosine_layer::Base;
-use super::error::{ExactError, positive};
+use super::error::{ExactError, normal, positive};
 
 /// A saturated column of soil on an impermeable base, drained and loaded at its top.
 ///
@@ -136,7 +136,10 @@ impl ColumnParameters {
         positive("oedometric modulus", self.oedometric_modulus())?;
         positive("coupling modulus", self.coupling_modulus())?;
         positive("coefficient of consolidation", self.coefficient_of_consolidation())?;
-        positive("time at a time factor of 1", self.time(1.0))?;
+        normal("time at a time factor of 1", self.time(1.0))?;
+        // Numbers with few digits left make fields with few.
+        normal("load", self.load)?;
+        normal("final settlement", self.final_settlement())?;
         Ok(())
     }
 }

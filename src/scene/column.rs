@@ -174,6 +174,7 @@ pub fn column_problem<const D: usize>(
         loading_time: column.loading_time,
         initial_gradient,
         pressure_scale: column.load.abs(),
+        is_bounded: true,
     })
 }
 

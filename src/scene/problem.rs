@@ -4,7 +4,7 @@
 use super::{Column, SceneKind, column_problem};
 use crate::exact::ExactError;
 use crate::solver::body::Problem;
-use crate::solver::critical::{CriticalStep, critical_step};
+use crate::solver::critical::{CriticalStep, Stopped, critical_step};
 use crate::solver::explicit::ExplicitSettings;
 use crate::solver::material::Material;
 use crate::solver::method::Method;
@@ -43,10 +43,19 @@ impl SceneProblem {
 
     /// Predicts and observes its critical step, with runs beside it up to `end` seconds or
     /// `most_steps` steps.
-    pub fn critical_step(&self, settings: &ExplicitSettings, end: f64, most_steps: u64) -> CriticalStep {
+    ///
+    /// # Errors
+    /// [`Stopped`] where the observer ends it.
+    pub fn critical_step(
+        &self,
+        settings: &ExplicitSettings,
+        end: f64,
+        most_steps: u64,
+        observer: Observer<'_>,
+    ) -> Result<CriticalStep, Stopped> {
         match self {
-            Self::Column(problem) => critical_step(problem, settings, end, most_steps),
-            Self::Plane(problem) => critical_step(problem, settings, end, most_steps),
+            Self::Column(problem) => critical_step(problem, settings, end, most_steps, observer),
+            Self::Plane(problem) => critical_step(problem, settings, end, most_steps, observer),
         }
     }
 

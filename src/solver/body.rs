@@ -111,6 +111,8 @@ pub struct Problem<const D: usize> {
     pub initial_gradient: Tensor<D>,
     /// Pressure that this problem is about, Pa: what leaves it a thousandfold has blown up.
     pub pressure_scale: f64,
+    /// Whether a result that the scene cannot reach ends the run; not where growth is the question.
+    pub is_bounded: bool,
 }
 
 impl<const D: usize> Problem<D> {

@@ -10,7 +10,7 @@ use super::integrator::{Formulation, IntegratorKind};
 use super::limits;
 use super::outcome::{Failure, FailureKind, RunStatus};
 use super::prediction::predict;
-use super::run::{Kernel, Schedule, TimeStepRule, run};
+use super::run::{Kernel, Observer, Schedule, TimeStepRule, run};
 use serde::{Deserialize, Serialize};
 
 /// Cells up to which the prediction is of the whole column; longer ones lose some of their middle.
@@ -93,16 +93,26 @@ impl CriticalStep {
     }
 }
 
+/// The observer did not let the search go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stopped;
+
 /// Predicts, observes, and probes both sides of the prediction, up to `end` seconds or `most_steps`
 /// steps.
+///
+/// # Errors
+/// [`Stopped`] where the observer ends it.
 pub fn critical_step<const D: usize>(
     problem: &Problem<D>,
     settings: &ExplicitSettings,
     end: f64,
     most_steps: u64,
-) -> CriticalStep {
+    observer: Observer<'_>,
+) -> Result<CriticalStep, Stopped> {
     let soil = &problem.material;
     let mut problem = problem.clone();
+    // How it grows is the question, and not whether it may.
+    problem.is_bounded = false;
     // A problem of finite strain is judged where it starts.
     let tiny = TINY_STRAIN * soil.oedometric_modulus() / problem.pressure_scale.max(f64::MIN_POSITIVE);
     if problem.configuration.deforms() && tiny < 1.0 {
@@ -113,31 +123,32 @@ pub fn critical_step<const D: usize>(
     let is_sharp = prediction.growth(SHARES[1] * strict).is_none_or(|growth| growth > 1.0 + VISIBLE_GROWTH);
     let predicted = if is_sharp { strict } else { prediction.critical_step_for(VISIBLE_GROWTH).max(strict) };
     let creeping_from = (strict < SHARES[0] * predicted).then_some(strict);
-    let observed = observed_step(&problem, settings, predicted);
-    let probes = SHARES.map(|share| {
+    let observed = observed_step(&problem, settings, predicted, observer)?;
+    let mut probes = Vec::with_capacity(SHARES.len());
+    for share in SHARES {
         let step = share * predicted;
         let steps = steps_to(end, step).clamp(OBSERVED_STEPS, most_steps.max(OBSERVED_STEPS));
-        let (taken, failure) = leaves(&problem, settings, step, steps);
-        Probe {
+        let (taken, failure) = leaves(&problem, settings, step, steps, observer)?;
+        probes.push(Probe {
             share,
             step,
             predicted_growth: prediction.growth(step),
             steps: taken,
             reaches_end: steps as f64 * step >= end * (1.0 - 1e-9),
             failure,
-        }
-    });
+        });
+    }
     let cell_size = problem.grid.cell_size;
     let soil = &problem.material;
-    CriticalStep {
+    Ok(CriticalStep {
         predicted,
         creeping_from,
         observed,
         wave_limit: cell_size / limits::fastest_wave_speed(soil, soil.porosity),
         drag_limit: limits::drag_limit(soil),
         combined_limit: limits::combined_limit(soil, cell_size, settings.drag),
-        probes: probes.to_vec(),
-    }
+        probes,
+    })
 }
 
 /// Largest step that runs, by bisection; none where no step near the prediction leaves.
@@ -145,21 +156,27 @@ fn observed_step<const D: usize>(
     problem: &Problem<D>,
     settings: &ExplicitSettings,
     predicted: f64,
-) -> Option<f64> {
-    let runs = |step: f64| leaves(problem, settings, step, OBSERVED_STEPS).1.is_none();
+    observer: Observer<'_>,
+) -> Result<Option<f64>, Stopped> {
+    let runs = |step: f64| -> Result<bool, Stopped> {
+        leaves(problem, settings, step, OBSERVED_STEPS, observer).map(|(_, failure)| failure.is_none())
+    };
     let (mut low, mut high) = (0.8 * predicted, 1.25 * predicted);
-    while !runs(low) {
+    while !runs(low)? {
         high = low;
         low *= 0.5;
-        if low < 1e-3 * predicted {
-            return None;
+        // Written so that a prediction that is no number ends it.
+        let is_near = low >= 1e-3 * predicted;
+        if !is_near {
+            return Ok(None);
         }
     }
-    while runs(high) {
+    while runs(high)? {
         low = high;
         high *= 2.0;
-        if high > 1e3 * predicted {
-            return None;
+        let is_near = high <= 1e3 * predicted;
+        if !is_near {
+            return Ok(None);
         }
     }
     for _ in 0..BISECTIONS {
@@ -167,13 +184,13 @@ fn observed_step<const D: usize>(
             break;
         }
         let middle = 0.5 * (low + high);
-        if runs(middle) {
+        if runs(middle)? {
             low = middle;
         } else {
             high = middle;
         }
     }
-    Some(0.5 * (low + high))
+    Ok(Some(0.5 * (low + high)))
 }
 
 /// Runs a number of steps of a size: how many were taken, and how the run left.
@@ -182,7 +199,8 @@ fn leaves<const D: usize>(
     settings: &ExplicitSettings,
     step: f64,
     steps: u64,
-) -> (u64, Option<Failure>) {
+    observer: Observer<'_>,
+) -> Result<(u64, Option<Failure>), Stopped> {
     let schedule = Schedule {
         outputs: vec![steps as f64 * step],
         history: Vec::new(),
@@ -194,12 +212,13 @@ fn leaves<const D: usize>(
         // A run that observes knows nothing of the prediction.
         critical_step: Some(step),
     };
-    let outcome = run(problem.clone(), &schedule, &|_, _| true);
+    let outcome = run(problem.clone(), &schedule, observer);
     let failure = match outcome.status {
         RunStatus::Ok => None,
+        RunStatus::Failed(failure) if failure.kind == FailureKind::Stopped => return Err(Stopped),
         RunStatus::Failed(failure) => Some(failure),
     };
-    (outcome.counters.steps, failure)
+    Ok((outcome.counters.steps, failure))
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]

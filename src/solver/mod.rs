@@ -12,6 +12,7 @@
 pub mod assembled;
 pub mod assembled_plane;
 pub mod body;
+pub mod bounds;
 pub mod cells;
 pub mod critical;
 pub mod explicit;

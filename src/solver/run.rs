@@ -1,5 +1,6 @@
 //! A run: from a problem and a schedule to snapshots, history, counters and a named end.
 
+use super::bounds::PhysicalBounds;
 use super::body::{Body, CubicSpline, DomainEnds, Gimp, Hat, Problem, QuadraticSpline, ShapeFunction};
 use super::explicit::ExplicitSettings;
 use super::frozen::FrozenStep;
@@ -110,16 +111,13 @@ fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(
             let initial_height = LoadedSurface::of(&problem.points, problem.load)
                 .shaped(problem.load_shape, &problem.points)
                 .height(&problem.points);
-            let strain = problem.pressure_scale / problem.material.oedometric_modulus();
             let plan = Plan {
                 schedule,
                 limit: schedule.rule.limit(&problem, sizes.target, most, &schedule.outputs),
                 sizes,
                 pressure_scale: problem.pressure_scale,
                 initial_height,
-                // The mean height: a cosine has none of its own.
-                settlement_scale: strain
-                    * LoadedSurface::of(&problem.points, problem.load).height(&problem.points),
+                bounds: PhysicalBounds::of(&problem),
                 loading_time: problem.loading_time,
             };
             let undrained_start = problem.undrained_start;
@@ -155,6 +153,7 @@ struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
     initial_height: f64,
     initial_settlement: f64,
     velocity_scale: f64,
+    bounds: PhysicalBounds,
     /// Whole load, Pa, and the time over which it grows, s.
     load: f64,
     loading_time: f64,
@@ -183,6 +182,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         enter(Phase::Setup);
         let target = schedule.rule.step(&problem, critical);
         let velocity_scale = velocity_scale(&problem);
+        let bounds = PhysicalBounds::of(&problem);
         let (load, loading_time) = (problem.load, problem.loading_time);
         let initial_height = LoadedSurface::of(&problem.points, problem.load)
             .shaped(problem.load_shape, &problem.points)
@@ -201,6 +201,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
                 &body.nodes.displacement,
             ),
             velocity_scale,
+            bounds,
             load,
             loading_time,
             load_share: 1.0,
@@ -232,11 +233,20 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             if self.failure.is_some() {
                 break;
             }
+            if !observer(self.counters.steps, expected) {
+                self.failure = Some(self.stopped());
+                break;
+            }
             self.advance_to(*output, &|done| observer(done, expected));
             if self.failure.is_some() {
                 break;
             }
-            self.snapshots.push(self.snapshot());
+            let snapshot = self.snapshot();
+            if let Some(reason) = self.bounds.left_by_pressure(&snapshot.points.pressure) {
+                self.failure = Some(self.left(&reason));
+                break;
+            }
+            self.snapshots.push(snapshot);
         }
         Outcome {
             start,
@@ -306,7 +316,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             self.watch(some);
             self.failure = self.find_failure();
             if self.failure.is_none() && !go_on(self.counters.steps) {
-                self.failure = Some(self.failure(FailureKind::Stopped, "stopped from outside".to_owned()));
+                self.failure = Some(self.stopped());
             }
         }
     }
@@ -364,6 +374,20 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         Failure { kind, step: self.counters.steps, time: self.time, growth: self.growth, reason }
     }
 
+    fn stopped(&self) -> Failure {
+        self.failure(FailureKind::Stopped, "stopped from outside".to_owned())
+    }
+
+    /// The end of a run that has left, with the step that may be to blame.
+    fn left(&self, reason: &str) -> Failure {
+        let step = self.steps.largest;
+        let share = step / self.steps.predicted_critical;
+        self.failure(
+            FailureKind::Unstable,
+            format!("{reason}; the step of {step:.4e} s is {share:.3} of the predicted critical one"),
+        )
+    }
+
     /// Steps to the next look: at first it comes after 1, 2, 4 steps and so on, for what grows fast
     /// is soon beyond all numbers.
     fn steps_to_look(&self) -> u64 {
@@ -387,13 +411,13 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let velocity = self.watched_velocity;
         if velocity > BLOW_UP * self.velocity_scale {
             let reason = format!(
-                "a nodal velocity of {velocity:.3e} m/s is more than {BLOW_UP:.0} times its scale of {:.3e} m/s; the step \
-                 of {:.4e} s is {:.3} of the predicted critical one",
+                "a nodal velocity of {velocity:.3e} m/s is more than {BLOW_UP:.0} times its scale of {:.3e} m/s",
                 self.velocity_scale,
-                self.steps.largest,
-                self.steps.largest / self.steps.predicted_critical
             );
-            return Some(self.failure(FailureKind::Unstable, reason));
+            return Some(self.left(&reason));
+        }
+        if let Some(reason) = self.bounds.left_by_settlement(self.settlement()) {
+            return Some(self.left(&reason));
         }
         if self.body.configuration.deforms() { self.find_lost_point() } else { None }
     }

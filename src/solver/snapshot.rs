@@ -137,7 +137,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let mut samples = means.finish(D);
         if !self.configuration.moves_points() {
             // The nodes' own displacement is known, and better than any projection.
-            let places = || (0..self.nodes.len()).filter(|node| means.volume[*node] > means.least_volume());
+            let least = means.least_volume();
+            let places = || (0..self.nodes.len()).filter(|node| means.volume[*node] > least);
             samples.displacement = places().map(|node| self.displacement_at_node(node)[D - 1]).collect();
             samples.displacement_height =
                 Some(places().map(|node| self.grid.node_position(node)[D - 1]).collect());

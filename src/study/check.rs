@@ -25,6 +25,8 @@ use toml::Spanned;
 
 /// Time factors where a study names none.
 const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
+/// Time factor before which nothing has moved and steps no longer advance the time.
+const LEAST_TIME_FACTOR: f64 = 1e-15;
 /// Longest wall time of a case, s, where a study names none.
 const DEFAULT_CASE_SECONDS: f64 = 3600.0;
 /// More cells than a column is ever given on purpose.
@@ -214,13 +216,16 @@ impl Checker<'_> {
         let mut factors = Vec::new();
         for typed in list.get_ref() {
             let factor = *typed.get_ref();
-            if factor.is_finite() && (0.0..=100.0).contains(&factor) {
+            if factor == 0.0 || (LEAST_TIME_FACTOR..=100.0).contains(&factor) {
                 factors.push(factor);
             } else {
                 self.complain(
                     typed.span(),
                     format!("a time factor of {factor}"),
-                    "T_v = c_v t/H² lies between 0 and 100; the column is consolidated at 2",
+                    format!(
+                        "T_v = c_v t/H² is 0 or lies between {LEAST_TIME_FACTOR:e} and 100; the column is consolidated \
+                         at 2"
+                    ),
                 );
             }
         }

@@ -3,11 +3,12 @@
 use super::case::{Case, Task};
 use super::check::Study;
 use super::tier::Tier;
-use crate::assess::measure::{record_of, record_of_critical_step};
+use crate::assess::measure::{record_of, record_of_critical_step, record_of_stopped_search};
 use crate::elementary;
-use crate::exact::{ExactError, ReferenceKind};
+use crate::exact::{ExactError, ReferenceKind, normal};
 use crate::record::{Record, RecordStore, Status, StoreError, WallSample};
 use crate::scene::{SceneProblem, column_parameters};
+use crate::solver::critical::Stopped;
 use crate::solver::limits;
 use crate::solver::outcome::FailureKind;
 use crate::solver::profile::{Phase, enter};
@@ -320,8 +321,9 @@ pub fn run_case(
     alone: bool,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
+    plausible(case)?;
     if case.task == Task::Stability {
-        return stability_of(case);
+        return stability_of(case, observe);
     }
     let problem = problem_of(case)?;
     let schedule = schedule_of(case, kernel);
@@ -339,11 +341,27 @@ fn problem_of(case: &Case) -> Result<SceneProblem, ExactError> {
     SceneProblem::new(*scene, column, material, *method, *cells, *points_per_cell)
 }
 
+/// Refuses numbers that no run can go on from, before anything is computed and whoever computes it.
+fn plausible(case: &Case) -> Result<(), ExactError> {
+    let parameters = column_parameters(&case.column, &case.material);
+    parameters.validate()?;
+    normal("critical time step", limits::combined_limit(&case.material, case.cell_size(), case.settings.drag))?;
+    for factor in case.time_factors.iter().filter(|factor| **factor > 0.0) {
+        normal("time of an output", parameters.time(*factor))?;
+    }
+    Ok(())
+}
+
 /// Predicts and observes the critical step of a case.
-fn stability_of(case: &Case) -> Result<Record, ExactError> {
+fn stability_of(case: &Case, observe: &dyn Fn(u64, u64) -> bool) -> Result<Record, ExactError> {
     let problem = problem_of(case)?;
     let end = case.time_factors.last().map_or(0.0, |factor| factor * case.seconds_per_time_factor());
-    Ok(record_of_critical_step(case, problem.critical_step(&case.settings, end, MOST_PROBE_STEPS)))
+    // Of how many steps a search will be is not known: its work is told at its end.
+    let go_on = |_, _| observe(0, 1);
+    Ok(match problem.critical_step(&case.settings, end, MOST_PROBE_STEPS, &go_on) {
+        Ok(found) => record_of_critical_step(case, found),
+        Err(Stopped) => record_of_stopped_search(case),
+    })
 }
 
 fn schedule_of(case: &Case, kernel: Kernel) -> Schedule {

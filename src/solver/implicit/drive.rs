@@ -5,7 +5,8 @@ use super::march::{March, StepFailure};
 use super::newton::NewtonMarch;
 use super::steps::{StepLimit, steps_for};
 use crate::solver::body::{Body, ShapeFunction};
-use crate::solver::integrator::Formulation;
+use crate::solver::bounds::PhysicalBounds;
+use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::method::Configuration;
 use crate::solver::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
 use crate::solver::points::Points;
@@ -26,8 +27,8 @@ pub struct Plan<'a> {
     pub pressure_scale: f64,
     /// Height of the surface that settlements count from, m.
     pub initial_height: f64,
-    /// Settlement that the problem's pressure makes, m: what leaves it a thousandfold has blown up.
-    pub settlement_scale: f64,
+    /// What a sound result does not leave.
+    pub bounds: PhysicalBounds,
     /// Time over which the load grows to its full value, s.
     pub loading_time: f64,
 }
@@ -60,6 +61,8 @@ struct MarchRun<'a, const D: usize, M> {
     counters: Counters,
     history: History<'a>,
     expected: u64,
+    /// Steps tried, those that were taken back included.
+    tried: u64,
     /// Size that the errors of the steps so far ask for, s.
     adaptive_step: f64,
 }
@@ -74,6 +77,7 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
             counters: Counters { points: start.len(), ..Counters::default() },
             history: History::of(&plan.schedule.history),
             expected: plan.limit.expected_steps(end),
+            tried: 0,
             adaptive_step: plan.sizes.target,
             plan,
             start,
@@ -96,17 +100,18 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
             if status != RunStatus::Ok {
                 break;
             }
-            if let Err(StepFailure { kind, reason }) = self.advance_to(*output, observer) {
-                status = RunStatus::Failed(Failure {
-                    kind,
-                    step: self.counters.steps,
-                    time: self.time,
-                    growth: None,
-                    reason,
-                });
-                break;
+            match self.output_at(*output, observer) {
+                Ok(snapshot) => snapshots.push(snapshot),
+                Err(StepFailure { kind, reason }) => {
+                    status = RunStatus::Failed(Failure {
+                        kind,
+                        step: self.counters.steps,
+                        time: self.time,
+                        growth: None,
+                        reason,
+                    });
+                }
             }
-            snapshots.push(self.snapshot());
         }
         let work = self.march.work();
         self.counters.factorisations = work.factorisations;
@@ -120,6 +125,42 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
             counters: self.counters,
             step_sizes: self.sizes,
         }
+    }
+
+    /// The state at an output, where it is one that the scene can reach.
+    fn output_at<const W: usize, S: ShapeFunction<W>>(
+        &mut self,
+        output: f64,
+        observer: Observer<'_>,
+    ) -> Result<Snapshot, StepFailure>
+    where
+        M: March<D, W, S>,
+    {
+        self.ask_to_go_on(observer)?;
+        self.advance_to(output, observer)?;
+        let snapshot = self.snapshot();
+        match self.plan.bounds.left_by_pressure(&snapshot.points.pressure) {
+            Some(reason) => Err(self.unstable(&reason)),
+            None => Ok(snapshot),
+        }
+    }
+
+    /// The end of a run whose result its scene cannot reach.
+    fn unstable(&self, reason: &str) -> StepFailure {
+        let share = self.sizes.largest / self.sizes.predicted_critical;
+        // An implicit skeleton has no critical step to blame.
+        let step = match self.plan.schedule.integrator {
+            IntegratorKind::SemiImplicit => format!("; the largest step is {share:.3} of the predicted critical one"),
+            _ => String::new(),
+        };
+        StepFailure { kind: FailureKind::Unstable, reason: format!("{reason}{step}") }
+    }
+
+    fn ask_to_go_on(&self, observer: Observer<'_>) -> Result<(), StepFailure> {
+        if observer(self.counters.steps, self.expected) {
+            return Ok(());
+        }
+        Err(StepFailure { kind: FailureKind::Stopped, reason: "stopped from outside".to_owned() })
     }
 
     fn advance_to<const W: usize, S: ShapeFunction<W>>(
@@ -183,6 +224,17 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
         M: March<D, W, S>,
     {
         let before = (self.time, self.march.settlement());
+        let advances = end > self.time;
+        if !advances {
+            return Err(StepFailure {
+                kind: FailureKind::NotConverged,
+                reason: format!("a step of {dt:.3e} s is too small to advance the time"),
+            });
+        }
+        self.tried += 1;
+        if self.tried.is_multiple_of(WATCH_INTERVAL) {
+            self.ask_to_go_on(observer)?;
+        }
         let error = self.march.step(dt, most_error)?;
         enter(Phase::Outputs);
         if error > most_error {
@@ -193,22 +245,11 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
         self.counters.steps += 1;
         self.counters.point_updates += self.counters.points as u64;
         let after = (self.time, self.march.settlement());
-        let scale = self.plan.settlement_scale;
-        if !(after.1.is_finite() && after.1.abs() < BLOW_UP * scale) {
-            let reason = format!(
-                "a settlement of {:.3e} m after a step of {dt:.3e} s is more than {BLOW_UP:.0} times its scale of \
-                 {scale:.3e} m",
-                after.1
-            );
-            return Err(StepFailure { kind: FailureKind::Unstable, reason });
+        if let Some(reason) = self.plan.bounds.left_by_settlement(after.1) {
+            return Err(self.unstable(&reason));
         }
         self.history.note(before, after, self.march.settlement_rate());
         self.march.lost_point().map_or(Ok(()), Err)?;
-        if self.counters.steps.is_multiple_of(WATCH_INTERVAL) && !observer(self.counters.steps, self.expected)
-        {
-            let reason = "stopped from outside".to_owned();
-            return Err(StepFailure { kind: FailureKind::Stopped, reason });
-        }
         Ok(error)
     }
 
@@ -222,8 +263,6 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
 
 /// Steps between two calls of the observer.
 const WATCH_INTERVAL: u64 = 16;
-/// Settlements beyond this multiple of their scale have left.
-const BLOW_UP: f64 = 1e3;
 /// Share of the step that the estimate promises to be accurate enough.
 const SAFETY: f64 = 0.9;
 /// What a step may shrink to at once.

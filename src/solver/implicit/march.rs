@@ -37,7 +37,7 @@ pub const ERROR_SHARE: f64 = (0.5 - SDIRK_GAMMA) / SDIRK_GAMMA;
 /// Sizes that errors of the scaled unknowns are relative to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorScales {
-    /// Displacement of the surface that the load makes.
+    /// Settlement that the load makes: the surface's own mean vanishes under a cosine.
     pub displacement: f64,
     /// The load.
     pub pressure: f64,
@@ -47,7 +47,7 @@ impl ErrorScales {
     /// The scales of a problem.
     pub fn of(scales: &Scales, plan: &Plan<'_>) -> Self {
         let pressure = plan.pressure_scale / scales.pressure;
-        Self { displacement: pressure * plan.initial_height / scales.length, pressure }
+        Self { displacement: plan.bounds.settlement_scale / scales.length, pressure }
     }
 
     /// Largest relative error, from one of each unknown.

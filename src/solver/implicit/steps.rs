@@ -65,11 +65,17 @@ impl StepLimit {
         if let Self::Tolerance { tolerance, .. } = self {
             return steps_for(10.0, tolerance.sqrt());
         }
-        let (mut time, mut steps) = (0.0, 0);
+        let (mut time, mut steps) = (0.0, 0_u64);
         while end - time > 1e-9 * end {
             let segment = self.segment(time, end);
-            steps += segment.count;
-            time += segment.count as f64 * segment.dt;
+            let next = time + segment.count as f64 * segment.dt;
+            steps = steps.saturating_add(segment.count);
+            // Times at the edge of the numbers: what no longer advances is endless.
+            let advances = next > time;
+            if !advances {
+                return u64::MAX;
+            }
+            time = next;
         }
         steps
     }

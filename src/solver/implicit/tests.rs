@@ -7,6 +7,7 @@ use super::newton::NewtonMarch;
 use super::steps::StepLimit;
 use crate::scene::{Column, SceneKind, column_problem};
 use crate::solver::body::{Body, Gimp, Problem};
+use crate::solver::bounds::PhysicalBounds;
 use crate::solver::explicit::{Drag, ExplicitSettings};
 use crate::solver::grid::Grid;
 use crate::solver::integrator::{Formulation, IntegratorKind};
@@ -151,7 +152,7 @@ fn newton_on_a_frozen_body_is_the_linear_system() {
             sizes: StepSizes::default(),
             pressure_scale: 1.0,
             initial_height: 1.0,
-            settlement_scale: 1e-6,
+            bounds: PhysicalBounds::of(&seed(name, &Material::default(), 6)),
             loading_time: 0.0,
         };
         let mut linear = LinearMarch::new(body(), &plan);
@@ -290,6 +291,7 @@ fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
         loading_time: 0.0,
         initial_gradient: [[0.0, 0.0], [0.0, strain]],
         pressure_scale: one.pressure_scale,
+        is_bounded: true,
     }
 }
 
