@@ -1,21 +1,26 @@
 //! Somebody else's result held against the references of a scene.
 
-use super::class::{Classification, Context};
-use super::classify::classify;
+pub mod completeness;
+mod coverage;
+pub mod diagnosis;
+mod fields;
+pub mod series;
+pub mod times;
+
 use super::measure::{FieldError, resolution, settlement_error};
-use super::norms::Norm;
-use super::orders::{FinestOrder, finest_order};
 use super::places::contributions;
-use super::series::{ErrorSeries, Level, Undefined};
 use crate::exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use crate::import::SampledState;
 use crate::record::{ErrorRow, Quantity, Sample};
+use completeness::Finding;
+use fields::ExactFields;
+use std::collections::HashMap;
 
-/// Norms of a field's error.
-/// Share of the height within which a sample counts as the surface.
-const SURFACE: f64 = 1e-6;
-/// Errors up to this are round-off of a written number.
-const ROUND_OFF: f64 = 1e-12;
+/// Share of the height, and of the length, within which a sample counts as at the surface, and as
+/// under the crest.
+const RIM: f64 = 1e-6;
+/// Time factor by which every column is consolidated to round-off.
+const LONG_AFTER: f64 = 50.0;
 
 /// The place that carries most of a field's error.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -26,6 +31,9 @@ pub struct WorstPlace {
     pub quantity: Quantity,
     /// Initial depth over the height.
     pub zeta: f64,
+    /// Initial distance from the crest of a layer's load over its length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
     /// What the result has there.
     pub computed: f64,
     /// What the first reference has there.
@@ -35,7 +43,7 @@ pub struct WorstPlace {
 }
 
 /// A result with its errors.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Score {
     /// Samples at each time factor.
     pub samples: Vec<(f64, usize)>,
@@ -43,6 +51,34 @@ pub struct Score {
     pub errors: Vec<ErrorRow>,
     /// Worst places against the first reference.
     pub worst: Vec<WorstPlace>,
+    /// In what the result is not whole.
+    pub warnings: Vec<Finding>,
+    /// What seems to be wrong with its numbers, a sentence each.
+    pub diagnosis: Vec<String>,
+}
+
+/// Errors by what they are of.
+pub struct ErrorIndex<'a> {
+    rows: HashMap<Key<'a>, &'a ErrorRow>,
+}
+
+/// Time factor (its bits), quantity, sample, norm, reference.
+type Key<'a> = (u64, &'static str, &'static str, &'static str, &'a str);
+
+fn key(row: &ErrorRow) -> Key<'_> {
+    (row.time_factor.to_bits(), row.quantity.name(), row.sample.name(), row.norm.name(), &row.reference)
+}
+
+impl<'a> ErrorIndex<'a> {
+    /// The error of a kind at its time, where it is defined.
+    pub fn find(&self, like: &ErrorRow) -> Option<&'a ErrorRow> {
+        self.rows.get(&key(like)).copied()
+    }
+}
+
+/// Time factors of states.
+pub fn time_factors(parameters: &ColumnParameters, states: &[SampledState]) -> Vec<f64> {
+    states.iter().map(|state| parameters.time_factor(state.time)).collect()
 }
 
 /// Holds states against references.
@@ -55,10 +91,10 @@ pub fn score(
     states: &[SampledState],
     sample: Sample,
 ) -> Result<Score, ExactError> {
-    let times: Vec<f64> = states.iter().map(|state| parameters.time_factor(state.time)).collect();
+    let times = time_factors(parameters, states);
     let references: Vec<Reference> =
         references.iter().map(|kind| Reference::new(*kind, parameters, &times)).collect::<Result<_, _>>()?;
-    let mut score = Score { samples: Vec::new(), errors: Vec::new(), worst: Vec::new() };
+    let mut score = Score::default();
     for (state, time_factor) in states.iter().zip(times) {
         score.samples.push((time_factor, state.initial_height.len()));
         for (place, reference) in references.iter().enumerate() {
@@ -79,131 +115,84 @@ impl Score {
         sample: Sample,
         first: bool,
     ) -> Result<(), ExactError> {
-        let zeta = |height: f64| (1.0 - height / parameters.height).clamp(0.0, 1.0);
-        let exact = state
-            .initial_height
-            .iter()
-            .map(|height| reference.fields(time_factor, zeta(*height)))
-            .collect::<Result<Vec<_>, _>>()?;
-        let settled = parameters.final_settlement();
-        let fields = [
-            (
-                Quantity::Pressure,
-                &state.pressure,
-                parameters.load,
-                exact.iter().map(|f| f.pressure).collect(),
-            ),
-            (
-                Quantity::EffectiveStress,
-                &state.effective_stress,
-                parameters.load,
-                exact.iter().map(|f| f.effective_stress).collect(),
-            ),
-            (
-                Quantity::Displacement,
-                &state.displacement,
-                settled,
-                exact.iter().map(|f| f.displacement).collect::<Vec<f64>>(),
-            ),
-        ];
-        for (quantity, computed, scale, exact) in &fields {
+        let exact = ExactFields::of(reference, parameters, time_factor, state)?;
+        let is_plane = reference.is_plane();
+        let settled =
+            if is_plane { reference.settlement(LONG_AFTER)? } else { parameters.final_settlement() };
+        // The components one after the other: the L2 norm of the list is that of the vectors.
+        let components = state.displacement.iter().chain(&state.horizontal_displacement);
+        let displacement: Vec<f64> = components.copied().collect();
+        let exact_components = (exact.displacement.iter().take(state.displacement.len()))
+            .chain(exact.horizontal_displacement.iter().take(state.horizontal_displacement.len()));
+        let exact_displacement: Vec<f64> = exact_components.copied().collect();
+        let volumes = state.volume.repeat(2);
+        for (quantity, computed, exact, scale) in [
+            (Quantity::Pressure, &state.pressure, &exact.pressure, parameters.load),
+            (Quantity::EffectiveStress, &state.effective_stress, &exact.effective_stress, parameters.load),
+            (Quantity::Displacement, &displacement, &exact_displacement, settled),
+        ] {
             if computed.is_empty() {
                 continue;
             }
+            let volumes = &volumes[..computed.len()];
             let field = FieldError {
                 time_factor,
-                quantity: *quantity,
+                quantity,
                 sample,
                 reference: reference.name(),
-                scale: *scale,
+                scale,
                 resolution: resolution(reference, time_factor),
             };
-            self.errors.extend(field.rows(computed, exact, &state.volume));
-            let worst = contributions(computed, exact, &state.volume).first().copied();
+            self.errors.extend(field.rows(computed, exact, volumes));
+            let worst = contributions(computed, exact, volumes).first().copied();
             if let Some(worst) = worst.filter(|_| first) {
+                let place = worst.index % state.initial_height.len();
+                let height = state.initial_height[place];
                 self.worst.push(WorstPlace {
                     time_factor,
-                    quantity: *quantity,
-                    zeta: zeta(state.initial_height[worst.index]),
+                    quantity,
+                    zeta: (1.0 - height / parameters.height).clamp(0.0, 1.0),
+                    x: is_plane.then(|| state.initial_distance[place] / parameters.length),
                     computed: computed[worst.index],
                     exact: exact[worst.index],
                     share: worst.share,
                 });
             }
         }
-        let surface = state
-            .initial_height
-            .iter()
-            .position(|height| *height > (1.0 - SURFACE) * parameters.height)
-            .and_then(|place| state.displacement.get(place));
-        if let Some(displacement) = surface {
+        if let Some(displacement) = displacement_of_surface(parameters, is_plane, state) {
             self.errors.extend(settlement_error(reference, time_factor, -displacement, settled)?);
         }
         Ok(())
     }
 
-    /// The error of a kind, where it is defined.
-    pub fn error(&self, like: &ErrorRow) -> Option<&ErrorRow> {
-        self.errors.iter().find(|row| {
-            (row.quantity, row.sample, row.norm, &row.reference)
-                == (like.quantity, like.sample, like.norm, &like.reference)
-                && (row.time_factor - like.time_factor).abs() <= 1e-9 * like.time_factor.abs()
-        })
+    /// Its errors by what they are of.
+    pub fn index(&self) -> ErrorIndex<'_> {
+        ErrorIndex { rows: self.errors.iter().map(|row| (key(row), row)).collect() }
     }
 }
 
-/// A series of one error over results on finer and finer meshes, with its class.
-#[derive(Clone, Debug)]
-pub struct ScoredSeries {
-    /// What the errors are of; its value is that on the coarsest mesh.
-    pub measure: ErrorRow,
-    /// Cell sizes, m, and errors.
-    pub series: ErrorSeries,
-    /// Order on the finest window.
-    pub finest: Result<FinestOrder, Undefined>,
-    /// Class with its reason.
-    pub classification: Classification,
-}
-
-/// The series over results with numbers of cells over the height, the main norm of each quantity.
-/// An error that a level lacks leaves a hole, and a series with a hole is not evaluable.
-pub fn series_of(levels: &[(usize, Score)], height: f64) -> Vec<ScoredSeries> {
-    let Some((_, first)) = levels.iter().min_by_key(|(cells, _)| *cells) else { return Vec::new() };
-    let main = |row: &&ErrorRow| matches!(row.norm, Norm::L2 | Norm::Relative);
-    let series = first.errors.iter().filter(main).map(|measure| {
-        let level = |(cells, score): &(usize, Score)| Level {
-            size: height / *cells as f64,
-            error: score.error(measure).map(|row| row.value.abs()),
-        };
-        let series = ErrorSeries::new(levels.iter().map(level).collect());
-        // A settlement's error has a sign; levels are put from coarse to fine as the series is.
-        let mut signed: Vec<(usize, f64)> = match measure.norm {
-            Norm::Relative => {
-                let value = |(cells, score): &(usize, Score)| Some((*cells, score.error(measure)?.value));
-                levels.iter().filter_map(value).collect()
-            }
-            _ => Vec::new(),
-        };
-        signed.sort_by_key(|(cells, _)| *cells);
-        let signed = signed.into_iter().map(|(_, value)| value).collect();
-        let context = Context { round_off: Some(ROUND_OFF), signed, ..Context::default() };
-        ScoredSeries {
-            measure: measure.clone(),
-            finest: finest_order(&series),
-            classification: classify(&series, &context),
-            series,
-        }
-    });
-    series.collect()
+/// Vertical displacement of the surface, of a layer under the crest of its load, where a sample lies
+/// there.
+fn displacement_of_surface(
+    parameters: &ColumnParameters,
+    is_plane: bool,
+    state: &SampledState,
+) -> Option<f64> {
+    let is_at_surface = |place: &usize| {
+        state.initial_height[*place] > (1.0 - RIM) * parameters.height
+            && (!is_plane || state.initial_distance[*place] < RIM * parameters.length)
+    };
+    let place = (0..state.initial_height.len()).find(is_at_surface)?;
+    state.displacement.get(place).copied()
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
-    use crate::assess::class::Class;
+    use crate::assess::norms::Norm;
 
     /// The exact fields on places, the pressure off by `error(ζ)`.
-    fn state(places: usize, time_factor: f64, error: impl Fn(f64) -> f64) -> SampledState {
+    pub(super) fn state(places: usize, time_factor: f64, error: impl Fn(f64) -> f64) -> SampledState {
         let column = ColumnParameters::default();
         let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[]).expect("the seed column");
         let mut state = SampledState { time: column.time(time_factor), ..SampledState::default() };
@@ -218,7 +207,7 @@ mod tests {
         state
     }
 
-    fn scored(states: &[SampledState]) -> Score {
+    pub(super) fn scored(states: &[SampledState]) -> Score {
         score(&ColumnParameters::default(), &[ReferenceKind::Terzaghi], states, Sample::Nodes)
             .expect("a score")
     }
@@ -234,18 +223,42 @@ mod tests {
     }
 
     #[test]
-    fn results_on_finer_meshes_have_an_order_and_a_missing_time_none() {
-        let level = |cells: usize| {
-            let error = (cells as f64).powi(-2);
-            (cells, scored(&[state(4 * cells, 0.1, |_| error)]))
+    fn a_layer_is_measured_where_its_samples_are_and_by_vectors() {
+        let layer = ColumnParameters { length: 2.0, ..ColumnParameters::default() };
+        let reference = Reference::new(ReferenceKind::CosineLayer, &layer, &[]).expect("a layer");
+        let exact = reference.plane_state(0.1).expect("a state").expect("in the plane");
+        let mut state = SampledState { time: layer.time(0.1), ..SampledState::default() };
+        for (x, y) in (0..=4).flat_map(|i| (0..=4).map(move |j| (0.5 * f64::from(i), 0.25 * f64::from(j)))) {
+            let fields = exact.fields(x, y).expect("inside");
+            state.initial_distance.push(x);
+            state.initial_height.push(y);
+            state.volume.push(1.0);
+            state.pressure.push(fields.pressure);
+            state.horizontal_displacement.push(1.01 * fields.displacement[0]);
+            state.displacement.push(1.01 * fields.displacement[1]);
+        }
+        let kinds = [ReferenceKind::CosineLayer];
+        let found = score(&layer, &kinds, &[state.clone()], Sample::Nodes).expect("a score");
+        let value = |quantity: Quantity, norm: Norm| {
+            found.errors.iter().find(|row| (row.quantity, row.norm) == (quantity, norm)).expect("a row").value
         };
-        let levels: Vec<_> = [10, 20, 40].into_iter().map(level).collect();
-        let series = series_of(&levels, 1.0);
-        let pressure = &series[0];
-        assert_eq!(pressure.classification.class, Class::Asymptotic, "{:?}", pressure.classification);
-        assert!((pressure.classification.order.expect("an order") - 2.0).abs() < 0.05);
-        let holes = [levels[0].clone(), levels[1].clone(), (40, scored(&[state(160, 0.2, |_| 0.0)]))];
-        let series = series_of(&holes, 1.0);
-        assert_eq!(series[0].classification.class, Class::NotEvaluable);
+        assert!(value(Quantity::Pressure, Norm::L2) < 1e-12);
+        for (quantity, norm) in [(Quantity::Displacement, Norm::L2), (Quantity::Settlement, Norm::Relative)] {
+            assert!((value(quantity, norm) - 0.01).abs() < 1e-12, "{quantity:?}");
+        }
+        assert!(found.worst.iter().all(|worst| worst.x.is_some()));
+        // Without the sample under the crest there is no settlement: that at the far end is another.
+        let far: Vec<usize> = (0..25).filter(|place| state.initial_distance[*place] > 0.1).collect();
+        let only = |list: &[f64]| far.iter().map(|place| list[*place]).collect::<Vec<f64>>();
+        let without = SampledState {
+            time: state.time,
+            initial_distance: only(&state.initial_distance),
+            initial_height: only(&state.initial_height),
+            volume: only(&state.volume),
+            displacement: only(&state.displacement),
+            ..SampledState::default()
+        };
+        let found = score(&layer, &kinds, &[without], Sample::Nodes).expect("a score");
+        assert!(found.errors.iter().all(|row| row.quantity != Quantity::Settlement));
     }
 }

@@ -38,6 +38,9 @@ pub struct Arguments {
     zeta: String,
     /// Distances x/L from the crest of a layer's cosine load, comma-separated: adds columns
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    x: Option<String>,
+    /// Older name of --x, under which the column is called xi
+    #[arg(long, value_name = "LIST", hide = true, conflicts_with = "x", allow_hyphen_values = true)]
     along: Option<String>,
     /// Set a dotted key of a study file, like material.porosity=0.45
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -59,11 +62,14 @@ struct Row {
     plane: Option<PlaneColumns>,
 }
 
-/// What `--along` adds: distance `x/L`, displacements over the height, effective stresses over the
-/// load.
+/// What `--x` adds: distance `x/L`, displacements over the height, effective stresses over the load.
 #[derive(serde::Serialize)]
 struct PlaneColumns {
-    xi: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    x: Option<f64>,
+    /// The same for who asked by the older name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    xi: Option<f64>,
     horizontal_displacement_ratio: f64,
     vertical_displacement_ratio: f64,
     effective_stress_ratio_xx: f64,
@@ -72,8 +78,7 @@ struct PlaneColumns {
 }
 
 impl PlaneColumns {
-    const NAMES: [&str; 6] = [
-        "xi",
+    const NAMES: [&str; 5] = [
         "horizontal_displacement_ratio",
         "vertical_displacement_ratio",
         "effective_stress_ratio_xx",
@@ -81,11 +86,12 @@ impl PlaneColumns {
         "effective_stress_ratio_xy",
     ];
 
-    fn of(xi: f64, fields: &LayerFields, parameters: &ColumnParameters) -> Self {
+    fn of(along: &Distances, ratio: f64, fields: &LayerFields, parameters: &ColumnParameters) -> Self {
         let [xx, yy, _, xy] = fields.effective_stress.map(|stress| stress / parameters.load);
         let [horizontal, vertical] = fields.displacement.map(|component| component / parameters.height);
         Self {
-            xi,
+            x: (along.column == Distances::COLUMN).then_some(ratio),
+            xi: (along.column != Distances::COLUMN).then_some(ratio),
             horizontal_displacement_ratio: horizontal,
             vertical_displacement_ratio: vertical,
             effective_stress_ratio_xx: xx,
@@ -96,13 +102,41 @@ impl PlaneColumns {
 
     fn values(&self) -> [f64; 6] {
         [
-            self.xi,
+            self.x.or(self.xi).unwrap_or_default(),
             self.horizontal_displacement_ratio,
             self.vertical_displacement_ratio,
             self.effective_stress_ratio_xx,
             self.effective_stress_ratio_yy,
             self.effective_stress_ratio_xy,
         ]
+    }
+}
+
+/// Places along a layer, with the name of their column.
+struct Distances {
+    /// As it is called in the header.
+    column: &'static str,
+    /// `x/L` from the crest of the load.
+    ratios: Vec<f64>,
+}
+
+impl Distances {
+    const COLUMN: &'static str = "x";
+
+    /// Those that were asked for, of a solution that has them.
+    fn of(arguments: &Arguments, kind: ReferenceKind) -> anyhow::Result<Option<Self>> {
+        let (option, column, typed) = match (&arguments.x, &arguments.along) {
+            (Some(typed), _) => ("--x", Self::COLUMN, typed),
+            (None, Some(typed)) => ("--along", "xi", typed),
+            (None, None) => return Ok(None),
+        };
+        if !matches!(kind, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible) {
+            return Err(Ended::usage(format!(
+                "`{option}` is of a layer: `{kind}` depends on the depth alone; leave it out, or ask for `{}`",
+                ReferenceKind::CosineLayer
+            )));
+        }
+        Ok(Some(Self { column, ratios: overrides::numbers(option, typed)? }))
     }
 }
 
@@ -137,15 +171,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         Some(degrees) => time_factors_of(kind, &parameters, &overrides::numbers("--degree", degrees)?)?,
         None => overrides::numbers("--time-factor", &arguments.time_factor)?,
     };
-    let distances = match &arguments.along {
-        Some(_) if !matches!(kind, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible) => {
-            return Err(Ended::usage(format!(
-                "`--along` is of a layer: `{kind}` depends on the depth alone"
-            )));
-        }
-        Some(typed) => Some(overrides::numbers("--along", typed)?),
-        None => None,
-    };
+    let distances = Distances::of(arguments, kind)?;
     let reference = Reference::new(kind, &parameters, &time_factors)?;
     let mut rows = Vec::new();
     let mut accuracy = Vec::new();
@@ -167,9 +193,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
                 rows.push(row(*zeta, fields.pressure, None));
                 continue;
             };
-            for xi in distances {
-                let at = state.fields(xi * parameters.length, (1.0 - zeta) * parameters.height)?;
-                rows.push(row(*zeta, at.pressure, Some(PlaneColumns::of(*xi, &at, &parameters))));
+            for ratio in &distances.ratios {
+                let at = state.fields(ratio * parameters.length, (1.0 - zeta) * parameters.height)?;
+                let plane = PlaneColumns::of(distances, *ratio, &at, &parameters);
+                rows.push(row(*zeta, at.pressure, Some(plane)));
             }
         }
         let truncation = reference.accuracy(time_factor)?;
@@ -177,7 +204,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     match arguments.format {
         Format::Csv => {
-            print_data(&csv_of(&rows)?)?;
+            print_data(&csv_of(&rows, distances.as_ref())?)?;
             for one in &accuracy {
                 say!("T_v = {}: {} terms, tail below {:.1e}", one.time_factor, one.terms, one.tail_bound);
             }
@@ -241,11 +268,12 @@ fn time_factors_of(
     degrees.iter().map(one).collect()
 }
 
-fn csv_of(rows: &[Row]) -> anyhow::Result<String> {
+fn csv_of(rows: &[Row], distances: Option<&Distances>) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut names =
         vec!["time_factor", "zeta", "pressure_ratio", "settlement_ratio", "degree_of_consolidation"];
-    if rows.iter().any(|row| row.plane.is_some()) {
+    if let Some(distances) = distances {
+        names.push(distances.column);
         names.extend(PlaneColumns::NAMES);
     }
     writer.write_record(names)?;

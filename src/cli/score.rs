@@ -1,17 +1,19 @@
 //! `oedometer score`: hold somebody else's result against the references of a scene.
 
+mod gate;
+mod results;
+
 use super::exit::{Ended, Exit};
 use super::output::{TableFormat, json_of, print_tables};
 use super::overrides::{self, StudyLines};
 use super::stream::{print_data, say};
-use crate::assess::norms::Norm;
-use crate::assess::score::{Score, score, series_of};
-use crate::exact::ReferenceKind;
-use crate::import::{CONVENTION, Mapping, states_of};
-use crate::record::{ERROR_COLUMNS, Quantity};
+use crate::assess::score::Score;
+use crate::import::{CONVENTION, Mapping, PLANE_CONVENTION};
+use crate::record::ERROR_COLUMNS;
 use crate::render::scores;
-use crate::scene::{SceneKind, column_parameters};
+use crate::scene::SceneKind;
 use crate::study::{Case, Study, StudySource};
+use results::{Held, Results};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `score`.
@@ -26,19 +28,30 @@ pub struct Arguments {
     /// What the columns mean; see --show-mapping. Where none is given, the columns are t, y, p, `u_y`
     #[arg(long, value_name = "FILE.toml")]
     mapping: Option<PathBuf>,
-    /// Print the mapping that holds where none is given, as a start for one's own
+    /// Print the mapping that holds where none is given, as a start for one's own; with --scene that
+    /// of the scene
     #[arg(long)]
     show_mapping: bool,
     /// Hold the result against this reference only
     #[arg(long, value_name = "NAME")]
     reference: Option<String>,
+    /// Time factors `T_v` that the result must have, comma-separated; its other times are left out
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    time_factor: Option<String>,
+    /// How far, relative, a time may lie from the one that it stands for: the requested one, or that
+    /// of another mesh
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-3, allow_hyphen_values = true)]
+    time_tolerance: f64,
     /// Cells over the height of each result, comma-separated: adds orders and classes
     #[arg(long, value_name = "LIST")]
     cells: Option<String>,
     /// Fail with exit code 1 where an error (L2, settlement relative) against the first reference is
-    /// not below this
+    /// not below this, or where the result is not whole
     #[arg(long, value_name = "ERROR")]
     below: Option<f64>,
+    /// Fail with exit code 1 where the result is not whole: volume, height, rows, times
+    #[arg(long)]
+    strict: bool,
     /// Set a dotted key of a study file, like material.porosity=0.45
     #[arg(long = "set", value_name = "KEY=VALUE")]
     assignments: Vec<String>,
@@ -50,97 +63,98 @@ pub struct Arguments {
 /// Scores and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.show_mapping {
-        print_data(CONVENTION)?;
+        let is_plane = SceneKind::named(&arguments.scene).is_some_and(SceneKind::is_plane);
+        print_data(if is_plane { PLANE_CONVENTION } else { CONVENTION })?;
         return Ok(Exit::Pass);
     }
-    let mapping = mapping_of(arguments.mapping.as_deref())?;
-    let study = study_of(arguments)?;
+    let tolerance = arguments.time_tolerance;
+    if !(0.0..1.0).contains(&tolerance) {
+        return Err(Ended::usage(format!(
+            "`--time-tolerance {tolerance}` is no share: give a number from 0 to below 1"
+        )));
+    }
+    let (study, requested) = study_of(arguments)?;
     let Some(planned) = study.planned.first() else {
         return Err(Ended::usage("the assignments leave no column"));
     };
     let case = &planned.case;
-    let references: Vec<ReferenceKind> =
-        study.references.iter().map(|kind| SceneKind::reference_for(*kind, &case.material)).collect();
-    let files: Vec<Vec<PathBuf>> = match &arguments.cells {
-        Some(_) => arguments.results.iter().map(|file| vec![file.clone()]).collect(),
-        None => vec![arguments.results.clone()],
+    let held = Held {
+        case,
+        mapping: &mapping_of(arguments.mapping.as_deref(), case)?,
+        references: &study
+            .references
+            .iter()
+            .map(|kind| SceneKind::reference_for(*kind, &case.material))
+            .collect::<Vec<_>>(),
+        requested: &requested,
+        tolerance,
     };
-    let scores: Vec<Score> = files
-        .iter()
-        .map(|files| score_of(files, &mapping, case, &references))
-        .collect::<anyhow::Result<_>>()?;
-    let mut tables = Vec::new();
-    for (score, files) in scores.iter().zip(&files) {
-        let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
-        tables.push(scores::errors_table(score, &format!("{}: {}", case.scene.name(), names.join(", "))));
-    }
-    if let Some(typed) = &arguments.cells {
-        let levels = levels_of(typed, &scores)?;
-        let cells: Vec<usize> = levels.iter().map(|(cells, _)| *cells).collect();
-        tables.push(scores::series_table(&series_of(&levels, case.column.height), &cells));
-    }
+    let results = Results::of(&arguments.results, arguments.cells.as_deref(), &held)?;
     match arguments.format {
-        TableFormat::Json => print_data(&json_of(&scores)?)?,
-        TableFormat::Csv => print_data(&csv_of(&scores, &arguments.results)?)?,
-        _ => print_tables(&tables, arguments.format)?,
+        TableFormat::Json => print_data(&json_of(&results.scores())?)?,
+        TableFormat::Csv => print_data(&csv_of(&results.scores(), &arguments.results)?)?,
+        _ => {
+            let mut tables = Vec::new();
+            for one in &results.all {
+                let title = format!("{}: {}", case.scene.name(), one.name());
+                tables.push(scores::errors_table(&one.score, &title));
+            }
+            if let Some((series, cells)) = results.series(case) {
+                tables.push(scores::series_table(&series, &cells));
+            }
+            print_tables(&tables, arguments.format)?;
+        }
     }
     say!("{}", groups_of(case));
-    judge(arguments.below, &scores, references.first().map(|kind| kind.name()))
+    gate::judge(&results, arguments.below, arguments.strict, held.references)
 }
 
 /// The declared meaning of the columns.
-fn mapping_of(path: Option<&Path>) -> anyhow::Result<Mapping> {
+fn mapping_of(path: Option<&Path>, case: &Case) -> anyhow::Result<Mapping> {
+    let is_plane = case.scene.is_plane();
     let Some(path) = path else {
+        let along = if is_plane {
+            ", x is the initial distance from the crest of the load in m, u_x is in m and positive away from it"
+        } else {
+            ""
+        };
         say!(
             "note: no --mapping, so t is in s, y is the initial height over the base in m, p is in Pa and positive \
-             in compression, u_y is in m and positive upward; --show-mapping prints this as a file to change"
+             in compression, u_y is in m and positive upward{along}; --show-mapping prints this as a file to change"
         );
-        return Ok(Mapping::convention()?);
+        return Ok(Mapping::convention(is_plane)?);
     };
     let text = std::fs::read_to_string(path)
         .map_err(|error| Ended::usage(format!("cannot read the mapping {}: {error}", path.display())))?;
-    Ok(Mapping::read(&StudySource { name: path.display().to_string(), text })?)
+    let source = StudySource { name: path.display().to_string(), text };
+    let mapping = Mapping::read(&source)?;
+    if is_plane {
+        mapping.check_plane(&source)?;
+    }
+    Ok(mapping)
 }
 
-/// The scene with the column that the result is of, as a study with one case.
-fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
+/// The scene with the column that the result is of, as a study with one case, and the time factors
+/// that were asked for.
+fn study_of(arguments: &Arguments) -> anyhow::Result<(Study, Vec<f64>)> {
     let mut lines = StudyLines::default();
     lines.give("title", "\"score\"", "`score`")?;
     lines.give("scene", &overrides::quoted(&arguments.scene), "`--scene`")?;
     if let Some(reference) = &arguments.reference {
         lines.give("output.references", &format!("[{}]", overrides::quoted(reference)), "`--reference`")?;
     }
-    lines.assign(&arguments.assignments)?;
-    lines.study_with(["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned))
-}
-
-fn score_of(
-    files: &[PathBuf],
-    mapping: &Mapping,
-    case: &Case,
-    references: &[ReferenceKind],
-) -> anyhow::Result<Score> {
-    let states = states_of(files, mapping, case.column.height, case.seconds_per_time_factor())?;
-    Ok(score(&column_parameters(&case.column, &case.material), references, &states, mapping.sample)?)
-}
-
-/// Results from the coarsest mesh to the finest.
-fn levels_of(typed: &str, scores: &[Score]) -> anyhow::Result<Vec<(usize, Score)>> {
-    let cells: Vec<usize> = typed
-        .split(',')
-        .map(|entry| entry.trim().parse().ok().filter(|cells| *cells > 0))
-        .collect::<Option<_>>()
-        .ok_or_else(|| Ended::usage(format!("`--cells {typed}` is no list of numbers from 1 on")))?;
-    if cells.len() != scores.len() {
-        return Err(Ended::usage(format!(
-            "`--cells {typed}` has {} numbers for {} results: give one a result",
-            cells.len(),
-            scores.len()
-        )));
+    if let Some(typed) = &arguments.time_factor {
+        let list = overrides::list("--time-factor", typed)?;
+        lines.give("output.time_factors", &list, "`--time-factor`")?;
     }
-    let mut levels: Vec<(usize, Score)> = cells.into_iter().zip(scores.iter().cloned()).collect();
-    levels.sort_by_key(|(cells, _)| *cells);
-    Ok(levels)
+    lines.assign(&arguments.assignments)?;
+    let is_requested = lines.has("output.time_factors");
+    let study = lines.study_with(["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned))?;
+    let requested = match study.planned.first() {
+        Some(planned) if is_requested => planned.case.time_factors.clone(),
+        _ => Vec::new(),
+    };
+    Ok((study, requested))
 }
 
 /// Which theory can hold, in one line.
@@ -154,7 +168,7 @@ fn groups_of(case: &Case) -> String {
     )
 }
 
-fn csv_of(scores: &[Score], results: &[PathBuf]) -> anyhow::Result<String> {
+fn csv_of(scores: &[&Score], results: &[PathBuf]) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let several = scores.len() > 1;
     let mut header = ERROR_COLUMNS.to_vec();
@@ -172,37 +186,4 @@ fn csv_of(scores: &[Score], results: &[PathBuf]) -> anyhow::Result<String> {
         }
     }
     Ok(String::from_utf8(writer.into_inner()?)?)
-}
-
-/// Whether every main error against the first reference is below a bound; NaN is not.
-fn judge(below: Option<f64>, scores: &[Score], reference: Option<&str>) -> anyhow::Result<Exit> {
-    let Some(bound) = below else { return Ok(Exit::Pass) };
-    if !(bound.is_finite() && bound > 0.0) {
-        return Err(Ended::usage(format!("`--below {bound}` is no bound: give a positive number")));
-    }
-    let judged = scores.iter().flat_map(|score| &score.errors).filter(|row| {
-        matches!(row.norm, Norm::L2 | Norm::Relative) && Some(row.reference.as_str()) == reference
-    });
-    let mut any = false;
-    let mut exit = Exit::Pass;
-    for row in judged {
-        any = true;
-        // Written so that what is no number fails.
-        let passes = row.value.abs() < bound;
-        if !passes {
-            let unit = if row.quantity == Quantity::Settlement { "relative" } else { "L2" };
-            say!(
-                "fail: {} at T_v = {} has a {unit} error of {:.3e}, not below {bound:e}",
-                row.quantity.name(),
-                row.time_factor,
-                row.value
-            );
-            exit = Exit::VerdictFailed;
-        }
-    }
-    if any {
-        Ok(exit)
-    } else {
-        Err(Ended::with(Exit::NothingSelected, "the result has no error that could be judged"))
-    }
 }

@@ -208,6 +208,11 @@ impl Reference {
         ask!(self, solution => solution.fields(time_factor, zeta))
     }
 
+    /// Whether its fields depend on the place along a layer too.
+    pub fn is_plane(&self) -> bool {
+        matches!(self.solution, Solution::CosineLayer(_))
+    }
+
     /// The whole field of a plane problem at a time factor; `None` for a column, whose fields
     /// depend on the depth alone.
     ///

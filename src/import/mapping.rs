@@ -1,5 +1,6 @@
 //! The declared meaning of a file's columns.
 
+use super::units::{Configuration, Direction, LengthUnit, Side, StressSign, StressUnit, TimeUnit};
 use crate::record::Sample;
 use crate::study::{StudyError, StudySource};
 use serde::Deserialize;
@@ -29,6 +30,38 @@ u_y = "up"
 y = "reference"
 "#;
 
+/// The same of a layer: places have two coordinates, and displacements two components.
+pub const PLANE_CONVENTION: &str = r#"sample = "points"
+
+[columns]
+t = "t"
+x = "x"
+y = "y"
+p = "p"
+u_x = "u_x"
+u_y = "u_y"
+
+[units]
+time = "s"
+length = "m"
+displacement = "m"
+stress = "Pa"
+
+[sign]
+x = "right"
+y = "up"
+p = "compression-positive"
+u_x = "right"
+u_y = "up"
+
+[position]
+y = "reference"
+
+[origin]
+x = 0.0
+y = 0.0
+"#;
+
 /// What the columns of a file mean.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -36,20 +69,30 @@ pub struct Mapping {
     /// Kind of the places: a name for tables.
     #[serde(default = "points")]
     pub sample: Sample,
+    /// What the volumes of all places add up to, in the unit of their column; where it is left out
+    /// and the sum is no volume of the scene, they are mere weights.
+    #[serde(default)]
+    pub whole_volume: Option<f64>,
     /// Names of the columns.
     pub columns: Columns,
     /// Units of the columns.
     pub units: Units,
     /// Directions that count as positive.
     pub sign: Signs,
-    /// Whose places the heights are.
+    /// Whose places the coordinates are.
     pub position: Position,
+    /// Where the scene begins in the file's coordinates.
+    #[serde(default)]
+    pub origin: Origin,
     /// Where the time stands, where it is no column.
     #[serde(default)]
     pub time: Time,
     /// Layout of the file.
     #[serde(default)]
     pub csv: Layout,
+    /// Whether nobody declared it: a layer's horizontal displacement then may be missing.
+    #[serde(skip)]
+    pub is_convention: bool,
 }
 
 fn points() -> Sample {
@@ -62,10 +105,14 @@ fn points() -> Sample {
 pub struct Columns {
     /// Time.
     pub t: Option<String>,
+    /// Distance along a layer.
+    pub x: Option<String>,
     /// Height or depth.
     pub y: String,
     /// Excess pore pressure.
     pub p: Option<String>,
+    /// Horizontal displacement of the skeleton.
+    pub u_x: Option<String>,
     /// Vertical displacement of the skeleton.
     pub u_y: Option<String>,
     /// Vertical effective stress.
@@ -80,7 +127,7 @@ pub struct Columns {
 pub struct Units {
     /// Unit of the time.
     pub time: TimeUnit,
-    /// Unit of the height.
+    /// Unit of the places.
     pub length: LengthUnit,
     /// Unit of the displacement, where it is a column.
     pub displacement: Option<LengthUnit>,
@@ -88,102 +135,42 @@ pub struct Units {
     pub stress: Option<StressUnit>,
 }
 
-/// A unit of time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum TimeUnit {
-    /// Second.
-    S,
-    /// Minute.
-    Min,
-    /// Hour.
-    H,
-    /// Day.
-    D,
-    /// Year of 365.25 days.
-    A,
-    /// Time factor `T_v`.
-    TimeFactor,
-}
-
-/// A unit of length.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-pub enum LengthUnit {
-    /// Metre.
-    #[serde(rename = "m")]
-    Metre,
-    /// Centimetre.
-    #[serde(rename = "cm")]
-    Centimetre,
-    /// Millimetre.
-    #[serde(rename = "mm")]
-    Millimetre,
-}
-
-/// A unit of stress.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-pub enum StressUnit {
-    /// Pascal.
-    #[serde(rename = "Pa")]
-    Pascal,
-    /// Kilopascal.
-    #[serde(rename = "kPa")]
-    Kilopascal,
-    /// Megapascal.
-    #[serde(rename = "MPa")]
-    Megapascal,
-}
-
 /// Directions that count as positive.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Signs {
+    /// `right` from the scene's `x = 0` (the crest of a layer's load), or `left` from its other end;
+    /// where `x` is a column.
+    pub x: Option<Side>,
     /// `up` from the base, or `down` from the initial surface.
     pub y: Direction,
     /// Sign of the pore pressure, where it is a column.
     pub p: Option<StressSign>,
-    /// Sign of the displacement, where it is a column.
+    /// Sign of the horizontal displacement, where it is a column.
+    pub u_x: Option<Side>,
+    /// Sign of the vertical displacement, where it is a column.
     pub u_y: Option<Direction>,
     /// Sign of the effective stress, where it is a column.
     pub effective_stress: Option<StressSign>,
 }
 
-/// A direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Direction {
-    /// Against gravity.
-    Up,
-    /// With gravity.
-    Down,
-}
-
-/// Which stress counts as positive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum StressSign {
-    /// Soil mechanics.
-    CompressionPositive,
-    /// Continuum mechanics.
-    TensionPositive,
-}
-
-/// Whose places the heights are.
+/// Whose places the coordinates are.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Position {
-    /// Initial places, or present ones.
+    /// Initial places, or present ones; of `x` as of `y`.
     pub y: Configuration,
 }
 
-/// A configuration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Configuration {
-    /// Places before the load came.
-    Reference,
-    /// Places at the time of the row.
-    Current,
+/// Where the scene begins in the file's coordinates and their unit: what the file writes at the end
+/// from which `sign` counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Origin {
+    /// At the crest of a layer's load, or at its other end.
+    pub x: f64,
+    /// At the base, or at the initial surface.
+    pub y: f64,
 }
 
 /// Times that stand beside the rows.
@@ -211,42 +198,6 @@ impl Default for Layout {
     }
 }
 
-impl TimeUnit {
-    /// Seconds of a time in this unit, with the seconds of `T_v = 1`.
-    pub fn seconds(self, time: f64, seconds_per_time_factor: f64) -> f64 {
-        time * match self {
-            Self::S => 1.0,
-            Self::Min => 60.0,
-            Self::H => 3600.0,
-            Self::D => 86_400.0,
-            Self::A => 365.25 * 86_400.0,
-            Self::TimeFactor => seconds_per_time_factor,
-        }
-    }
-}
-
-impl LengthUnit {
-    /// Metres of one.
-    pub fn metres(self) -> f64 {
-        match self {
-            Self::Metre => 1.0,
-            Self::Centimetre => 1e-2,
-            Self::Millimetre => 1e-3,
-        }
-    }
-}
-
-impl StressUnit {
-    /// Pascals of one.
-    pub fn pascals(self) -> f64 {
-        match self {
-            Self::Pascal => 1.0,
-            Self::Kilopascal => 1e3,
-            Self::Megapascal => 1e6,
-        }
-    }
-}
-
 impl Mapping {
     /// The mapping of a text.
     ///
@@ -261,35 +212,62 @@ impl Mapping {
         }
     }
 
-    /// The meaning of a file for which nothing is declared.
+    /// The meaning of a file for which nothing is declared, of a column or of a layer.
     ///
     /// # Errors
     /// Never: the text is a constant.
-    pub fn convention() -> Result<Self, StudyError> {
-        Self::read(&StudySource { name: "the convention".to_owned(), text: CONVENTION.to_owned() })
+    pub fn convention(is_plane: bool) -> Result<Self, StudyError> {
+        let text = if is_plane { PLANE_CONVENTION } else { CONVENTION }.to_owned();
+        let mapping = Self::read(&StudySource { name: "the convention".to_owned(), text })?;
+        Ok(Self { is_convention: true, ..mapping })
+    }
+
+    /// What a mapping lacks for a layer: its fields depend on the place along it.
+    ///
+    /// # Errors
+    /// When no column holds that place.
+    pub fn check_plane(&self, source: &StudySource) -> Result<(), StudyError> {
+        if self.columns.x.is_some() {
+            return Ok(());
+        }
+        Err(source.complaint(
+            "the scene is a layer, and no column `x` says where along it a sample lies".to_owned(),
+            "add `x = \"x\"` to [columns] and `x = \"right\"` to [sign], for a distance from the crest of the load"
+                .to_owned(),
+        ))
     }
 
     /// A column that lacks a declaration, and how to give it.
     fn undeclared(&self) -> Option<(String, String)> {
         let (columns, units, sign) = (&self.columns, &self.units, &self.sign);
+        let has_stress = units.stress.is_some();
+        let has_displacement = units.displacement.is_some();
+        let stress = ("stress = \"kPa\"", "compression-positive");
         let rows = [
-            ("p", columns.p.is_some(), units.stress.is_some(), sign.p.is_some(), "stress = \"kPa\""),
+            ("p", columns.p.is_some(), has_stress, sign.p.is_some(), stress),
             (
                 "u_y",
                 columns.u_y.is_some(),
-                units.displacement.is_some(),
+                has_displacement,
                 sign.u_y.is_some(),
-                "displacement = \"mm\"",
+                ("displacement = \"mm\"", "up"),
+            ),
+            (
+                "u_x",
+                columns.u_x.is_some(),
+                has_displacement,
+                sign.u_x.is_some(),
+                ("displacement = \"mm\"", "right"),
             ),
             (
                 "effective_stress",
                 columns.effective_stress.is_some(),
-                units.stress.is_some(),
+                has_stress,
                 sign.effective_stress.is_some(),
-                "stress = \"kPa\"",
+                stress,
             ),
         ];
-        for (name, given, has_unit, has_sign, unit) in rows {
+        for (name, given, has_unit, has_sign, (unit, word)) in rows {
             if given && !has_unit {
                 return Some((
                     format!("the unit of the column `{name}` is not declared"),
@@ -297,23 +275,45 @@ impl Mapping {
                 ));
             }
             if given && !has_sign {
-                let word = if name == "u_y" { "up" } else { "compression-positive" };
                 return Some((
                     format!("the sign of the column `{name}` is not declared"),
                     format!("add `{name} = \"{word}\"` to [sign]"),
                 ));
             }
         }
+        if columns.x.is_some() && sign.x.is_none() {
+            return Some((
+                "the end from which `x` counts is not declared".to_owned(),
+                "add `x = \"right\"` to [sign] where x = 0 is under the crest of the load, `x = \"left\"` where it is \
+                 at the other end"
+                    .to_owned(),
+            ));
+        }
         if rows.iter().all(|(_, given, ..)| !given) {
             return Some((
                 "no column to score is named".to_owned(),
-                "name `p`, `u_y` or `effective_stress` in [columns]".to_owned(),
+                "name `p`, `u_y`, `u_x` or `effective_stress` in [columns]".to_owned(),
             ));
         }
-        if self.position.y == Configuration::Current && columns.u_y.is_none() {
+        let is_current = self.position.y == Configuration::Current;
+        for (place, given, component, has_component) in [
+            ("y", true, "u_y", columns.u_y.is_some()),
+            ("x", columns.x.is_some(), "u_x", columns.u_x.is_some()),
+        ] {
+            if is_current && given && !has_component {
+                return Some((
+                    format!("present places need the displacement to find the initial `{place}`"),
+                    format!("name `{component}` in [columns], or give initial places"),
+                ));
+            }
+        }
+        if !(self.origin.x.is_finite() && self.origin.y.is_finite()) {
+            return Some(("an origin is no finite number".to_owned(), "write it as in the file".to_owned()));
+        }
+        if self.whole_volume.is_some_and(|volume| !(volume.is_finite() && volume > 0.0)) {
             return Some((
-                "present places need the displacement to find the initial ones".to_owned(),
-                "name `u_y` in [columns], or give initial places".to_owned(),
+                "`whole_volume` is not positive".to_owned(),
+                "give what the volumes of all samples add up to".to_owned(),
             ));
         }
         if columns.t.is_none() && self.time.files.is_empty() {
@@ -339,9 +339,12 @@ mod tests {
 
     #[test]
     fn the_convention_is_a_mapping() {
-        let mapping = Mapping::convention().expect("a constant");
-        assert_eq!(mapping.columns.u_y.as_deref(), Some("u_y"));
-        assert_eq!(mapping.position.y, Configuration::Reference);
+        for is_plane in [false, true] {
+            let mapping = Mapping::convention(is_plane).expect("a constant");
+            assert_eq!(mapping.columns.u_y.as_deref(), Some("u_y"));
+            assert_eq!(mapping.columns.x.is_some(), is_plane);
+            assert_eq!(mapping.position.y, Configuration::Reference);
+        }
     }
 
     #[test]
@@ -358,6 +361,18 @@ mod tests {
             let error = read(&CONVENTION.replacen(remove, "", 1)).expect_err(remove);
             assert!(error.contains(told), "{remove}: {error}");
         }
+        for (remove, told) in [
+            ("x = \"right\"\n", "the end from which `x` counts is not declared"),
+            ("u_x = \"right\"\n", "sign of the column `u_x`"),
+        ] {
+            let error = read(&PLANE_CONVENTION.replacen(&format!("\n{remove}"), "\n", 1)).expect_err(remove);
+            assert!(error.contains(told), "{remove}: {error}");
+        }
+        let current =
+            PLANE_CONVENTION.replace("\"reference\"", "\"current\"").replacen("u_x = \"u_x\"\n", "", 1);
+        assert!(read(&current).is_err_and(|error| error.contains("to find the initial `x`")));
+        let volume = format!("whole_volume = 0.0\n{CONVENTION}");
+        assert!(read(&volume).is_err_and(|error| error.contains("`whole_volume` is not positive")));
         let current = CONVENTION.replace("\"reference\"", "\"current\"").replacen("u_y = \"u_y\"\n", "", 1);
         assert!(read(&current).is_err_and(|error| error.contains("present places need the displacement")));
     }

@@ -1,19 +1,22 @@
-//! From the rows of files to states of a column in SI, with the signs of this program.
+//! From the rows of files to states of a column or a layer.
 
-use super::mapping::{Configuration, Direction, Mapping, StressSign};
-use std::path::{Path, PathBuf};
+use super::error::ImportError;
+use super::mapping::Mapping;
+use super::row::{Row, rows_of};
+use std::path::PathBuf;
 
 /// Rows closer than this share of their time are of one time.
 const SAME_TIME: f64 = 1e-9;
-/// Share of the height by which a place may lie outside: round-off of a written number.
-const RIM: f64 = 1e-6;
 
-/// Samples of a column at one time: SI, heights from the base, pressure compression positive,
-/// stress tension positive, displacement upward positive. A quantity that is no column is empty.
+/// Samples at one time: SI, heights from the base and distances from the scene's `x = 0`, pressure
+/// compression positive, stress tension positive, displacement upward and away from `x = 0`
+/// positive. A quantity that is no column is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SampledState {
     /// Time, s.
     pub time: f64,
+    /// Initial distance of each place from the scene's `x = 0`, m.
+    pub initial_distance: Vec<f64>,
     /// Initial height of each place, m.
     pub initial_height: Vec<f64>,
     /// Weight of each place.
@@ -24,107 +27,21 @@ pub struct SampledState {
     pub effective_stress: Vec<f64>,
     /// Vertical displacement, m.
     pub displacement: Vec<f64>,
+    /// Horizontal displacement, m.
+    pub horizontal_displacement: Vec<f64>,
+    /// Rows that stand at the place of another, and that no other column tells from it.
+    pub repeated: usize,
 }
 
-/// Why a result cannot be taken.
-#[derive(Debug, thiserror::Error)]
-pub enum ImportError {
-    /// The file cannot be read.
-    #[error("cannot read {path}: {source}")]
-    Io {
-        /// Which.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// A row cannot be parsed.
-    #[error("{path}: {source}")]
-    Csv {
-        /// Which file.
-        path: PathBuf,
-        /// Why, with the line.
-        source: csv::Error,
-    },
-    /// A column is missing.
-    #[error("{path}: there is no column `{name}`; the header has {header}")]
-    NoColumn {
-        /// Which file.
-        path: PathBuf,
-        /// Name of the column.
-        name: String,
-        /// The header.
-        header: String,
-    },
-    /// A file's time is declared nowhere.
-    #[error("{path}: its time is declared nowhere; add \"{name}\" = … to [time] files")]
-    NoTime {
-        /// Which file.
-        path: PathBuf,
-        /// Its name.
-        name: String,
-    },
-    /// A field is no finite number.
-    #[error("{path}:{line}: `{typed}` in the column `{column}` is no finite number")]
-    NoNumber {
-        /// Which file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: u64,
-        /// Column.
-        column: String,
-        /// What stands there.
-        typed: String,
-    },
-    /// A place is outside the column.
-    #[error(
-        "{path}:{line}: the initial height {height} m is outside the column of {column} m: look at the unit and the \
-         sign of `y`, and at whose places they are"
-    )]
-    Outside {
-        /// Which file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: u64,
-        /// Height, m.
-        height: f64,
-        /// Height of the column, m.
-        column: f64,
-    },
-    /// A weight or a time is negative.
-    #[error("{path}:{line}: {what} is negative")]
-    Negative {
-        /// Which file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: u64,
-        /// What.
-        what: &'static str,
-    },
-    /// There are no rows.
-    #[error("{path}: there are no rows")]
-    Empty {
-        /// Which file.
-        path: PathBuf,
-    },
-}
-
-/// What the column that was solved is like.
+/// What was solved, as far as it takes to read a result of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Height, m.
     pub height: f64,
+    /// Length along a layer, m; a column has none.
+    pub length: Option<f64>,
     /// Seconds at which `T_v = 1`.
     pub seconds_per_time_factor: f64,
-}
-
-/// One row in SI.
-struct Row {
-    time: f64,
-    initial_height: f64,
-    volume: f64,
-    pressure: Option<f64>,
-    effective_stress: Option<f64>,
-    displacement: Option<f64>,
 }
 
 /// States of all rows of the files of one run, by time.
@@ -134,174 +51,52 @@ struct Row {
 pub fn states_of(
     paths: &[PathBuf],
     mapping: &Mapping,
-    height: f64,
-    seconds_per_time_factor: f64,
+    frame: Frame,
 ) -> Result<Vec<SampledState>, ImportError> {
-    let frame = Frame { height, seconds_per_time_factor };
     let mut rows = Vec::new();
     for path in paths {
         rows.extend(rows_of(path, mapping, frame)?);
     }
-    rows.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.initial_height.total_cmp(&b.initial_height)));
+    if rows
+        .iter()
+        .any(|row| row.horizontal_displacement.is_some() != rows[0].horizontal_displacement.is_some())
+    {
+        return Err(ImportError::NotInAll { name: "u_x" });
+    }
+    let distance = |row: &Row| row.initial_distance.unwrap_or_default();
+    rows.sort_by(|a, b| {
+        (a.time.total_cmp(&b.time))
+            .then(a.initial_height.total_cmp(&b.initial_height))
+            .then(distance(a).total_cmp(&distance(b)))
+            .then(a.others.cmp(&b.others))
+    });
     let mut states: Vec<SampledState> = Vec::new();
-    for row in rows {
+    let mut last: Option<&Row> = None;
+    for row in &rows {
         let is_new = states.last().is_none_or(|state| row.time - state.time > SAME_TIME * row.time);
         if is_new {
             states.push(SampledState { time: row.time, ..SampledState::default() });
         }
         if let Some(state) = states.last_mut() {
+            state.repeated += usize::from(!is_new && last.is_some_and(|last| last.is_place_of(row)));
+            state.initial_distance.extend(row.initial_distance);
             state.initial_height.push(row.initial_height);
             state.volume.push(row.volume);
             state.pressure.extend(row.pressure);
             state.effective_stress.extend(row.effective_stress);
             state.displacement.extend(row.displacement);
+            state.horizontal_displacement.extend(row.horizontal_displacement);
         }
+        last = Some(row);
     }
     Ok(states)
 }
 
-/// Places of the columns in a file's header.
-struct Places {
-    time: Option<usize>,
-    height: usize,
-    pressure: Option<usize>,
-    displacement: Option<usize>,
-    effective_stress: Option<usize>,
-    volume: Option<usize>,
-}
-
-impl Places {
-    fn of(header: &csv::StringRecord, mapping: &Mapping, path: &Path) -> Result<Self, ImportError> {
-        let find = |name: &String| {
-            header.iter().position(|column| column == name).ok_or_else(|| ImportError::NoColumn {
-                path: path.to_owned(),
-                name: name.clone(),
-                header: header.iter().map(|column| format!("`{column}`")).collect::<Vec<_>>().join(", "),
-            })
-        };
-        let find_some = |name: &Option<String>| name.as_ref().map(&find).transpose();
-        let columns = &mapping.columns;
-        Ok(Self {
-            time: find_some(&columns.t)?,
-            height: find(&columns.y)?,
-            pressure: find_some(&columns.p)?,
-            displacement: find_some(&columns.u_y)?,
-            effective_stress: find_some(&columns.effective_stress)?,
-            volume: find_some(&columns.volume)?,
-        })
-    }
-}
-
-fn rows_of(path: &Path, mapping: &Mapping, frame: Frame) -> Result<Vec<Row>, ImportError> {
-    let file =
-        std::fs::File::open(path).map_err(|source| ImportError::Io { path: path.to_owned(), source })?;
-    let as_byte = |mark: char| u8::try_from(mark).unwrap_or(b',');
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(as_byte(mapping.csv.delimiter))
-        .comment(mapping.csv.comment.map(as_byte))
-        .trim(csv::Trim::All)
-        .from_reader(file);
-    let wrong = |source: csv::Error| ImportError::Csv { path: path.to_owned(), source };
-    let header = reader.headers().map_err(wrong)?.clone();
-    let places = Places::of(&header, mapping, path)?;
-    let time_of_file = match places.time {
-        Some(_) => None,
-        None => Some(time_of_file(path, mapping)?),
-    };
-    let mut rows = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(wrong)?;
-        let line = RowReader { path, header: &header, record: &record };
-        let time = match time_of_file {
-            Some(time) => time,
-            None => line.number(places.time.unwrap_or_default())?,
-        };
-        rows.push(line.row(&places, mapping, frame, time)?);
-    }
-    if rows.is_empty() {
-        return Err(ImportError::Empty { path: path.to_owned() });
-    }
-    Ok(rows)
-}
-
-/// The declared time of a file that holds one step.
-fn time_of_file(path: &Path, mapping: &Mapping) -> Result<f64, ImportError> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let time = mapping.time.files.get(&name).copied();
-    time.ok_or_else(|| ImportError::NoTime { path: path.to_owned(), name })
-}
-
-/// One line of a file.
-struct RowReader<'a> {
-    path: &'a Path,
-    header: &'a csv::StringRecord,
-    record: &'a csv::StringRecord,
-}
-
-impl RowReader<'_> {
-    fn line(&self) -> u64 {
-        self.record.position().map_or(0, csv::Position::line)
-    }
-
-    fn number(&self, place: usize) -> Result<f64, ImportError> {
-        let typed = self.record.get(place).unwrap_or_default();
-        match typed.parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(ImportError::NoNumber {
-                path: self.path.to_owned(),
-                line: self.line(),
-                column: self.header.get(place).unwrap_or_default().to_owned(),
-                typed: typed.to_owned(),
-            }),
-        }
-    }
-
-    fn not_negative(&self, number: f64, what: &'static str) -> Result<f64, ImportError> {
-        if number < 0.0 {
-            return Err(ImportError::Negative { path: self.path.to_owned(), line: self.line(), what });
-        }
-        Ok(number)
-    }
-
-    /// The row in SI with the signs of this program.
-    fn row(&self, places: &Places, mapping: &Mapping, frame: Frame, time: f64) -> Result<Row, ImportError> {
-        let (units, sign) = (&mapping.units, &mapping.sign);
-        let scaled = |place: Option<usize>, factor: f64| {
-            place.map(|place| Ok(self.number(place)? * factor)).transpose()
-        };
-        let stress = units.stress.map_or(1.0, super::mapping::StressUnit::pascals);
-        let length = units.displacement.unwrap_or(units.length).metres();
-        let upward =
-            |direction: Option<Direction>| if direction == Some(Direction::Down) { -1.0 } else { 1.0 };
-        let compressive =
-            |sign: Option<StressSign>| if sign == Some(StressSign::TensionPositive) { -1.0 } else { 1.0 };
-        let displacement = scaled(places.displacement, length * upward(sign.u_y))?;
-        let y = self.number(places.height)? * units.length.metres();
-        let height = match sign.y {
-            Direction::Up => y,
-            Direction::Down => frame.height - y,
-        };
-        let initial_height = match mapping.position.y {
-            Configuration::Reference => height,
-            Configuration::Current => height - displacement.unwrap_or(0.0),
-        };
-        if !(-RIM * frame.height..=(1.0 + RIM) * frame.height).contains(&initial_height) {
-            return Err(ImportError::Outside {
-                path: self.path.to_owned(),
-                line: self.line(),
-                height: initial_height,
-                column: frame.height,
-            });
-        }
-        let volume = scaled(places.volume, 1.0)?.unwrap_or(1.0);
-        Ok(Row {
-            time: self.not_negative(units.time.seconds(time, frame.seconds_per_time_factor), "the time")?,
-            initial_height: initial_height.clamp(0.0, frame.height),
-            volume: self.not_negative(volume, "the volume")?,
-            pressure: scaled(places.pressure, stress * compressive(sign.p))?,
-            effective_stress: scaled(places.effective_stress, -stress * compressive(sign.effective_stress))?,
-            displacement,
-        })
+impl Row {
+    /// Whether another row stands at its place, and no column tells the two apart.
+    fn is_place_of(&self, other: &Self) -> bool {
+        (self.initial_height, self.initial_distance, self.others)
+            == (other.initial_height, other.initial_distance, other.others)
     }
 }
 
@@ -339,7 +134,12 @@ delimiter = ";"
         let folder = tempfile::TempDir::new().expect("a folder");
         let path = folder.path().join("result.csv");
         std::fs::write(&path, text).expect("a file");
-        states_of(&[path], &mapping, 1.0, 81.75).map_err(|error| error.to_string())
+        let frame = Frame {
+            height: 1.0,
+            length: mapping.columns.x.is_some().then_some(2.0),
+            seconds_per_time_factor: 81.75,
+        };
+        states_of(&[path], &mapping, frame).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -370,5 +170,27 @@ delimiter = ";"
         assert!(error.contains("no column `sig`; the header has `day`, `depth`"), "{error}");
         let error = states(STRANGE, "day; depth; pwp; settled; sig\n").expect_err("no rows");
         assert!(error.contains("there are no rows"), "{error}");
+    }
+
+    #[test]
+    fn places_along_a_layer_have_an_end_an_origin_and_a_range() {
+        let mapping = crate::import::PLANE_CONVENTION
+            .replace("x = \"right\"\ny", "x = \"left\"\ny")
+            .replace("u_x = \"right\"", "u_x = \"left\"")
+            .replace("x = 0.0", "x = 5.0")
+            .replace("y = 0.0", "y = 2.0");
+        let text = "t,x,y,p,u_x,u_y\n1,5.5,2.25,3,0.1,0\n";
+        let states = states(&mapping, text).expect("a row");
+        assert_eq!((states[0].initial_distance[0], states[0].initial_height[0]), (1.5, 0.25));
+        assert_eq!(states[0].horizontal_displacement, [-0.1]);
+        let error = self::states(&mapping, "t,x,y,p,u_x,u_y\n1,7.5,2.25,3,0.1,0\n").expect_err("beyond");
+        assert!(error.contains("-0.5 m from the crest is outside the layer of 2 m"), "{error}");
+    }
+
+    #[test]
+    fn a_repeated_row_is_told_from_a_second_column_of_samples() {
+        let text = "t,id,y,p,u_y\n1,1,0.5,3,0\n1,2,0.5,3,0\n1,2,0.5,3,0\n1,3,0.25,3,0\n";
+        let states = states(crate::import::CONVENTION, text).expect("rows");
+        assert_eq!(states[0].repeated, 1, "rows 1 and 2 differ in a column without meaning");
     }
 }

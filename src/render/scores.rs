@@ -3,8 +3,13 @@
 use super::measures::NOT_RESOLVED;
 use super::table::{Cell, Column, Table};
 use crate::assess::norms::Norm;
-use crate::assess::score::{Score, ScoredSeries, WorstPlace};
+use crate::assess::score::series::ScoredSeries;
+use crate::assess::score::{Score, WorstPlace};
 use crate::record::{ErrorRow, Quantity};
+use std::collections::HashMap;
+
+/// Times closer than this, relative, are equal but for the digits that were written.
+const SAME_TIME: f64 = 1e-9;
 
 /// One row a time and quantity: the main norm against every reference, and the place that carries
 /// most of the error against the first.
@@ -17,26 +22,28 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
     }
     let mut columns = vec![Column::number("T_v"), Column::text("quantity"), Column::text("sample")];
     columns.extend(references.iter().map(|name| Column::number(format!("error against {name}"))));
+    let is_plane = score.worst.iter().any(|worst| worst.x.is_some());
+    columns.push(Column::number("worst at ζ"));
+    columns.extend(is_plane.then(|| Column::number("and x/L")));
     columns.extend([
-        Column::number("worst at ζ"),
         Column::number("its share"),
         Column::number("result there"),
         Column::number("exact there"),
     ]);
     let is_main = |row: &&ErrorRow| matches!(row.norm, Norm::L2 | Norm::Relative);
+    let index = score.index();
+    let worst_of: HashMap<(u64, Quantity), &WorstPlace> =
+        score.worst.iter().map(|worst| ((worst.time_factor.to_bits(), worst.quantity), worst)).collect();
     let first = references.first().copied().unwrap_or_default();
     let rows = score.errors.iter().filter(is_main).filter(|row| row.reference == first).map(|row| {
         let mut cells =
             vec![Cell::Number(row.time_factor), row.quantity.name().into(), row.sample.name().into()];
         cells.extend(references.iter().map(|name| {
             let like = ErrorRow { reference: (*name).to_owned(), ..row.clone() };
-            error_cell(score.error(&like))
+            error_cell(index.find(&like))
         }));
-        let worst = score
-            .worst
-            .iter()
-            .find(|worst| worst.quantity == row.quantity && worst.time_factor == row.time_factor);
-        cells.extend(place_cells(worst));
+        let worst = worst_of.get(&(row.time_factor.to_bits(), row.quantity)).copied();
+        cells.extend(place_cells(worst, is_plane));
         cells
     });
     Table {
@@ -58,16 +65,15 @@ fn error_cell(row: Option<&ErrorRow>) -> Cell {
     }
 }
 
-fn place_cells(worst: Option<&WorstPlace>) -> [Cell; 4] {
-    match worst {
-        Some(worst) => [
-            Cell::Number(worst.zeta),
-            Cell::Percent(worst.share),
-            Cell::Error(worst.computed),
-            Cell::Error(worst.exact),
-        ],
-        None => std::array::from_fn(|_| Cell::Missing(String::new())),
-    }
+fn place_cells(worst: Option<&WorstPlace>, is_plane: bool) -> Vec<Cell> {
+    let missing = || Cell::Missing(String::new());
+    let mut cells = vec![worst.map_or_else(missing, |worst| Cell::Number(worst.zeta))];
+    cells.extend(is_plane.then(|| worst.and_then(|worst| worst.x).map_or_else(missing, Cell::Number)));
+    cells.extend(match worst {
+        Some(worst) => [Cell::Percent(worst.share), Cell::Error(worst.computed), Cell::Error(worst.exact)],
+        None => std::array::from_fn(|_| missing()),
+    });
+    cells
 }
 
 /// One row a series over meshes, with its errors, order and class.
@@ -92,10 +98,13 @@ pub fn series_table(series: &[ScoredSeries], cells: &[usize]) -> Table {
         row.push(class.reason.as_str().into());
         row
     });
-    Table {
-        title: "convergence".to_owned(),
-        columns,
-        rows: rows.collect(),
-        notes: vec!["the order is that of the finest three meshes".to_owned()],
+    let mut notes = vec!["the order is that of the finest three meshes".to_owned()];
+    let difference = series.iter().map(|one| one.time_difference).fold(0.0, f64::max);
+    if difference > SAME_TIME {
+        notes.push(format!(
+            "times differ between the meshes, by up to {difference:.1e} of the T_v shown; each is held against the exact \
+             solution at its own"
+        ));
     }
+    Table { title: "convergence".to_owned(), columns, rows: rows.collect(), notes }
 }

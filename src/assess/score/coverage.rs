@@ -1,0 +1,237 @@
+//! Where a set of samples leaves a stretch of the column bare.
+
+/// A gap counts as bare from this many times the spacing around it on.
+const BARE: f64 = 1.5;
+/// And that beside an end of the column from this many times on: samples stand half a spacing from
+/// it, or a whole one where the value at the end is prescribed.
+const BARE_AT_END: f64 = 1.25;
+/// Places closer than this share of the extent are one.
+const SAME_PLACE: f64 = 1e-6;
+/// Spacings closer than this, relative, are equal.
+const SAME_SPACING: f64 = 0.02;
+/// Neighbours on either side of a gap that tell the spacing around it.
+const AROUND: usize = 4;
+/// Samples that an interval has on average where they lie without order.
+const PER_INTERVAL: usize = 8;
+
+/// A stretch without samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bare {
+    /// Where it begins, in the unit of the places.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+}
+
+/// Distinct places of samples, in rising order.
+pub fn lines(places: &[f64], extent: f64) -> Vec<f64> {
+    let mut lines = places.to_vec();
+    lines.sort_by(f64::total_cmp);
+    lines.dedup_by(|place, before| *place - *before <= SAME_PLACE * extent);
+    lines
+}
+
+/// The longest bare stretch between 0 and `extent`, if there is one: larger than 1.5 times the
+/// spacing around it, so that a mesh that grows finer towards one end has none.
+pub fn bare(lines: &[f64], extent: f64) -> Option<Bare> {
+    let gaps: Vec<f64> = lines.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if gaps.is_empty() {
+        return Some(Bare { from: 0.0, to: extent });
+    }
+    let stretches: Vec<Bare> = if has_order(&gaps) {
+        between(lines, &gaps).chain(at_ends(lines, &gaps, extent)).collect()
+    } else {
+        empty_intervals(lines, extent)
+    };
+    stretches.into_iter().max_by(|a, b| (a.to - a.from).total_cmp(&(b.to - b.from)))
+}
+
+/// Whether the places follow a rule: neighbouring gaps are alike, or all are multiples of one, as
+/// on a lattice with holes.
+fn has_order(gaps: &[f64]) -> bool {
+    let pairs = gaps.windows(2);
+    let alike = |pair: &&[f64]| {
+        let ratio = pair[0] / pair[1];
+        // A growing mesh changes slowly; points in a cell repeat a pattern of few gaps.
+        (1.0 / BARE..=BARE).contains(&ratio)
+    };
+    let smallest = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    let is_multiple = |gap: &f64| {
+        let ratio = gap / smallest;
+        (ratio - ratio.round()).abs() <= SAME_SPACING
+    };
+    gaps.len() < PER_INTERVAL
+        || gaps.iter().all(is_multiple)
+        || 5 * pairs.clone().filter(alike).count() >= 4 * pairs.count()
+}
+
+fn between<'a>(lines: &'a [f64], gaps: &'a [f64]) -> impl Iterator<Item = Bare> + 'a {
+    (0..gaps.len())
+        .filter(|&place| is_bare(gaps, place))
+        .map(|place| Bare { from: lines[place], to: lines[place + 1] })
+}
+
+/// Whether a gap is larger than its neighbours and than most around it.
+fn is_bare(gaps: &[f64], place: usize) -> bool {
+    let next = place + 1..(place + 2).min(gaps.len());
+    let neighbours = gaps[place.saturating_sub(1)..place].iter().chain(&gaps[next]);
+    let largest = neighbours.copied().fold(0.0, f64::max);
+    let before = place.saturating_sub(AROUND)..place;
+    let after = place + 1..(place + 1 + AROUND).min(gaps.len());
+    let mut around: Vec<f64> = gaps[before].iter().chain(&gaps[after]).copied().collect();
+    around.sort_by(f64::total_cmp);
+    let Some(median) = around.get(around.len() / 2) else { return false };
+    gaps[place] > BARE * largest.max(*median)
+}
+
+fn at_ends<'a>(lines: &'a [f64], gaps: &'a [f64], extent: f64) -> impl Iterator<Item = Bare> + 'a {
+    let near = |gaps: &[f64]| gaps.iter().copied().fold(0.0, f64::max);
+    let count = gaps.len().min(AROUND - 1);
+    let (first, last) = (lines[0], lines[lines.len() - 1]);
+    let low = (first > BARE_AT_END * near(&gaps[..count])).then_some(Bare { from: 0.0, to: first });
+    let high = (extent - last > BARE_AT_END * near(&gaps[gaps.len() - count..]))
+        .then_some(Bare { from: last, to: extent });
+    low.into_iter().chain(high)
+}
+
+/// Intervals of equal length in which no sample lies, where several do on average.
+fn empty_intervals(lines: &[f64], extent: f64) -> Vec<Bare> {
+    let count = (lines.len() / PER_INTERVAL).max(2);
+    let length = extent / count as f64;
+    (0..count)
+        .map(|interval| Bare { from: interval as f64 * length, to: (interval + 1) as f64 * length })
+        .filter(|bare| !lines.iter().any(|line| (bare.from..=bare.to).contains(line)))
+        .collect()
+}
+
+/// What a lattice of samples lacks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lattice {
+    /// Samples there are.
+    pub samples: usize,
+    /// Crossings of their lines.
+    pub crossings: usize,
+}
+
+/// Samples that lie on few lines in both directions, some crossings of which are empty for no
+/// reason that a mesh has: the nodes of elements with mid-side nodes, or a checkerboard, know two
+/// kinds of rows.
+pub fn incomplete_lattice(distances: &[f64], heights: &[f64], extent: [f64; 2]) -> Option<Lattice> {
+    let samples = heights.len();
+    let across = lines(distances, extent[0]).len();
+    let up = lines(heights, extent[1]);
+    let crossings = across * up.len();
+    if samples < 4 || samples >= crossings || 4 * samples < crossings {
+        return None;
+    }
+    let mut counts = vec![0_usize; up.len()];
+    for height in heights {
+        let row = up.partition_point(|line| *line <= height + SAME_PLACE * extent[1]);
+        if let Some(count) = counts.get_mut(row.saturating_sub(1)) {
+            *count += 1;
+        }
+    }
+    counts.sort_unstable();
+    counts.dedup();
+    let is_nearly_full = 100 * samples > 76 * crossings;
+    (is_nearly_full || counts.len() > 2).then_some(Lattice { samples, crossings })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Middles of cells, or points at shares of each cell.
+    fn points(cells: usize, shares: &[f64]) -> Vec<f64> {
+        let place = |cell: usize| shares.iter().map(move |share| (cell as f64 + share) / cells as f64);
+        (0..cells).flat_map(place).collect()
+    }
+
+    /// Places without order, the same in every run.
+    fn scattered(count: usize) -> Vec<f64> {
+        let mut seed = 1_u64;
+        let mut next = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        lines(&(0..count).map(|_| next()).collect::<Vec<f64>>(), 1.0)
+    }
+
+    #[test]
+    fn what_codes_write_has_no_bare_stretch() {
+        let nodes: Vec<f64> = (0..=20).map(|node| f64::from(node) / 20.0).collect();
+        assert_eq!(bare(&nodes, 1.0), None, "nodes");
+        assert_eq!(bare(&nodes[..20], 1.0), None, "without the surface, where p is known");
+        let gauss = [
+            vec![0.5],
+            vec![0.211_325, 0.788_675],
+            vec![0.112_702, 0.5, 0.887_298],
+            vec![0.069_432, 0.330_009, 0.669_991, 0.930_568],
+        ];
+        for shares in &gauss {
+            assert_eq!(bare(&points(10, shares), 1.0), None, "{shares:?}");
+        }
+        assert_eq!(bare(&points(2, &[0.5]), 1.0), None);
+        for ratio in [1.1_f64, 1.3] {
+            let gaps: Vec<f64> = (0..15).map(|cell| ratio.powi(cell)).collect();
+            let total: f64 = gaps.iter().sum();
+            let mut at = 0.0;
+            let graded: Vec<f64> = std::iter::once(0.0)
+                .chain(gaps.iter().map(|gap| {
+                    at += gap / total;
+                    at
+                }))
+                .collect();
+            assert_eq!(bare(&graded, 1.0), None, "growing by {ratio}");
+        }
+        let jittered: Vec<f64> = points(20, &[0.25, 0.75])
+            .iter()
+            .zip(scattered(40).iter().cycle().step_by(7))
+            .map(|(place, chance)| place + 0.01 * (chance - 0.5))
+            .collect();
+        assert_eq!(bare(&jittered, 1.0), None, "points that were moved by chance");
+        assert_eq!(bare(&scattered(400), 1.0), None, "no order at all");
+    }
+
+    #[test]
+    fn a_lost_sample_and_a_lost_half_are_seen() {
+        let all = points(20, &[0.25, 0.75]);
+        for lost in [0, 1, 17, 39] {
+            let without: Vec<f64> =
+                all.iter().enumerate().filter(|(place, _)| *place != lost).map(|(_, at)| *at).collect();
+            let found = bare(&without, 1.0);
+            assert!(found.is_some_and(|bare| (bare.from..bare.to).contains(&all[lost])), "{lost}: {found:?}");
+        }
+        assert_eq!(bare(&all[2..], 1.0).map(|bare| bare.from), Some(0.0));
+        let half = bare(&all[..20], 1.0).expect("the upper half is bare");
+        assert!((half.from - 0.4875).abs() < 1e-12 && half.to == 1.0);
+        let chance = scattered(400);
+        let random: Vec<f64> = all
+            .iter()
+            .zip(&chance)
+            .enumerate()
+            .filter(|(place, _)| place % 5 != 1 && place % 7 != 2)
+            .map(|(_, (at, _))| *at)
+            .collect();
+        assert!(bare(&random, 1.0).is_some());
+        let upper: Vec<f64> = chance.iter().copied().filter(|place| *place > 0.5).collect();
+        assert_eq!(bare(&upper, 1.0).map(|bare| bare.from), Some(0.0));
+        assert!(bare(&[0.3], 1.0).is_some());
+    }
+
+    #[test]
+    fn a_lattice_with_holes_is_told_from_elements_with_mid_side_nodes() {
+        let lattice = |keep: &dyn Fn(usize, usize) -> bool| {
+            let places = (0..21).flat_map(|i| (0..21).map(move |j| (i, j))).filter(|(i, j)| keep(*i, *j));
+            let (x, y): (Vec<f64>, Vec<f64>) =
+                places.map(|(i, j)| (i as f64 / 20.0, j as f64 / 20.0)).unzip();
+            incomplete_lattice(&x, &y, [1.0, 1.0])
+        };
+        assert_eq!(lattice(&|_, _| true), None);
+        assert_eq!(lattice(&|i, j| i % 2 == 0 || j % 2 == 0), None, "eight nodes an element");
+        assert_eq!(lattice(&|i, j| (i + j) % 2 == 0), None, "a checkerboard");
+        let holes = lattice(&|i, j| (i, j) != (7, 9)).expect("one is missing");
+        assert_eq!((holes.samples, holes.crossings), (440, 441));
+        assert!(lattice(&|i, j| (i * 7 + j * 13 + i * j) % 3 != 0).is_some());
+    }
+}

@@ -1,0 +1,76 @@
+//! What a score comes to: warnings, guesses at their cause, and the verdict of a gate.
+
+use super::results::{Read, Results};
+use crate::assess::norms::Norm;
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::stream::say;
+use crate::exact::ReferenceKind;
+use crate::record::Quantity;
+
+/// Tells what the results lack and whether they pass. In a gate, and where it is asked for, a result
+/// that is not whole fails.
+pub fn judge(
+    results: &Results,
+    below: Option<f64>,
+    strict: bool,
+    references: &[ReferenceKind],
+) -> anyhow::Result<Exit> {
+    let is_gate = strict || below.is_some();
+    let mut exit = Exit::Pass;
+    for one in &results.all {
+        let name = if results.all.len() > 1 { format!("{}: ", one.name()) } else { String::new() };
+        for finding in &one.score.warnings {
+            let word = if is_gate { "fail" } else { "warning" };
+            say!("{word}: {}: {name}{}", finding.name.name(), finding.sentence);
+            if is_gate {
+                exit = Exit::VerdictFailed;
+            }
+        }
+        for sentence in &one.score.diagnosis {
+            say!("diagnosis: {name}{sentence}");
+        }
+        for note in &one.notes {
+            say!("note: {name}{note}");
+        }
+    }
+    if is_gate && !results.are_times_known() {
+        say!(
+            "note: a time that is missing was not looked for: name those that must be there by --time-factor"
+        );
+    }
+    let Some(bound) = below else { return Ok(exit) };
+    let reference = references.first().map(|kind| kind.name());
+    Ok(exit.max(errors_below(bound, &results.all, reference)?))
+}
+
+/// Whether every main error against the first reference is below a bound; NaN is not.
+fn errors_below(bound: f64, results: &[Read], reference: Option<&str>) -> anyhow::Result<Exit> {
+    if !(bound.is_finite() && bound > 0.0) {
+        return Err(Ended::usage(format!("`--below {bound}` is no bound: give a positive number")));
+    }
+    let judged = results.iter().flat_map(|one| &one.score.errors).filter(|row| {
+        matches!(row.norm, Norm::L2 | Norm::Relative) && Some(row.reference.as_str()) == reference
+    });
+    let mut any = false;
+    let mut exit = Exit::Pass;
+    for row in judged {
+        any = true;
+        // Written so that what is no number fails.
+        let passes = row.value.abs() < bound;
+        if !passes {
+            let unit = if row.quantity == Quantity::Settlement { "relative" } else { "L2" };
+            say!(
+                "fail: {} at T_v = {} has a {unit} error of {:.3e}, not below {bound:e}",
+                row.quantity.name(),
+                row.time_factor,
+                row.value
+            );
+            exit = Exit::VerdictFailed;
+        }
+    }
+    if any {
+        Ok(exit)
+    } else {
+        Err(Ended::with(Exit::NothingSelected, "the result has no error that could be judged"))
+    }
+}

@@ -1,0 +1,164 @@
+//! Units, signs and origins of columns in the words of a mapping file.
+
+use serde::Deserialize;
+
+/// A unit of time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TimeUnit {
+    /// Second.
+    S,
+    /// Minute.
+    Min,
+    /// Hour.
+    H,
+    /// Day.
+    D,
+    /// Year of 365.25 days.
+    A,
+    /// Time factor `T_v`.
+    TimeFactor,
+}
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum LengthUnit {
+    /// Metre.
+    #[serde(rename = "m")]
+    Metre,
+    /// Centimetre.
+    #[serde(rename = "cm")]
+    Centimetre,
+    /// Millimetre.
+    #[serde(rename = "mm")]
+    Millimetre,
+}
+
+/// A unit of stress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum StressUnit {
+    /// Pascal.
+    #[serde(rename = "Pa")]
+    Pascal,
+    /// Kilopascal.
+    #[serde(rename = "kPa")]
+    Kilopascal,
+    /// Megapascal.
+    #[serde(rename = "MPa")]
+    Megapascal,
+}
+
+/// A vertical direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Direction {
+    /// Against gravity.
+    Up,
+    /// With gravity.
+    Down,
+}
+
+/// A horizontal direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Side {
+    /// Away from the scene's `x = 0`: the crest of a layer's load.
+    Right,
+    /// Towards it.
+    Left,
+}
+
+/// Which stress counts as positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StressSign {
+    /// Soil mechanics.
+    CompressionPositive,
+    /// Continuum mechanics.
+    TensionPositive,
+}
+
+/// A configuration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Configuration {
+    /// Places before the load came.
+    Reference,
+    /// Places at the time of the row.
+    Current,
+}
+
+impl TimeUnit {
+    /// Every unit.
+    pub const ALL: [Self; 6] = [Self::S, Self::Min, Self::H, Self::D, Self::A, Self::TimeFactor];
+
+    /// Its name in a mapping.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::S => "s",
+            Self::Min => "min",
+            Self::H => "h",
+            Self::D => "d",
+            Self::A => "a",
+            Self::TimeFactor => "time-factor",
+        }
+    }
+
+    /// Seconds of a time in this unit, with the seconds of `T_v = 1`.
+    pub fn seconds(self, time: f64, seconds_per_time_factor: f64) -> f64 {
+        time * match self {
+            Self::S => 1.0,
+            Self::Min => 60.0,
+            Self::H => 3600.0,
+            Self::D => 86_400.0,
+            Self::A => 365.25 * 86_400.0,
+            Self::TimeFactor => seconds_per_time_factor,
+        }
+    }
+}
+
+impl LengthUnit {
+    /// Every unit.
+    pub const ALL: [Self; 3] = [Self::Metre, Self::Centimetre, Self::Millimetre];
+
+    /// Its name in a mapping.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Metre => "m",
+            Self::Centimetre => "cm",
+            Self::Millimetre => "mm",
+        }
+    }
+
+    /// Metres of one.
+    pub fn metres(self) -> f64 {
+        match self {
+            Self::Metre => 1.0,
+            Self::Centimetre => 1e-2,
+            Self::Millimetre => 1e-3,
+        }
+    }
+}
+
+impl StressUnit {
+    /// Every unit.
+    pub const ALL: [Self; 3] = [Self::Pascal, Self::Kilopascal, Self::Megapascal];
+
+    /// Its name in a mapping.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pascal => "Pa",
+            Self::Kilopascal => "kPa",
+            Self::Megapascal => "MPa",
+        }
+    }
+
+    /// Pascals of one.
+    pub fn pascals(self) -> f64 {
+        match self {
+            Self::Pascal => 1.0,
+            Self::Kilopascal => 1e3,
+            Self::Megapascal => 1e6,
+        }
+    }
+}
