@@ -165,8 +165,9 @@ fn signs_decide_only_where_they_belong_to_the_errors() {
     let (series, context) = with_signs(&[1.2e-2, 2.61e-3, 3.47e-4, -2.16e-4]);
     assert_eq!(classify(&series, &context).class, Class::FloorLimited);
     // Signs of other values than the errors are none.
-    let strange = Context { signed: vec![1.0, -1.0, 1.0, -1.0], ..Context::default() };
-    assert_eq!(classify(&series, &strange), classify(&series, &Context::default()));
+    let foreign = Context { signed: GO_TO_A_LIMIT[1].0.to_vec(), ..Context::default() };
+    let falling = listed(&[4e-3, 1e-3, 2.5e-4, 6.25e-5]);
+    assert_eq!(classify(&falling, &foreign), classify(&falling, &Context::default()));
     let short = Context { signed: context.signed[..3].to_vec(), ..Context::default() };
     assert_eq!(classify(&series, &short), classify(&series, &Context::default()));
 }
@@ -210,6 +211,8 @@ fn of_two_classes_that_fit_the_documented_one_is_given() {
     assert_eq!(of(&[1.0, 2.0, 4.0], stuck.clone()), Class::Locked);
     assert_eq!(of(&[1.0, f64::NAN, 4.0], stuck.clone()), Class::NotEvaluable);
     assert_eq!(of(&[1e-15; 3], Context { round_off: Some(1e-12), ..stuck }), Class::Exact);
+    let loosened = Context { mobility: vec![0.01, 0.3, 0.8], ..plain() };
+    assert_ne!(of(&[1.0, 0.7, 0.2], loosened), Class::Locked, "the finest mesh moves");
     // One level of round-off is a floor before it is an order, on three levels too.
     assert_eq!(of(&[1e-6, 1e-9, 1e-13], all_round_off), Class::FloorLimited);
     // A limit comes before growth, and growth before a standstill.

@@ -10,6 +10,7 @@ mod beside;
 mod cancelling;
 mod case;
 pub mod case_expectation;
+mod causes;
 pub mod class;
 pub mod classify;
 pub mod curves;

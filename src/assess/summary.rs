@@ -3,20 +3,13 @@
 use super::class::{Classification, Context};
 use super::classify::classify;
 use super::expectation::Expectation as Demand;
-use super::limiter::{Limiter, LimiterKind};
-use super::measure::exact_samples;
 use super::norms::{Norm, relative_error};
 use super::numerical_uncertainty::NumericalUncertainty;
 use super::orders::{FinestOrder, PairOrder, SlopeFit, finest_order, pair_orders, slope};
 use super::series::{ErrorSeries, Level, Undefined};
 use super::verdict::{Beside, Verdict, judge};
-use crate::exact::{Reference, ReferenceKind};
 use crate::record::{Quantity, Record, Sample};
-use crate::scene::{SceneKind, column_parameters};
-use crate::solver::explicit::Drag;
 use crate::solver::material::Material;
-use crate::solver::run::TimeStepRule;
-use crate::solver::scheme::Scheme;
 use crate::solver::snapshot::{Samples, Snapshot};
 use crate::study::{
     Axis, Case, Expectation, IntegratorKind, Measure, NEXT_FINER, NO_REFERENCE, Study, Tier, step_label,
@@ -154,11 +147,7 @@ impl<'a> Path<'a> {
             formal_order: (self.axis == Axis::Cells).then(|| formal_order(case, measure)).flatten(),
             round_off: Some(ROUND_OFF),
             reference_accuracy: used.map(|used| used.tail_bound),
-            limiters: model_limiter(finest, measure)
-                .into_iter()
-                .chain(self.mesh_limiter(measure))
-                .chain(self.held_limiters(measure))
-                .collect(),
+            limiters: self.limiters(measure),
             mobility: self.mobility(measure),
             signed: self.signed(measure),
         }
@@ -178,24 +167,6 @@ impl<'a> Path<'a> {
         self.records.iter().filter_map(value).collect()
     }
 
-    /// What a series over meshes holds while the mesh falls: a step rule that does not follow the mesh,
-    /// and the points per cell where they move through it. How high a floor they make nobody knows
-    /// without varying them.
-    fn held_limiters(&self, measure: &Measure) -> Vec<Limiter> {
-        if self.axis != Axis::Cells || measure.reference == NEXT_FINER {
-            return Vec::new();
-        }
-        let case = &self.records[0].case;
-        let points =
-            case.method.configuration_or(case.scene.configuration()).moves_points().then(|| Limiter {
-                kind: LimiterKind::PointsPerCell,
-                name: "the points per cell".to_owned(),
-                magnitude: None,
-                order: None,
-            });
-        step_limiter(case).into_iter().chain(points).collect()
-    }
-
     /// Settlement over the exact one at each level, for the errors of displacements: a locked body
     /// has hardly any.
     fn mobility(&self, measure: &Measure) -> Vec<f64> {
@@ -209,16 +180,6 @@ impl<'a> Path<'a> {
             Some(1.0 + row.value)
         };
         self.records.iter().filter_map(settlement).collect()
-    }
-
-    /// Along any other axis than its own the mesh is what is left of the error.
-    fn mesh_limiter(&self, measure: &Measure) -> Option<Limiter> {
-        (self.axis != Axis::Cells && measure.reference != NEXT_FINER).then(|| Limiter {
-            kind: LimiterKind::Mesh,
-            name: "the mesh".to_owned(),
-            magnitude: None,
-            order: Some(2.0),
-        })
     }
 
     /// What the runs of the path share, in words, the method first.
@@ -294,66 +255,6 @@ fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
         | (Quantity::Displacement, Sample::Nodes) => Some(2.0),
         _ => None,
     }
-}
-
-/// The floor that the error in time puts under errors on ever finer meshes, where the step does not fall
-/// with the cells.
-fn step_limiter(case: &Case) -> Option<Limiter> {
-    let of_second_order = match case.integrator {
-        IntegratorKind::Implicit => true,
-        IntegratorKind::SemiImplicit => false,
-        IntegratorKind::Explicit => {
-            case.settings.scheme == Scheme::Leapfrog && case.settings.drag == Drag::Centred
-        }
-    };
-    let of_steps = if of_second_order { 2.0 } else { 1.0 };
-    let (name, order) = match case.time_step {
-        TimeStepRule::Stable(_) | TimeStepRule::Courant(_) => return None,
-        TimeStepRule::Seconds(_) => ("the time step", Some(of_steps)),
-        TimeStepRule::Growth(_) => ("`growth`", Some(of_steps)),
-        TimeStepRule::Tolerance(_) => ("`tolerance`", None),
-    };
-    Some(Limiter { kind: LimiterKind::Step, name: name.to_owned(), magnitude: None, order })
-}
-
-/// The floor that a reference of other equations puts under an error: its own distance from the
-/// scene's reference, in the same norm and at the same places.
-fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
-    let case = &finest.case;
-    let kind: ReferenceKind = measure.reference.parse().ok()?;
-    let difference = case.scene.model_difference(kind, &case.material)?;
-    let parameters = column_parameters(&case.column, &case.material);
-    let times = [measure.time_factor];
-    let own = SceneKind::reference_for(case.scene.references()[0], &case.material);
-    let own = Reference::new(own, &parameters, &times).ok()?;
-    let other = Reference::new(kind, &parameters, &times).ok()?;
-    let magnitude = if measure.quantity == Quantity::Settlement {
-        let settlement = |reference: &Reference| reference.settlement(measure.time_factor).ok();
-        (settlement(&own)? / settlement(&other)? - 1.0).abs()
-    } else {
-        let index = case.time_factors.iter().position(|factor| *factor == measure.time_factor)?;
-        let snapshot = finest.snapshots.get(index)?;
-        let samples = match measure.sample {
-            Sample::Points => &snapshot.points,
-            Sample::Centres => &snapshot.centres,
-            Sample::Nodes | Sample::Surface => &snapshot.nodes,
-        };
-        let field = |reference: &Reference| {
-            let exact = exact_samples(case, reference, measure.time_factor, samples).ok()?;
-            Some(match measure.quantity {
-                Quantity::Pressure => exact.pressure,
-                Quantity::EffectiveStress => exact.effective_stress,
-                Quantity::Displacement | Quantity::Settlement => exact.displacement,
-            })
-        };
-        relative_error(measure.norm, &field(&own)?, &field(&other)?, &samples.volume).ok()?
-    };
-    Some(Limiter {
-        kind: LimiterKind::Model,
-        name: difference.to_owned(),
-        magnitude: Some(magnitude),
-        order: None,
-    })
 }
 
 /// Judges every expectation of a study that its tier can answer.
