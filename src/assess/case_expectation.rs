@@ -51,7 +51,7 @@ pub struct CaseDemand {
     pub error: Option<ErrorRange>,
     /// Largest drift of the mass of solids at any output, relative.
     pub solid_drift_below: Option<f64>,
-    /// Largest imbalance of the water at any output, over what left.
+    /// Largest imbalance of the water at any output, over what the load presses out.
     pub water_drift_below: Option<f64>,
 }
 

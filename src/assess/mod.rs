@@ -32,6 +32,7 @@ mod pattern_search;
 pub mod peers;
 pub mod places;
 pub mod plane_field;
+pub mod record_checks;
 pub mod score;
 pub mod series;
 pub mod soundness;

@@ -4,13 +4,16 @@ use super::exit::{Ended, Exit};
 use super::output::json_of;
 use super::overrides::{self, StudyLines};
 use super::stream::{print_data, say};
+use crate::assess::soundness;
+use crate::exact::ExactError;
 use crate::record::{ERROR_COLUMNS, ErrorRow, Record, Status};
 use crate::render::measures;
 use crate::render::phases::phases_table;
 use crate::solver::profile::{PhaseTime, profiled};
 use crate::solver::run::Kernel;
-use crate::study::{IntegratorKind, Study, run_case};
+use crate::study::{IntegratorKind, Study, deadline_of, estimated_updates, named_if_late, run_case};
 use clap::ValueEnum;
+use std::time::Instant;
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -73,7 +76,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Err(Ended::with(Exit::NothingSelected, "the command line describes no single case"));
     };
     let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
-    let solve = || run_case(&planned.case, &study.references, kernel, true, &|_, _| true);
+    tell_of_long(&study);
+    let deadline = deadline_of(study.case_seconds);
+    let solve = || {
+        let record =
+            run_case(&planned.case, &study.references, kernel, true, &|_, _| Instant::now() < deadline)?;
+        Ok::<_, ExactError>(named_if_late(record, study.case_seconds))
+    };
     let (record, phases) = if arguments.profile { profiled(solve) } else { (solve(), Vec::new()) };
     let record = record?;
     match arguments.format {
@@ -89,6 +98,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         Format::Csv if arguments.profile => say!("{}", phases_table(&phases, &record).to_text()?.trim_end()),
         _ => {}
     }
+    for complaint in soundness::complaints(&record).iter().filter(|_| record.status == Status::Ok) {
+        say!("warning: {complaint}");
+    }
     if let Status::Failed(failure) = &record.status {
         return Err(Ended::with(
             Exit::CaseFailed,
@@ -103,6 +115,33 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         ));
     }
     Ok(Exit::Pass)
+}
+
+/// Point updates beyond which a person wants to know before the run what it will take.
+const LONG_WORK: u64 = 20_000_000_000;
+/// Point updates a second of a frozen column on a core of today, for an estimate.
+const UPDATES_A_SECOND: f64 = 2e8;
+
+/// Says before a long run that it is one, and when it ends at the latest.
+fn tell_of_long(study: &Study) {
+    let Some(case) = study.planned.first().map(|planned| &planned.case) else { return };
+    let updates = estimated_updates(case);
+    if updates < LONG_WORK {
+        return;
+    }
+    let hint = match case.integrator {
+        IntegratorKind::Implicit => "larger steps take fewer",
+        IntegratorKind::Explicit | IntegratorKind::SemiImplicit => {
+            "`--integrator implicit` takes larger steps"
+        }
+    };
+    say!(
+        "note: about {:.1e} point updates, at least {:.0e} s; it ends after {} s (`--set case_seconds=…`) at the latest; \
+         {hint}",
+        updates as f64,
+        updates as f64 / UPDATES_A_SECOND,
+        study.case_seconds
+    );
 }
 
 /// The study of one case that the command line describes.

@@ -73,7 +73,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         Status::Failed(failure) => Some((record, failure)),
     }) {
         let label = record.case.label();
-        return Err(Ended::with(Exit::CaseFailed, format!("{label}: {}: {}", failure.kind.name(), failure.reason)));
+        return Err(Ended::with(
+            Exit::CaseFailed,
+            format!("{label}: {}: {}", failure.kind.name(), failure.reason),
+        ));
     }
     let agree = report.records.iter().filter_map(|record| record.stability.as_ref()).all(|found| {
         found.deviation().is_some_and(|deviation| deviation.abs() <= AGREEMENT) && found.probes_agree()

@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ExactError {
     /// A quantity that must be positive is zero, negative or not finite.
-    #[error("the {quantity} must be positive and finite, got {value}")]
+    #[error("the {quantity} must be positive and finite, got {}", short(*value))]
     NotPositive {
         /// Name of the quantity.
         quantity: &'static str,
@@ -100,6 +100,12 @@ pub enum ExactError {
     },
 }
 
+/// A number without its hundreds of zeros.
+fn short(value: f64) -> String {
+    let is_plain = value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&value.abs());
+    if is_plain { value.to_string() } else { format!("{value:e}") }
+}
+
 /// Passes a positive finite `value` on, refuses any other.
 pub(super) fn positive(quantity: &'static str, value: f64) -> Result<f64, ExactError> {
     if value.is_finite() && value > 0.0 {
@@ -114,7 +120,11 @@ pub(super) fn positive(quantity: &'static str, value: f64) -> Result<f64, ExactE
 /// # Errors
 /// [`ExactError::NotPositive`] where it is not positive, not finite, or so small that digits are lost.
 pub fn normal(quantity: &'static str, value: f64) -> Result<f64, ExactError> {
-    if value.is_normal() && value > 0.0 { Ok(value) } else { Err(ExactError::NotPositive { quantity, value }) }
+    if value.is_normal() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(ExactError::NotPositive { quantity, value })
+    }
 }
 
 /// Passes a finite `time_factor ≥ 0` on, refuses any other.

@@ -149,7 +149,8 @@ pub struct Balance {
     pub time_factor: f64,
     /// Mass of the grains on the grid over its start, minus one.
     pub solid_mass_drift: f64,
-    /// Water that left less the loss of pore space and the water's expansion, over what left.
+    /// Water that left less the loss of pore space and the water's expansion, over what the load presses
+    /// out in the end, `m_v q H`.
     pub water_imbalance: f64,
     /// Sum of internal forces over the sum of their sizes.
     pub internal_force_imbalance: f64,
@@ -217,6 +218,9 @@ pub struct ReferenceUse {
     pub terms: usize,
     /// Largest tail bound at any output, over the load.
     pub tail_bound: f64,
+    /// Why it does not hold for the case, where it does not: then no error is held against it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub does_not_hold: Option<String>,
 }
 
 /// Everything known of one case.

@@ -1,8 +1,10 @@
 //! Tables of one record.
 
 use super::RenderError;
-use super::table::{Cell, Column, Table};
+use super::number;
+use super::table::{Cell, Column, Mood, Table};
 use crate::assess::norms::Norm;
+use crate::assess::record_checks::{self, RecordCheck};
 use crate::record::{Quantity, Record, Sample, Status};
 use std::fmt::Write;
 
@@ -28,7 +30,9 @@ pub fn errors_table(record: &Record) -> Table {
                 match record.error(quantity, sample, norm, &reference.name, *factor) {
                     Some(row) if norm == Norm::Relative => Cell::Percent(row.value),
                     Some(row) => Cell::Error(row.value),
-                    None => Cell::Missing(missing_reason(record)),
+                    None => Cell::Missing(
+                        reference.does_not_hold.clone().unwrap_or_else(|| missing_reason(record)),
+                    ),
                 }
             });
             let mut row: Vec<Cell> =
@@ -78,30 +82,36 @@ fn work_note(record: &Record) -> String {
     )
 }
 
-/// Start checks, balances and dimensionless groups of a record.
+/// Start checks, balances at the end and dimensionless groups of a record; checks with their bounds.
 pub fn checks_table(record: &Record) -> Table {
     let mut rows: Vec<Vec<Cell>> = Vec::new();
-    let mut add = |name: &str, value: Cell| rows.push(vec![name.into(), value]);
+    let mut add = |name: &str, value: Cell, bound: Cell| rows.push(vec![name.into(), value, bound]);
+    let plain = || Cell::Text(String::new());
     if let Some(start) = &record.start {
-        add("points at the start", Cell::Count(start.points as u64));
-        add("points that there should be", Cell::Count(start.points_expected as u64));
-        add("volume at the start, relative error", Cell::Error(start.volume_error));
-        add("undrained pressure at the start, relative error", Cell::Error(start.undrained_pressure_error));
-        add("unbalanced force at the start, over the load", Cell::Error(start.unbalanced_force));
+        add("points at the start", Cell::Count(start.points as u64), plain());
     }
-    if let Some(last) = record.balance.last() {
-        add("mass of solids, drift at the end", Cell::Error(last.solid_mass_drift));
-        add("water balance at the end, over the outflow", Cell::Error(last.water_imbalance));
-        add("sum of internal forces at the end, relative", Cell::Error(last.internal_force_imbalance));
-        add("(σ' − p + q)/q at the end, rms", Cell::Error(last.equilibrium_residual));
+    let at_end = record.balance.last().map(|last| record_checks::balance_checks(record, last));
+    for check in record_checks::start_checks(record).iter().chain(at_end.iter().flatten()) {
+        add(check.what, Cell::Error(check.value), bound_cell(check));
     }
-    add("storage n E_oed/K_w", Cell::Error(record.groups.storage));
-    add("finite strain m_vl q", Cell::Error(record.groups.finite_strain));
-    add("inertia c_v/(H V)", Cell::Error(record.groups.inertia));
+    add("storage n E_oed/K_w", Cell::Error(record.groups.storage), plain());
+    add("finite strain m_vl q", Cell::Error(record.groups.finite_strain), plain());
+    add("inertia c_v/(H V)", Cell::Error(record.groups.inertia), plain());
     Table {
         title: "checks and groups".to_owned(),
-        columns: vec![Column::text("what"), Column::number("value")],
+        columns: vec![Column::text("what"), Column::number("value"), Column::text("bound")],
         rows,
-        notes: Vec::new(),
+        notes: record_checks::complaints(record).iter().map(|one| format!("✗ {one}")).collect(),
+    }
+}
+
+/// The bound of a check with the mark of its judgement.
+pub fn bound_cell(check: &RecordCheck) -> Cell {
+    match check.bound {
+        Some(bound) => {
+            let mood = if check.holds() { Mood::Pass } else { Mood::Fail };
+            Cell::Verdict(mood, format!("≤ {}", number::error(bound)))
+        }
+        None => Cell::Text("not judged".to_owned()),
     }
 }

@@ -1,7 +1,7 @@
 //! A run: from a problem and a schedule to snapshots, history, counters and a named end.
 
-use super::bounds::PhysicalBounds;
 use super::body::{Body, CubicSpline, DomainEnds, Gimp, Hat, Problem, QuadraticSpline, ShapeFunction};
+use super::bounds::PhysicalBounds;
 use super::explicit::ExplicitSettings;
 use super::frozen::FrozenStep;
 use super::implicit::banded::Singular;

@@ -202,6 +202,18 @@ impl<const D: usize> LoadedSurface<D> {
         weights
     }
 
+    /// Nodes that span the surface, with the weights of [`mean_of`](Self::mean_of).
+    pub fn mean_weights(&self, grid: &Grid<D>, points: &Points<D>) -> Vec<(usize, f64)> {
+        let share = 1.0 / self.spots.len() as f64;
+        let mut weights = Vec::new();
+        for spot in &self.spots {
+            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
+                weights.push((node, share * weight));
+            });
+        }
+        weights
+    }
+
     /// Vertical component of a nodal vector field on the surface, as much of it as has the load's
     /// shape: the mean under a uniform load, the amplitude of the cosine under a cosine.
     pub fn amplitude_of(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {

@@ -20,8 +20,8 @@ pub use file::StudySource;
 pub(crate) use file::{MethodTable, StudyFile};
 pub use perturbed::LastDigit;
 pub use runner::{
-    Progress, RunError, RunOptions, RunReport, Selected, Shard, TimingReport, estimated_updates, run_case,
-    run_studies, run_study, time_study,
+    Progress, RunError, RunOptions, RunReport, Selected, Shard, TimingReport, deadline_of, estimated_updates,
+    named_if_late, run_case, run_studies, run_study, time_study,
 };
 pub use shipped::shipped_studies;
 pub use sweep::AXES;

@@ -264,7 +264,7 @@ fn run_and_keep(
 ) -> Result<Record, RunError> {
     let estimate = estimated_work(case);
     let told = Cell::new(0);
-    let deadline = Instant::now() + Duration::from_secs_f64(study.case_seconds.min(MOST_SECONDS));
+    let deadline = deadline_of(study.case_seconds);
     let observe = |done: u64, expected: u64| {
         let now = u64::try_from(u128::from(estimate) * u128::from(done) / u128::from(expected.max(1)))
             .unwrap_or(estimate)
@@ -299,8 +299,13 @@ fn run_and_keep(
     Ok(record)
 }
 
+/// When a case that starts now is to end at the latest.
+pub fn deadline_of(seconds: f64) -> Instant {
+    Instant::now() + Duration::from_secs_f64(seconds.min(MOST_SECONDS))
+}
+
 /// The record of a case that was stopped because its time was over says so.
-fn named_if_late(mut record: Record, seconds: f64) -> Record {
+pub fn named_if_late(mut record: Record, seconds: f64) -> Record {
     if let Status::Failed(failure) = &mut record.status
         && failure.kind == FailureKind::Stopped
     {
@@ -345,7 +350,10 @@ fn problem_of(case: &Case) -> Result<SceneProblem, ExactError> {
 fn plausible(case: &Case) -> Result<(), ExactError> {
     let parameters = column_parameters(&case.column, &case.material);
     parameters.validate()?;
-    normal("critical time step", limits::combined_limit(&case.material, case.cell_size(), case.settings.drag))?;
+    normal(
+        "critical time step",
+        limits::combined_limit(&case.material, case.cell_size(), case.settings.drag),
+    )?;
     for factor in case.time_factors.iter().filter(|factor| **factor > 0.0) {
         normal("time of an output", parameters.time(*factor))?;
     }

@@ -1,52 +1,31 @@
 //! Start checks, balances and dimensionless groups of a study's runs, the worst of each.
 
 use super::StudyResults;
-use crate::record::Record;
+use crate::assess::record_checks::{self, RecordCheck};
+use crate::record::{Record, Status};
+use crate::render::measures::bound_cell;
 use crate::render::page::Block;
 use crate::render::table::{Cell, Column, Table};
 
 /// The worst of every check over the runs of a study, and the groups of its first run.
 pub fn block(results: &StudyResults<'_>) -> Block {
-    let worst = |of: &dyn Fn(&Record) -> Option<f64>| {
-        let sizes = results.records.iter().filter_map(|record| of(record).map(f64::abs));
-        sizes.fold(0.0, f64::max)
-    };
-    let balance = |of: fn(&crate::record::Balance) -> f64| {
-        worst(&|record: &Record| record.balance.iter().map(|one| of(one).abs()).reduce(f64::max))
-    };
-    let wrong_points = results.records.iter().filter_map(|record| record.start.as_ref());
-    let wrong_points = wrong_points.filter(|start| start.points != start.points_expected).count();
-    let mut rows: Vec<Vec<Cell>> = vec![
-        vec!["runs with a wrong number of points".into(), Cell::Count(wrong_points as u64)],
-        vec![
-            "volume at the start, relative error".into(),
-            Cell::Error(worst(&|record| record.start.map(|start| start.volume_error))),
-        ],
-        vec![
-            "undrained pressure against q/(1 + n E_oed/K_w), over q".into(),
-            Cell::Error(worst(&|record| record.start.map(|start| start.undrained_pressure_error))),
-        ],
-        vec![
-            "unbalanced force at the start, over the load".into(),
-            Cell::Error(worst(&|record| record.start.map(|start| start.unbalanced_force))),
-        ],
-        vec!["mass of solids, drift".into(), Cell::Error(balance(|one| one.solid_mass_drift))],
-        vec!["water balance, over the outflow".into(), Cell::Error(balance(|one| one.water_imbalance))],
-        vec![
-            "sum of internal forces, relative".into(),
-            Cell::Error(balance(|one| one.internal_force_imbalance)),
-        ],
-        vec!["equilibrium (σ' − p + q)/q, rms".into(), Cell::Error(balance(|one| one.equilibrium_residual))],
-    ];
+    let mut rows: Vec<Vec<Cell>> = worst_of(results.records)
+        .iter()
+        .map(|check| vec![check.what.into(), Cell::Error(check.value.abs()), bound_cell(check)])
+        .collect();
     if let Some(record) = results.records.first() {
         let groups = &record.groups;
-        rows.push(vec!["storage of the water n E_oed/K_w".into(), Cell::Error(groups.storage)]);
-        rows.push(vec!["finite strain m_vl q".into(), Cell::Error(groups.finite_strain)]);
-        rows.push(vec!["inertia c_v/(H V)".into(), Cell::Error(groups.inertia)]);
+        for (what, value) in [
+            ("storage of the water n E_oed/K_w", groups.storage),
+            ("finite strain m_vl q", groups.finite_strain),
+            ("inertia c_v/(H V)", groups.inertia),
+        ] {
+            rows.push(vec![what.into(), Cell::Error(value), Cell::Text(String::new())]);
+        }
     }
     let table = Table {
         title: "Start checks, balances and groups".to_owned(),
-        columns: vec![Column::text("what"), Column::number("worst of all runs")],
+        columns: vec![Column::text("what"), Column::number("worst of all runs"), Column::text("bound")],
         rows,
         notes: vec![
             "A patch does not conserve the water's storage exactly: its imbalance falls with the mesh. A zero \
@@ -58,4 +37,34 @@ pub fn block(results: &StudyResults<'_>) -> Block {
         summary: "Start checks, balances and dimensionless groups".to_owned(),
         blocks: vec![Block::Table(table)],
     }
+}
+
+/// Of every check the one nearest to its bound, or the farthest beyond it, in the order of a record's;
+/// of those that no run judges the largest. Runs that failed have no result to check.
+fn worst_of(records: &[Record]) -> Vec<RecordCheck> {
+    let mut worst: Vec<RecordCheck> = Vec::new();
+    for record in records.iter().filter(|record| record.status == Status::Ok) {
+        let at_outputs =
+            record.balance.iter().flat_map(|balance| record_checks::balance_checks(record, balance));
+        for check in record_checks::start_checks(record).into_iter().chain(at_outputs) {
+            match worst.iter_mut().find(|other| other.what == check.what) {
+                Some(other) if is_worse(&check, other) => *other = check,
+                Some(_) => {}
+                None => worst.push(check),
+            }
+        }
+    }
+    worst
+}
+
+/// Whether a check says more against its run than another of the same kind; what is judged says more
+/// than what is not, and what is no number most of all.
+fn is_worse(one: &RecordCheck, other: &RecordCheck) -> bool {
+    let size = |check: &RecordCheck| match check.bound {
+        _ if check.value.is_nan() => (check.bound.is_some(), f64::INFINITY),
+        Some(bound) if bound > 0.0 => (true, check.value.abs() / bound),
+        Some(_) => (true, if check.holds() { 0.0 } else { f64::INFINITY }),
+        None => (false, check.value.abs()),
+    };
+    size(one) > size(other)
 }

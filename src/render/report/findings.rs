@@ -20,8 +20,10 @@ pub fn lead(results: &[StudyResults<'_>]) -> String {
     let met =
         results.iter().flat_map(|one| &one.judgements).filter(|judgement| judgement.verdict.pass).count();
     let runs: usize = results.iter().map(|one| one.records.len()).sum();
+    let unsound: usize = results.iter().map(|one| one.unsound.len()).sum();
+    let checks = if unsound == 0 { String::new() } else { format!(", {unsound} checks of runs failed") };
     format!(
-        "{} studies, {runs} runs, {met} of {judged} expectations met. Every error is held against an exact solution \
+        "{} studies, {runs} runs, {met} of {judged} expectations met{checks}. Every error is held against an exact solution \
          whose own truncation is bounded, and names its norm, its place and its time; no order is quoted before the \
          series has been given a class.",
         results.len()

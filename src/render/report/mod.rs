@@ -15,9 +15,10 @@ mod survival;
 mod work;
 
 use super::page::Page;
+use crate::assess::soundness;
 use crate::assess::summary::{Judgement, judge_study};
 use crate::exact::ExactError;
-use crate::record::Record;
+use crate::record::{Record, Status};
 use crate::study::{Study, Tier};
 
 /// A study with its records and the judgements on them.
@@ -28,12 +29,18 @@ pub struct StudyResults<'a> {
     pub records: &'a [Record],
     /// Its expectations, judged.
     pub judgements: Vec<Judgement>,
+    /// What no record may be, of those that are: the case and a sentence.
+    pub unsound: Vec<(String, String)>,
 }
 
 impl<'a> StudyResults<'a> {
     /// Judges the records of a study.
     pub fn new(study: &'a Study, records: &'a [Record], tier: Tier) -> Self {
-        Self { study, records, judgements: judge_study(study, records, tier) }
+        let finished = records.iter().filter(|record| record.status == Status::Ok);
+        let unsound = finished.flat_map(|record| {
+            soundness::complaints(record).into_iter().map(|sentence| (record.case.label(), sentence))
+        });
+        Self { study, records, judgements: judge_study(study, records, tier), unsound: unsound.collect() }
     }
 
     /// Whether an expectation of the study is about a reference.
@@ -41,9 +48,9 @@ impl<'a> StudyResults<'a> {
         self.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
     }
 
-    /// Whether every expectation is met.
+    /// Whether every expectation is met, by records that are sound.
     fn passes(&self) -> bool {
-        self.judgements.iter().all(|judgement| judgement.verdict.pass)
+        self.unsound.is_empty() && self.judgements.iter().all(|judgement| judgement.verdict.pass)
     }
 }
 

@@ -14,11 +14,16 @@ pub fn of_study(results: &StudyResults<'_>) -> Result<Section, ExactError> {
     let mut blocks = vec![Block::Paragraph(study.summary.clone())];
     if !results.judgements.is_empty() {
         let met = results.judgements.iter().filter(|judgement| judgement.verdict.pass).count();
-        let mood = if results.passes() { Mood::Pass } else { Mood::Fail };
+        let mood = if met == results.judgements.len() { Mood::Pass } else { Mood::Fail };
         blocks.push(Block::Callout(
             mood,
             format!("{met} of {} expectations are met.", results.judgements.len()),
         ));
+    }
+    if let Some((case, sentence)) = results.unsound.first() {
+        let count = results.unsound.len();
+        let text = format!("{count} checks of its runs fail, the first of {case}: {sentence}.");
+        blocks.push(Block::Callout(Mood::Fail, text));
     }
     blocks.extend(layer::blocks(results)?);
     blocks.extend(profiles::blocks(results)?);

@@ -51,8 +51,11 @@ pub struct LinearSystem<const D: usize> {
     pub capacity: SparseRows,
     /// `g − K x` at the start, where `x` is zero; 1/s in the storage's rows.
     pub start_residual: Vec<f64>,
-    /// Mean of the vertical displacement over the loaded surface, as a row times `x`, m.
+    /// Vertical displacement of the loaded surface, as much of it as has the load's shape, as a row
+    /// times `x`, m.
     pub surface_displacement: SparseRows,
+    /// Its mean over the surface, as a row times `x`, m.
+    pub mean_displacement: SparseRows,
     /// Mean over the surface of the relative flux `n (v_w − v_s)`, as a row times `x`, m/s.
     pub surface_outflow: SparseRows,
     /// The same at the start.
@@ -86,7 +89,7 @@ impl<const D: usize> LinearSystem<D> {
         });
         let capacity = capacity_rows(body, &unknowns, &scales);
         let start = Start::of(body, &unknowns, &scales, &mobility);
-        let (surface_displacement, surface_outflow) =
+        let [surface_displacement, mean_displacement, surface_outflow] =
             surface_rows(body, &unknowns, &scales, &forces, &mobility);
         Self {
             fixed,
@@ -94,6 +97,7 @@ impl<const D: usize> LinearSystem<D> {
             capacity,
             start_residual: start.residual,
             surface_displacement,
+            mean_displacement,
             surface_outflow,
             start_outflow: start.outflow,
             unknowns,
@@ -278,16 +282,21 @@ impl Start {
     }
 }
 
-/// Rows of the surface's displacement and of the relative flux through it.
+/// Rows of the surface's displacement as it settles, of its mean, and of the mean relative flux through
+/// it.
 fn surface_rows<const D: usize, const W: usize, S: ShapeFunction<W>>(
     body: &Body<D, W, S>,
     unknowns: &Unknowns<D>,
     scales: &Scales,
     forces: &[[Vec<(usize, f64)>; D]],
     mobility: &[f64],
-) -> (SparseRows, SparseRows) {
-    let (mut moved, mut outflow) = (Vec::new(), Vec::new());
+) -> [SparseRows; 3] {
+    let (mut settled, mut moved, mut outflow) = (Vec::new(), Vec::new(), Vec::new());
     for (node, weight) in body.surface.weights(&body.grid, &body.points) {
+        let Some(unknown) = unknowns.displacement[node][D - 1] else { continue };
+        accumulate(&mut settled, unknown, weight * scales.length);
+    }
+    for (node, weight) in body.surface.mean_weights(&body.grid, &body.points) {
         let Some(unknown) = unknowns.displacement[node][D - 1] else { continue };
         accumulate(&mut moved, unknown, weight * scales.length);
         let flux_of_force = weight * body.nodes.porosity[node] * mobility[node];
@@ -300,5 +309,5 @@ fn surface_rows<const D: usize, const W: usize, S: ShapeFunction<W>>(
         rows.push_row(entries);
         rows
     };
-    (row(moved), row(outflow))
+    [row(settled), row(moved), row(outflow)]
 }

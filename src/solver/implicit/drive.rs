@@ -150,7 +150,9 @@ impl<'a, const D: usize, M> MarchRun<'a, D, M> {
         let share = self.sizes.largest / self.sizes.predicted_critical;
         // An implicit skeleton has no critical step to blame.
         let step = match self.plan.schedule.integrator {
-            IntegratorKind::SemiImplicit => format!("; the largest step is {share:.3} of the predicted critical one"),
+            IntegratorKind::SemiImplicit => {
+                format!("; the largest step is {share:.3} of the predicted critical one")
+            }
             _ => String::new(),
         };
         StepFailure { kind: FailureKind::Unstable, reason: format!("{reason}{step}") }

@@ -185,7 +185,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> March<D, W, S> for Lin
             .collect();
         body.change_points(&unknowns.rows, &displacement, &pressures, &displacement);
         body.nodes.solid_velocity = nodal(&self.increment, self.rate_scale * self.system.scales.length);
-        body.surface_flux += self.surface_displacement() + self.outflow;
+        body.surface_flux += self.system.mean_displacement.product(0, &self.state) + self.outflow;
         body
     }
 }

@@ -68,6 +68,15 @@ impl Checker<'_> {
             );
             return None;
         };
+        let least = least_of(rule).filter(|(least, _)| (0.0..*least).contains(value.get_ref()));
+        if let Some((least, why)) = least.filter(|_| *value.get_ref() > 0.0) {
+            self.complain(
+                value.span(),
+                format!("a time step by `{} = {:e}`", name_of(rule), value.get_ref()),
+                format!("{why}: at least {least:e}"),
+            );
+            return None;
+        }
         if value.get_ref().is_finite() && *value.get_ref() > 0.0 {
             return Some(*rule);
         }
@@ -77,5 +86,28 @@ impl Checker<'_> {
             "it must be positive and finite",
         );
         None
+    }
+}
+
+/// Least number of a rule that a run comes to an end with, and why.
+fn least_of(rule: &TimeStepRule) -> Option<(f64, &'static str)> {
+    match rule {
+        TimeStepRule::Growth(_) => Some((1e-9, "steps that grow by less are too many for any run")),
+        TimeStepRule::Tolerance(_) => Some((1e-12, "round-off is an error of that size")),
+        TimeStepRule::Stable(_) | TimeStepRule::Courant(_) => {
+            Some((1e-9, "no error in time is left that smaller steps would show"))
+        }
+        TimeStepRule::Seconds(_) => None,
+    }
+}
+
+/// Name of a rule in study files.
+fn name_of(rule: &TimeStepRule) -> &'static str {
+    match rule {
+        TimeStepRule::Stable(_) => "stable",
+        TimeStepRule::Courant(_) => "courant",
+        TimeStepRule::Seconds(_) => "seconds",
+        TimeStepRule::Growth(_) => "growth",
+        TimeStepRule::Tolerance(_) => "tolerance",
     }
 }
