@@ -4,8 +4,8 @@ use super::soundness;
 use super::summary::{Judgement, judge_study};
 use crate::exact::ExactError;
 use crate::golden::{
-    CaseChange, Change, Difference, GoldenError, GoldenFile, REFERENCES, case_changes, compare,
-    reference_values, seconds_of, values_of,
+    CaseChange, Change, Difference, DifferenceGroup, GoldenError, GoldenFile, REFERENCES, case_changes,
+    compare, groups_of, reference_values, seconds_of, values_of,
 };
 use crate::record::{Record, Status};
 use crate::study::{Study, Tier};
@@ -36,7 +36,9 @@ pub struct StudyCheck {
     pub judgements: Vec<Judgement>,
     /// Differences from the golden values, or why there are none to hold against.
     pub golden: Result<Vec<Difference>, GoldenError>,
-    /// Cases with such differences: accuracy and cost together.
+    /// The same by kind, with what those of a kind have in common.
+    pub groups: Vec<DifferenceGroup>,
+    /// Cases with such differences: accuracy and cost together, the case with the worst first.
     pub changes: Vec<CaseChange>,
     /// Golden values that agree.
     pub agreeing: usize,
@@ -104,7 +106,16 @@ impl StudyCheck {
         values: &BTreeMap<String, f64>,
         golden: Result<GoldenFile, GoldenError>,
     ) -> Self {
-        let golden = golden.map(|golden| compare(&golden, values));
+        let compared = golden.map(|golden| {
+            let differences = compare(&golden, values);
+            let known =
+                golden.values.keys().chain(values.keys().filter(|name| !golden.values.contains_key(*name)));
+            (groups_of(&differences, known.map(String::as_str)), differences)
+        });
+        let (groups, golden) = match compared {
+            Ok((groups, differences)) => (groups, Ok(differences)),
+            Err(error) => (Vec::new(), Err(error)),
+        };
         let changed =
             golden.as_ref().map_or(values.len(), |all| all.iter().filter(|one| one.found.is_some()).count());
         Self {
@@ -113,6 +124,7 @@ impl StudyCheck {
             unsound: Vec::new(),
             judgements: Vec::new(),
             agreeing: values.len() - changed,
+            groups,
             changes: golden.as_deref().map(case_changes).unwrap_or_default(),
             golden,
             warnings: Vec::new(),

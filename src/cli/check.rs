@@ -8,7 +8,7 @@ use super::run::{jobs_of, load_or_shipped};
 use super::stream::{print_data, say};
 use crate::assess::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::assess::summary::Judgement;
-use crate::golden::{CaseChange, Difference, GoldenFile, REFERENCES};
+use crate::golden::{CaseChange, Difference, DifferenceGroup, GoldenFile, REFERENCES};
 use crate::record::Record;
 use crate::render::annotations::annotations_of;
 use crate::render::{junit, verdicts};
@@ -57,16 +57,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let verdict = checks.iter().map(|check| exit_of(check.end())).fold(Exit::Pass, worse);
     // The verdict first; what could not be written is told after it, and hides it nowhere.
+    let files = |study: &str| file_of(study, &arguments.studies);
     let mut refused = Vec::new();
-    refused.extend(print(&checks, arguments.format).err());
+    refused.extend(print(&checks, arguments).err());
     if let Some(path) = &arguments.junit {
         refused.extend(write_document(path, &junit::report_of(&checks)?).err());
     }
     if let Some(path) = arguments.summary.clone().or_else(|| path_in("GITHUB_STEP_SUMMARY")) {
-        refused.extend(append(&path, &verdicts::markdown_of(&checks)?).err());
+        refused.extend(append(&path, &verdicts::markdown_of(&checks, files)?).err());
     }
     if arguments.annotate || is_on("GITHUB_ACTIONS") {
-        for line in annotations_of(&checks, |study| file_of(study, &arguments.studies)) {
+        for line in annotations_of(&checks, files) {
             say!("{line}");
         }
     }
@@ -141,18 +142,23 @@ struct CheckJson<'a> {
     unsound_records: &'a [CaseNote],
     golden_values_that_agree: usize,
     golden_problem: Option<String>,
+    groups: &'a [DifferenceGroup],
     differences: &'a [Difference],
     accuracy_and_cost: &'a [CaseChange],
     warnings: &'a [String],
 }
 
-fn print(checks: &[StudyCheck], format: TableFormat) -> anyhow::Result<()> {
-    let text = match format {
+fn print(checks: &[StudyCheck], arguments: &Arguments) -> anyhow::Result<()> {
+    let file_of = |study: &str| file_of(study, &arguments.studies);
+    let text = match arguments.format {
         TableFormat::Table => {
-            let texts: Result<Vec<String>, _> = checks.iter().map(verdicts::text_of).collect();
+            let texts: Result<Vec<String>, _> = checks
+                .iter()
+                .map(|check| verdicts::text_of(check, file_of(&check.study).as_deref()))
+                .collect();
             coloured(&texts?.concat())
         }
-        TableFormat::Markdown => verdicts::markdown_of(checks)?,
+        TableFormat::Markdown => verdicts::markdown_of(checks, file_of)?,
         TableFormat::Csv => verdicts::all_judgements(checks).to_csv()?,
         TableFormat::Json => json_of(&checks.iter().map(CheckJson::of).collect::<Vec<_>>())?,
     };
@@ -169,6 +175,7 @@ impl<'a> CheckJson<'a> {
             unsound_records: &check.unsound,
             golden_values_that_agree: check.agreeing,
             golden_problem: check.golden.as_ref().err().map(ToString::to_string),
+            groups: &check.groups,
             differences: check.differences(),
             accuracy_and_cost: &check.changes,
             warnings: &check.warnings,

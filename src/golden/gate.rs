@@ -2,6 +2,7 @@
 //! golden values is dominated by them; one that pays with one for the other makes a trade.
 
 use super::compare::{Change, Difference};
+use super::references::REFERENCES;
 use crate::assess::pareto::ParetoChange;
 
 /// A case that differs from its golden values.
@@ -36,13 +37,18 @@ impl CaseChange {
 }
 
 /// Case and measure of a golden value's name.
-fn parts(name: &str) -> (&str, &str) {
+pub(super) fn parts(name: &str) -> (&str, &str) {
     name.rsplit_once(" | ").unwrap_or((name, ""))
 }
 
-/// Work counters have no time factor.
+/// Work counters: less of them is cheaper. A critical step is none, and no change of it is for the better.
 fn is_counter(measure: &str) -> bool {
-    !measure.contains("T_v=")
+    matches!(measure, "steps" | "point updates")
+}
+
+/// Whether a smaller value is a better one: an error or a counter, and no exact solution or critical step.
+pub(super) fn is_better_if_smaller(study: &str, name: &str) -> bool {
+    study != REFERENCES && !parts(name).1.ends_with("critical step")
 }
 
 /// The cases of differences, in their order.
@@ -69,7 +75,9 @@ pub fn case_changes(differences: &[Difference]) -> Vec<CaseChange> {
                     change.cost_ratio = ratio;
                 }
             }
-            (Some(_), Some(_)) if difference.change == Change::Stale => change.better += 1,
+            (Some(_), Some(_)) if matches!(difference.change, Change::Stale | Change::Smaller) => {
+                change.better += 1;
+            }
             (Some(_), Some(_)) => change.worse += 1,
             _ => change.unpaired += 1,
         }

@@ -4,13 +4,16 @@
 //! comparison reports what moved, what is missing and what is new; better than the golden beyond
 //! the tolerance is stale, not wrong.
 
+mod bounds;
 mod compare;
 mod gate;
+mod group;
 mod references;
 mod tolerance;
 
 pub use compare::{Change, Difference, compare};
 pub use gate::{CaseChange, case_changes};
+pub use group::{DifferenceGroup, groups_of};
 pub use references::{REFERENCES, perturbed_reference_values, reference_values};
 pub use tolerance::{ROOM, spread_by_group, spread_group};
 
@@ -73,6 +76,14 @@ pub enum GoldenError {
         /// Why.
         reason: String,
     },
+    /// The file allows what no golden file may.
+    #[error("the golden file {path} is refused: {reason}")]
+    OutOfBounds {
+        /// Which.
+        path: PathBuf,
+        /// What is out of bounds.
+        reason: String,
+    },
     /// The file cannot be written.
     #[error(transparent)]
     Store(#[from] StoreError),
@@ -114,7 +125,7 @@ impl GoldenFile {
     /// Reads a study's golden file.
     ///
     /// # Errors
-    /// When it is missing or unreadable.
+    /// When it is missing, unreadable or out of bounds.
     pub fn read(folder: &Path, study: &str) -> Result<Self, GoldenError> {
         let path = Self::path(folder, study);
         let unreadable = |path: PathBuf, reason: String| GoldenError::Unreadable { path, reason };
@@ -133,15 +144,21 @@ impl GoldenFile {
                 format!("it is of study `{}` and layout {}", file.study, file.schema),
             ));
         }
-        Ok(file)
+        match file.out_of_bounds() {
+            Some(reason) => Err(GoldenError::OutOfBounds { path, reason }),
+            None => Ok(file),
+        }
     }
 
     /// Writes the file.
     ///
     /// # Errors
-    /// When the file system refuses.
+    /// When the values or tolerances are out of bounds, or the file system refuses.
     pub fn write(&self, folder: &Path) -> Result<PathBuf, GoldenError> {
         let path = Self::path(folder, &self.study);
+        if let Some(reason) = self.out_of_bounds() {
+            return Err(GoldenError::OutOfBounds { path, reason });
+        }
         let text = serde_json::to_string_pretty(self)
             .map_err(|source| StoreError::Json { path: path.clone(), source })?;
         write_whole(&path, (text + "\n").as_bytes())?;

@@ -1,5 +1,6 @@
 //! Annotations of GitHub's workflows: what is wrong, at the line of the study that asked for it.
 
+use super::changes::sentence;
 use crate::assess::study_check::StudyCheck;
 use crate::golden::Change;
 
@@ -46,25 +47,10 @@ fn of_check(check: &StudyCheck, file: Option<&str>) -> Vec<Annotation> {
     }
     match &check.golden {
         Err(error) => all.push(at("error", 1, "golden values".to_owned(), error.to_string())),
-        Ok(differences) => {
-            for (change, level) in [
-                (Change::Moved, "error"),
-                (Change::Missing, "error"),
-                (Change::Extra, "error"),
-                (Change::Stale, "warning"),
-            ] {
-                let of_change: Vec<&str> = differences
-                    .iter()
-                    .filter(|one| one.change == change)
-                    .map(|one| one.name.as_str())
-                    .collect();
-                if let Some(first) = of_change.first() {
-                    let message = match of_change.len() {
-                        1 => (*first).to_owned(),
-                        count => format!("{first} and {} more", count - 1),
-                    };
-                    all.push(at(level, 1, format!("golden values {}", change.name()), message));
-                }
+        Ok(_) => {
+            for group in &check.groups {
+                let level = if group.change == Change::Stale { "warning" } else { "error" };
+                all.push(at(level, 1, format!("golden values {}", group.change.name()), sentence(group)));
             }
         }
     }
@@ -109,6 +95,7 @@ mod tests {
             unsound: Vec::new(),
             judgements: Vec::new(),
             golden: Ok(Vec::new()),
+            groups: Vec::new(),
             changes: Vec::new(),
             agreeing: 0,
             warnings: vec!["slow".to_owned()],

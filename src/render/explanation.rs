@@ -1,8 +1,8 @@
 //! The tables of an explained case.
 
+use super::changes::differences_table;
 use super::number;
 use super::table::{Cell, Column, Mood, Table};
-use super::verdicts::differences_table;
 use crate::assess::explain::{Carrier, Explanation, LevelSeries};
 use crate::record::{Quantity, Record, Status};
 

@@ -1,11 +1,15 @@
 //! `JUnit`, in the Jenkins dialect: one suite a study, one case a check of an expectation, named
 //! `study/method/quantity/check`, and one for its records and its golden values each.
 
+use super::changes::sentence;
 use crate::assess::study_check::{CaseNote, StudyCheck};
 use crate::assess::summary::Judgement;
 use crate::assess::verdict::Outcome;
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::collections::BTreeMap;
+
+/// Golden values that are named, the worst first.
+const MOST_NAMED: usize = 10;
 
 /// Checks as a `JUnit` document.
 ///
@@ -34,8 +38,10 @@ pub fn report_of(checks: &[StudyCheck]) -> Result<String, SerializeError> {
         let (agrees, sentence) = match &check.golden {
             Ok(differences) if differences.is_empty() => (true, String::new()),
             Ok(differences) => {
-                let names: Vec<&str> = differences.iter().map(|one| one.name.as_str()).collect();
-                (false, format!("{} values: {}", differences.len(), names.join("; ")))
+                let groups: Vec<String> = check.groups.iter().map(sentence).collect();
+                let worst = differences.iter().take(MOST_NAMED).map(|one| one.name.as_str());
+                let worst: Vec<&str> = worst.collect();
+                (false, format!("{}. The worst: {}", groups.join(". "), worst.join("; ")))
             }
             Err(error) => (false, error.to_string()),
         };

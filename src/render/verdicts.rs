@@ -1,42 +1,54 @@
 //! What `check` says: verdicts and golden values of studies, as text and as Markdown.
 
 use super::RenderError;
-use super::number;
+use super::changes;
+use super::failures;
 use super::table::{Cell, Column, Mood, Table};
 use super::uncertainties;
-use crate::assess::pareto::ParetoChange;
-use crate::assess::study_check::{CaseNote, StudyCheck};
+use crate::assess::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::assess::summary::Judgement;
 use crate::assess::verdict::Outcome;
-use crate::golden::{CaseChange, Difference};
+use crate::golden::Change;
 use std::fmt::Write;
 
-/// Differences shown before the rest is only counted.
-const MOST_DIFFERENCES: usize = 40;
-
-/// A study's check as text.
+/// A study's check as text, what failed in lines of a terminal's width. `file` is the study's own.
 ///
 /// # Errors
 /// If a table cannot be written.
-pub fn text_of(check: &StudyCheck) -> Result<String, RenderError> {
-    let mut text = format!("{}: {}\n", check.study, headline(check));
-    for table in tables_of(check) {
+pub fn text_of(check: &StudyCheck, file: Option<&str>) -> Result<String, RenderError> {
+    let mut text = failures::wrapped(&format!("{}: {}", check.study, headline(check)), "", "  ");
+    text += &failures::text_of(check);
+    for table in uncertainties::table_of(&check.judgements) {
         let _ = write!(text, "\n{}\n", table.to_text()?);
     }
     for warning in &check.warnings {
-        let _ = writeln!(text, "  warning: {warning}");
+        text += &failures::wrapped(&format!("warning: {warning}"), "  ", "    ");
+    }
+    if let Some(command) = next_command(check, file) {
+        let _ = writeln!(text, "\nnext: {command}");
     }
     Ok(text)
 }
 
-/// The checks of several studies as Markdown.
+/// The checks of several studies as Markdown. `file_of` knows the file of a study.
 ///
 /// # Errors
 /// If a table cannot be written.
-pub fn markdown_of(checks: &[StudyCheck]) -> Result<String, RenderError> {
+pub fn markdown_of(
+    checks: &[StudyCheck],
+    file_of: impl Fn(&str) -> Option<String>,
+) -> Result<String, RenderError> {
     let mut text = "## oedometer check\n".to_owned();
-    for check in checks {
+    // Those that did not pass lead: a forge cuts a long summary at its end.
+    let (sound, unsound): (Vec<_>, Vec<_>) = checks.iter().partition(|check| check.end() == CheckEnd::Pass);
+    for check in unsound.into_iter().chain(sound) {
         let _ = write!(text, "\n### {}: {}\n", check.study, headline(check));
+        for group in &check.groups {
+            let _ = write!(text, "\n{}\n", changes::sentence(group));
+        }
+        if let Some(command) = next_command(check, file_of(&check.study).as_deref()) {
+            let _ = write!(text, "\nNext: `{command}`\n");
+        }
         for table in tables_of(check) {
             let _ = write!(text, "\n{}\n", table.to_markdown()?);
         }
@@ -45,6 +57,21 @@ pub fn markdown_of(checks: &[StudyCheck]) -> Result<String, RenderError> {
         }
     }
     Ok(text)
+}
+
+/// What to type next where something failed: what explains the worst of it.
+pub fn next_command(check: &StudyCheck, file: Option<&str>) -> Option<String> {
+    let file = file?;
+    let explain = |what: &str| Some(format!("oedometer explain \"{what}\" {file}"));
+    let failed = check.failed_cases.first().or(check.unsound.first());
+    let unmet = check.judgements.iter().any(|judgement| !judgement.verdict.pass);
+    match check.groups.first() {
+        Some(group) if group.change == Change::Moved => explain(&group.worst.name),
+        _ if failed.is_some() => explain(&failed?.case),
+        _ if unmet => Some(format!("oedometer report {file}")),
+        None if check.golden.is_ok() => None,
+        _ => Some(format!("oedometer accept {file} --reason \"why the new values are right\"")),
+    }
 }
 
 /// Every judgement of all studies in one table, for programs.
@@ -107,45 +134,10 @@ fn tables_of(check: &StudyCheck) -> Vec<Table> {
         }
     }
     if !check.differences().is_empty() {
-        tables.push(differences_table(check.differences()));
-        tables.push(changes_table(&check.changes));
+        tables.push(changes::differences_table(check.differences()));
+        tables.push(changes::changes_table(&check.changes));
     }
     tables
-}
-
-/// Cases that differ from their golden values, accuracy and cost together.
-fn changes_table(changes: &[CaseChange]) -> Table {
-    let rows = changes.iter().take(MOST_DIFFERENCES).map(|one| {
-        let (mood, word) = match one.change {
-            ParetoChange::Same => (Mood::Pass, "same"),
-            ParetoChange::Better => (Mood::Note, "better"),
-            ParetoChange::Traded if one.is_stale() => (Mood::Note, "cost traded for accuracy"),
-            ParetoChange::Traded => (Mood::Fail, "better here, worse there"),
-            ParetoChange::Dominated => (Mood::Fail, "dominated by its golden values"),
-            ParetoChange::NotComparable => (Mood::Fail, "values without a partner"),
-        };
-        vec![
-            Cell::Verdict(mood, word.to_owned()),
-            Cell::Code(one.case.clone()),
-            Cell::Number(one.cost_ratio),
-            Cell::Count(one.worse as u64),
-            Cell::Count(one.better as u64),
-            Cell::Count(one.unpaired as u64),
-        ]
-    });
-    Table {
-        title: "accuracy and cost together".to_owned(),
-        columns: vec![
-            Column::text("change"),
-            Column::text("case"),
-            Column::number("cost over golden"),
-            Column::number("errors that grew"),
-            Column::number("errors that fell"),
-            Column::number("without partner"),
-        ],
-        rows: rows.collect(),
-        notes: Vec::new(),
-    }
 }
 
 /// Judgements as a table, each with its reason.
@@ -180,40 +172,5 @@ pub fn judgements_table(title: &str, judgements: &[&Judgement]) -> Table {
         ],
         rows: rows.collect(),
         notes: Vec::new(),
-    }
-}
-
-/// Values that differ from their golden ones.
-pub fn differences_table(differences: &[Difference]) -> Table {
-    let value = |value: Option<f64>| {
-        value.map_or(Cell::Missing("no value".to_owned()), |v| number::exact(v).as_str().into())
-    };
-    let rows = differences.iter().take(MOST_DIFFERENCES).map(|one| {
-        let change = match (one.golden, one.found) {
-            (Some(golden), Some(found)) => Cell::Error(found - golden),
-            _ => Cell::Missing("nothing to compare".to_owned()),
-        };
-        vec![
-            one.change.name().into(),
-            one.name.as_str().into(),
-            value(one.golden),
-            value(one.found),
-            change,
-            Cell::Error(one.tolerance),
-        ]
-    });
-    let rest = differences.len().saturating_sub(MOST_DIFFERENCES);
-    Table {
-        title: "golden values that moved".to_owned(),
-        columns: vec![
-            Column::text("change"),
-            Column::text("value"),
-            Column::number("golden"),
-            Column::number("now"),
-            Column::number("difference"),
-            Column::number("tolerance"),
-        ],
-        rows: rows.collect(),
-        notes: if rest > 0 { vec![format!("and {rest} more")] } else { Vec::new() },
     }
 }

@@ -107,7 +107,7 @@ impl Chart {
                 });
                 let size = radius(place, look.line);
                 canvas.group(&[], |b| shown().try_for_each(|p| marker(b, p, slot, size, look.colour)));
-                shown().for_each(|p| space.add_marker(p, i));
+                shown().for_each(|p| space.add_marker(p));
             }
         }
         for (series, places) in self.series.iter().zip(places) {
