@@ -1,9 +1,10 @@
-//! The exact solutions as golden values: a fault in one shows at its own numbers, and not only in
-//! the errors of those scenes that happen to use it.
+//! The exact solutions as golden values, with the bounds that they give on their own errors: a fault
+//! in one shows at its own numbers, and not only in the errors of those scenes that happen to use it.
 
 use crate::exact::cosine_layer::{Base, CosineLayer};
 use crate::exact::dynamic_column::{DynamicColumn, Start};
 use crate::exact::large_strain::Water;
+use crate::exact::xie_leo::{Drainage, XieLeo};
 use crate::exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use crate::study::LastDigit;
 use std::collections::BTreeMap;
@@ -21,7 +22,15 @@ const LARGE_LOAD: f64 = 2e5;
 /// Water so soft that its storage shows, Pa.
 const SOFT_WATER: f64 = 2e7;
 
-/// Pressures, stresses, displacements and degrees of every solution on a few places and times.
+/// Time factor to which a load grows: waves are still running then, and a front is under way.
+const LOADED_AT: f64 = 1e-3;
+/// Time factors under a load that grows: within its time, and after it.
+const TIMES_OF_GROWTH: [f64; 3] = [2e-4, 1e-3, 5e-3];
+/// Bounds of nothing at all count as this.
+const LEAST_BOUND: f64 = 1e-300;
+
+/// Pressures, stresses, displacements and degrees of every solution on a few places and times, and the
+/// bounds on what their sums leave out.
 ///
 /// # Errors
 /// When a solution refuses the column: a fault of this program.
@@ -49,22 +58,18 @@ fn values_of_column(seed: &ColumnParameters) -> Result<BTreeMap<String, f64>, Ex
     for kind in ReferenceKind::ALL {
         for (column, parameters) in [("seed column", seed), ("soft water, 200 kPa", soft)] {
             let reference = Reference::new(kind, &parameters, &TIME_FACTORS)?;
-            let mut note = |what: &str, time_factor: f64, value: f64| {
-                values.insert(format!("{kind} {column} | {what} T_v={time_factor}"), value);
-            };
-            for time_factor in TIME_FACTORS {
-                note("degree", time_factor, reference.degree_of_consolidation(time_factor)?);
-                for zeta in DEPTHS {
-                    let fields = reference.fields(time_factor, zeta)?;
-                    let load = parameters.load;
-                    note(&format!("p/q ζ={zeta}"), time_factor, fields.pressure / load);
-                    note(&format!("σ'/q ζ={zeta}"), time_factor, fields.effective_stress / load);
-                    let displacement = fields.displacement / parameters.final_settlement();
-                    note(&format!("u/(m_v q H) ζ={zeta}"), time_factor, displacement);
-                }
-            }
+            note_solution(&mut values, &format!("{kind} {column}"), &reference, &parameters, &TIME_FACTORS)?;
         }
     }
+    for kind in ReferenceKind::ALL {
+        let parameters = ColumnParameters { loading_time: seed.time(LOADED_AT), ..soft };
+        if matches!(kind, ReferenceKind::DynamicColumn | ReferenceKind::LargeStrain(_)) {
+            let reference = Reference::new(kind, &parameters, &TIMES_OF_GROWTH)?;
+            let name = format!("{kind} growing load");
+            note_solution(&mut values, &name, &reference, &parameters, &TIMES_OF_GROWTH)?;
+        }
+    }
+    note_drainages(&mut values, &ColumnParameters { load: LARGE_LOAD, ..seed })?;
     for (start, name) in
         [(Start::Step, "step"), (Start::Mode, "mode"), (Start::StandingWave, "standing wave")]
     {
@@ -104,4 +109,62 @@ fn values_of_column(seed: &ColumnParameters) -> Result<BTreeMap<String, f64>, Ex
         }
     }
     Ok(values)
+}
+
+/// A solution on the depths at some times.
+fn note_solution(
+    values: &mut BTreeMap<String, f64>,
+    name: &str,
+    reference: &Reference,
+    parameters: &ColumnParameters,
+    time_factors: &[f64],
+) -> Result<(), ExactError> {
+    let mut note = |what: &str, time_factor: f64, value: f64| {
+        values.insert(format!("{name} | {what} T_v={time_factor}"), value);
+    };
+    for time_factor in time_factors.iter().copied() {
+        note("degree", time_factor, reference.degree_of_consolidation(time_factor)?);
+        let accuracy = reference.accuracy(time_factor)?;
+        note("terms", time_factor, accuracy.terms as f64);
+        // By its power of ten: a bound of 1e-20 is nothing beside any tolerance.
+        note("power of the tail bound", time_factor, accuracy.tail_bound.max(LEAST_BOUND).log10());
+        for zeta in DEPTHS {
+            let fields = reference.fields(time_factor, zeta)?;
+            let load = parameters.load;
+            note(&format!("p/q ζ={zeta}"), time_factor, fields.pressure / load);
+            note(&format!("σ'/q ζ={zeta}"), time_factor, fields.effective_stress / load);
+            let displacement = fields.displacement / parameters.final_settlement();
+            note(&format!("u/(m_v q H) ζ={zeta}"), time_factor, displacement);
+        }
+    }
+    Ok(())
+}
+
+/// What Xie & Leo give beside fields, for both drainages.
+fn note_drainages(
+    values: &mut BTreeMap<String, f64>,
+    parameters: &ColumnParameters,
+) -> Result<(), ExactError> {
+    for (drainage, name) in [(Drainage::Top, "top"), (Drainage::TopAndBase, "top and base")] {
+        let solution = XieLeo::drained(parameters, drainage)?;
+        let mut note = |what: &str, time_factor: f64, value: f64| {
+            values.insert(format!("xie-leo drained at {name} | {what} T_v={time_factor}"), value);
+        };
+        for time_factor in TIME_FACTORS {
+            note("settlement/H", time_factor, solution.settlement(time_factor)? / parameters.height);
+            note("degree", time_factor, solution.degree_of_consolidation(time_factor)?);
+            note("degree by pressure", time_factor, solution.degree_by_pressure(time_factor)?);
+            let bound = solution.accuracy(time_factor)?.tail_bound;
+            note("power of the tail bound", time_factor, bound.max(LEAST_BOUND).log10());
+            for zeta in DEPTHS {
+                let fields = solution.fields(time_factor, zeta)?;
+                note(&format!("p/q ζ={zeta}"), time_factor, fields.pressure / parameters.load);
+                let displacement = fields.displacement / parameters.height;
+                note(&format!("u/H ζ={zeta}"), time_factor, displacement);
+                note(&format!("J ζ={zeta}"), time_factor, solution.volume_ratio(time_factor, zeta)?);
+                note(&format!("e ζ={zeta}"), time_factor, solution.void_ratio(time_factor, zeta)?);
+            }
+        }
+    }
+    Ok(())
 }

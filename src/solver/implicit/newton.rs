@@ -30,25 +30,31 @@ struct Structure {
     cells: Vec<usize>,
     /// Splines that end at the surface lose a node without any point's row beginning elsewhere.
     last_node: Option<usize>,
+    /// A domain that touches a face reaches the node beyond it without its row beginning elsewhere.
+    numbers: Vec<Option<usize>>,
 }
 
 impl Structure {
-    fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
+    fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(trial: &Trial<D, W, S>) -> Self {
+        let body = &trial.body;
         Self {
             basis: body.basis.first.clone(),
             composite: body.composite.first.clone(),
             between_ends: body.between_ends.first.clone(),
             cells: body.cells.of_point.clone(),
             last_node: body.last_spline_node(),
+            numbers: trial.unknowns.displacement.as_flattened().to_vec(),
         }
     }
 
-    fn is_of<const D: usize, const W: usize, S: ShapeFunction<W>>(&self, body: &Body<D, W, S>) -> bool {
+    fn is_of<const D: usize, const W: usize, S: ShapeFunction<W>>(&self, trial: &Trial<D, W, S>) -> bool {
+        let body = &trial.body;
         self.basis == body.basis.first
             && self.composite == body.composite.first
             && self.between_ends == body.between_ends.first
             && self.cells == body.cells.of_point
             && self.last_node == body.last_spline_node()
+            && self.numbers == trial.unknowns.displacement.as_flattened()
     }
 }
 
@@ -116,7 +122,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
         let tangent = pattern.zeros();
         let zero = vec![0.0; trial.unknowns.count];
         Self {
-            structure: Structure::of(&trial.body),
+            structure: Structure::of(&trial),
             lu: BandedLu::of_shape(&tangent),
             tangent,
             pattern,
@@ -313,10 +319,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
 
     /// Points that went on to other cells change which balances feel which unknowns.
     fn follow_structure(&mut self) {
-        if self.structure.is_of(&self.trial.body) {
+        if self.structure.is_of(&self.trial) {
             return;
         }
-        self.structure = Structure::of(&self.trial.body);
+        self.structure = Structure::of(&self.trial);
         self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
         self.tangent = self.pattern.zeros();
         self.lu = BandedLu::of_shape(&self.tangent);

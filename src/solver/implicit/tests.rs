@@ -12,7 +12,7 @@ use crate::solver::explicit::{Drag, ExplicitSettings};
 use crate::solver::grid::Grid;
 use crate::solver::integrator::{Formulation, IntegratorKind};
 use crate::solver::material::{Continuity, Law, Material};
-use crate::solver::method::Method;
+use crate::solver::method::{Configuration, Method};
 use crate::solver::nodes::Support;
 use crate::solver::outcome::{FailureKind, Outcome, RunStatus, StepSizes};
 use crate::solver::points::Points;
@@ -268,6 +268,22 @@ fn inertia_makes_the_waves_that_the_explicit_integrator_makes() {
     assert!(difference(&mixture, &explicit) < 0.3 && difference(&mixture, &inertial) > 1e-3);
     let still = pressure(IntegratorKind::Implicit, Formulation::QuasiStatic, step);
     assert!(difference(&still, &explicit) > 0.2, "no waves without inertia");
+}
+
+#[test]
+fn domains_that_grow_over_a_face_renumber_the_unknowns() {
+    // Points slide along the layer; their domains come to reach nodes that no row begins at.
+    let method = Method { configuration: Some(Configuration::Updated), ..named("GIMP-SRI-patch") };
+    let layer = Column { load: 1e5, ..Column::layer() };
+    let soil = Material::default();
+    let problem = column_problem::<2>(SceneKind::CosineLayer, &layer, &soil, method, 4, 2);
+    let schedule = schedule(&soil, IntegratorKind::Implicit, TimeStepRule::Seconds(0.1635), &[0.1]);
+    let outcome = run(problem.expect("a possible layer"), &schedule, &|_, _| true);
+    assert!(outcome.counters.steps > 10, "{:?}", outcome.status);
+}
+
+fn named(method: &str) -> Method {
+    Method::named(method).expect("a known method")
 }
 
 /// The seed column `across` cells wide in two dimensions, between rollers.
