@@ -8,7 +8,8 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FailureKind {
-    /// Velocities left their physical scale a thousandfold, or are not finite.
+    /// Velocities left their physical scale a thousandfold or are not finite, or a settlement or a
+    /// pressure is beyond what the scene can reach.
     Unstable,
     /// A point's pores closed: its volume ratio fell to that of the grains.
     PoresClosed,

@@ -218,16 +218,18 @@ impl Checker<'_> {
             let factor = *typed.get_ref();
             if factor == 0.0 || (LEAST_TIME_FACTOR..=100.0).contains(&factor) {
                 factors.push(factor);
-            } else {
-                self.complain(
-                    typed.span(),
-                    format!("a time factor of {factor}"),
-                    format!(
-                        "T_v = c_v t/H² is 0 or lies between {LEAST_TIME_FACTOR:e} and 100; the column is consolidated \
-                         at 2"
-                    ),
-                );
+                continue;
             }
+            let help = if factor > 0.0 && factor < 1.0 {
+                format!(
+                    "nothing has moved by then and steps no longer advance the time: 0, or {LEAST_TIME_FACTOR:e} and later"
+                )
+            } else {
+                "T_v = c_v t/H² lies between 0 and 100; the column is consolidated at 2".to_owned()
+            };
+            let is_short = (1e-6..1e16).contains(&factor.abs());
+            let size = if is_short { factor.to_string() } else { format!("{factor:?}") };
+            self.complain(typed.span(), format!("a time factor of {size}"), help);
         }
         factors.sort_by(f64::total_cmp);
         factors.dedup();
