@@ -78,9 +78,18 @@ fn disturb(golden: &mut GoldenFile, sign: f64) {
     *value += sign * 10.0 * tolerance;
 }
 
-/// Rows of the table of values that differ.
-fn differing(told: &Told) -> Vec<&str> {
-    told.out.lines().filter(|line| line.contains(" | ") && line.contains("T_v=")).collect()
+/// Values that differ, each with what happened to it on one line.
+fn differing(told: &Told) -> Vec<String> {
+    let list = told.out.split("\nthe worst of them\n").nth(1).unwrap_or_default();
+    let list = list.split("\n\n").next().unwrap_or_default();
+    let mut items: Vec<String> = Vec::new();
+    for line in list.lines() {
+        match items.last_mut() {
+            Some(item) if line.starts_with("    ") => *item += &format!(" {}", line.trim()),
+            _ => items.push(line.trim().to_owned()),
+        }
+    }
+    items
 }
 
 #[test]
@@ -156,7 +165,91 @@ fn missing_extra_and_renamed_values_and_a_missing_file_are_no_pass() {
     fs::write(spoilt.path().join("golden/short.json"), "{ \"schema\": 1 ").expect("a file");
     let told = spoilt.check(&[]);
     assert_eq!(told.code, 5);
-    assert!(told.out.contains("cannot be read"), "{}", told.out);
+    assert!(told.words().contains("cannot be read"), "{}", told.out);
+}
+
+#[test]
+fn a_golden_file_that_allows_anything_is_refused_with_a_sentence() {
+    let place = Place::golden(STUDY, |_| {});
+    let path = place.path().join("golden/short.json");
+    let sound = fs::read_to_string(&path).expect("a golden file");
+    for (from, to, told) in [
+        ("\"relative_tolerance\": 1e-8", "\"relative_tolerance\": 1e9", "`relative_tolerance` is 1e9"),
+        ("\"absolute_tolerance\": 1e-12", "\"absolute_tolerance\": -1.0", "`absolute_tolerance` is -1e0"),
+        ("\"reason\": \"for a test\"", "\"reason\": \" \"", "its `reason` is empty"),
+    ] {
+        assert!(sound.contains(from), "{sound}");
+        fs::write(&path, sound.replace(from, to)).expect("written");
+        let found = place.check(&[]);
+        assert_eq!(found.code, 5, "{}", found.out);
+        assert!(found.words().contains(told), "{}", found.out);
+    }
+}
+
+#[test]
+fn what_moved_is_told_by_kind_and_the_worst_first() {
+    let place = Place::golden(STUDY, |golden| {
+        for (name, value) in &mut golden.values {
+            *value *= match name {
+                name if name == VALUE => 0.5,
+                name if name.contains("cells=6") && name.contains("pressure") => 0.99,
+                name if name.contains("cells=12") && name.contains("settlement") => 1.01,
+                name if name.contains("cells=6") && name.contains("settlement") => 1.5,
+                _ => 1.0,
+            };
+        }
+    });
+    let told = place.check(&[]);
+    assert_eq!(told.code, 1, "{}", told.out);
+    assert_words("check_moved", &told.out);
+    assert!(told.out.lines().all(|line| line.chars().count() <= 80 || line.starts_with("next: ")));
+    let rows = differing(&told);
+    assert!(rows[0].starts_with(&format!("{VALUE} moved: ")), "{rows:?}");
+    let words = told.words();
+    assert!(words.contains("all with `cells=6`, all of `pressure`"), "{words}");
+    assert!(words.contains(&format!("next: oedometer explain \"{VALUE}\" short.toml")), "{words}");
+    // Its settlement fell while its pressure grew: that is nothing better. That of the finer mesh is.
+    assert!(words.contains("smaller in cases that got worse elsewhere"), "{words}");
+    assert!(words.contains("are better: a stale golden, in 1 case, all with `cells=12`"), "{words}");
+    // Every other way out leads with the same value.
+    let summary = place.check(&["--format", "markdown", "--junit", "junit.xml", "--annotate"]);
+    let first = summary.out.lines().find(|line| line.contains("T_v=")).expect("a value");
+    assert!(first.ends_with(VALUE), "{first}");
+    let junit = fs::read_to_string(place.path().join("junit.xml")).expect("a report");
+    let message = junit.split("<failure message=\"").nth(1).expect("a failure").replace("&apos;", "'");
+    assert!(message.split("T_v=").next().is_some_and(|first| first.contains("cells=6")), "{message}");
+    assert!(message.contains(&format!("The worst: {VALUE}; ")), "{message}");
+    let annotation = summary.err.lines().find(|line| line.starts_with("::error ")).expect("an annotation");
+    assert!(annotation.ends_with(VALUE), "{annotation}");
+}
+
+#[test]
+fn variables_of_a_ci_that_are_empty_or_say_off_are_none() {
+    let place = Place::golden(STUDY, |golden| disturb(golden, -1.0));
+    let annotated = |value: &str| {
+        let variables = [("GITHUB_ACTIONS", value), ("GITHUB_STEP_SUMMARY", "")];
+        let told = place.call(&variables, &["check", "short.toml"]);
+        assert_eq!(told.code, 1, "GITHUB_ACTIONS={value}: {}{}", told.out, told.err);
+        told.err.contains("::error ")
+    };
+    assert!(annotated("true") && annotated("1"));
+    assert!(!annotated("") && !annotated("false") && !annotated("0"));
+}
+
+#[test]
+fn a_summary_that_cannot_be_written_hides_no_verdict() {
+    let options = ["--summary", "no/such/folder/summary.md", "--junit", "short.toml/junit.xml"];
+    for (place, code) in [
+        (Place::golden(STUDY, |_| {}), 3),
+        (Place::golden(STUDY, |golden| disturb(golden, -1.0)), 1),
+        (Place::golden(STUDY, |golden| disturb(golden, 1.0)), 5),
+    ] {
+        let told = place.check(&options);
+        assert_eq!(told.code, code, "{}{}", told.out, told.err);
+        assert!(told.out.starts_with("short: 1 of 1 expectations met"), "{}", told.out);
+        assert!(told.err.contains("error: cannot write no/such/folder/summary.md: "), "{}", told.err);
+        assert!(told.err.contains("error: cannot write short.toml/junit.xml: "), "{}", told.err);
+    }
 }
 
 #[test]
@@ -247,7 +340,7 @@ fn a_value_without_a_reference_is_judged_by_what_refinement_tells() {
     let strict = VALUE_STUDY.replace("below = 3e-3", "below = 2e-5");
     let told = Place::golden(&strict, |_| {}).check(&[]);
     assert_eq!(told.code, 1, "{}", told.out);
-    assert!(told.out.contains("by least squares not below 2e-5"), "{}", told.out);
+    assert!(told.words().contains("by least squares not below 2e-5"), "{}", told.out);
     // Three levels have an index, two have nothing to go by.
     let three = VALUE_STUDY.replace("[4, 8, 16, 32]", "[8, 16, 32]").replace("order = { value = 2.0 }\n", "");
     let told = Place::golden(&three, |_| {}).check(&["--format", "json"]);
@@ -255,7 +348,7 @@ fn a_value_without_a_reference_is_judged_by_what_refinement_tells() {
     assert!(told.out.contains("grid-convergence-index"), "{}", told.out);
     let told = Place::golden(&three.replace("[8, 16, 32]", "[16, 32]"), |_| {}).check(&[]);
     assert_eq!(told.code, 1, "{}", told.out);
-    assert!(told.out.contains("no uncertainty: 2 levels are too few: 3 are needed"), "{}", told.out);
+    assert!(told.words().contains("no uncertainty: 2 levels are too few: 3 are needed"), "{}", told.out);
 }
 
 #[test]
@@ -267,7 +360,7 @@ fn a_known_failure_must_fail() {
     let met = STUDY.replace("at = { cells = 6, below = 0.1 }", "xfail = { reason = \"constant recovery\" }");
     let told = Place::golden(&met, |_| {}).check(&[]);
     assert_eq!(told.code, 1);
-    assert!(told.out.contains("unexpected pass"), "{}", told.out);
+    assert!(told.words().contains("unexpected pass"), "{}", told.out);
 }
 
 #[test]
@@ -276,7 +369,11 @@ fn a_case_that_fails_is_exit_code_three_and_an_empty_tier_four() {
     let unstable = unstable.split("[[expect]]").next().expect("a head").to_owned();
     let told = Place::golden(&unstable, |_| {}).check(&[]);
     assert_eq!(told.code, 3, "{}", told.out);
-    assert!(told.out.contains("1 cases failed") && told.out.contains("unstable at step"), "{}", told.out);
+    assert!(
+        told.words().contains("1 case failed") && told.words().contains("unstable at step"),
+        "{}",
+        told.out
+    );
     let full = STUDY.replace("[[sweep]]\n", "[[sweep]]\ntier = \"full\"\n");
     assert_eq!(Place::with(&full).check(&[]).code, 4);
 }
@@ -301,7 +398,7 @@ fn a_warning_on_wall_time_fails_nothing() {
     let place = Place::golden(STUDY, |golden| golden.seconds = Some(1e-9));
     let told = place.check(&[]);
     assert_eq!(told.code, 0, "{}", told.out);
-    assert!(told.out.contains("warning: the cases took"), "{}", told.out);
+    assert!(told.words().contains("warning: the cases took"), "{}", told.out);
 }
 
 #[test]

@@ -310,6 +310,30 @@ fn schemas_and_completions_are_printed() {
     assert_eq!(call(folder.path(), &["completions", "sh"]).code, 2);
 }
 
+#[test]
+fn help_reads_as_a_terminal_shows_it() {
+    let folder = place();
+    let commands = [
+        "run",
+        "report",
+        "check",
+        "accept",
+        "exact",
+        "solve",
+        "score",
+        "stability",
+        "plan",
+        "merge",
+        "explain",
+    ];
+    for command in commands {
+        let told = call(folder.path(), &[command, "--help"]);
+        assert!(told.code == 0 && told.out.contains("Usage: "), "{command}: {}", told.err);
+        assert!(!told.out.contains('`'), "{command}: {}", told.out);
+    }
+    assert!(call(folder.path(), &["check", "--help"]).out.contains("$GITHUB_STEP_SUMMARY"));
+}
+
 /// Every fault of the campaign still stands where the list says, exactly once.
 #[test]
 fn the_faults_that_check_is_held_against_are_in_the_sources() {

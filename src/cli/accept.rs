@@ -5,9 +5,11 @@ use super::destination::is_on;
 use super::exit::{Ended, Exit};
 use super::run::{jobs_of, load};
 use super::stream::say;
+use crate::assess::study_check::StudyCheck;
 use crate::golden::{GoldenFile, spread_by_group, values_of};
-use crate::record::Provenance;
-use crate::study::{LastDigit, Study};
+use crate::record::{Provenance, Record};
+use crate::render::verdicts::objections_of;
+use crate::study::{LastDigit, Study, Tier};
 use std::path::PathBuf;
 
 /// Arguments of `accept`.
@@ -19,6 +21,9 @@ pub struct Arguments {
     /// Take the present values of the exact solutions too
     #[arg(long)]
     references: bool,
+    /// Take the values although expectations or cases of their study fail
+    #[arg(long)]
+    despite_failing: bool,
     /// Why the new values are right
     #[arg(long, value_name = "TEXT")]
     reason: String,
@@ -38,10 +43,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     refuse_without_origin()?;
     let reason = arguments.reason.trim();
     let studies = load(&arguments.studies)?;
+    let records = run_quietly(&studies, jobs_of(arguments.jobs))?;
+    refuse_failing(&studies, &records, arguments.despite_failing)?;
     if arguments.references {
         keep(&GoldenFile::of_references(reason)?, arguments)?;
     }
-    let records = run_quietly(&studies, jobs_of(arguments.jobs))?;
     let mut perturbed = Vec::new();
     for digit in LastDigit::ALL {
         let studies: Vec<Study> = studies.iter().map(|study| study.perturbed(digit)).collect();
@@ -54,6 +60,27 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         keep(&golden.with_spread(spread), arguments)?;
     }
     Ok(Exit::Pass)
+}
+
+/// Says which expectations and cases fail, and refuses to take values of their studies unless told.
+fn refuse_failing(studies: &[Study], records: &[Vec<Record>], despite: bool) -> anyhow::Result<()> {
+    let mut fails = false;
+    for (study, records) in studies.iter().zip(records) {
+        let as_found = GoldenFile::of(&study.name, records, "as found");
+        let check = StudyCheck::new(study, records, Tier::Ci, Ok(as_found));
+        if let Some(objections) = objections_of(&check) {
+            say!("{}", objections.trim_end());
+            fails = true;
+        }
+    }
+    if fails && !despite {
+        return Err(Ended::with(
+            Exit::VerdictFailed,
+            "nothing is taken, for these fail: mend the code or the expectations first, or take the values all the \
+             same with --despite-failing",
+        ));
+    }
+    Ok(())
 }
 
 /// Refuses to write golden files in CI, and from sources that no commit has.
@@ -78,4 +105,30 @@ fn keep(golden: &GoldenFile, arguments: &Arguments) -> anyhow::Result<()> {
     let path = golden.write(&arguments.golden)?;
     say!("{}: {} values in {}", golden.study, golden.values.len(), path.display());
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::StudySource;
+
+    #[test]
+    fn values_of_a_study_whose_expectations_fail_are_taken_only_when_told() {
+        let refused = |below: &str, despite: bool| {
+            let text = format!(
+                "title = \"short\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n\n[[sweep]]\n\
+                 method = [\"MPM\"]\nintegrator = [\"implicit\"]\ncells = [3, 6]\n\n[[expect]]\n\
+                 time_factor = 0.1\nat = {{ cells = 6, below = {below} }}\n"
+            );
+            let source = StudySource { name: "short.toml".to_owned(), text };
+            let studies = [Study::check(&source).expect("sound")];
+            let records = run_quietly(&studies, 1).expect("records");
+            refuse_failing(&studies, &records, despite).err()
+        };
+        let error = refused("1e-9", false).expect("it is refused");
+        assert_eq!(Exit::of(&error), Exit::VerdictFailed);
+        assert!(error.to_string().contains("--despite-failing"), "{error}");
+        assert!(refused("1e-9", true).is_none(), "somebody said so");
+        assert!(refused("0.5", false).is_none(), "nothing fails");
+    }
 }

@@ -2,7 +2,6 @@
 
 use super::exit::Exit;
 use super::stream::print_data;
-use clap::CommandFactory;
 use clap_complete::Shell;
 
 /// Arguments of `completions`.
@@ -14,7 +13,7 @@ pub struct Arguments {
 
 /// Prints the script of a shell.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let mut command = super::Arguments::command();
+    let mut command = super::command();
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut command, "oedometer", &mut script);
     print_data(&String::from_utf8(script)?)?;

@@ -26,7 +26,7 @@ mod stream;
 
 pub use exit::Exit;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::io::Write;
 use std::process::ExitCode;
 use stream::{say, written};
@@ -73,9 +73,23 @@ enum Command {
     Completions(completions::Arguments),
 }
 
+/// The command line with help as a terminal shows it: without the markup of the source's comments.
+fn command() -> clap::Command {
+    fn plain(command: clap::Command) -> clap::Command {
+        let words = |help: &clap::builder::StyledStr| help.to_string().replace('`', "");
+        let of_argument = |argument: clap::Arg| {
+            let (help, long) = (argument.get_help().map(words), argument.get_long_help().map(words));
+            argument.help(help).long_help(long)
+        };
+        command.mut_args(of_argument).mut_subcommands(plain)
+    }
+    plain(Arguments::command())
+}
+
 /// Parses the command line, runs the command, and turns its end into an exit code.
 pub fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let parsed = command().try_get_matches().and_then(|matches| Arguments::from_arg_matches(&matches));
+    let arguments = match parsed {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version are asked for, and no usage error.

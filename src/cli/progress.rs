@@ -18,7 +18,9 @@ impl StudyBar {
         if !std::io::stderr().is_terminal() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
-        let style = ProgressStyle::with_template("{prefix:<24} [{bar:30}] {percent:>3} %, {eta} left, {msg}");
+        // The name and the message are cut where the terminal is narrow: a line that wraps is drawn anew below.
+        let style =
+            ProgressStyle::with_template("{prefix:<24!} [{bar:16}] {percent:>3} %, {eta} left, {wide_msg}");
         if let Ok(style) = style {
             bar.set_style(style.progress_chars("=> "));
         }

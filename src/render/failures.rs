@@ -32,6 +32,11 @@ pub(super) fn wrapped(text: &str, first: &str, others: &str) -> String {
 
 /// Everything that failed, section by section.
 pub(super) fn text_of(check: &StudyCheck) -> String {
+    text_of_failures(check) + &text_of_changes(check)
+}
+
+/// Expectations that are not met, cases that failed and records that cannot be right.
+pub(super) fn text_of_failures(check: &StudyCheck) -> String {
     let unmet = check.judgements.iter().filter(|judgement| !judgement.verdict.pass);
     let unmet = unmet.map(|judgement| {
         let verdict = &judgement.verdict;
@@ -45,11 +50,17 @@ pub(super) fn text_of(check: &StudyCheck) -> String {
         };
         notes.iter().map(item).collect()
     };
-    let mut sections = vec![
+    [
         section("expectations not met", unmet.collect()),
         section("failed cases", notes(&check.failed_cases)),
         section("records that cannot be right", notes(&check.unsound)),
-    ];
+    ]
+    .concat()
+}
+
+/// Golden values that differ: kinds, the worst values, and cases.
+fn text_of_changes(check: &StudyCheck) -> String {
+    let mut sections = Vec::new();
     if !check.groups.is_empty() {
         let groups = check.groups.iter().map(|group| wrapped(&summary(group), "  ", "    "));
         sections.push(format!("\ngolden values that differ\n{}", groups.collect::<String>()));

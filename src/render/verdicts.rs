@@ -18,7 +18,7 @@ use std::fmt::Write;
 pub fn text_of(check: &StudyCheck, file: Option<&str>) -> Result<String, RenderError> {
     let mut text = failures::wrapped(&format!("{}: {}", check.study, headline(check)), "", "  ");
     text += &failures::text_of(check);
-    for table in uncertainties::table_of(&check.judgements) {
+    if let Some(table) = uncertainties::table_of(&check.judgements) {
         let _ = write!(text, "\n{}\n", table.to_text()?);
     }
     for warning in &check.warnings {
@@ -57,6 +57,14 @@ pub fn markdown_of(
         }
     }
     Ok(text)
+}
+
+/// What stands against taking the values of a study as golden: expectations that fail, cases that fail,
+/// records that cannot be right; `None` where nothing does.
+pub fn objections_of(check: &StudyCheck) -> Option<String> {
+    let unmet = check.judgements.iter().any(|judgement| !judgement.verdict.pass);
+    let stands = unmet || !check.failed_cases.is_empty() || !check.unsound.is_empty();
+    stands.then(|| format!("{}\n{}", check.study, failures::text_of_failures(check)))
 }
 
 /// What to type next where something failed: what explains the worst of it.
@@ -104,12 +112,12 @@ fn headline(check: &StudyCheck) -> String {
         Ok(differences) => format!("{} golden values agree, {} do not", check.agreeing, differences.len()),
         Err(error) => error.to_string(),
     };
-    let count = |count: usize, what: &str| match count {
+    let count = |count: usize, one: &str, several: &str| match count {
         0 => String::new(),
-        count => format!(", {count} {what}"),
+        count => format!(", {}", changes::count_of(count, one, several)),
     };
-    let failed = count(check.failed_cases.len(), "cases failed");
-    let unsound = count(check.unsound.len(), "complaints about records");
+    let failed = count(check.failed_cases.len(), "case failed", "cases failed");
+    let unsound = count(check.unsound.len(), "complaint about records", "complaints about records");
     format!("{passed} of {} expectations met{failed}{unsound}, {golden}", check.judgements.len())
 }
 

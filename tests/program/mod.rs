@@ -23,6 +23,13 @@ pub struct Told {
     pub err: String,
 }
 
+impl Told {
+    /// Standard output on one line: where a line is broken is the terminal's business.
+    pub fn words(&self) -> String {
+        self.out.split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+}
+
 /// Calls the program in a folder.
 pub fn call(folder: &Path, arguments: &[&str]) -> Told {
     call_with(folder, &[], arguments)
