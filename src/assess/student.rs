@@ -66,4 +66,14 @@ mod tests {
         }
         assert_eq!(quantile_975(0), None);
     }
+
+    #[test]
+    fn the_quantile_is_that_of_another_implementation() {
+        use statrs::distribution::{ContinuousCDF, StudentsT};
+        for freedom in 1..60 {
+            let theirs = StudentsT::new(0.0, 1.0, freedom as f64).unwrap().inverse_cdf(0.975);
+            let ours = quantile_975(freedom).unwrap();
+            assert!((ours / theirs - 1.0).abs() < 1e-9, "{freedom}: {ours} for {theirs}");
+        }
+    }
 }
