@@ -25,6 +25,21 @@ use tracer::shape_of;
 /// Dialect of the schemas.
 const DIALECT: &str = "https://json-schema.org/draft/2020-12/schema";
 
+/// What the tables of a mapping mean.
+const MAPPING_KEYS: &[(&str, &str)] = &[
+    ("sample", "Kind of the places: a name for tables."),
+    ("whole_volume", "What the volumes of all samples add up to, in the unit of their column."),
+    ("columns", "Names of the columns, as the header spells them."),
+    ("units", "Units of the columns."),
+    ("sign", "Directions that count as positive; of x and y with the end from which they count."),
+    ("position", "Whether places are initial or present ones, of x as of y."),
+    ("origin", "What the file writes at the end from which x and y count, in its unit of length."),
+    ("files", "Time of each file that holds one step, by its file name."),
+    ("csv", "Layout of the file."),
+    ("delimiter", "What parts the columns."),
+    ("comment", "What begins a line that is no row."),
+];
+
 /// What the keys mean, with their units.
 const KEYS: &[(&str, &str)] = &[
     ("title", "What the study is about, in one line."),
@@ -108,7 +123,10 @@ pub fn schema_of(document: Document) -> Result<Value, serde::de::value::Error> {
         Document::Record => {
             ("oedometer record", shape_of::<Record>()?, Language { has_null: true, ..Language::default() })
         }
-        Document::Mapping => ("oedometer mapping", shape_of::<Mapping>()?, Language::default()),
+        Document::Mapping => {
+            let language = Language { descriptions: MAPPING_KEYS, ..Language::default() };
+            ("oedometer mapping", shape_of::<Mapping>()?, language)
+        }
     };
     let mut schema = node.to_schema("", &language);
     if let Some(root) = schema.as_object_mut() {

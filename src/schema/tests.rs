@@ -122,7 +122,9 @@ fn every_record_keeps_to_the_schema_and_misses_nothing() {
 #[test]
 fn the_convention_of_a_mapping_keeps_to_the_schema() {
     let schema = schema_of(Document::Mapping).expect("a schema");
-    let value = study_value(crate::import::CONVENTION);
-    assert_eq!(breach(&schema, &value, "mapping"), None);
+    for text in [crate::import::CONVENTION, crate::import::PLANE_CONVENTION] {
+        assert_eq!(breach(&schema, &study_value(text), "mapping"), None);
+    }
+    assert!(schema["properties"]["origin"]["description"].is_string());
     assert_eq!(schema["required"], json!(["columns", "units", "sign", "position"]));
 }

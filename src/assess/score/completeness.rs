@@ -74,9 +74,6 @@ pub struct Whole<'a> {
     pub is_declared: bool,
     /// Whether the samples have volumes at all.
     pub has_volumes: bool,
-    /// Whether a pressure or a stress is among the columns: a displacement of the surface alone is
-    /// whole.
-    pub has_fields: bool,
 }
 
 impl Whole<'_> {
@@ -173,26 +170,28 @@ impl Whole<'_> {
         })
     }
 
-    /// A note where a layer is sampled along a few verticals only.
+    /// A note where samples lie at one height, or along a few verticals of a layer: they were
+    /// chosen to be looked at.
     pub fn profiles(&self, states: &[SampledState]) -> Option<String> {
-        let state = states.first().filter(|state| self.is_plane() && !state.initial_distance.is_empty())?;
-        let lines = coverage::lines(&state.initial_distance, self.parameters.length);
-        let places: Vec<String> = lines.iter().map(|line| short(*line)).collect();
-        (lines.len() <= PROFILES).then(|| {
-            format!(
-                "the samples lie at x = {} m: nothing is known of the rest of the layer",
-                places.join(", ")
-            )
-        })
+        let state = states.first()?;
+        let heights = coverage::lines(&state.initial_height, self.parameters.height);
+        let distances = coverage::lines(&state.initial_distance, self.parameters.length);
+        let all = |lines: &[f64]| lines.iter().map(|line| short(*line)).collect::<Vec<_>>().join(", ");
+        let place = if heights.len() == 1 {
+            format!("y = {}", all(&heights))
+        } else if self.is_plane() && distances.len() <= PROFILES {
+            format!("x = {}", all(&distances))
+        } else {
+            return None;
+        };
+        Some(format!("the samples lie at {place} m: nothing is known of the rest"))
     }
 
     fn bare_height(&self, state: &SampledState) -> Option<String> {
         let height = self.parameters.height;
         let lines = coverage::lines(&state.initial_height, height);
-        let is_surface_alone =
-            !self.has_fields && lines.first().is_some_and(|y| *y > (1.0 - super::RIM) * height);
         let is_scattered = !state.initial_distance.is_empty() && 2 * lines.len() > state.initial_height.len();
-        if is_surface_alone {
+        if lines.len() == 1 {
             return None;
         }
         if is_scattered && lines.len() > 2 * PER_BIN {

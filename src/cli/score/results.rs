@@ -168,14 +168,12 @@ impl Read {
                 None if held.case.scene.is_plane() => vec![column.volume()],
                 None => vec![column.height, column.height * column.width],
             };
-            let columns = &held.mapping.columns;
             let whole = Whole {
                 parameters,
                 reference: *own,
                 volumes: &of_scene,
                 is_declared: held.mapping.whole_volume.is_some(),
-                has_volumes: columns.volume.is_some(),
-                has_fields: columns.p.is_some() || columns.effective_stress.is_some(),
+                has_volumes: held.mapping.columns.volume.is_some(),
             };
             self.score.warnings.extend(whole.findings(&self.states)?);
             self.notes.extend(whole.unit_of_volume(&self.states));

@@ -1,0 +1,362 @@
+//! `score` through the program: layers, times of several meshes, results that are not whole, and
+//! mistakes that their numbers show.
+
+mod program;
+
+use program::{Told, call};
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// Seconds at which `T_v = 1` in the seed column: `γ_w H²/(k E_oed)`.
+const SECONDS: f64 = 9810.0 / (1e-4 * 1.2e6);
+
+/// Rows of `exact`, as numbers by column.
+fn exact(folder: &Path, arguments: &[&str]) -> Vec<Vec<f64>> {
+    let told = call(folder, &[&["exact"], arguments].concat());
+    assert_eq!(told.code, 0, "{}", told.err);
+    let mut reader = csv::Reader::from_reader(told.out.as_bytes());
+    let numbers = |row: csv::StringRecord| row.iter().map(|field| field.parse().expect("a number")).collect();
+    reader.records().map(|row| numbers(row.expect("a row"))).collect()
+}
+
+/// One sample of a column.
+#[derive(Clone, Copy)]
+struct Row {
+    time: f64,
+    height: f64,
+    pressure: f64,
+    volume: f64,
+}
+
+/// The exact column at the points of twenty cells, two a cell, at four times.
+fn column(folder: &Path) -> Vec<Row> {
+    let depths: Vec<String> = (0..40).map(|point| ((f64::from(point) + 0.5) / 40.0).to_string()).collect();
+    let rows = exact(folder, &["terzaghi", "--time-factor", "0.05,0.1,0.2,0.5", "--zeta", &depths.join(",")]);
+    let row = |row: &Vec<f64>| Row {
+        time: row[0] * SECONDS,
+        height: 1.0 - row[1],
+        pressure: row[2],
+        volume: 1.0 / 40.0,
+    };
+    rows.iter().map(row).collect()
+}
+
+const MAPPING: &str = r#"columns = { t = "t", y = "y", p = "p", volume = "v" }
+units = { time = "s", length = "m", stress = "Pa" }
+sign = { y = "up", p = "compression-positive" }
+position = { y = "reference" }
+"#;
+
+/// Scores rows of a column against its own reference.
+fn score(folder: &Path, rows: &[Row], options: &[&str]) -> Told {
+    let mut text = "t,y,p,v\n".to_owned();
+    for row in rows {
+        writeln!(text, "{},{},{},{}", row.time, row.height, row.pressure, row.volume).expect("a line");
+    }
+    fs::write(folder.join("result.csv"), text).expect("a file");
+    fs::write(folder.join("map.toml"), MAPPING).expect("a file");
+    let common =
+        ["score", "result.csv", "--scene", "terzaghi", "--reference", "terzaghi", "--mapping", "map.toml"];
+    call(folder, &[&common, options].concat())
+}
+
+/// A layer as `exact` prints it at distances over its length, as somebody else's table.
+fn write_layer(folder: &Path, name: &str, ratios: &str, header: &str) {
+    let rows = exact(
+        folder,
+        &["cosine-layer", "--x", ratios, "--time-factor", "0.05,0.2", "--set", "layer.length=2.0"],
+    );
+    let mut text = format!("{header}\n");
+    for row in rows {
+        let (time, height, pressure) = (row[0] * SECONDS, 1.0 - row[1], row[2]);
+        let (distance, horizontal, vertical) = (2.0 * row[5], row[6], row[7]);
+        writeln!(text, "{time},{distance},{height},{pressure},{horizontal},{vertical}").expect("a line");
+    }
+    fs::write(folder.join(name), text).expect("a file");
+}
+
+#[test]
+fn the_exact_layer_has_no_error_wherever_it_is_sampled() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    for ratios in ["0", "0.25", "0.5", "1", "0.1,0.7", "0,0.25,0.5,0.75,1"] {
+        write_layer(at, "layer.csv", ratios, "t,x,y,p,u_x,u_y");
+        let layer = ["score", "layer.csv", "--scene", "cosine-layer", "--set", "layer.length=2.0"];
+        let own = ["--reference", "cosine-layer", "--format", "csv", "--below", "1e-5"];
+        let told = call(at, &[&layer[..], &own].concat());
+        assert_eq!(told.code, 0, "x/L = {ratios}: {}", told.err);
+        let is_profile = ratios.split(',').count() < 4;
+        assert_eq!(told.err.contains("nothing is known of the rest"), is_profile, "{ratios}: {}", told.err);
+        for quantity in ["pressure", "displacement"] {
+            let rows = told.out.lines().filter(|line| line.contains(&format!(",{quantity},points,l2,")));
+            assert_eq!(rows.count(), 2, "{ratios}: {}", told.out);
+        }
+        assert_eq!(told.out.contains("settlement"), ratios.starts_with("0,") || ratios == "0");
+    }
+}
+
+#[test]
+fn samples_of_another_layer_are_wrong_or_beyond_its_end() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let shorter = ["score", "layer.csv", "--scene", "cosine-layer", "--below", "1e-2"];
+    for (ratios, code, told_of) in [
+        ("0.25", 1, "not below"),
+        ("1", 2, "the initial distance 2 m from the crest is outside the layer of 1 m"),
+    ] {
+        write_layer(at, "layer.csv", ratios, "t,x,y,p,u_x,u_y");
+        let told = call(at, &shorter);
+        assert!(told.code == code && told.err.contains(told_of), "{ratios}: {}", told.err);
+    }
+}
+
+#[test]
+fn a_layer_without_the_place_along_it_is_refused() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    write_layer(at, "layer.csv", "0,0.5", "t,along,y,p,u_x,u_y");
+    let told = call(at, &["score", "layer.csv", "--scene", "cosine-layer"]);
+    assert_eq!((told.code, told.out.as_str()), (2, ""));
+    assert!(told.err.contains("write the distance of each sample from the crest"), "{}", told.err);
+    fs::write(at.join("map.toml"), MAPPING.replace(", volume = \"v\"", "")).expect("a file");
+    let mapped = ["score", "layer.csv", "--scene", "cosine-layer", "--mapping", "map.toml"];
+    let told = call(at, &mapped);
+    assert_eq!((told.code, told.out.as_str()), (2, ""));
+    assert!(told.err.contains("add `x = \"x\"` to [columns]"), "{}", told.err);
+    // With it there is an answer, and from another origin it is another layer's place.
+    for (origin, code) in [("0.0", 0), ("2.0", 2)] {
+        let named = MAPPING
+            .replace(", volume = \"v\"", ", x = \"along\"")
+            .replace("sign = {", &format!("origin = {{ x = {origin} }}\nsign = {{ x = \"right\","));
+        fs::write(at.join("map.toml"), named).expect("a file");
+        let told = call(at, &mapped);
+        assert_eq!(told.code, code, "{}", told.err);
+        assert_eq!(told.err.contains("outside the layer of 1 m"), code == 2, "{}", told.err);
+    }
+}
+
+#[test]
+fn exact_takes_places_along_a_layer_and_of_nothing_else() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let layer = ["exact", "cosine-layer", "--time-factor", "0.1", "--zeta", "0.5"];
+    let told = call(at, &[&layer[..], &["--x", "0,1"]].concat());
+    let lines: Vec<&str> = told.out.lines().collect();
+    assert!(
+        lines[0].starts_with("time_factor,zeta,pressure_ratio,settlement_ratio,degree_of_consolidation,x,")
+    );
+    let pressure = |line: &str| line.split(',').nth(2).expect("a field").parse::<f64>().expect("a number");
+    assert!((pressure(lines[1]) + pressure(lines[2])).abs() < 1e-15, "a cosine: {}", told.out);
+    assert!(pressure(lines[1]) > 0.1);
+    let without = call(at, &layer);
+    assert_eq!(
+        without.out.lines().next(),
+        Some("time_factor,zeta,pressure_ratio,settlement_ratio,degree_of_consolidation")
+    );
+    let told = call(at, &["exact", "terzaghi", "--x", "0"]);
+    assert_eq!((told.code, told.out.as_str()), (2, ""));
+    assert!(told.err.contains("`--x` is of a layer"), "{}", told.err);
+}
+
+#[test]
+fn meshes_that_stop_at_times_of_their_own_are_one_series() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    fs::write(at.join("map.toml"), MAPPING.replace(", volume = \"v\"", "")).expect("a file");
+    let meshes = [(10, 4.083_32), (20, 4.083_34), (40, 4.083_3)];
+    for (cells, time) in meshes {
+        let heights: Vec<String> =
+            (0..=cells).map(|node| (f64::from(node) / f64::from(cells)).to_string()).collect();
+        let time_factor = (time / SECONDS).to_string();
+        let rows = exact(at, &["terzaghi", "--time-factor", &time_factor, "--zeta", &heights.join(",")]);
+        let mut text = "t,y,p\n".to_owned();
+        for row in rows {
+            let error = f64::from(cells).powi(-2);
+            writeln!(text, "{time},{},{}", 1.0 - row[1], row[2] + error).expect("a line");
+        }
+        fs::write(at.join(format!("column-{cells}.csv")), text).expect("a file");
+    }
+    let files = ["column-10.csv", "column-20.csv", "column-40.csv"];
+    let common =
+        ["--cells", "10,20,40", "--scene", "terzaghi", "--reference", "terzaghi", "--mapping", "map.toml"];
+    let with = |options: &[&str]| call(at, &[&["score"], &files[..], &common, options].concat());
+    let told = with(&["--below", "1"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    assert!(told.out.contains("asymptotic") && told.out.contains("order 2.0"), "{}", told.out);
+    assert!(told.out.contains("times differ between the meshes, by up to 4.9e-6"), "{}", told.out);
+    let told = with(&["--time-tolerance", "1e-7"]);
+    assert!(told.out.contains("not-evaluable") && told.err.contains("time-missing"), "{}", told.err);
+    assert_eq!(with(&["--time-tolerance", "1e-7", "--strict"]).code, 1);
+    assert_eq!(with(&["--time-tolerance", "2"]).code, 2);
+    // 4.0833 s is 0.1 % and a little off T_v = 0.05, which takes 4.0875 s.
+    let told = with(&["--time-factor", "0.05"]);
+    assert!(told.code == 4 && told.err.contains("1.02e-3 off"), "{}", told.err);
+    let told = with(&["--time-factor", "0.05", "--time-tolerance", "2e-3"]);
+    assert!(told.code == 0 && told.out.contains("| 0.05 |"), "{}{}", told.out, told.err);
+    let told = with(&["--time-factor", "0.05,0.1", "--time-tolerance", "2e-3"]);
+    assert!(
+        told.err.contains("time-missing") && told.err.contains("T_v = 0.1, which was asked for"),
+        "{}",
+        told.err
+    );
+}
+
+#[test]
+fn a_result_that_is_not_whole_is_told_and_fails_a_gate() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let whole = column(at);
+    let told = score(at, &whole, &["--below", "1e-9", "--strict", "--time-factor", "0.05,0.1,0.2,0.5"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    assert!(!told.err.contains("warning") && !told.err.contains("fail"), "{}", told.err);
+    let keep = |kept: &dyn Fn(usize) -> bool| -> Vec<Row> {
+        whole.iter().enumerate().filter(|(place, _)| kept(*place)).map(|(_, row)| *row).collect()
+    };
+    let lighter = |factor: f64| -> Vec<Row> {
+        whole.iter().map(|row| Row { volume: factor * row.volume, ..*row }).collect()
+    };
+    for (what, rows, lack) in [
+        (
+            "every second point",
+            keep(&|place| place % 2 == 0),
+            "volume-differs: at T_v = 0.05, the volumes add up to 0.5",
+        ),
+        ("1.8 % of the volume", lighter(0.982), "volume-differs: at T_v = 0.05, the volumes add up to 0.982"),
+        ("twice the volume", lighter(2.0), "100.00 % are too many"),
+        (
+            "half the column",
+            keep(&|place| place % 40 < 20),
+            "height-not-covered: at T_v = 0.05, no sample lies between 0 m and 0.5125 m",
+        ),
+        ("one point", keep(&|place| place % 40 != 17), "height-not-covered"),
+        ("some points by chance", keep(&|place| place * place % 7 > 1), "height-not-covered"),
+        ("a file cut in half", keep(&|place| place < 93), "samples-differ: T_v = 0.2 has 13 samples"),
+        (
+            "the same between times",
+            keep(&|place| place < 80),
+            "time-missing: there is no T_v = 0.2 (and 1 more)",
+        ),
+        ("rows twice", [&whole[..], &whole[155..]].concat(), "rows-repeated: at T_v = 0.5, 5 of 45 rows"),
+    ] {
+        let asked = ["--time-factor", "0.05,0.1,0.2,0.5"];
+        let told = score(at, &rows, &asked);
+        assert_eq!(told.code, 0, "{what}: {}", told.err);
+        assert!(
+            told.err.contains(&format!("warning: {lack}"))
+                || told.err.contains("warning: volume-differs") && told.err.contains(lack),
+            "{what}: {}",
+            told.err
+        );
+        for gate in [&["--strict"][..], &["--below", "0.5"]] {
+            let told = score(at, &rows, &[&asked[..], gate].concat());
+            assert_eq!(told.code, 1, "{what} {gate:?}: {}", told.err);
+            assert!(told.err.contains("fail: ") && told.err.contains(lack), "{what}: {}", told.err);
+        }
+        let json = score(at, &rows, &[&asked[..], &["--format", "json"]].concat());
+        let value: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
+        assert!(value[0]["warnings"][0]["name"].is_string(), "{what}: {}", json.out);
+    }
+    let told = score(at, &whole, &["--strict"]);
+    assert!(
+        told.code == 0 && told.err.contains("name those that must be there by --time-factor"),
+        "{}",
+        told.err
+    );
+    let told = score(at, &lighter(40.0), &["--strict"]);
+    assert!(told.code == 0 && told.err.contains("are taken as weights"), "{}", told.err);
+    fs::write(at.join("whole.toml"), format!("whole_volume = 41.0\n{MAPPING}")).expect("a file");
+    let declared = ["score", "result.csv", "--scene", "terzaghi", "--mapping", "whole.toml", "--strict"];
+    let told = call(at, &declared);
+    assert!(told.code == 1 && told.err.contains("2.44 % are missing"), "{}", told.err);
+}
+
+#[test]
+fn points_that_a_mesh_lacks_show_beside_the_other_meshes() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    fs::write(at.join("map.toml"), MAPPING.replace(", volume = \"v\"", "")).expect("a file");
+    let write = |name: &str, points: u32| {
+        let depths: Vec<String> =
+            (0..points).map(|point| ((f64::from(point) + 0.5) / f64::from(points)).to_string()).collect();
+        let mut text = "t,y,p\n".to_owned();
+        for row in exact(at, &["terzaghi", "--time-factor", "0.1", "--zeta", &depths.join(",")]) {
+            writeln!(text, "{},{},{}", row[0] * SECONDS, 1.0 - row[1], row[2]).expect("a line");
+        }
+        fs::write(at.join(name), text).expect("a file");
+    };
+    let gate = || {
+        let files = ["score", "a.csv", "b.csv", "c.csv", "--cells", "5,10,20", "--strict"];
+        call(at, &[&files[..], &["--scene", "terzaghi", "--mapping", "map.toml"]].concat())
+    };
+    for (name, points) in [("a.csv", 10), ("b.csv", 20), ("c.csv", 40)] {
+        write(name, points);
+    }
+    assert_eq!(gate().code, 0);
+    write("c.csv", 20);
+    let told = gate();
+    assert!(
+        told.code == 1 && told.err.contains("c.csv: there are 1 heights a cell, and 2 on"),
+        "{}",
+        told.err
+    );
+}
+
+#[test]
+fn mistakes_that_the_numbers_show_are_named_and_others_are_not() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let whole = column(at);
+    let changed = |change: &dyn Fn(&Row) -> Row| whole.iter().map(change).collect::<Vec<Row>>();
+    for (rows, told_of) in [
+        (
+            changed(&|row| Row { pressure: -row.pressure, ..*row }),
+            "your p is −1.00 × the exact one: is the sign",
+        ),
+        (changed(&|row| Row { pressure: 1e-3 * row.pressure, ..*row }), "is it in kPa where Pa is declared?"),
+        (
+            changed(&|row| Row { pressure: row.pressure + 9810.0 * (1.0 - row.height), ..*row }),
+            "by a constant gradient of 9810 Pa/m: is the hydrostatic part left in?",
+        ),
+        (changed(&|row| Row { time: row.time / 60.0, ..*row }), "are times in min where s is declared?"),
+        (
+            changed(&|row| Row { height: 1.0 - row.height, ..*row }),
+            "upside down: is `y` counted from the other",
+        ),
+    ] {
+        let told = score(at, &rows, &[]);
+        assert_eq!(told.code, 0, "{}", told.err);
+        let sentences: Vec<&str> = told.err.lines().filter(|line| line.starts_with("diagnosis: ")).collect();
+        assert!(sentences.len() == 1 && sentences[0].contains(told_of), "{told_of}: {}", told.err);
+    }
+    for rows in [
+        whole.clone(),
+        changed(&|row| Row { pressure: row.pressure * (1.0 + 0.3 * (9.0 * row.height).sin()), ..*row }),
+        changed(&|row| Row { time: 1.3 * row.time, ..*row }),
+    ] {
+        let told = score(at, &rows, &[]);
+        assert!(!told.err.contains("diagnosis"), "{}", told.err);
+    }
+}
+
+/// What was found by a search of all errors for each took two minutes for as many times.
+#[test]
+fn many_times_take_as_long_as_their_number() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let times = 40_000;
+    let mut text = "t,y,p,u_y\n".to_owned();
+    for time in 0..times {
+        for node in 0..3 {
+            let (time, height) = (1.0 + 1e-3 * f64::from(time), f64::from(node) / 2.0);
+            writeln!(text, "{time},{height},0.5,-1e-7").expect("a line");
+        }
+    }
+    fs::write(at.join("long.csv"), text).expect("a file");
+    let started = std::time::Instant::now();
+    let told = call(at, &["score", "long.csv", "--scene", "terzaghi"]);
+    assert_eq!(told.code, 0);
+    assert_eq!(told.out.lines().filter(|line| line.contains("| pressure ")).count(), 40_000);
+    assert!(started.elapsed().as_secs() < 90, "{:?}", started.elapsed());
+}
