@@ -23,6 +23,7 @@ mod solve;
 mod spread;
 mod stability;
 mod stream;
+mod study_files;
 
 pub use exit::Exit;
 

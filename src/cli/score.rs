@@ -148,6 +148,7 @@ fn study_of(arguments: &Arguments) -> anyhow::Result<(Study, Vec<f64>)> {
         lines.give("output.time_factors", &list, "`--time-factor`")?;
     }
     lines.assign(&arguments.assignments)?;
+    lines.refuse_without_effect(&overrides::OF_RUNS)?;
     let is_requested = lines.has("output.time_factors");
     let study = lines.study_with(["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned))?;
     let requested = match study.planned.first() {

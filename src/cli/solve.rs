@@ -11,7 +11,7 @@ use crate::render::measures;
 use crate::render::phases::phases_table;
 use crate::solver::profile::{PhaseTime, profiled};
 use crate::solver::run::Kernel;
-use crate::study::{IntegratorKind, Study, deadline_of, estimated_updates, named_if_late, run_case};
+use crate::study::{IntegratorKind, Study, estimated_updates, run_case_within};
 use clap::ValueEnum;
 use std::time::Instant;
 
@@ -77,11 +77,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
     tell_of_long(&study);
-    let deadline = deadline_of(study.case_seconds);
     let solve = || {
-        let record =
-            run_case(&planned.case, &study.references, kernel, true, &|_, _| Instant::now() < deadline)?;
-        Ok::<_, ExactError>(named_if_late(record, study.case_seconds))
+        run_case_within(study.case_seconds, &planned.case, &study.references, kernel, true, &|_, _| true)
     };
     let (record, phases) = if arguments.profile { profiled(solve) } else { (solve(), Vec::new()) };
     let record = record?;
@@ -157,6 +154,10 @@ fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
         lines.give("output.references", &format!("[{}]", overrides::quoted(reference)), "`--reference`")?;
     }
     lines.assign(&arguments.assignments)?;
+    lines.refuse_without_effect(&[
+        ("task", "`oedometer stability` looks for critical steps"),
+        overrides::TIMING,
+    ])?;
     for (key, option) in OWN_OPTIONS {
         if lines.has(key) || lines.has(&format!("sweep.{key}")) {
             return Err(Ended::usage(format!("`{key}` has an option of its own: {option}")));
