@@ -13,7 +13,7 @@ use crate::record::Record;
 use crate::render::annotations::annotations_of;
 use crate::render::{junit, verdicts};
 use crate::study::{RunOptions, RunReport, Selected, Study, Tier, run_studies};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Folder of the golden values.
 pub const GOLDEN: &str = "golden";

@@ -5,7 +5,6 @@ use super::output::json_of;
 use super::overrides::{self, StudyLines};
 use super::stream::{print_data, say};
 use crate::assess::soundness;
-use crate::exact::ExactError;
 use crate::record::{ERROR_COLUMNS, ErrorRow, Record, Status};
 use crate::render::measures;
 use crate::render::phases::phases_table;
@@ -13,7 +12,6 @@ use crate::solver::profile::{PhaseTime, profiled};
 use crate::solver::run::Kernel;
 use crate::study::{IntegratorKind, Study, estimated_updates, run_case_within};
 use clap::ValueEnum;
-use std::time::Instant;
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
