@@ -314,7 +314,8 @@ pub fn uneven_meshes(
     let (fewest, least) = per_cell.iter().enumerate().min_by(by_size)?;
     let (most, largest) = per_cell.iter().enumerate().max_by(by_size)?;
     let count = |place: usize| meshes[place].1.initial_height.len();
-    let is_uneven = *largest > UNEVEN * least && count(fewest) != count(most);
+    let are_alike = (0..meshes.len()).all(|place| count(place) == count(0));
+    let is_uneven = *largest > UNEVEN * least && !are_alike;
     is_uneven.then(|| {
         let sentence = format!(
             "there are {} heights a cell, and {} on {} cells",
