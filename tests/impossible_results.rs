@@ -82,7 +82,7 @@ fn tolerance_steps_cross_a_layer_and_more_of_them_err_less() {
         assert_eq!(failure(record), None);
         record.snapshots[0].settlement
     };
-    let exact_in_time = settlement(&to("growth = 0.0005"));
+    let exact_in_time = settlement(&to("growth = 0.002"));
     let runs = ["tolerance = 1e-2", "tolerance = 1e-3", "tolerance = 1e-4"].map(to);
     let errors = [0, 1, 2].map(|run| (settlement(&runs[run]) / exact_in_time - 1.0).abs());
     for (coarse, fine) in [(0, 1), (1, 2)] {
@@ -186,7 +186,7 @@ fn no_error_is_held_against_a_theory_that_leaves_out_what_rules() {
 }
 
 #[test]
-fn the_bound_of_inertia_is_where_theory_begins_to_err_by_a_percent() {
+fn beyond_the_bound_of_inertia_theory_is_off_by_thousandths() {
     // Terzaghi's settlement against that of the column with its inertia, both exact.
     use oedometer::exact::{ColumnParameters, Reference, ReferenceKind};
     let gap = |conductivity: f64| {
@@ -197,10 +197,10 @@ fn the_bound_of_inertia_is_where_theory_begins_to_err_by_a_percent() {
         };
         (settlement(ReferenceKind::Terzaghi) / settlement(ReferenceKind::DynamicColumn) - 1.0).abs()
     };
-    // The rate changes by 1.1e-3 at k = 3.2e-3 m/s and by 1.1e-4 at a third of that.
+    // The rate changes by 1.1e-3 at k = 3.2e-3 m/s and with the square of k.
     let (at_the_bound, below) = (gap(3.2e-3), gap(1e-3));
-    assert!(at_the_bound > 1e-3 && at_the_bound < 1e-2, "{at_the_bound}");
-    assert!(below < 1e-3, "{below}");
+    assert!((1e-3..4e-3).contains(&at_the_bound), "{at_the_bound}");
+    assert!((at_the_bound / below / 3.2_f64.powi(2) - 1.0).abs() < 0.1, "{below}");
 }
 
 #[test]
@@ -272,8 +272,8 @@ fn times_and_rules_at_the_edge_of_the_numbers_are_refused_or_end_at_the_deadline
 #[test]
 fn deadlines_hold_in_set_up_and_in_a_search_for_the_critical_step() {
     for (text, most) in [
-        ("scene = 'terzaghi'\n[[sweep]]\nmethod = ['GC-SRI-patch']\ncells = [50000]", 20.0),
-        ("scene = 'terzaghi'\ntask = 'stability'\n[[sweep]]\nmethod = ['GIMP']\ncells = [4000]", 20.0),
+        ("scene = 'terzaghi'\n[[sweep]]\nmethod = ['GC-SRI-patch']\ncells = [50000]", 90.0),
+        ("scene = 'terzaghi'\ntask = 'stability'\n[[sweep]]\nmethod = ['GIMP']\ncells = [4000]", 90.0),
     ] {
         let study = study(&format!("case_seconds = 0.5\n{text}"));
         let start = Instant::now();

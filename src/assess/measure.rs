@@ -417,7 +417,8 @@ fn curve_gap(curve: &[HistoryRow], time_factor: f64, degree: f64) -> f64 {
 }
 
 /// Change of the slowest rate of consolidation by the skeleton's inertia beyond which the quasi-static
-/// references do not hold: at `T_v = 0.05` a thousandth of the rate is a percent of the settlement.
+/// references do not hold. Terzaghi's settlement at `T_v = 0.05` is then 2 in a thousand off that of the
+/// column with its inertia (both exact), and the gap grows in proportion.
 const MOST_INERTIA: f64 = 1e-3;
 
 /// Why a quasi-static reference does not hold for a case that is solved with its inertia, where it does
