@@ -443,3 +443,22 @@ fn a_report_shows_verdicts_and_does_not_gate_on_them() {
     let again = place.call(&[], &["report", "short.toml", "--out", "made"]);
     assert!(again.err.contains("3 cases (3 from disk"), "{}", again.err);
 }
+
+/// Every fault of the judge stands in the sources exactly once, and the test that catches it exists.
+#[test]
+fn the_faults_of_the_judge_are_in_the_sources_and_have_a_test() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |file: &str| fs::read_to_string(root.join(file)).expect(file);
+    let list: toml::Table = toml::from_str(&read("tests/mutations/judge-faults-output.toml")).expect("TOML");
+    let faults = list["fault"].as_array().expect("faults");
+    assert!(faults.len() >= 8);
+    let tests = read("tests/cli_check.rs");
+    for fault in faults {
+        let word = |key: &str| fault[key].as_str().expect(key);
+        let source = read(word("file"));
+        assert_eq!(source.matches(word("from")).count(), 1, "{} in {}", word("name"), word("file"));
+        assert_ne!(word("from"), word("to"), "{}", word("name"));
+        let test = format!("fn {}()", word("caught_by"));
+        assert!(source.contains(&test) || tests.contains(&test), "{}: no test {test}", word("name"));
+    }
+}

@@ -14,6 +14,7 @@ use crate::solver::snapshot::{Samples, Snapshot};
 use crate::study::{
     Axis, Case, Expectation, IntegratorKind, Measure, NEXT_FINER, NO_REFERENCE, Study, Tier, step_label,
 };
+use std::collections::HashMap;
 
 /// Errors up to this are round-off of a long run.
 const ROUND_OFF: f64 = 1e-12;
@@ -63,10 +64,17 @@ pub struct Judgement {
 /// Paths of the records along an axis: every group of at least two levels.
 pub fn paths(records: &[Record], axis: Axis) -> Vec<Path<'_>> {
     let mut groups: Vec<Path<'_>> = Vec::new();
+    // Groups by what all of their cases share, so that a sweep of thousands is not held case against case.
+    let mut places: HashMap<String, Vec<usize>> = HashMap::new();
     for record in records {
-        match groups.iter_mut().find(|group| alike(&group.records[0].case, &record.case, axis)) {
-            Some(group) => group.records.push(record),
-            None => groups.push(Path { axis, records: vec![record] }),
+        let near = places.entry(without_axes(&record.case)).or_default();
+        let place = near.iter().find(|place| alike(&groups[**place].records[0].case, &record.case, axis));
+        match place {
+            Some(place) => groups[*place].records.push(record),
+            None => {
+                near.push(groups.len());
+                groups.push(Path { axis, records: vec![record] });
+            }
         }
     }
     groups.retain(|group| group.records.len() > 1);
@@ -74,6 +82,14 @@ pub fn paths(records: &[Record], axis: Axis) -> Vec<Path<'_>> {
         group.records.sort_by(|a, b| level_size(b, axis).total_cmp(&level_size(a, axis)));
     }
     groups
+}
+
+/// What cases that differ along axes alone have in common.
+fn without_axes(case: &Case) -> String {
+    format!(
+        "{:?} {:?} {:?} {:?} {:?} {:?}",
+        case.task, case.scene, case.column, case.method, case.integrator, case.settings
+    ) + &format!("{:?} {:?}", case.formulation, Material { water_bulk_modulus: 0.0, ..case.material })
 }
 
 /// Whether two cases differ along the axis at most. What is only asked for at the output, time

@@ -80,7 +80,11 @@ fn command() -> clap::Command {
         let words = |help: &clap::builder::StyledStr| help.to_string().replace('`', "");
         let of_argument = |argument: clap::Arg| {
             let (help, long) = (argument.get_help().map(words), argument.get_long_help().map(words));
-            argument.help(help).long_help(long)
+            let argument = argument.help(help.unwrap_or_default());
+            match long {
+                Some(long) => argument.long_help(long),
+                None => argument,
+            }
         };
         command.mut_args(of_argument).mut_subcommands(plain)
     }

@@ -3,6 +3,7 @@
 use crate::assess::summary::Path;
 use crate::record::{Quantity, Sample};
 use crate::study::{Axis, Measure};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A quantity in words.
 pub fn quantity(quantity: Quantity) -> &'static str {
@@ -59,7 +60,12 @@ pub struct PathLabels {
 /// Splits the labels of paths into what differs and what is shared; the method is always named.
 pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
     let parts: Vec<Vec<String>> = paths.iter().map(Path::parts).collect();
-    let is_shared = |part: &String| parts.iter().all(|other| other.contains(part));
+    let mut paths_with: BTreeMap<&str, usize> = BTreeMap::new();
+    for own in &parts {
+        let once: BTreeSet<&str> = own.iter().map(String::as_str).collect();
+        once.into_iter().for_each(|part| *paths_with.entry(part).or_default() += 1);
+    }
+    let is_shared = |part: &String| paths_with.get(part.as_str()) == Some(&parts.len());
     let each = parts.iter().map(|own| {
         let differing = own.iter().enumerate().filter(|(place, part)| *place == 0 || !is_shared(part));
         differing.map(|(_, part)| part.as_str()).collect::<Vec<_>>().join(", ")
