@@ -73,11 +73,11 @@ fn one_series(
     height: f64,
 ) -> Option<ScoredSeries> {
     let first = rows.iter().flatten().next()?;
-    let level = |(row, cells): (&Option<&ErrorRow>, &usize)| Level {
+    let level = |(row, cells): (Option<&ErrorRow>, &usize)| Level {
         size: height / *cells as f64,
         error: row.map(|row| row.value.abs()),
     };
-    let series = ErrorSeries::new(rows.iter().zip(cells).map(level).collect());
+    let series = ErrorSeries::new(rows.iter().copied().zip(cells).map(level).collect());
     let context = Context { round_off: Some(ROUND_OFF), ..Context::default() };
     let differences =
         rows.iter().flatten().map(|row| (row.time_factor - time_factor).abs() / time_factor.abs());
