@@ -195,7 +195,7 @@ impl Whole<'_> {
             return None;
         }
         if is_scattered && lines.len() > 2 * PER_BIN {
-            return self.empty_band(&state.initial_height, height).map(|bare| stretch(bare, "over the base"));
+            return empty_band(&state.initial_height, height).map(|bare| stretch(bare, "over the base"));
         }
         coverage::bare(&lines, height).map(|bare| stretch(bare, "over the base"))
     }
@@ -210,25 +210,11 @@ impl Whole<'_> {
             return None;
         }
         let bare = if 2 * lines.len() > state.initial_distance.len() && lines.len() > 2 * PER_BIN {
-            self.empty_band(&state.initial_distance, length)
+            empty_band(&state.initial_distance, length)
         } else {
             coverage::bare(&lines, length)
         };
         bare.map(|bare| stretch(bare, "from the crest"))
-    }
-
-    /// A band in which no sample lies, where a dozen would on average.
-    fn empty_band(&self, places: &[f64], extent: f64) -> Option<Bare> {
-        let count = (places.len() / PER_BIN).clamp(2, 100);
-        let length = extent / count as f64;
-        let mut taken = vec![false; count];
-        for place in places {
-            let band = (0..count).find(|band| *place <= (*band + 1) as f64 * length).unwrap_or(count - 1);
-            taken[band] = true;
-        }
-        let empty = taken.iter().position(|taken| !taken)?;
-        let end = taken[empty..].iter().position(|taken| *taken).map_or(count, |more| empty + more);
-        Some(Bare { from: empty as f64 * length, to: end as f64 * length })
     }
 
     fn holes(&self, state: &SampledState) -> Option<String> {
@@ -268,6 +254,20 @@ impl Whole<'_> {
     fn is_plane(&self) -> bool {
         matches!(self.reference, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible)
     }
+}
+
+/// A band in which no sample lies, where a dozen would on average.
+fn empty_band(places: &[f64], extent: f64) -> Option<Bare> {
+    let count = (places.len() / PER_BIN).clamp(2, 100);
+    let length = extent / count as f64;
+    let mut taken = vec![false; count];
+    for place in places {
+        let band = (0..count).find(|band| *place <= (*band + 1) as f64 * length).unwrap_or(count - 1);
+        taken[band] = true;
+    }
+    let empty = taken.iter().position(|taken| !taken)?;
+    let end = taken[empty..].iter().position(|taken| *taken).map_or(count, |more| empty + more);
+    Some(Bare { from: empty as f64 * length, to: end as f64 * length })
 }
 
 /// The times that a result lacks.

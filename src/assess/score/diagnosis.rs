@@ -67,7 +67,8 @@ pub fn diagnosis(
         let compared = Compared { quantity, scale, states: &seen };
         let error = compared.error(&exact, |value| value);
         let vanishes = compared.size(&exact) < VANISHED * scale;
-        if vanishes || !(error > INACCURATE) {
+        let is_wrong = error > INACCURATE;
+        if vanishes || !is_wrong {
             continue;
         }
         let trials = Trials {
@@ -187,15 +188,12 @@ impl Trials<'_> {
 
     /// The exact field times −1, or in another unit.
     fn signs_and_units(&self) -> Vec<Mistake> {
-        let units: Vec<(&str, f64)> = match self.compared.quantity {
-            Quantity::Displacement => {
-                let given = self.mapping.units.displacement.unwrap_or(self.mapping.units.length);
-                LengthUnit::ALL.map(|unit| (unit.name(), unit.metres() / given.metres())).to_vec()
-            }
-            _ => {
-                let given = self.mapping.units.stress.unwrap_or(StressUnit::Pascal);
-                StressUnit::ALL.map(|unit| (unit.name(), unit.pascals() / given.pascals())).to_vec()
-            }
+        let units: Vec<(&str, f64)> = if self.compared.quantity == Quantity::Displacement {
+            let given = self.mapping.units.displacement.unwrap_or(self.mapping.units.length);
+            LengthUnit::ALL.map(|unit| (unit.name(), unit.metres() / given.metres())).to_vec()
+        } else {
+            let given = self.mapping.units.stress.unwrap_or(StressUnit::Pascal);
+            StressUnit::ALL.map(|unit| (unit.name(), unit.pascals() / given.pascals())).to_vec()
         };
         let given = units.iter().find(|(_, factor)| *factor == 1.0).map_or("", |(name, _)| name);
         let mut mistakes = Vec::new();

@@ -73,11 +73,11 @@ fn one_series(
     height: f64,
 ) -> Option<ScoredSeries> {
     let first = rows.iter().flatten().next()?;
-    let level = |(row, cells): (&Option<&ErrorRow>, &usize)| Level {
+    let level = |(row, cells): (Option<&ErrorRow>, &usize)| Level {
         size: height / *cells as f64,
         error: row.map(|row| row.value.abs()),
     };
-    let series = ErrorSeries::new(rows.iter().zip(cells).map(level).collect());
+    let series = ErrorSeries::new(rows.iter().copied().zip(cells).map(level).collect());
     // A settlement's error has a sign, which tells a limit from a growing error.
     let signed = match first.norm {
         Norm::Relative => rows.iter().flatten().map(|row| row.value).collect(),

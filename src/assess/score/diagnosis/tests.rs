@@ -41,12 +41,16 @@ fn told(states: &[SampledState]) -> Vec<String> {
 
 fn changed(off: f64, change: impl Fn(&mut SampledState)) -> Vec<SampledState> {
     let mut states = states(&TIMES, |time| time, off);
-    states.iter_mut().for_each(change);
+    for state in &mut states {
+        change(state);
+    }
     states
 }
 
 fn scale(list: &mut [f64], factor: f64) {
-    list.iter_mut().for_each(|value| *value *= factor);
+    for value in list {
+        *value *= factor;
+    }
 }
 
 #[test]
