@@ -148,7 +148,11 @@ impl Case<'_> {
     fn limit(&self) -> Option<Classification> {
         Some(match limit_of(&self.values)? {
             Limit::Confirmed(found) => self.approaching(&found),
-            Limit::Suggested(found) => self.may_approach(&found),
+            // A floor that is seen needs no limit that is guessed.
+            Limit::Suggested(found) => self
+                .plateau()
+                .filter(|still| still.class == Class::FloorLimited)
+                .unwrap_or_else(|| self.may_approach(&found)),
             Limit::Reached => self.limited(&self.standstill()),
         })
     }

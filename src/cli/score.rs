@@ -5,6 +5,7 @@ use super::output::{TableFormat, print_tables};
 use super::overrides::{self, StudyLines};
 use crate::assess::norms::Norm;
 use crate::assess::score::{Score, score, series_of};
+use crate::assess::wording::typed;
 use crate::exact::ReferenceKind;
 use crate::import::{CONVENTION, Mapping, states_of};
 use crate::record::{ERROR_COLUMNS, Quantity};
@@ -182,6 +183,15 @@ fn judge(below: Option<f64>, scores: &[Score], reference: Option<&str>) -> anyho
     let judged = scores.iter().flat_map(|score| &score.errors).filter(|row| {
         matches!(row.norm, Norm::L2 | Norm::Relative) && Some(row.reference.as_str()) == reference
     });
+    for one in scores.iter().flat_map(|score| &score.unresolved) {
+        if Some(one.reference.as_str()) == reference {
+            eprintln!(
+                "note: {} at T_v = {} is not judged: the exact value is zero or below round-off",
+                one.quantity.name(),
+                typed(one.time_factor)
+            );
+        }
+    }
     let mut any = false;
     let mut exit = Exit::Pass;
     for row in judged {
@@ -193,7 +203,7 @@ fn judge(below: Option<f64>, scores: &[Score], reference: Option<&str>) -> anyho
             eprintln!(
                 "fail: {} at T_v = {} has a {unit} error of {:.3e}, not below {bound:e}",
                 row.quantity.name(),
-                row.time_factor,
+                typed(row.time_factor),
                 row.value
             );
             exit = Exit::VerdictFailed;
