@@ -114,6 +114,9 @@ fn standing_still_is_a_floor() {
     let noisy = listed(&[4e-2, 1e-2, 2.6e-3, 2.1e-3, 2.5e-3, 2.2e-3]);
     assert_eq!(class(&noisy), both(Class::FloorLimited));
     assert_eq!(class(&series(|h| h.powf(0.2))), both(Class::FloorLimited));
+    // A dip that six levels fit, though the last four do not confirm its limit.
+    let dipping = listed(&[2.63e-2, 5.78e-3, 8.04e-4, 4.32e-4, 7.37e-4, 8.13e-4]);
+    assert_eq!(class(&dipping), both(Class::FloorLimited));
     // Creeping up over the last levels, by no more than before: still a floor.
     let creeping = listed(&[1.24e-2, 3.0e-3, 6.9e-4, 1.5e-4, 1.2e-4, 1.36e-4]);
     assert_eq!(class(&creeping), both(Class::FloorLimited));
