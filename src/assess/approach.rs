@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     fn values(errors: &[f64]) -> Vec<(f64, f64)> {
-        errors.iter().enumerate().map(|(level, error)| (0.1 * 0.5_f64.powi(level as i32), *error)).collect()
+        (0..).zip(errors).map(|(level, error)| (0.1 * 0.5_f64.powi(level), *error)).collect()
     }
 
     #[test]

@@ -148,9 +148,16 @@ impl Case<'_> {
     fn limit(&self) -> Option<Classification> {
         Some(match limit_of(&self.values)? {
             Limit::Confirmed(found) => self.approaching(&found),
-            Limit::Suggested(found) => self.may_approach(&found),
+            Limit::Suggested(found) => self.seen_floor().unwrap_or_else(|| self.may_approach(&found)),
             Limit::Reached => self.limited(&self.standstill()),
         })
+    }
+
+    /// A floor that the levels show by standing still, or by a dip that all of them fit: it needs no limit
+    /// that is only guessed.
+    fn seen_floor(&self) -> Option<Classification> {
+        let still = self.plateau().filter(|still| still.class == Class::FloorLimited);
+        still.or_else(|| fit_cancelling(self.points).ok().map(|fit| self.cancelled(&fit)))
     }
 
     /// Rises that no fall makes up for.

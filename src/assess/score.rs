@@ -55,6 +55,21 @@ pub struct Score {
     pub warnings: Vec<Finding>,
     /// What seems to be wrong with its numbers, a sentence each.
     pub diagnosis: Vec<String>,
+    /// What has no relative error, for the exact value is zero or below round-off.
+    pub unresolved: Vec<Unresolved>,
+}
+
+/// A quantity that cannot be held against a reference at a time.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Unresolved {
+    /// Time factor.
+    pub time_factor: f64,
+    /// What.
+    pub quantity: Quantity,
+    /// Where.
+    pub sample: Sample,
+    /// Which reference.
+    pub reference: String,
 }
 
 /// Errors by what they are of.
@@ -143,7 +158,12 @@ impl Score {
                 scale,
                 resolution: resolution(reference, time_factor),
             };
+            let known = self.errors.len();
             self.errors.extend(field.rows(computed, exact, volumes));
+            if self.errors.len() == known {
+                let reference = reference.name().to_owned();
+                self.unresolved.push(Unresolved { time_factor, quantity, sample, reference });
+            }
             let worst = contributions(computed, exact, volumes).first().copied();
             if let Some(worst) = worst.filter(|_| first) {
                 let place = worst.index % state.initial_height.len();
@@ -160,7 +180,15 @@ impl Score {
             }
         }
         if let Some(displacement) = displacement_of_surface(parameters, is_plane, state) {
-            self.errors.extend(settlement_error(reference, time_factor, -displacement, settled)?);
+            match settlement_error(reference, time_factor, -displacement, settled)? {
+                Some(row) => self.errors.push(row),
+                None => self.unresolved.push(Unresolved {
+                    time_factor,
+                    quantity: Quantity::Settlement,
+                    sample: Sample::Surface,
+                    reference: reference.name().to_owned(),
+                }),
+            }
         }
         Ok(())
     }
@@ -220,6 +248,17 @@ pub(super) mod tests {
         assert!(clean.errors.iter().all(|row| row.quantity != Quantity::EffectiveStress), "no such column");
         let off = scored(&[state(20, 0.1, |zeta| if (zeta - 0.25).abs() < 0.01 { 0.1 } else { 0.0 })]);
         assert!((off.worst[0].zeta - 0.25).abs() < 1e-12 && off.worst[0].share > 0.999_999);
+    }
+
+    #[test]
+    fn what_the_reference_does_not_resolve_is_listed_and_has_no_error() {
+        let late = scored(&[state(20, 50.0, |_| 1e-13)]);
+        assert!(late.errors.iter().all(|row| row.quantity != Quantity::Pressure), "{:?}", late.errors);
+        let pressure: Vec<_> = late.unresolved.iter().map(|one| (one.quantity, one.time_factor)).collect();
+        assert_eq!(pressure.len(), 1);
+        assert_eq!(pressure[0].0, Quantity::Pressure);
+        assert!((pressure[0].1 - 50.0).abs() < 1e-9);
+        assert_eq!(scored(&[state(20, 0.1, |_| 0.0)]).unresolved, []);
     }
 
     #[test]

@@ -15,9 +15,10 @@ const SAME_TIME: f64 = 1e-9;
 /// most of the error against the first.
 pub fn errors_table(score: &Score, title: &str) -> Table {
     let mut references: Vec<&str> = Vec::new();
-    for row in &score.errors {
-        if !references.contains(&row.reference.as_str()) {
-            references.push(&row.reference);
+    let unresolved = score.unresolved.iter().map(|one| one.reference.as_str());
+    for name in score.errors.iter().map(|row| row.reference.as_str()).chain(unresolved) {
+        if !references.contains(&name) {
+            references.push(name);
         }
     }
     let mut columns = vec![Column::number("T_v"), Column::text("quantity"), Column::text("sample")];
@@ -46,10 +47,17 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
         cells.extend(place_cells(worst, is_plane));
         cells
     });
+    let unresolved = score.unresolved.iter().filter(|one| one.reference == first).map(|one| {
+        let mut cells =
+            vec![Cell::Number(one.time_factor), one.quantity.name().into(), one.sample.name().into()];
+        cells.resize_with(columns.len(), || Cell::Missing(NOT_RESOLVED.to_owned()));
+        cells
+    });
+    let rows: Vec<Vec<Cell>> = rows.chain(unresolved).collect();
     Table {
         title: title.to_owned(),
         columns,
-        rows: rows.collect(),
+        rows,
         notes: vec![
             "relative L2 error over the samples; settlement as s/s_exact − 1; ζ is the initial depth over the height"
                 .to_owned(),

@@ -2,6 +2,7 @@
 
 use super::results::{Read, Results};
 use crate::assess::norms::Norm;
+use crate::assess::wording::typed;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::exact::ReferenceKind;
@@ -51,6 +52,15 @@ fn errors_below(bound: f64, results: &[Read], reference: Option<&str>) -> anyhow
     let judged = results.iter().flat_map(|one| &one.score.errors).filter(|row| {
         matches!(row.norm, Norm::L2 | Norm::Relative) && Some(row.reference.as_str()) == reference
     });
+    for one in results.iter().flat_map(|one| &one.score.unresolved) {
+        if Some(one.reference.as_str()) == reference {
+            say!(
+                "note: {} at T_v = {} is not judged: the exact value is zero or below round-off",
+                one.quantity.name(),
+                typed(one.time_factor)
+            );
+        }
+    }
     let mut any = false;
     let mut exit = Exit::Pass;
     for row in judged {
@@ -62,7 +72,7 @@ fn errors_below(bound: f64, results: &[Read], reference: Option<&str>) -> anyhow
             say!(
                 "fail: {} at T_v = {} has a {unit} error of {:.3e}, not below {bound:e}",
                 row.quantity.name(),
-                row.time_factor,
+                typed(row.time_factor),
                 row.value
             );
             exit = Exit::VerdictFailed;
