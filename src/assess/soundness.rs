@@ -11,7 +11,7 @@ const TAIL_SHARE: f64 = 0.1;
 pub fn complaints(record: &Record) -> Vec<String> {
     let mut found = record_checks::complaints(record);
     for reference in &record.references {
-        found.extend(reference.does_not_hold.as_ref().map(|why| format!("{}: {why}", reference.name)));
+        found.extend(reference.does_not_hold.clone());
     }
     if let Some(row) = record.errors.iter().find(|row| !row.value.is_finite()) {
         found.push(format!("the error of {} is {}", row.quantity.name(), row.value));
