@@ -41,6 +41,12 @@ pub fn exp_complex(z: Complex<f64>) -> Complex<f64> {
     polar(exp(z.re), z.im)
 }
 
+/// `exp z − 1`, which keeps its digits where `z` is small.
+pub fn exp_m1_complex(z: Complex<f64>) -> Complex<f64> {
+    let half = sin(0.5 * z.im);
+    Complex::new(exp_m1(z.re) * cos(z.im) - 2.0 * half * half, exp(z.re) * sin(z.im))
+}
+
 /// The square root with a positive real part; along the negative real axis the limit from the side
 /// that the sign of zero tells.
 pub fn sqrt_complex(z: Complex<f64>) -> Complex<f64> {

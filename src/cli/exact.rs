@@ -226,6 +226,8 @@ fn parameters_of(
     let scene = match kind {
         ReferenceKind::XieLeo | ReferenceKind::LargeStrain(_) => SceneKind::XieLeo,
         ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible => SceneKind::CosineLayer,
+        // The one whose load may grow.
+        ReferenceKind::DynamicColumn => SceneKind::DynamicColumn,
         _ => SceneKind::Terzaghi,
     };
     let mut lines = StudyLines::default();

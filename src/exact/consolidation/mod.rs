@@ -12,6 +12,7 @@
 //! `T`, the sums over mirror images for small `T`; at [`SWITCH`] both need four terms for all of
 //! `f64`'s digits.
 
+pub mod elapsed;
 mod images;
 mod inverse;
 mod series;

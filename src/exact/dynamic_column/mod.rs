@@ -1,5 +1,6 @@
 //! The column with inertia of both phases, exact.
 
+mod growing;
 mod modes;
 mod quartic;
 mod steady;
@@ -13,7 +14,7 @@ use super::parameters::ColumnParameters;
 use super::reference::{Accuracy, FieldValues};
 use super::single_mode::PhaseVelocities;
 use crate::elementary;
-use steady::{Steady, steady};
+use steady::Steady;
 use summation::Snapshot;
 
 /// How the column is set in motion.
@@ -109,11 +110,7 @@ impl DynamicColumn {
         let (zeta, time_factor) = (checked_depth(zeta)?, checked_time_factor(time_factor)?);
         let column = &self.parameters;
         let snapshot = self.modes_at(time_factor);
-        let mut state = if time_factor > 0.0 {
-            steady(column, self.start, column.time(time_factor), column.height * (1.0 - zeta))
-        } else {
-            Steady::default()
-        };
+        let mut state = self.departed_from(column.time(time_factor), zeta)?;
         for (mode, amplitude) in snapshot.amplitudes.iter().enumerate().rev() {
             let m = self.wave_number(mode);
             // sin(M_j y/H) and cos(M_j y/H) = ± sin(M_j ζ) vanish exactly at base and surface.
@@ -135,6 +132,17 @@ impl DynamicColumn {
             fields.water_displacement -= water * sine;
         }
         Ok(fields)
+    }
+
+    /// The state in closed form that the modes depart from, at a time in s and a relative depth.
+    fn departed_from(&self, time: f64, zeta: f64) -> Result<Steady, ExactError> {
+        match self.start {
+            _ if time == 0.0 => Ok(Steady::default()),
+            Start::Mode | Start::StandingWave => Ok(Steady::default()),
+            // The whole load is one that has grown over no time.
+            Start::Step => self.diffusion(0.0, time, zeta),
+            Start::Ramp { duration } => self.diffusion(duration, time, zeta),
+        }
     }
 
     /// Fields of both phases from those of the solid and the mixture.

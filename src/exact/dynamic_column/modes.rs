@@ -11,6 +11,8 @@ use super::quartic;
 
 /// Roots closer than this, relative to their size, are treated as one cluster.
 const CLUSTER: f64 = 0.05;
+/// Roots up to this many times the smallest count as the slowest: a conjugate pair is one.
+const SLOWEST: f64 = 1.01;
 /// Points of the trapezoidal rule on the contour around a cluster.
 const CONTOUR_POINTS: usize = 32;
 
@@ -27,6 +29,8 @@ pub struct Amplitude {
     pub mixture_rate: f64,
     /// Bound on the pressure and stress of this mode, Pa.
     pub envelope: f64,
+    /// The share of all roots but the slowest in it, Pa.
+    pub rest: f64,
 }
 
 /// State from which a mode is let go, without any load.
@@ -46,13 +50,51 @@ pub enum Drive {
         /// Modal force on the solid.
         force: f64,
     },
-    /// Departure from the steadily loaded state under a force that grows by `rate`, N/(m³ s).
-    Ramp {
-        /// Growth of the modal force on the solid.
-        rate: f64,
-    },
     /// Free motion.
     Release(InitialState),
+}
+
+/// What becomes of the response `exp(s t)` of a root when the load grows over a time.
+///
+/// The response to a load that grows is the mean of those to steps (Duhamel), and all means are
+/// written so that nothing cancels, however short the time or slow the root.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Growth {
+    /// The whole load at once: `exp(s t)`.
+    None,
+    /// While the load grows over `duration` in s, from the start: `(exp(s t) − 1)/(s T)`.
+    FromStart {
+        /// `T`, s.
+        duration: f64,
+    },
+    /// The same as a departure from steady growth, when the slowest root has died: `exp(s t)/(s T)`.
+    ToSteady {
+        /// `T`, s.
+        duration: f64,
+    },
+    /// After it has grown, with the time since: `exp(s t) (exp(s T) − 1)/(s T)`.
+    Over {
+        /// `T`, s.
+        duration: f64,
+    },
+}
+
+impl Growth {
+    /// The factor of a root's response and its rate.
+    fn factor(self, s: Complex<f64>, time: f64) -> [Complex<f64>; 2] {
+        let response = elementary::exp_complex(s * time);
+        match self {
+            Self::None => [response, s * response],
+            Self::FromStart { duration } => {
+                [elementary::exp_m1_complex(s * time) / (s * duration), response / duration]
+            }
+            Self::ToSteady { duration } => [response / (s * duration), response / duration],
+            Self::Over { duration } => {
+                let grown = response * elementary::exp_m1_complex(s * duration) / duration;
+                [grown / s, grown]
+            }
+        }
+    }
 }
 
 /// `diag(m_s, m_w) z̈ + d [[1, −1], [−1, 1]] ż + K z = f`, per volume of mixture, with
@@ -119,7 +161,6 @@ impl Mode {
         };
         match drive {
             Drive::Step { force } => loaded(force / s),
-            Drive::Ramp { rate } => loaded(rate / (s * s)),
             Drive::Release(start) => {
                 let [u, w] = start.displacement;
                 let solid = (s * u + start.velocity[0]) * self.solid_mass;
@@ -142,7 +183,7 @@ impl Mode {
     }
 
     /// Coefficients of the mode at time `t` in s.
-    pub fn amplitude(&self, drive: Drive, time: f64) -> Amplitude {
+    pub fn amplitude(&self, drive: Drive, growth: Growth, time: f64) -> Amplitude {
         let mut amplitude = Amplitude::default();
         let cluster = self.cluster();
         for k in 0..4 {
@@ -152,24 +193,44 @@ impl Mode {
             let s = self.roots[k];
             let others: Complex<f64> =
                 (0..4).filter(|&other| other != k).map(|other| s - self.roots[other]).product();
-            self.add(&mut amplitude, drive, time, s, others.inv());
+            self.add(&mut amplitude, drive, growth.factor(s, time), s, others.inv());
         }
         if let Some((a, b)) = cluster {
-            self.add_cluster(&mut amplitude, drive, time, a, b);
+            self.add_cluster(&mut amplitude, drive, growth, time, (a, b));
         }
         amplitude
     }
 
-    /// Adds `weight · N(s) exp(s t)` and what belongs to it.
-    fn add(&self, amplitude: &mut Amplitude, drive: Drive, time: f64, s: Complex<f64>, weight: Complex<f64>) {
-        let factor = weight * elementary::exp_complex(s * time);
-        let [solid, mixture] = self.numerators(s, drive).map(|numerator| numerator * factor);
+    /// Adds `weight · N(s) · factor` and its rate.
+    fn add(
+        &self,
+        amplitude: &mut Amplitude,
+        drive: Drive,
+        [factor, rate]: [Complex<f64>; 2],
+        s: Complex<f64>,
+        weight: Complex<f64>,
+    ) {
+        let residues = self.numerators(s, drive).map(|numerator| numerator * weight);
+        let [solid, mixture] = residues.map(|residue| residue * factor);
         amplitude.solid += solid.re;
         amplitude.mixture += mixture.re;
-        amplitude.solid_rate += (solid * s).re;
-        amplitude.mixture_rate += (mixture * s).re;
-        amplitude.envelope +=
-            self.wave_number * (self.coupling * modulus(mixture)).max(self.modulus * modulus(solid));
+        amplitude.solid_rate += (residues[0] * rate).re;
+        amplitude.mixture_rate += (residues[1] * rate).re;
+        let size = self.size(modulus(solid), modulus(mixture));
+        amplitude.envelope += size;
+        if modulus(s) > SLOWEST * self.slowest() {
+            amplitude.rest += size;
+        }
+    }
+
+    /// Magnitude of the slowest root, 1/s.
+    pub fn slowest(&self) -> f64 {
+        self.roots.iter().map(|root| modulus(*root)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Bound on the pressure and stress of coefficients, Pa.
+    pub fn size(&self, solid: f64, mixture: f64) -> f64 {
+        self.wave_number * (self.coupling * mixture.abs()).max(self.modulus * solid.abs())
     }
 
     /// The pair of roots that lie too close together for their residues to be told apart.
@@ -189,7 +250,14 @@ impl Mode {
     }
 
     /// Adds the joint residue of two close roots, by Cauchy's integral around both.
-    fn add_cluster(&self, amplitude: &mut Amplitude, drive: Drive, time: f64, a: usize, b: usize) {
+    fn add_cluster(
+        &self,
+        amplitude: &mut Amplitude,
+        drive: Drive,
+        growth: Growth,
+        time: f64,
+        (a, b): (usize, usize),
+    ) {
         let centre = (self.roots[a] + self.roots[b]) * 0.5;
         let nearest = (0..4)
             .filter(|&other| other != a && other != b)
@@ -203,7 +271,7 @@ impl Mode {
             let arm = elementary::polar(radius, angle);
             let s = centre + arm;
             let (value, _) = quartic::evaluate(&self.characteristic, s);
-            self.add(amplitude, drive, time, s, arm / value / CONTOUR_POINTS as f64);
+            self.add(amplitude, drive, growth.factor(s, time), s, arm / value / CONTOUR_POINTS as f64);
         }
     }
 }

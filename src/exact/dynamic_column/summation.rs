@@ -1,7 +1,7 @@
 //! How many modes are summed, and what the others may add.
 
 use super::super::consolidation::eigenvalue;
-use super::modes::{Amplitude, Drive, InitialState, Mode};
+use super::modes::{Amplitude, Drive, Growth, InitialState, Mode};
 use super::{DynamicColumn, Start};
 
 /// More modes are not summed: beyond, a wave front is still sharp and the sum's tail says so.
@@ -24,14 +24,13 @@ impl DynamicColumn {
         eigenvalue(mode) / self.parameters.height
     }
 
-    /// Drive of a mode under the unit ramp or the step: the load's force on `sin(M_j y/H)`.
-    fn drive(&self, mode: usize) -> Drive {
+    /// Drive of a mode: the whole load's force on `sin(M_j y/H)`, or the state it is let go from.
+    pub(super) fn drive(&self, mode: usize) -> Drive {
         // −q m² b, with y = Σ b_j sin(m_j y).
         let sign = if mode.is_multiple_of(2) { -2.0 } else { 2.0 };
         let force = sign * self.parameters.load / self.parameters.height;
         match self.start {
-            Start::Step => Drive::Step { force },
-            Start::Ramp { duration } => Drive::Ramp { rate: force / duration },
+            Start::Step | Start::Ramp { .. } => Drive::Step { force },
             Start::Mode | Start::StandingWave => Drive::Release(self.released()),
         }
     }
@@ -58,19 +57,10 @@ impl DynamicColumn {
     /// Coefficients of one mode at a time in s.
     fn amplitude(&self, mode: usize, time: f64) -> Amplitude {
         let oscillator = Mode::new(&self.parameters, self.wave_number(mode));
-        let drive = self.drive(mode);
-        let mut amplitude = oscillator.amplitude(drive, time);
-        if let Start::Ramp { duration } = self.start
-            && time > duration
-        {
-            let earlier = oscillator.amplitude(drive, time - duration);
-            amplitude.solid -= earlier.solid;
-            amplitude.mixture -= earlier.mixture;
-            amplitude.solid_rate -= earlier.solid_rate;
-            amplitude.mixture_rate -= earlier.mixture_rate;
-            amplitude.envelope += earlier.envelope;
+        match self.start {
+            Start::Ramp { duration } => self.growing_amplitude(&oscillator, mode, duration, time),
+            _ => oscillator.amplitude(self.drive(mode), Growth::None, time),
         }
-        amplitude
     }
 
     /// Sums as many modes as matter at a time factor.

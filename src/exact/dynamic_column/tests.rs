@@ -244,3 +244,50 @@ fn critically_damped_modes_are_no_exception() {
         last = Some(pressure);
     }
 }
+
+/// Worst errors over all rows of `dynamic_ramp.csv`: displacements over the final settlement, pressure
+/// over the load, and what the bound allows.
+#[test]
+fn a_growing_load_matches_high_precision_values() {
+    let mut rows = 0;
+    for line in include_str!("../data/dynamic_ramp.csv").lines().skip(1) {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let [conductivity, duration, time, height, solid, water, pressure] = cells[..] else {
+            panic!("{line}")
+        };
+        let column = ColumnParameters { hydraulic_conductivity: conductivity, ..ColumnParameters::default() };
+        let ramp = DynamicColumn::new(&column, Start::Ramp { duration }, &[]).unwrap();
+        let time_factor = column.time_factor(time);
+        let fields = ramp.dynamic_fields(time_factor, 1.0 - height).unwrap();
+        let end = column.final_settlement();
+        let errors = [
+            (fields.solid.displacement - solid) / end,
+            // The water leaves through the surface: it moves further by what the pores hold of it.
+            (fields.water_displacement - water) / end,
+            (fields.solid.pressure - pressure) / column.load,
+        ];
+        let bound = ramp.accuracy(time_factor).unwrap().tail_bound;
+        assert!(bound < 1e-12, "{line}: {bound:e}");
+        assert!(errors.iter().all(|error| error.abs() < 1e-12), "{line}: {errors:?}");
+        rows += 1;
+    }
+    assert_eq!(rows, 135);
+}
+
+#[test]
+fn a_kink_that_is_sharp_is_bounded() {
+    // Before the fastest wave arrives nothing has: what is left at the base is the error.
+    for hydraulic_conductivity in [1e-4, 1e-2] {
+        let column = ColumnParameters { hydraulic_conductivity, ..ColumnParameters::default() };
+        for duration in [1e-6, 1e-5, 1e-4, 1e-3] {
+            let ramp = DynamicColumn::new(&column, Start::Ramp { duration }, &[]).unwrap();
+            for share in [0.3, 0.8] {
+                let time_factor = column.time_factor(share * column.height / 2034.0);
+                let error = ramp.fields(time_factor, 1.0).unwrap().pressure.abs();
+                let bound = ramp.accuracy(time_factor).unwrap().tail_bound;
+                eprintln!("{hydraulic_conductivity} {duration} {share}: {error:e} {bound:e}");
+                assert!(error <= bound, "{duration} {share}: {error:e} over {bound:e}");
+            }
+        }
+    }
+}

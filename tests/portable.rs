@@ -1,0 +1,129 @@
+//! The same values on every machine: none may hang on the platform's elementary functions.
+
+mod program;
+
+use program::{Told, call_with};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+/// What is solved: every way to values that led through a logarithm, an exponential or a power.
+const CALLS: [&[&str]; 5] = [
+    &["exact", "dynamic-column", "--set", "column.loading_time=0.002", "--format", "json"],
+    &["exact", "cosine-layer", "--along", "0,0.5", "--format", "json"],
+    &["exact", "xie-leo", "--set", "column.load=2e5", "--format", "json"],
+    &["exact", "large-strain", "--set", "column.load=2e5", "--time-factor", "0.1", "--format", "json"],
+    &["schema", "study"],
+];
+
+const STUDY: &str = r#"
+title = "Short"
+scene = "xie-leo"
+
+[column]
+load = 1.0e5
+
+[output]
+time_factors = [0.05]
+
+[integrator]
+scheme = "implicit"
+
+[[sweep]]
+method = ["GIMP"]
+cells = [4, 8, 16]
+"#;
+
+/// A C library that is off in the last place, compiled; nothing where the platform has no compiler or
+/// loads no library before its own.
+fn perturbed_library(folder: &Path) -> Option<PathBuf> {
+    if !cfg!(target_os = "linux") {
+        return None;
+    }
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/program/perturbed_libm.c");
+    let library = folder.join("perturbed_libm.so");
+    let compiled = Command::new("cc")
+        .args(["-O1", "-fno-builtin", "-shared", "-fPIC", "-o"])
+        .args([&library, &source])
+        .args(["-ldl", "-lm"])
+        .status();
+    compiled.is_ok_and(|status| status.success()).then_some(library)
+}
+
+/// A call with the platform's own library and one with the perturbed.
+fn both(folder: &Path, library: &Path, arguments: &[&str]) -> [Told; 2] {
+    let preload = library.to_str().expect("a path in words");
+    [call_with(folder, &[], arguments), call_with(folder, &[("LD_PRELOAD", preload)], arguments)]
+}
+
+#[test]
+fn a_c_library_off_by_one_unit_in_the_last_place_changes_no_value() {
+    let folder = TempDir::new().expect("a folder");
+    let Some(library) = perturbed_library(folder.path()) else {
+        eprintln!("skipped: no C compiler whose library could be loaded before the platform's");
+        return;
+    };
+    for arguments in CALLS {
+        let [plain, perturbed] = both(folder.path(), &library, arguments);
+        assert_eq!(plain.code, 0, "{arguments:?}: {}", plain.err);
+        assert_eq!(plain.out, perturbed.out, "{arguments:?}");
+    }
+    std::fs::write(folder.path().join("short.toml"), STUDY).expect("a file");
+    let preload = library.to_str().expect("a path in words");
+    let mut tables = Vec::new();
+    for (out, variables) in [("plain", vec![]), ("perturbed", vec![("LD_PRELOAD", preload)])] {
+        let told = call_with(folder.path(), &variables, &["run", "short.toml", "--out", out]);
+        assert_eq!(told.code, 0, "{}", told.err);
+        let table = std::fs::read_to_string(folder.path().join(out).join("short.csv")).expect("a table");
+        tables.push(without_wall_time(&table));
+    }
+    assert!(tables[0].lines().count() > 10, "{}", tables[0]);
+    assert_eq!(tables[0], tables[1]);
+}
+
+/// A table without the columns that are of the clock.
+fn without_wall_time(table: &str) -> String {
+    let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let head = lines.next().unwrap_or_default();
+    let kept: Vec<usize> =
+        (0..head.len()).filter(|i| !head[*i].contains("wall") && !head[*i].contains("seconds")).collect();
+    let row = |cells: &Vec<&str>| {
+        kept.iter().map(|i| cells.get(*i).copied().unwrap_or("")).collect::<Vec<_>>().join(",")
+    };
+    std::iter::once(row(&head)).chain(lines.map(|cells| row(&cells))).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn matrices_are_multiplied_by_no_instruction_that_only_some_processors_have() {
+    // Chooses fused products where the processor has them, and with them other last bits.
+    assert!(!include_str!("../Cargo.lock").contains("name = \"matrixmultiply\""));
+}
+
+#[test]
+fn the_exact_column_takes_a_load_that_grows() {
+    let folder = TempDir::new().expect("a folder");
+    let arguments = [
+        "exact",
+        "dynamic-column",
+        "--set",
+        "column.loading_time=0.002",
+        "--time-factor",
+        "0.001",
+        "--zeta",
+        "1",
+    ];
+    let told = call_with(folder.path(), &[], &arguments);
+    assert_eq!(told.code, 0, "{}", told.err);
+    let pressure: f64 = told
+        .out
+        .lines()
+        .nth(1)
+        .expect("a row")
+        .split(',')
+        .nth(2)
+        .expect("a pressure")
+        .parse()
+        .expect("a number");
+    // A load that grows over hardly more than the way of the wave presses less than twice its own.
+    assert!((0.5..2.0).contains(&pressure), "{pressure}");
+}
