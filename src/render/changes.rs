@@ -20,7 +20,7 @@ pub(super) fn summary(group: &DifferenceGroup) -> String {
         Change::Moved => "moved".to_owned(),
         Change::Missing => format!("{is} no longer measured"),
         Change::Extra => format!("{is} not in the golden file"),
-        Change::Smaller => format!("{is} smaller in cases that got worse elsewhere"),
+        Change::Smaller => format!("{is} smaller where the case got worse elsewhere"),
         Change::Stale => format!("{is} better: a stale golden"),
     };
     let mut sentence = format!(
