@@ -316,12 +316,13 @@ fn schemas_and_completions_are_printed() {
 #[test]
 fn the_faults_that_check_is_held_against_are_in_the_sources() {
     let folder = root().join("tests/mutations");
-    let lists = fs::read_dir(&folder).expect("the lists").filter_map(Result::ok).map(|entry| entry.path());
+    let lists = fs::read_dir(&folder).expect("the lists").filter_map(Result::ok);
+    let paths = lists.map(path_of);
     let is_list = |path: &PathBuf| {
-        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default().to_owned();
+        let name = path.file_name().and_then(std::ffi::OsStr::to_str).unwrap_or_default().to_owned();
         name.contains("faults") && path.extension().is_some_and(|extension| extension == "toml")
     };
-    let texts = lists.filter(is_list).map(|path| fs::read_to_string(path).expect("a list"));
+    let texts = paths.filter(is_list).map(|path| fs::read_to_string(path).expect("a list"));
     let faults: Vec<toml::Value> = texts
         .flat_map(|text| {
             let list: toml::Table = toml::from_str(&text).expect("TOML");
@@ -359,7 +360,12 @@ fn names_of(fault: &toml::Value) -> Vec<String> {
         None => Vec::new(),
     };
     let last = |name: &str| name.rsplit([':', ' ']).next().unwrap_or_default().replace('`', "");
-    named.iter().filter_map(|name| name.as_str()).map(last).collect()
+    named.iter().filter_map(toml::Value::as_str).map(last).collect()
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "the signature that iterators ask for")]
+fn path_of(entry: fs::DirEntry) -> PathBuf {
+    entry.path()
 }
 
 /// The text of all Rust files of the program and its tests.
@@ -367,7 +373,7 @@ fn rust_sources() -> String {
     let mut folders = vec![root().join("src"), root().join("tests")];
     let mut text = String::new();
     while let Some(folder) = folders.pop() {
-        for path in fs::read_dir(folder).expect("a folder").filter_map(Result::ok).map(|entry| entry.path()) {
+        for path in fs::read_dir(folder).expect("a folder").filter_map(Result::ok).map(path_of) {
             if path.is_dir() {
                 folders.push(path);
             } else if path.extension().is_some_and(|extension| extension == "rs") {
