@@ -5,6 +5,7 @@ mod program;
 
 use oedometer::record::{Record, RecordStore};
 use program::{assert_snapshot, assert_words, call, folder_with};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -334,14 +335,27 @@ fn help_reads_as_a_terminal_shows_it() {
     assert!(call(folder.path(), &["check", "--help"]).out.contains("$GITHUB_STEP_SUMMARY"));
 }
 
-/// Every fault of the campaign still stands where the list says, exactly once.
+/// Every fault of the campaign still stands where the list says, exactly once, and the test that is to
+/// catch it is there.
 #[test]
 fn the_faults_that_check_is_held_against_are_in_the_sources() {
-    let text = fs::read_to_string(root().join("tests/mutations/faults.toml")).expect("the list");
-    let list: toml::Table = toml::from_str(&text).expect("TOML");
-    let faults = list["fault"].as_array().expect("faults");
-    assert!(faults.len() >= 40);
-    for fault in faults {
+    let folder = root().join("tests/mutations");
+    let lists = fs::read_dir(&folder).expect("the lists").filter_map(Result::ok);
+    let paths = lists.map(path_of);
+    let is_list = |path: &PathBuf| {
+        let name = path.file_name().and_then(std::ffi::OsStr::to_str).unwrap_or_default().to_owned();
+        name.contains("faults") && path.extension().is_some_and(|extension| extension == "toml")
+    };
+    let texts = paths.filter(is_list).map(|path| fs::read_to_string(path).expect("a list"));
+    let faults: Vec<toml::Value> = texts
+        .flat_map(|text| {
+            let list: toml::Table = toml::from_str(&text).expect("TOML");
+            list["fault"].as_array().expect("faults").clone()
+        })
+        .collect();
+    assert!(faults.len() >= 170);
+    let rust = rust_sources();
+    for fault in &faults {
         let file = fault["file"].as_str().expect("a file");
         let from = fault["from"].as_str().expect("a text");
         let source = fs::read_to_string(root().join(file)).expect(file);
@@ -354,5 +368,42 @@ fn the_faults_that_check_is_held_against_are_in_the_sources() {
             "{name}: `{from}` stands {found} times in {file}"
         );
         assert_ne!(from, fault["to"].as_str().expect("a text"), "{name}");
+        for test in names_of(fault) {
+            assert!(rust.contains(&format!("fn {test}(")), "{name}: no test is called `{test}`");
+        }
     }
+    let names: BTreeSet<&str> = faults.iter().filter_map(|fault| fault["name"].as_str()).collect();
+    assert_eq!(names.len(), faults.len(), "two faults have one name");
+}
+
+/// The tests that are to catch a fault, without the modules they stand in.
+fn names_of(fault: &toml::Value) -> Vec<String> {
+    let named = match fault.get("caught_by") {
+        Some(toml::Value::Array(names)) => names.clone(),
+        Some(name) => vec![name.clone()],
+        None => Vec::new(),
+    };
+    let last = |name: &str| name.rsplit([':', ' ']).next().unwrap_or_default().replace('`', "");
+    named.iter().filter_map(toml::Value::as_str).map(last).collect()
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "the signature that iterators ask for")]
+fn path_of(entry: fs::DirEntry) -> PathBuf {
+    entry.path()
+}
+
+/// The text of all Rust files of the program and its tests.
+fn rust_sources() -> String {
+    let mut folders = vec![root().join("src"), root().join("tests")];
+    let mut text = String::new();
+    while let Some(folder) = folders.pop() {
+        for path in fs::read_dir(folder).expect("a folder").filter_map(Result::ok).map(path_of) {
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                text += &fs::read_to_string(path).expect("a source");
+            }
+        }
+    }
+    text
 }
