@@ -446,7 +446,8 @@ pub fn skeleton_inertia(case: &Case) -> f64 {
     let n = soil.porosity;
     let inertia = (1.0 - n) * soil.grain_density + (1.0 - n) * (1.0 - n) / n * soil.water_density;
     let wave_number = std::f64::consts::FRAC_PI_2 / case.column.height;
-    (wave_number * soil.coefficient_of_consolidation()).powi(2) * inertia / soil.oedometric_modulus()
+    elementary::powi(wave_number * soil.coefficient_of_consolidation(), 2) * inertia
+        / soil.oedometric_modulus()
 }
 
 fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, ExactError> {

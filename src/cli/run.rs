@@ -164,7 +164,8 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     if report.of_another_program > 0 {
         say!(
             "{}: {} records of another version or of other sources were not taken up; their cases were run again",
-            study.name, report.of_another_program
+            study.name,
+            report.of_another_program
         );
     }
     if let Some(differences) = report.origins.differences_from(&Provenance::of_this_program()) {

@@ -75,9 +75,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
     tell_of_long(&study);
-    let solve = || {
-        run_case_within(study.case_seconds, &planned.case, &study.references, kernel, true, &|_, _| true)
-    };
+    let solve =
+        || run_case_within(study.case_seconds, &planned.case, &study.references, kernel, true, &|_, _| true);
     let (record, phases) = if arguments.profile { profiled(solve) } else { (solve(), Vec::new()) };
     let record = record?;
     match arguments.format {

@@ -1,6 +1,7 @@
 //! The exact solutions as golden values, with the bounds that they give on their own errors: a fault
 //! in one shows at its own numbers, and not only in the errors of those scenes that happen to use it.
 
+use crate::elementary;
 use crate::exact::cosine_layer::{Base, CosineLayer};
 use crate::exact::dynamic_column::{DynamicColumn, Start};
 use crate::exact::large_strain::Water;
@@ -127,7 +128,7 @@ fn note_solution(
         let accuracy = reference.accuracy(time_factor)?;
         note("terms", time_factor, accuracy.terms as f64);
         // By its power of ten: a bound of 1e-20 is nothing beside any tolerance.
-        note("power of the tail bound", time_factor, accuracy.tail_bound.max(LEAST_BOUND).log10());
+        note("power of the tail bound", time_factor, elementary::log10(accuracy.tail_bound.max(LEAST_BOUND)));
         for zeta in DEPTHS {
             let fields = reference.fields(time_factor, zeta)?;
             let load = parameters.load;
@@ -155,7 +156,7 @@ fn note_drainages(
             note("degree", time_factor, solution.degree_of_consolidation(time_factor)?);
             note("degree by pressure", time_factor, solution.degree_by_pressure(time_factor)?);
             let bound = solution.accuracy(time_factor)?.tail_bound;
-            note("power of the tail bound", time_factor, bound.max(LEAST_BOUND).log10());
+            note("power of the tail bound", time_factor, elementary::log10(bound.max(LEAST_BOUND)));
             for zeta in DEPTHS {
                 let fields = solution.fields(time_factor, zeta)?;
                 note(&format!("p/q ζ={zeta}"), time_factor, fields.pressure / parameters.load);

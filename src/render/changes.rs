@@ -31,13 +31,16 @@ pub(super) fn summary(group: &DifferenceGroup) -> String {
     let shared =
         |words: &[String]| words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
     if group.values > 1 && !group.shared_by_cases.is_empty() {
-        sentence += &format!(", all with {}", shared(&group.shared_by_cases));
+        sentence += ", all with ";
+        sentence += &shared(&group.shared_by_cases);
     }
     if group.values > 1 && !group.shared_by_measures.is_empty() {
-        sentence += &format!(", all of {}", shared(&group.shared_by_measures));
+        sentence += ", all of ";
+        sentence += &shared(&group.shared_by_measures);
     }
     if let Some(change) = group.worst.relative_change() {
-        sentence += &format!("; largest relative change {}", number::error(change));
+        sentence += "; largest relative change ";
+        sentence += &number::error(change);
     }
     sentence
 }

@@ -77,10 +77,8 @@ fn section(title: &str, items: Vec<String>) -> String {
     }
     let rest = items.len().saturating_sub(MOST);
     let mut text = format!("\n{title}\n");
-    text.extend(items.into_iter().take(MOST));
-    if rest > 0 {
-        text += &format!("  and {rest} more\n");
-    }
+    let more = (rest > 0).then(|| format!("  and {rest} more\n"));
+    text.extend(items.into_iter().take(MOST).chain(more));
     text
 }
 

@@ -1,6 +1,7 @@
 //! Whether somebody else's result is whole: what is missing makes an error small.
 
 use super::coverage::{self, Bare};
+use crate::elementary::ln;
 use crate::exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use crate::import::SampledState;
 
@@ -127,9 +128,9 @@ impl Whole<'_> {
     fn volume(&self, states: &[SampledState]) -> Result<Option<Finding>, ExactError> {
         let sums: Vec<f64> = states.iter().map(|state| state.volume.iter().sum()).collect();
         let Some(largest) = sums.iter().copied().reduce(f64::max) else { return Ok(None) };
-        let off = |volume: &f64| (largest / volume).ln().abs();
+        let off = |volume: &f64| ln(largest / volume).abs();
         let nearest = self.volumes.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
-        let scene = nearest.filter(|volume| self.is_declared || off(volume) <= OTHER_UNIT.ln());
+        let scene = nearest.filter(|volume| self.is_declared || off(volume) <= ln(OTHER_UNIT));
         let whole = scene.unwrap_or(largest);
         let times = super::time_factors(self.parameters, states);
         let reference = Reference::new(self.reference, self.parameters, &times)?;
@@ -159,7 +160,7 @@ impl Whole<'_> {
     /// A note where the volumes are in a unit of their own, so that their sum tells nothing.
     pub fn unit_of_volume(&self, states: &[SampledState]) -> Option<String> {
         let sum: f64 = states.first()?.volume.iter().sum();
-        let is_other = |volume: &f64| (sum / volume).ln().abs() > OTHER_UNIT.ln();
+        let is_other = |volume: &f64| ln(sum / volume).abs() > ln(OTHER_UNIT);
         let is_weight = self.has_volumes && !self.is_declared && self.volumes.iter().all(is_other);
         is_weight.then(|| {
             format!(

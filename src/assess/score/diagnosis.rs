@@ -6,6 +6,7 @@
 
 use super::completeness::short;
 use super::fields::ExactFields;
+use crate::elementary::powi;
 use crate::exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use crate::import::{LengthUnit, Mapping, SampledState, StressUnit, TimeUnit};
 use crate::record::Quantity;
@@ -144,8 +145,8 @@ impl Compared<'_> {
     fn error_over(&self, exact: &[ExactFields], height: f64, mended: impl Fn(f64, f64) -> f64) -> f64 {
         let (mut difference, mut size) = (0.0, 0.0);
         for [computed, exact, depth, volume] in self.samples(exact, height) {
-            difference += volume * ((mended(computed, depth) - exact) / self.scale).powi(2);
-            size += volume * (exact / self.scale).powi(2);
+            difference += volume * powi((mended(computed, depth) - exact) / self.scale, 2);
+            size += volume * powi(exact / self.scale, 2);
         }
         (difference / size).sqrt()
     }
@@ -154,7 +155,7 @@ impl Compared<'_> {
     fn size(&self, exact: &[ExactFields]) -> f64 {
         let (mut sum, mut volumes) = (0.0, 0.0);
         for [_, exact, _, volume] in self.samples(exact, 0.0) {
-            sum += volume * (exact / self.scale).powi(2);
+            sum += volume * powi(exact / self.scale, 2);
             volumes += volume;
         }
         (sum / volumes).sqrt() * self.scale
@@ -305,8 +306,8 @@ impl Trials<'_> {
         }
         let (mut difference, mut size) = (0.0, 0.0);
         for [computed, exact, _, volume] in samples.iter().filter(|sample| !is_zero(sample)) {
-            difference += volume * ((computed - exact) / self.compared.scale).powi(2);
-            size += volume * (exact / self.compared.scale).powi(2);
+            difference += volume * powi((computed - exact) / self.compared.scale, 2);
+            size += volume * powi(exact / self.compared.scale, 2);
         }
         Some(Mistake {
             sentence: format!(

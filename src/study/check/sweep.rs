@@ -150,13 +150,7 @@ impl Checker<'_> {
                 c.word(word, "axis", &AXES).map(|index| AXES[index].to_owned())
             }),
         };
-        if let (Some((key, own, first)), Some(path)) = (sweep.uneven_path(), &table.path) {
-            self.complain(
-                path.span(),
-                format!("the path ties `{key}` with {own} values to an axis with {first}"),
-                "give the axes of a path lists of one length",
-            );
-        }
+        self.path_is_even(table, &sweep);
         if self.diagnostics.len() == before {
             self.can_be_multiplied_out(&span, &sweep);
         }
@@ -165,6 +159,17 @@ impl Checker<'_> {
             self.formulations_fit(table, &span, &sweep, scene);
         }
         (self.diagnostics.len() == before).then_some(sweep)
+    }
+
+    /// Complains where a path ties lists of different lengths.
+    fn path_is_even(&mut self, table: &SweepTable, sweep: &Sweep) {
+        if let (Some((key, own, first)), Some(path)) = (sweep.uneven_path(), &table.path) {
+            self.complain(
+                path.span(),
+                format!("the path ties `{key}` with {own} values to an axis with {first}"),
+                "give the axes of a path lists of one length",
+            );
+        }
     }
 
     /// Complains where the sweeps so far have more cases than a study may: before they are made.
