@@ -26,7 +26,16 @@ fn main() {
     tell("DIRTY", if changed.is_empty() { "false" } else { "true" });
     tell("COMPILER", &output(&rustc, &["--version"]));
     tell("TARGET", &std::env::var("TARGET").unwrap_or_default());
-    tell("PROFILE", &std::env::var("PROFILE").unwrap_or_default());
+    tell("PROFILE", &profile());
+}
+
+/// Name of the build profile. `PROFILE` knows only `debug` and `release`, whichever profile inherits from them;
+/// the folder of the build, `…/quick/build/oedometer-…/out`, has the name itself.
+fn profile() -> String {
+    let folder = PathBuf::from(std::env::var_os("OUT_DIR").unwrap_or_default());
+    let parts: Vec<String> = folder.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+    let build = parts.iter().rposition(|part| part == "build").filter(|place| *place > 0);
+    build.map_or_else(|| std::env::var("PROFILE").unwrap_or_default(), |place| parts[place - 1].clone())
 }
 
 fn tell(name: &str, value: &str) {

@@ -8,7 +8,7 @@ use crate::golden::{
     reference_values, seconds_of, values_of,
 };
 use crate::record::{Record, Status};
-use crate::study::{Study, Tier};
+use crate::study::{RunError, Study, Tier};
 use std::collections::BTreeMap;
 
 /// Wall time over the golden one from which on it is worth a word.
@@ -88,6 +88,15 @@ impl StudyCheck {
             warnings: slow.into_iter().collect(),
             ..Self::of_values(&study.name, &values_of(records), golden)
         }
+    }
+
+    /// Adds the cases that have no record, a refusing reference or a crash being the reason: they failed.
+    #[must_use]
+    pub fn with_errors(mut self, errors: &[RunError]) -> Self {
+        let notes = errors.iter().filter_map(RunError::of_case);
+        self.failed_cases
+            .extend(notes.map(|(case, sentence)| CaseNote { case: case.to_owned(), sentence }));
+        self
     }
 
     /// Compares the exact solutions with their golden values.

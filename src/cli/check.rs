@@ -10,7 +10,7 @@ use crate::golden::{CaseChange, Difference, GoldenFile, REFERENCES};
 use crate::record::{Record, write_whole};
 use crate::render::annotations::annotations_of;
 use crate::render::{junit, verdicts};
-use crate::study::{RunOptions, Selected, Study, Tier, run_studies};
+use crate::study::{RunOptions, RunReport, Selected, Study, Tier, run_studies};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -76,10 +76,10 @@ fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<Vec<Stu
     if arguments.references || arguments.studies.is_empty() {
         checks.push(StudyCheck::of_references(read(REFERENCES))?);
     }
-    let records = run_quietly(studies, jobs_of(arguments.jobs))?;
-    for (study, records) in studies.iter().zip(&records) {
-        if !records.is_empty() {
-            checks.push(StudyCheck::new(study, records, Tier::Ci, read(&study.name)));
+    for (study, report) in studies.iter().zip(&run_all(studies, jobs_of(arguments.jobs))) {
+        if !(report.records.is_empty() && report.errors.is_empty()) {
+            let check = StudyCheck::new(study, &report.records, Tier::Ci, read(&study.name));
+            checks.push(check.with_errors(&report.errors));
         }
     }
     Ok(checks)
@@ -88,8 +88,17 @@ fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<Vec<Stu
 /// Runs the CI tier of studies and keeps nothing; the records of each study.
 ///
 /// # Errors
-/// When a case cannot be set up.
+/// When a case has no record.
 pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Record>>> {
+    let of_study = |(study, report): (&Study, RunReport)| match report.errors.into_iter().next() {
+        Some(error) => Err(anyhow::Error::from(error).context(study.name.clone())),
+        None => Ok(report.records),
+    };
+    studies.iter().zip(run_all(studies, jobs)).map(of_study).collect()
+}
+
+/// The same with what went wrong in each study.
+fn run_all(studies: &[Study], jobs: usize) -> Vec<RunReport> {
     let name = match studies {
         [study] => study.name.as_str(),
         _ => "check",
@@ -100,12 +109,6 @@ pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Rec
     let reports = run_studies(&selected, &options, &|progress| bar.tell(progress));
     bar.finish();
     reports
-        .into_iter()
-        .map(|mut report| match report.errors.pop() {
-            Some(error) => Err(error.into()),
-            None => Ok(report.records),
-        })
-        .collect()
 }
 
 fn exit_of(end: CheckEnd) -> Exit {

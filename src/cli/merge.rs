@@ -2,7 +2,7 @@
 
 use super::exit::{Ended, Exit};
 use super::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped, write_table};
-use crate::record::{Record, RecordStore};
+use crate::record::{Origins, Record, RecordStore};
 use crate::study::{Case, Study};
 use std::path::PathBuf;
 
@@ -38,6 +38,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if studies.is_empty() {
         return Err(Ended::with(Exit::NothingSelected, "the folders have results of no shipped study"));
     }
+    // Every record is looked at before any is written.
+    let origins = studies.iter().map(|study| origins_of(study, &folders, arguments));
+    let origins = origins.collect::<anyhow::Result<Vec<Origins>>>()?;
+    for (study, origins) in studies.iter().zip(&origins) {
+        if let Some(differences) = origins.main().and_then(|main| origins.differences_from(main)) {
+            eprintln!(
+                "{}: records of several builds of one program, whose values are the same: {differences}",
+                study.name
+            );
+        }
+    }
     let mut exit = Exit::Pass;
     for study in &studies {
         if merge_study(study, &folders, arguments)? > 0 {
@@ -45,6 +56,29 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
     }
     Ok(exit)
+}
+
+/// What made the records of a study in target and folders: one program, of however many builds.
+fn origins_of(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> anyhow::Result<Origins> {
+    let mut origins = Origins::default();
+    for folder in std::iter::once(&arguments.out).chain(folders) {
+        let store = RecordStore::new(folder, &study.name);
+        for case in study.cases(arguments.tier.into()) {
+            if let Some(origin) = store.origin(case) {
+                origins.add(&origin);
+            }
+        }
+    }
+    match origins.several_programs() {
+        None => Ok(origins),
+        Some(programs) => Err(Ended::with(
+            Exit::IncompleteMerge,
+            format!(
+                "{}: the records were not made by one program: {programs}; run the shards of all but one again with it",
+                study.name
+            ),
+        )),
+    }
 }
 
 /// Brings the records of a study together; the number of holes that are left.
@@ -90,12 +124,18 @@ fn record_of(
         match &mut found {
             None => found = Some((other, place)),
             Some((record, from)) => {
-                let timeless = |record: &Record| Record { wall: Vec::new(), ..record.clone() };
-                if timeless(record) != timeless(&other) {
+                // Builds of one program differ in the time they take and in nothing else.
+                let values = |other: &Record| Record {
+                    wall: Vec::new(),
+                    provenance: record.provenance.clone(),
+                    ..other.clone()
+                };
+                if values(record) != values(&other) {
                     return Err(Ended::with(
                         Exit::IncompleteMerge,
                         format!(
-                            "{}: {} and {} have different results of {} {}: they were not made by one program",
+                            "{}: {} and {} have different results of {} {}, though one program is said to have made \
+                             both",
                             study.name,
                             from.display(),
                             place.display(),
@@ -104,7 +144,8 @@ fn record_of(
                         ),
                     ));
                 }
-                for sample in other.wall {
+                let is_of_one_build = record.provenance.is_of_one_build_with(&other.provenance);
+                for sample in other.wall.into_iter().filter(|_| is_of_one_build) {
                     if !record.wall.contains(&sample) {
                         record.wall.push(sample);
                     }

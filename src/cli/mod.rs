@@ -21,6 +21,7 @@ mod score;
 mod solve;
 mod spread;
 mod stability;
+mod study_files;
 
 pub use exit::Exit;
 

@@ -4,6 +4,12 @@
 use super::exit::Ended;
 use crate::study::{Purpose, Study, StudySource};
 
+/// Repeats are for the cases of a study.
+pub const TIMING: (&str, &str) = ("timing.repeats", "cases are timed by `oedometer run` with a study file");
+/// Keys about running, for commands that run nothing.
+pub const OF_RUNS: [(&str, &str); 3] =
+    [("task", "nothing is run"), ("case_seconds", "nothing is run"), ("timing.repeats", "nothing is run")];
+
 /// Turns `KEY=VALUE` into a line of TOML; a value that is no TOML is taken for a word.
 pub fn assignment(typed: &str) -> anyhow::Result<String> {
     let Some((key, value)) = typed.split_once('=') else {
@@ -64,6 +70,14 @@ impl StudyLines {
     /// Whether a key is given already.
     pub fn has(&self, key: &str) -> bool {
         self.given.iter().any(|(given, _)| given == key)
+    }
+
+    /// Refuses keys that a study file may have and that change nothing here, each with what does.
+    pub fn refuse_without_effect(&self, keys: &[(&str, &str)]) -> anyhow::Result<()> {
+        match keys.iter().find(|(key, _)| self.has(key)) {
+            Some((key, instead)) => Err(Ended::usage(format!("`--set {key}` has no effect here: {instead}"))),
+            None => Ok(()),
+        }
     }
 
     /// The study with one sweep of these lines.

@@ -31,7 +31,8 @@ impl StudyBar {
             Progress::Planned { cases, resumed, work } => {
                 self.bar.set_length(work);
                 let taken_up = if resumed > 0 { format!(", {resumed} from disk") } else { String::new() };
-                self.bar.set_message(format!("{cases} cases{taken_up}"));
+                let beyond = if work == u64::MAX { ", more work than can be counted" } else { "" };
+                self.bar.set_message(format!("{cases} cases{taken_up}{beyond}"));
             }
             Progress::Advanced(work) => self.bar.inc(work),
             Progress::Finished { study, label, failure } => {

@@ -43,5 +43,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         write_whole(&arguments.out.join("figures").join(name), svg.as_bytes())?;
     }
     eprintln!("the report is {}", html.display());
-    Ok(Exit::Pass)
+    let is_whole = reports.iter().all(|report| report.errors.is_empty());
+    Ok(if is_whole { Exit::Pass } else { Exit::CaseFailed })
 }

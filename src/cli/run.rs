@@ -2,9 +2,10 @@
 
 use super::exit::{Ended, Exit};
 use super::progress::StudyBar;
+use super::study_files;
 use crate::record::{Provenance, Record, RecordStore, tidy_csv, write_whole};
 use crate::study::{
-    Case, Purpose, RunOptions, RunReport, Selected, Shard, Study, StudySource, Tier, run_studies,
+    Case, Purpose, RunError, RunOptions, RunReport, Selected, Shard, Study, StudySource, Tier, run_studies,
     shipped_studies, time_study,
 };
 use clap::ValueEnum;
@@ -57,7 +58,7 @@ pub struct Arguments {
     /// Only the case with this hash, or the first digits of it
     #[arg(long, value_name = "HASH", conflicts_with_all = ["tier", "shard"])]
     case: Option<String>,
-    /// Take up finished records of this very program
+    /// Take up finished records of this version and these sources, whatever build of them made them
     #[arg(long)]
     resume: bool,
 }
@@ -66,6 +67,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // Every file is judged before any work begins.
     let studies = load(&arguments.studies)?;
+    if arguments.case.as_ref().is_some_and(|hash| hash.trim().is_empty()) {
+        return Err(Ended::usage("`--case` names no case: write a hash or its first digits, as `plan` lists them"));
+    }
     let options = RunOptions {
         jobs: jobs_of(arguments.jobs),
         tier: arguments.tier.into(),
@@ -81,7 +85,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         if !report.records.is_empty() && exit == Exit::NothingSelected {
             exit = Exit::Pass;
         }
-        if report.failed().any(|record| !study.foresees(record)) {
+        if !report.errors.is_empty() || report.failed().any(|record| !study.foresees(record)) {
             exit = Exit::CaseFailed;
         }
     }
@@ -99,7 +103,11 @@ fn with_case(study: &Study, hash: &str) -> Study {
 }
 
 /// Runs the selected cases of studies side by side, then times alone those of the studies that ask
-/// for it, and writes a CSV a study; one report a study.
+/// for it, and writes a CSV a study; one report a study. A case without a record is told of, and the others
+/// go on.
+///
+/// # Errors
+/// When a result cannot be kept.
 pub fn run_and_store(
     studies: &[Study],
     selected: &[Study],
@@ -116,33 +124,52 @@ pub fn run_and_store(
     let bar = StudyBar::new(&name);
     let tell = |progress| bar.tell(progress);
     let mut reports = run_studies(&kept.collect::<Vec<_>>(), options, &tell);
+    if let Some(error) = reports.iter_mut().find_map(first_that_ends_all) {
+        bar.finish();
+        return Err(error.into());
+    }
     for ((study, store), report) in selected.iter().zip(&stores).zip(&mut reports) {
         time_study(study, &mut report.records, Some(store), &tell)?;
     }
     bar.finish();
-    let mut first_error = None;
-    for ((study, store), report) in studies.iter().zip(&stores).zip(&mut reports) {
-        if let Some(error) = report.errors.pop() {
-            first_error = first_error.or(Some(error));
-        } else if !report.records.is_empty() {
+    for ((study, store), report) in studies.iter().zip(&stores).zip(&reports) {
+        for error in &report.errors {
+            eprintln!("{}: {error}", study.name);
+        }
+        if !report.records.is_empty() {
             tell_of(study, report, &write_table(study, store, &report.records)?);
         }
     }
-    match first_error {
-        Some(error) => Err(error.into()),
-        None => Ok(reports),
-    }
+    Ok(reports)
+}
+
+/// The first error that is no case's own: nothing can be kept any more.
+fn first_that_ends_all(report: &mut RunReport) -> Option<RunError> {
+    let place = report.errors.iter().position(|error| error.of_case().is_none())?;
+    Some(report.errors.swap_remove(place))
 }
 
 fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     eprintln!(
         "{}: {} cases ({} from disk, {} failed), {}",
         study.name,
-        report.records.len(),
+        report.records.len() + report.errors.len(),
         report.resumed,
-        report.failed().count(),
+        report.failed().count() + report.errors.len(),
         table.display()
     );
+    if report.of_another_program > 0 {
+        eprintln!(
+            "{}: {} records of another version or of other sources were not taken up; their cases were run again",
+            study.name, report.of_another_program
+        );
+    }
+    if let Some(differences) = report.origins.differences_from(&Provenance::of_this_program()) {
+        eprintln!(
+            "{}: records of other builds of these sources were taken up, their values are the same: {differences}",
+            study.name
+        );
+    }
 }
 
 /// Writes the CSV of every record that a store keeps of a study, whichever run made it: a run of
@@ -168,15 +195,8 @@ pub fn write_table(study: &Study, store: &RecordStore, at_hand: &[Record]) -> an
 
 /// Reads and checks study files.
 pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
-    paths
-        .iter()
-        .map(|path| {
-            let text = std::fs::read_to_string(path).map_err(|error| {
-                Ended::usage(format!("cannot read the study {}: {error}", path.display()))
-            })?;
-            checked(&StudySource { name: path.display().to_string(), text }, Purpose::Solving)
-        })
-        .collect()
+    let sources = study_files::read_all(paths)?;
+    sources.iter().map(|source| checked(source, Purpose::Solving)).collect()
 }
 
 /// A study that can run; what is odd about it goes to standard error.

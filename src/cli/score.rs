@@ -110,6 +110,7 @@ fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
         lines.give("output.references", &format!("[{}]", overrides::quoted(reference)), "`--reference`")?;
     }
     lines.assign(&arguments.assignments)?;
+    lines.refuse_without_effect(&overrides::OF_RUNS)?;
     lines.study_with(["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned))
 }
 

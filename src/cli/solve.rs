@@ -7,7 +7,7 @@ use crate::render::measures;
 use crate::render::phases::phases_table;
 use crate::solver::profile::{PhaseTime, profiled};
 use crate::solver::run::Kernel;
-use crate::study::{IntegratorKind, Study, run_case};
+use crate::study::{IntegratorKind, Study, run_case_within};
 use clap::ValueEnum;
 use std::io::Write;
 
@@ -72,7 +72,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Err(Ended::with(Exit::NothingSelected, "the command line describes no single case"));
     };
     let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
-    let solve = || run_case(&planned.case, &study.references, kernel, true, &|_, _| true);
+    // Only a limit that was typed holds: somebody is waiting here, and can see how long.
+    let limit = if limits_time(arguments) { study.case_seconds } else { f64::INFINITY };
+    let solve = || run_case_within(limit, &planned.case, &study.references, kernel, true, &|_, _| true);
     let (record, phases) = if arguments.profile { profiled(solve) } else { (solve(), Vec::new()) };
     let record = record?;
     let mut out = std::io::stdout().lock();
@@ -105,6 +107,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     Ok(Exit::Pass)
 }
 
+/// Whether the command line says how long the case may take.
+fn limits_time(arguments: &Arguments) -> bool {
+    arguments.assignments.iter().any(|typed| typed.split('=').next().is_some_and(|key| key.trim() == "case_seconds"))
+}
+
 /// The study of one case that the command line describes.
 fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
     let mut lines = StudyLines::default();
@@ -118,6 +125,7 @@ fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
         lines.give("output.references", &format!("[{}]", overrides::quoted(reference)), "`--reference`")?;
     }
     lines.assign(&arguments.assignments)?;
+    lines.refuse_without_effect(&[("task", "`oedometer stability` looks for critical steps"), overrides::TIMING])?;
     for (key, option) in OWN_OPTIONS {
         if lines.has(key) || lines.has(&format!("sweep.{key}")) {
             return Err(Ended::usage(format!("`{key}` has an option of its own: {option}")));

@@ -47,6 +47,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     lines.give("task", "\"stability\"", "`stability`")?;
     lines.give("output.time_factors", &format!("[{:?}]", arguments.time_factor), "`--time-factor`")?;
     lines.assign(&arguments.assignments)?;
+    lines.refuse_without_effect(&[overrides::TIMING])?;
     let methods: Vec<String> =
         arguments.method.split(',').map(|name| overrides::quoted(name.trim())).collect();
     let study = lines.study_with([

@@ -3,13 +3,17 @@
 //! A record is plain data on disk. Tables, plots, verdicts and goldens read records and never a
 //! live solver, so that a report can be made again without solving.
 
+mod origins;
 mod provenance;
 mod store;
 mod tidy;
+mod whole;
 
+pub use origins::Origins;
 pub use provenance::Provenance;
-pub use store::{RecordStore, StoreError, write_whole};
+pub use store::{Found, RecordStore, StoreError};
 pub use tidy::tidy_csv;
+pub use whole::write_whole;
 
 use crate::assess::norms::Norm;
 use crate::solver::critical::CriticalStep;

@@ -3,12 +3,16 @@
 use serde::{Deserialize, Serialize};
 
 /// Origin of a record.
+///
+/// The rule for records that are taken together, by `run --resume`, `report`, `explain` and `merge`: version and
+/// sources must be the same, for they decide the values. Compiler, target, build profile and whether a commit has
+/// the tree may differ, for elementary functions come from one source and the values are the same to the bit;
+/// what differs is said.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Version of `oedometer`.
     pub version: String,
-    /// Hash over the sources the program was built from: a stored record is only taken up again
-    /// by the program that made it.
+    /// Hash over the sources the program was built from.
     pub sources: String,
     /// Commit, where the sources were in a repository.
     pub commit: String,
@@ -23,6 +27,16 @@ pub struct Provenance {
 }
 
 impl Provenance {
+    /// Whether both are of one version and of the same sources: what they compute is the same.
+    pub fn is_of_one_program_with(&self, other: &Self) -> bool {
+        self.version == other.version && self.sources == other.sources
+    }
+
+    /// Whether compiler, target and profile are the same too: what they take is the same.
+    pub fn is_of_one_build_with(&self, other: &Self) -> bool {
+        self.compiler == other.compiler && self.target == other.target && self.profile == other.profile
+    }
+
     /// This program's.
     pub fn of_this_program() -> Self {
         Self {

@@ -1,9 +1,10 @@
 //! Records on disk: one folder a case, named after its hash, written whole or not at all.
 
+use super::whole::{remove_stale, write_renamed};
 use super::{Provenance, Record, SCHEMA};
 use crate::study::Case;
+use serde::Deserialize;
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// File of a record within its folder.
@@ -34,6 +35,25 @@ pub enum StoreError {
     },
 }
 
+/// What there is of a case to take up.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Found {
+    /// Nothing that could be used.
+    Nothing,
+    /// A record that a program of another version or of other sources made.
+    OfAnotherProgram,
+    /// A finished record of this program.
+    Finished(Box<Record>),
+}
+
+/// What of a record says where it comes from.
+#[derive(Deserialize)]
+struct Head {
+    schema: u32,
+    hash: String,
+    provenance: Provenance,
+}
+
 /// The records of one study.
 #[derive(Clone, Debug)]
 pub struct RecordStore {
@@ -55,17 +75,40 @@ impl RecordStore {
         self.folder.join("cases").join(hash).join(file)
     }
 
-    /// The finished record of a case, if there is one that this very program made.
-    ///
-    /// A record that cannot be read, was damaged, is of another layout, of another case or of other sources is
-    /// as good as none, and so is one that ran out of its time: the case is run again.
+    /// The finished record of a case, if there is one that a program of these sources made.
     pub fn finished(&self, case: &Case) -> Option<Record> {
+        match self.found(case) {
+            Found::Finished(record) => Some(*record),
+            Found::Nothing | Found::OfAnotherProgram => None,
+        }
+    }
+
+    /// What there is of a case to take up.
+    ///
+    /// A record that cannot be read, was damaged, is of another layout or of another case is as good as none, and so
+    /// is one that ran out of its time: the case is run again, and so it is where another program made its record.
+    /// Another build of the same sources gives the same values and is taken up, without its wall times, which are
+    /// that build's own.
+    pub fn found(&self, case: &Case) -> Found {
         let own = Provenance::of_this_program();
-        self.kept(case).filter(|record| {
-            record.provenance.sources == own.sources
-                && record.provenance.profile == own.profile
-                && !record.status.is_late()
-        })
+        let Some(mut record) = self.kept(case).filter(|record| !record.status.is_late()) else {
+            return Found::Nothing;
+        };
+        if !record.provenance.is_of_one_program_with(&own) {
+            return Found::OfAnotherProgram;
+        }
+        if !record.provenance.is_of_one_build_with(&own) {
+            record.wall.clear();
+        }
+        Found::Finished(Box::new(record))
+    }
+
+    /// What made the record of a case, if there is one of this layout that is whole.
+    pub fn origin(&self, case: &Case) -> Option<Provenance> {
+        let hash = case.hash();
+        let text = fs::read_to_string(self.path(&hash, RECORD)).ok().filter(|text| is_whole(text))?;
+        let head: Head = serde_json::from_str(&text).ok()?;
+        (head.schema == SCHEMA && head.hash == hash).then_some(head.provenance)
     }
 
     /// The record of a case, whichever program of this layout made it.
@@ -82,19 +125,17 @@ impl RecordStore {
         (record.schema == SCHEMA && record.case == *case).then_some(record)
     }
 
-    /// Whether a record of this hash is on disk.
-    pub fn has(&self, hash: &str) -> bool {
-        self.path(hash, RECORD).is_file()
-    }
-
     /// Writes a record: first under another name, then renamed, so that a reader sees the whole
     /// of it or nothing.
     ///
     /// # Errors
     /// When the file system refuses.
     pub fn write(&self, record: &Record) -> Result<(), StoreError> {
-        self.write_wall(record)?;
         let path = self.path(&record.hash, RECORD);
+        if let Some(folder) = path.parent() {
+            remove_stale(folder);
+        }
+        self.write_wall(record)?;
         // One that was read has the seal of its file.
         let content = if record.digest.is_empty() {
             json_of(&path, record)?
@@ -144,36 +185,4 @@ fn is_whole(text: &str) -> bool {
 
 fn digest_of(content: &str) -> String {
     blake3::hash(content.as_bytes()).to_hex()[..DIGEST_DIGITS].to_owned()
-}
-
-/// Writes a file under a temporary name and renames it, making its folders; it is on the disk then.
-///
-/// # Errors
-/// When the file system refuses; nothing is left under the name then.
-pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), StoreError> {
-    write_renamed(path, content, fs::File::sync_all)
-}
-
-fn write_renamed(
-    path: &Path,
-    content: &[u8],
-    finish: impl Fn(&fs::File) -> std::io::Result<()>,
-) -> Result<(), StoreError> {
-    let folder = path.parent().unwrap_or(Path::new("."));
-    fs::create_dir_all(folder).map_err(|source| StoreError::Io {
-        action: "make the folder",
-        path: folder.to_owned(),
-        source,
-    })?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let temporary = folder.join(format!(".{name}.{}.part", std::process::id()));
-    let written = fs::File::create(&temporary).and_then(|mut file| {
-        file.write_all(content)?;
-        finish(&file)
-    });
-    written.and_then(|()| fs::rename(&temporary, path)).map_err(|source| {
-        // What is half written is of no use to anyone.
-        let _ = fs::remove_file(&temporary);
-        StoreError::Io { action: "write", path: path.to_owned(), source }
-    })
 }

@@ -16,9 +16,9 @@ use serde::{Deserialize, Serialize};
 /// Cells up to which the prediction is of the whole column; longer ones lose some of their middle.
 const WHOLE_COLUMN: usize = 24;
 /// Steps of a run that observes: growth of a seven hundredth a step shows.
-const OBSERVED_STEPS: u64 = 32_768;
+pub const OBSERVED_STEPS: u64 = 32_768;
 /// Bisections between a step that runs and one that leaves.
-const BISECTIONS: u32 = 24;
+pub const BISECTIONS: u32 = 24;
 /// Width of the last bracket, relative.
 const RESOLUTION: f64 = 1e-3;
 /// Strain, by the load, that linear stability is about: more would change what is observed.

@@ -13,12 +13,15 @@ use super::case::Case;
 use super::diagnostic::{Diagnostic, StudyError};
 use super::expectation::Expectation;
 use super::file::{OutputTable, StudyFile, StudySource};
+use super::name::name_of;
 use super::tier::Tier;
 use crate::assess::case_expectation::CaseExpectation;
 use crate::exact::ReferenceKind;
 use crate::record::Record;
 use crate::scene::{Column, SceneKind};
 use crate::solver::integrator::Formulation;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::ops::Range;
 use sweep::Common;
 use toml::Spanned;
@@ -27,6 +30,9 @@ use toml::Spanned;
 const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
 /// Longest wall time of a case, s, where a study names none.
 const DEFAULT_CASE_SECONDS: f64 = 3600.0;
+/// Cases that a study may have, counted as its sweeps multiply out: as many as a machine holds and a person
+/// can still mean.
+const MOST_CASES: usize = 1_000_000;
 /// More cells than a column is ever given on purpose.
 const MOST_CELLS: i64 = 100_000;
 /// More points a cell and direction than any scheme uses.
@@ -83,7 +89,7 @@ impl Study {
     /// Every complaint with its place.
     pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
         let file = source.parse()?;
-        let mut checker = Checker { source, diagnostics: Vec::new(), column_height: None, purpose };
+        let mut checker = Checker { source, diagnostics: Vec::new(), column_height: None, multiplied_out: 0, purpose };
         let study = checker.study(&file);
         match study {
             Some(study) if checker.diagnostics.is_empty() => Ok(study),
@@ -117,6 +123,8 @@ struct Checker<'a> {
     diagnostics: Vec<Diagnostic>,
     /// Height by which the levels of expectations are sized, once it is known.
     column_height: Option<f64>,
+    /// Cases that the sweeps seen so far multiply out to.
+    multiplied_out: usize,
     purpose: Purpose,
 }
 
@@ -152,13 +160,13 @@ impl Checker<'_> {
             );
         }
         let mut planned: Vec<PlannedCase> = Vec::new();
+        let mut places: HashMap<String, usize> = HashMap::new();
         for block in &file.sweep {
             let table = block.get_ref();
             let Some(sweep) = self.sweep(table, block.span(), &common) else { continue };
             if self.purpose == Purpose::Solving {
                 self.cells_fill_the_width(table, &column);
-                let cases = sweep.combinations();
-                self.memory_fits(table, cases.iter().map(|one| common.case_of(one, &[])));
+                self.memory_fits(table, sweep.combinations().map(|one| common.case_of(&one, &[])));
             }
             let time_factors = match &table.time_factors {
                 Some(list) => self.time_factors(list),
@@ -167,9 +175,15 @@ impl Checker<'_> {
             let tier = self.tier(table);
             for one in sweep.combinations() {
                 let case = common.case_of(&one, &time_factors);
-                match planned.iter_mut().find(|other| other.case == case) {
-                    Some(other) => other.tier = other.tier.min(tier),
-                    None => planned.push(PlannedCase { case, tier }),
+                match places.entry(case.hash()) {
+                    Entry::Occupied(place) => {
+                        let other = &mut planned[*place.get()];
+                        other.tier = other.tier.min(tier);
+                    }
+                    Entry::Vacant(place) => {
+                        place.insert(planned.len());
+                        planned.push(PlannedCase { case, tier });
+                    }
                 }
             }
         }
@@ -181,7 +195,7 @@ impl Checker<'_> {
         let timing_repeats =
             self.count(file.timing.repeats.as_ref(), "timing.repeats", 0..=1000).unwrap_or(0);
         Some(Study {
-            name: self.stem(),
+            name: name_of(&self.source.name).to_owned(),
             title: file.title.get_ref().clone(),
             summary: file.summary.clone().unwrap_or_default(),
             scene,
@@ -193,12 +207,6 @@ impl Checker<'_> {
             timing_repeats,
             warnings,
         })
-    }
-
-    /// File name without folders and extension.
-    fn stem(&self) -> String {
-        let file = self.source.name.rsplit(['/', '\\']).next().unwrap_or_default();
-        file.strip_suffix(".toml").unwrap_or(file).to_owned()
     }
 
     fn scene(&mut self, typed: &Spanned<String>) -> Option<SceneKind> {
@@ -215,7 +223,7 @@ impl Checker<'_> {
         for typed in list.get_ref() {
             let factor = *typed.get_ref();
             if factor.is_finite() && (0.0..=100.0).contains(&factor) {
-                factors.push(factor);
+                factors.push(factor + 0.0);
             } else {
                 self.complain(
                     typed.span(),

@@ -5,6 +5,7 @@ mod check;
 mod diagnostic;
 mod expectation;
 mod file;
+mod name;
 mod perturbed;
 mod runner;
 mod shipped;
@@ -18,10 +19,11 @@ pub use diagnostic::{Diagnostic, StudyError};
 pub use expectation::{Axis, Expectation, Measure, NEXT_FINER, NO_REFERENCE};
 pub use file::StudySource;
 pub(crate) use file::{MethodTable, StudyFile};
+pub use name::{name_of, refused_name};
 pub use perturbed::LastDigit;
 pub use runner::{
     Progress, RunError, RunOptions, RunReport, Selected, Shard, TimingReport, estimated_updates, run_case,
-    run_studies, run_study, time_study,
+    run_case_within, run_studies, run_study, time_study,
 };
 pub use shipped::shipped_studies;
 pub use sweep::AXES;

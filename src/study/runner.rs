@@ -5,15 +5,16 @@ use super::check::Study;
 use super::tier::Tier;
 use crate::assess::measure::{record_of, record_of_critical_step};
 use crate::exact::{ExactError, ReferenceKind};
-use crate::record::{Record, RecordStore, Status, StoreError, WallSample};
+use crate::record::{Found, Origins, Record, RecordStore, Status, StoreError, WallSample};
 use crate::scene::{SceneProblem, column_parameters};
+use crate::solver::critical::{BISECTIONS, OBSERVED_STEPS, SHARES};
 use crate::solver::limits;
 use crate::solver::outcome::FailureKind;
 use crate::solver::profile::{Phase, enter};
 use crate::solver::run::{Kernel, Schedule, TimeStepRule};
 use std::cell::Cell;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// Points of the settlement curve of a run.
@@ -79,7 +80,7 @@ pub enum Progress {
         cases: usize,
         /// Cases taken up from disk.
         resumed: usize,
-        /// Estimated point updates.
+        /// Estimated point updates; the largest number where there are more.
         work: u64,
     },
     /// Work done since the last word.
@@ -117,6 +118,17 @@ pub enum RunError {
     },
 }
 
+impl RunError {
+    /// The case that has no record, with the reason; none where it is no case's own fault.
+    pub fn of_case(&self) -> Option<(&str, String)> {
+        match self {
+            Self::Store(_) => None,
+            Self::Case { label, source } => Some((label, source.to_string())),
+            Self::Crashed { label } => Some((label, "crashed; please report it with the study file".to_owned())),
+        }
+    }
+}
+
 /// What a run of a study gave.
 #[derive(Debug, Default)]
 pub struct RunReport {
@@ -124,6 +136,10 @@ pub struct RunReport {
     pub records: Vec<Record>,
     /// How many of them came from disk.
     pub resumed: usize,
+    /// What made those.
+    pub origins: Origins,
+    /// Records of another program that were there, and whose cases were run again.
+    pub of_another_program: usize,
     /// What went wrong beside failed cases; finished records are kept all the same.
     pub errors: Vec<RunError>,
 }
@@ -160,59 +176,54 @@ pub fn run_studies(
     options: &RunOptions,
     tell: &(dyn Fn(Progress) + Sync),
 ) -> Vec<RunReport> {
-    let found: Vec<Vec<(&Case, Option<Record>)>> =
+    let found: Vec<Vec<(&Case, Found)>> =
         studies.iter().map(|selected| cases_with_records(selected, options)).collect();
     let missing = studies.iter().zip(&found).flat_map(|(selected, cases)| {
-        let without = cases.iter().filter(|(_, record)| record.is_none());
+        let without = cases.iter().filter(|(_, found)| !matches!(found, Found::Finished(_)));
         without.map(|(case, _)| Job { case, study: selected.study, store: selected.store })
     });
     let jobs: Vec<Job<'_>> = missing.collect();
     let cases: usize = found.iter().map(Vec::len).sum();
     let mut results = run_jobs(&jobs, cases - jobs.len(), options.jobs, tell).into_iter();
-    studies
-        .iter()
-        .zip(found)
-        .map(|(selected, cases)| report_of(cases, &mut results, selected.store))
-        .collect()
+    found.into_iter().map(|cases| report_of(cases, &mut results)).collect()
 }
 
 /// The cases of a study that are to be run, with the records there are of them already.
-fn cases_with_records<'a>(selected: &Selected<'a>, options: &RunOptions) -> Vec<(&'a Case, Option<Record>)> {
+fn cases_with_records<'a>(selected: &Selected<'a>, options: &RunOptions) -> Vec<(&'a Case, Found)> {
     let store = selected.store.filter(|_| options.resume);
     let cases = selected.study.cases(options.tier).into_iter();
     cases
         .filter(|case| options.shard.is_none_or(|shard| shard.holds(case)))
-        .map(|case| (case, store.and_then(|store| store.finished(case))))
+        .map(|case| (case, store.map_or(Found::Nothing, |store| store.found(case))))
         .collect()
 }
 
 /// The report of a study: records from disk, and for the other cases the next results.
 fn report_of(
-    cases: Vec<(&Case, Option<Record>)>,
+    cases: Vec<(&Case, Found)>,
     results: &mut impl Iterator<Item = Option<Result<Record, RunError>>>,
-    store: Option<&RecordStore>,
 ) -> RunReport {
     let mut report = RunReport::default();
     for (_, found) in cases {
-        report.resumed += usize::from(found.is_some());
-        match found.map(Ok).or_else(|| results.next().flatten()) {
+        if let Found::Finished(record) = found {
+            report.resumed += 1;
+            report.origins.add(&record.provenance);
+            report.records.push(*record);
+            continue;
+        }
+        report.of_another_program += usize::from(found == Found::OfAnotherProgram);
+        match results.next().flatten() {
             Some(Ok(record)) => report.records.push(record),
             Some(Err(error)) => report.errors.push(error),
             None => {}
         }
     }
-    report.errors.extend(report.records.iter().filter_map(|record| {
-        // Written already; written once more only where that failed.
-        store
-            .filter(|store| !store.has(&record.hash))
-            .and_then(|store| store.write(record).err())
-            .map(RunError::Store)
-    }));
     report
 }
 
 /// Runs jobs, the longest first so that the last ones to finish are short; results in the order of
-/// the jobs.
+/// the jobs. The first result that cannot be kept ends them all, and a job without a result is one that had
+/// not come to its end by then.
 fn run_jobs(
     jobs: &[Job<'_>],
     resumed: usize,
@@ -224,20 +235,23 @@ fn run_jobs(
     tell(Progress::Planned {
         cases: jobs.len(),
         resumed,
-        work: jobs.iter().map(|job| estimated_work(job.case)).sum(),
+        work: jobs.iter().fold(0, |sum, job| sum.saturating_add(estimated_work(job.case))),
     });
     let results: Vec<Mutex<Option<Result<Record, RunError>>>> =
         jobs.iter().map(|_| Mutex::new(None)).collect();
     let next = AtomicUsize::new(0);
+    let stopped = AtomicBool::new(false);
     let threads = threads.clamp(1, jobs.len().max(1));
     std::thread::scope(|scope| {
         for _ in 0..threads {
             scope.spawn(|| {
                 while let Some(index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let Job { case, study, store } = jobs[*index];
-                    let result = run_and_keep(case, study, store, threads == 1, tell);
+                    let result = run_and_keep(jobs[*index], threads == 1, &stopped, tell);
                     if let Ok(mut slot) = results[*index].lock() {
-                        *slot = Some(result);
+                        *slot = result;
+                    }
+                    if stopped.load(Ordering::Relaxed) {
+                        break;
                     }
                 }
             });
@@ -253,38 +267,40 @@ fn estimated_work(case: &Case) -> u64 {
     estimated_updates(case).saturating_mul(if follows { 30 } else { 1 })
 }
 
+/// Runs a case and keeps its record. A record that cannot be kept stops every other case too; none where
+/// this one was stopped so.
 fn run_and_keep(
-    case: &Case,
-    study: &Study,
-    store: Option<&RecordStore>,
+    Job { case, study, store }: Job<'_>,
     alone: bool,
+    stopped: &AtomicBool,
     tell: &(dyn Fn(Progress) + Sync),
-) -> Result<Record, RunError> {
+) -> Option<Result<Record, RunError>> {
     let estimate = estimated_work(case);
-    let told = Cell::new(0);
-    let deadline = Instant::now() + Duration::from_secs_f64(study.case_seconds.min(MOST_SECONDS));
+    let told = Cell::new(0_u64);
     let observe = |done: u64, expected: u64| {
         let now = u64::try_from(u128::from(estimate) * u128::from(done) / u128::from(expected.max(1)))
             .unwrap_or(estimate)
             .min(estimate);
-        if now > told.get() + estimate / 200 {
+        if now > told.get().saturating_add(estimate / 200) {
             tell(Progress::Advanced(now - told.get()));
             told.set(now);
         }
-        Instant::now() < deadline
+        !stopped.load(Ordering::Relaxed)
     };
     let solved = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-        run_case(case, &study.references, Kernel::Fastest, alone, &observe)
+        run_case_within(study.case_seconds, case, &study.references, Kernel::Fastest, alone, &observe)
     }));
     tell(Progress::Advanced(estimate - told.get()));
     let record = match solved {
-        Ok(Ok(record)) => named_if_late(record, study.case_seconds),
-        Ok(Err(source)) => return Err(RunError::Case { label: case.label(), source }),
-        Err(_) => return Err(RunError::Crashed { label: case.label() }),
+        Ok(Ok(record)) if record.status.is_late() && stopped.load(Ordering::Relaxed) => return None,
+        Ok(Ok(record)) => record,
+        Ok(Err(source)) => return Some(Err(RunError::Case { label: case.label(), source })),
+        Err(_) => return Some(Err(RunError::Crashed { label: case.label() })),
     };
-    if let Some(store) = store {
-        // A failure to write is told at the end, when the record is tried once more.
-        let _ = store.write(&record);
+    if let Some(Err(error)) = store.map(|store| store.write(&record)) {
+        // A full disk stays full: what could not be kept is not computed.
+        stopped.store(true, Ordering::Relaxed);
+        return Some(Err(error.into()));
     }
     tell(Progress::Finished {
         study: study.name.clone(),
@@ -294,7 +310,24 @@ fn run_and_keep(
             Status::Failed(failure) => Some(failure.to_string()),
         },
     });
-    Ok(record)
+    Some(Ok(record))
+}
+
+/// Runs one case for so many seconds at most: what takes longer has failed, by that name.
+///
+/// # Errors
+/// When the exact solutions refuse the case's parameters.
+pub fn run_case_within(
+    seconds: f64,
+    case: &Case,
+    references: &[ReferenceKind],
+    kernel: Kernel,
+    alone: bool,
+    observe: &dyn Fn(u64, u64) -> bool,
+) -> Result<Record, ExactError> {
+    let deadline = Instant::now() + Duration::from_secs_f64(seconds.min(MOST_SECONDS));
+    let in_time = |done: u64, expected: u64| observe(done, expected) && Instant::now() < deadline;
+    Ok(named_if_late(run_case(case, references, kernel, alone, &in_time)?, seconds))
 }
 
 /// The record of a case that was stopped because its time was over says so.
@@ -384,7 +417,16 @@ pub fn estimated_updates(case: &Case) -> u64 {
             growth * end / (2.0 + (end / first).max(1.0).ln())
         }
     };
-    (end / step * case.expected_points() as f64).max(1.0) as u64
+    let steps = match case.task {
+        Task::Solve => end / step,
+        Task::Stability => {
+            // Runs of a fixed length bracket the limit; those beside it end with the scene, or before.
+            let observed = OBSERVED_STEPS as f64;
+            f64::from(BISECTIONS) * observed
+                + SHARES.len() as f64 * (end / step).clamp(observed, MOST_PROBE_STEPS as f64)
+        }
+    };
+    (steps * case.expected_points() as f64).max(1.0) as u64
 }
 
 /// What timing a study took.

@@ -109,50 +109,69 @@ impl Sweep {
         })
     }
 
-    /// Every combination, the first axis slowest. The axes of a path step together.
-    pub fn combinations(&self) -> Vec<Combination> {
+    fn is_tied(&self, axis: usize) -> bool {
+        self.path.iter().any(|key| key == AXES[axis])
+    }
+
+    /// The axis at whose place the path counts as one: its first member.
+    fn leader(&self) -> Option<usize> {
+        (0..AXES.len()).find(|axis| self.is_tied(*axis))
+    }
+
+    /// Axes that turn on their own, the slowest first.
+    fn turning(&self) -> Vec<usize> {
+        let leader = self.leader();
+        (0..AXES.len()).filter(|axis| !self.is_tied(*axis) || Some(*axis) == leader).collect()
+    }
+
+    /// How many combinations there are; none where no machine could count them.
+    pub fn count(&self) -> Option<usize> {
         let lengths = self.lengths();
-        let tied = |axis: usize| self.path.iter().any(|key| key == AXES[axis]);
-        // The path counts as one axis, at the place of its first member.
-        let leader = (0..AXES.len()).find(|axis| tied(*axis));
-        let turning: Vec<usize> =
-            (0..AXES.len()).filter(|axis| !tied(*axis) || Some(*axis) == leader).collect();
-        let total: usize = turning.iter().map(|axis| lengths[*axis]).product();
-        (0..total)
-            .map(|number| {
-                let mut at = [0; AXES.len()];
-                let mut rest = number;
-                for axis in turning.iter().rev() {
-                    at[*axis] = rest % lengths[*axis];
-                    rest /= lengths[*axis];
+        self.turning().into_iter().try_fold(1_usize, |count, axis| count.checked_mul(lengths[axis]))
+    }
+
+    /// Every combination, the first axis slowest. The axes of a path step together. None at all where
+    /// they cannot be counted.
+    pub fn combinations(&self) -> impl Iterator<Item = Combination> {
+        let (lengths, turning, leader) = (self.lengths(), self.turning(), self.leader());
+        (0..self.count().unwrap_or(0)).map(move |number| {
+            let mut at = [0; AXES.len()];
+            let mut rest = number;
+            for axis in turning.iter().rev() {
+                at[*axis] = rest % lengths[*axis];
+                rest /= lengths[*axis];
+            }
+            if let Some(leader) = leader {
+                for axis in (0..AXES.len()).filter(|axis| self.is_tied(*axis)) {
+                    at[axis] = at[leader];
                 }
-                if let Some(leader) = leader {
-                    for axis in (0..AXES.len()).filter(|axis| tied(*axis)) {
-                        at[axis] = at[leader];
-                    }
-                }
-                Combination {
-                    method: self.method[at[0]],
-                    integrator: self.integrator[at[1]],
-                    cells: self.cells[at[2]],
-                    points_per_cell: self.points_per_cell[at[3]],
-                    time_step: self.time_step[at[4]].unwrap_or_else(|| self.integrator[at[1]].default_rule()),
-                    drag: self.drag[at[5]],
-                    flip: self.flip[at[6]],
-                    mapping_back: self.mapping_back[at[7]],
-                    law: self.law[at[8]],
-                    continuity: self.continuity[at[9]],
-                    formulation: self.formulation[at[10]]
-                        .unwrap_or_else(|| self.integrator[at[1]].default_formulation()),
-                    scheme: self.scheme[at[11]],
-                    porosity: self.porosity[at[12]],
-                    hydraulic_conductivity: self.hydraulic_conductivity[at[13]],
-                    water_bulk_modulus: self.water_bulk_modulus[at[14]],
-                    offset: self.offset[at[15]],
-                    poissons_ratio: self.poissons_ratio[at[16]],
-                }
-            })
-            .collect()
+            }
+            self.combination(at)
+        })
+    }
+
+    /// The combination at a place on every axis, in the order of [`AXES`].
+    fn combination(&self, at: [usize; AXES.len()]) -> Combination {
+        Combination {
+            method: self.method[at[0]],
+            integrator: self.integrator[at[1]],
+            cells: self.cells[at[2]],
+            points_per_cell: self.points_per_cell[at[3]],
+            time_step: self.time_step[at[4]].unwrap_or_else(|| self.integrator[at[1]].default_rule()),
+            drag: self.drag[at[5]],
+            flip: self.flip[at[6]],
+            mapping_back: self.mapping_back[at[7]],
+            law: self.law[at[8]],
+            continuity: self.continuity[at[9]],
+            formulation: self.formulation[at[10]]
+                .unwrap_or_else(|| self.integrator[at[1]].default_formulation()),
+            scheme: self.scheme[at[11]],
+            porosity: self.porosity[at[12]],
+            hydraulic_conductivity: self.hydraulic_conductivity[at[13]],
+            water_bulk_modulus: self.water_bulk_modulus[at[14]],
+            offset: self.offset[at[15]],
+            poissons_ratio: self.poissons_ratio[at[16]],
+        }
     }
 }
 
@@ -185,7 +204,7 @@ mod tests {
 
     #[test]
     fn a_product_has_every_combination_once() {
-        let all = sweep(&[]).combinations();
+        let all: Vec<Combination> = sweep(&[]).combinations().collect();
         assert_eq!(all.len(), 2 * 3 * 3);
         for (index, one) in all.iter().enumerate() {
             assert!(!all[..index].contains(one));
@@ -194,13 +213,33 @@ mod tests {
 
     #[test]
     fn a_path_steps_its_axes_together() {
-        let all = sweep(&["cells", "time_step"]).combinations();
+        let all: Vec<Combination> = sweep(&["cells", "time_step"]).combinations().collect();
         assert_eq!(all.len(), 2 * 3);
+        assert_eq!(sweep(&["cells", "time_step"]).count(), Some(2 * 3));
         for one in all {
             let place = [5, 10, 20].iter().position(|cells| *cells == one.cells);
             let steps = sweep(&[]).time_step;
             assert_eq!(place.and_then(|place| steps[place]), Some(one.time_step));
         }
+    }
+
+    #[test]
+    fn more_combinations_than_can_be_counted_are_none_and_no_few() {
+        let many = |length: usize| Sweep {
+            cells: vec![5; length],
+            porosity: vec![0.3; length],
+            flip: vec![1.0; length],
+            offset: vec![0.0; length],
+            poissons_ratio: vec![0.25; length],
+            water_bulk_modulus: vec![2.2e9; length],
+            hydraulic_conductivity: vec![1e-4; length],
+            mapping_back: vec![true; length],
+            ..sweep(&["time_step", "method"])
+        };
+        // Eight axes of 256 values wrap a product of 64 bits to nothing.
+        assert_eq!(many(256).count(), None);
+        assert_eq!(many(256).combinations().count(), 0);
+        assert_eq!(many(2).count(), Some(256 * 2));
     }
 
     #[test]

@@ -55,7 +55,8 @@ impl Checker<'_> {
     pub(super) fn offset(&mut self, typed: &Spanned<f64>) -> Option<f64> {
         let offset = *typed.get_ref();
         if (-0.5..=0.5).contains(&offset) {
-            return Some(offset);
+            // No shift downwards is none: both zeros are one case.
+            return Some(offset + 0.0);
         }
         self.complain(
             typed.span(),

@@ -46,7 +46,7 @@ impl Checker<'_> {
                 "it lies between 0 (PIC) and 1 (FLIP)",
             );
         }
-        flip
+        flip + 0.0
     }
 
     pub(super) fn time_step(&mut self, typed: &Spanned<TimeStepTable>) -> Option<TimeStepRule> {

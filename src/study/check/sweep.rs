@@ -1,6 +1,6 @@
 //! Checks of what is varied: the blocks `[[sweep]]`, axis by axis and together.
 
-use super::{Checker, MOST_CELLS, MOST_POINTS};
+use super::{Checker, MOST_CASES, MOST_CELLS, MOST_POINTS};
 use crate::scene::{Arrangement, Column, SceneKind};
 use crate::solver::explicit::ExplicitSettings;
 use crate::solver::integrator::{Formulation, IntegratorKind};
@@ -158,10 +158,32 @@ impl Checker<'_> {
             );
         }
         if self.diagnostics.len() == before {
+            self.can_be_multiplied_out(&span, &sweep);
+        }
+        if self.diagnostics.len() == before {
             self.rules_fit(table, &sweep);
             self.formulations_fit(table, &span, &sweep, scene);
         }
         (self.diagnostics.len() == before).then_some(sweep)
+    }
+
+    /// Complains where the sweeps so far have more cases than a study may: before they are made.
+    fn can_be_multiplied_out(&mut self, span: &Range<usize>, sweep: &Sweep) {
+        let count = sweep.count();
+        let so_far = self.multiplied_out;
+        self.multiplied_out = count.map_or(usize::MAX, |count| so_far.saturating_add(count));
+        if self.multiplied_out <= MOST_CASES {
+            return;
+        }
+        let others = if so_far > 0 { format!(", with {so_far} of the sweeps before it") } else { String::new() };
+        let count = count.map_or("more cases than can be counted".to_owned(), |count| format!("{count} cases"));
+        self.complain(
+            span.start..span.start + 1,
+            format!("the sweep multiplies out to {count}{others}"),
+            format!(
+                "a study has at most {MOST_CASES}: shorten its lists, tie axes with `path`, or part it into several"
+            ),
+        );
     }
 
     pub(super) fn tier(&mut self, table: &SweepTable) -> Tier {
@@ -173,7 +195,7 @@ impl Checker<'_> {
     /// Complains where a formulation meets an integrator that cannot solve it.
     fn formulations_fit(&mut self, table: &SweepTable, span: &Range<usize>, sweep: &Sweep, scene: SceneKind) {
         let refusal = |one: Combination| one.integrator.refuses_formulation(one.formulation);
-        if let Some(why) = sweep.combinations().into_iter().find_map(refusal) {
+        if let Some(why) = sweep.combinations().find_map(refusal) {
             let place = table.formulation.as_ref().map(Spanned::span);
             self.complain(
                 place.unwrap_or(span.start..span.start + 1),
@@ -182,7 +204,7 @@ impl Checker<'_> {
             );
         }
         let still = |one: &Combination| one.formulation == Formulation::QuasiStatic;
-        if scene.has_waves() && sweep.combinations().iter().any(still) {
+        if scene.has_waves() && sweep.combinations().any(|one| still(&one)) {
             let place = table.formulation.as_ref().map(Spanned::span);
             self.complain(
                 place.unwrap_or(span.start..span.start + 1),
@@ -195,8 +217,7 @@ impl Checker<'_> {
     /// Complains where a step rule meets an integrator that cannot follow it.
     fn rules_fit(&mut self, table: &SweepTable, sweep: &Sweep) {
         let Some(list) = &table.time_step else { return };
-        let refused =
-            sweep.combinations().into_iter().find_map(|one| one.integrator.refuses_rule(one.time_step));
+        let refused = sweep.combinations().find_map(|one| one.integrator.refuses_rule(one.time_step));
         if let Some(why) = refused {
             self.complain(
                 list.span(),

@@ -76,7 +76,8 @@ impl Checker<'_> {
                 "it must be 0 or positive, and finite",
             );
         }
-        value
+        // A zero with a sign is the same zero.
+        value + 0.0
     }
 
     pub(super) fn between(
@@ -98,6 +99,6 @@ impl Checker<'_> {
                 ),
             );
         }
-        value
+        value + 0.0
     }
 }

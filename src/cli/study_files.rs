@@ -1,0 +1,48 @@
+//! Study files, read and named before any work begins: every result is kept under the name of its study.
+
+use super::exit::Ended;
+use crate::study::{StudySource, name_of, refused_name};
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Largest study file, bytes. A study of a million cases takes less, and a device never ends.
+const MOST_BYTES: u64 = 16_000_000;
+
+/// The texts of study files whose names are plain and differ.
+pub fn read_all(paths: &[PathBuf]) -> anyhow::Result<Vec<StudySource>> {
+    let sources = paths.iter().map(|path| read(path)).collect::<anyhow::Result<Vec<StudySource>>>()?;
+    for (number, source) in sources.iter().enumerate() {
+        let name = name_of(&source.name);
+        if let Some(why) = refused_name(name) {
+            let file = &source.name;
+            return Err(Ended::usage(format!("the study {file} cannot be called `{name}`: {why}")));
+        }
+        if let Some(other) = sources[..number].iter().find(|other| name_of(&other.name) == name) {
+            return Err(Ended::usage(format!(
+                "{} and {} are both called `{name}`, and one would overwrite the results of the other: rename one",
+                other.name, source.name
+            )));
+        }
+    }
+    Ok(sources)
+}
+
+/// The text of one file, or of a pipe.
+fn read(path: &Path) -> anyhow::Result<StudySource> {
+    let refused =
+        |error: std::io::Error| Ended::usage(format!("cannot read the study {}: {error}", path.display()));
+    let mut text = Vec::new();
+    let file = File::open(path).map_err(refused)?;
+    file.take(MOST_BYTES + 1).read_to_end(&mut text).map_err(refused)?;
+    if text.len() as u64 > MOST_BYTES {
+        return Err(Ended::usage(format!(
+            "{} has more than {} MB: that is no study file",
+            path.display(),
+            MOST_BYTES / 1_000_000
+        )));
+    }
+    let text = String::from_utf8(text)
+        .map_err(|_| Ended::usage(format!("cannot read the study {}: it is not UTF-8", path.display())))?;
+    Ok(StudySource { name: path.display().to_string(), text })
+}
