@@ -94,8 +94,7 @@ impl StudyCheck {
     #[must_use]
     pub fn with_errors(mut self, errors: &[RunError]) -> Self {
         let notes = errors.iter().filter_map(RunError::of_case);
-        self.failed_cases
-            .extend(notes.map(|(case, sentence)| CaseNote { case: case.to_owned(), sentence }));
+        self.failed_cases.extend(notes.map(|(case, sentence)| CaseNote { case: case.to_owned(), sentence }));
         self
     }
 

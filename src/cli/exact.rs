@@ -208,6 +208,7 @@ fn parameters_of(
     lines.give("title", "\"exact\"", "`exact`")?;
     lines.give("scene", &overrides::quoted(scene.name()), "the solution's name")?;
     lines.assign(assignments)?;
+    lines.refuse_without_effect(&overrides::OF_RUNS)?;
     let study = lines.study_for(Purpose::Theory, ["method = [\"MPM\"]", "cells = [1]"].map(str::to_owned))?;
     let Some(planned) = study.planned.first() else {
         return Err(Ended::usage("the assignments leave no column"));

@@ -68,7 +68,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // Every file is judged before any work begins.
     let studies = load(&arguments.studies)?;
     if arguments.case.as_ref().is_some_and(|hash| hash.trim().is_empty()) {
-        return Err(Ended::usage("`--case` names no case: write a hash or its first digits, as `plan` lists them"));
+        return Err(Ended::usage(
+            "`--case` names no case: write a hash or its first digits, as `plan` lists them",
+        ));
     }
     let options = RunOptions {
         jobs: jobs_of(arguments.jobs),

@@ -109,7 +109,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 
 /// Whether the command line says how long the case may take.
 fn limits_time(arguments: &Arguments) -> bool {
-    arguments.assignments.iter().any(|typed| typed.split('=').next().is_some_and(|key| key.trim() == "case_seconds"))
+    arguments
+        .assignments
+        .iter()
+        .any(|typed| typed.split('=').next().is_some_and(|key| key.trim() == "case_seconds"))
 }
 
 /// The study of one case that the command line describes.
@@ -125,7 +128,10 @@ fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
         lines.give("output.references", &format!("[{}]", overrides::quoted(reference)), "`--reference`")?;
     }
     lines.assign(&arguments.assignments)?;
-    lines.refuse_without_effect(&[("task", "`oedometer stability` looks for critical steps"), overrides::TIMING])?;
+    lines.refuse_without_effect(&[
+        ("task", "`oedometer stability` looks for critical steps"),
+        overrides::TIMING,
+    ])?;
     for (key, option) in OWN_OPTIONS {
         if lines.has(key) || lines.has(&format!("sweep.{key}")) {
             return Err(Ended::usage(format!("`{key}` has an option of its own: {option}")));

@@ -20,7 +20,8 @@ const HOST_LETTERS: usize = 32;
 /// number is one process. Shards in containers may share host name and process number both.
 static PLACE: LazyLock<String> = LazyLock::new(|| {
     let line = |path: &str| fs::read_to_string(path).unwrap_or_default().trim().to_owned();
-    let host = ["/proc/sys/kernel/hostname", "/etc/hostname"].map(line).into_iter().find(|name| !name.is_empty());
+    let host =
+        ["/proc/sys/kernel/hostname", "/etc/hostname"].map(line).into_iter().find(|name| !name.is_empty());
     let host = host.or_else(|| std::env::var("COMPUTERNAME").ok()).unwrap_or_else(|| "host".to_owned());
     let namespace = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
     let boot = line("/proc/sys/kernel/random/boot_id");
@@ -129,7 +130,10 @@ mod tests {
         let (one, other) = (part_name("record.json"), part_name("record.json"));
         assert_ne!(one, other);
         let of_process = format!(".{}.{}.", *PLACE, std::process::id());
-        assert!(one.starts_with(".record.json.") && one.contains(&of_process) && one.ends_with(PART), "{one}");
+        assert!(
+            one.starts_with(".record.json.") && one.contains(&of_process) && one.ends_with(PART),
+            "{one}"
+        );
         assert!(one.len() < 200, "{one}");
     }
 
@@ -138,7 +142,10 @@ mod tests {
         let named = |place: &str, process: u32| format!(".a.csv.{place}.{process}.0123456789abcdef.part");
         let own = std::process::id();
         assert!(!is_stale(&part_name("a.csv"), || NOW), "its writer is at it");
-        assert!(!is_stale(&named("elsewhere-00000000", NO_PROCESS), || NOW), "nobody knows that it has ended");
+        assert!(
+            !is_stale(&named("elsewhere-00000000", NO_PROCESS), || NOW),
+            "nobody knows that it has ended"
+        );
         assert!(is_stale(&named("elsewhere-00000000", own), || DAY), "a day is enough for any file");
         #[cfg(target_os = "linux")]
         assert!(is_stale(&named(&PLACE, NO_PROCESS), || NOW), "its writer has ended");

@@ -232,6 +232,9 @@ pub fn step_label(rule: &TimeStepRule) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Base;
+    use crate::solver::material::Law;
+    use crate::solver::scheme::Scheme;
 
     fn seed() -> Case {
         Case {
@@ -265,6 +268,59 @@ mod tests {
             change(&mut other);
             assert_ne!(other.hash(), case.hash());
         }
+    }
+
+    #[test]
+    fn the_hash_follows_every_input() {
+        let mut hashes = vec![seed().hash()];
+        let changes: [fn(&mut Case); 37] = [
+            |case| case.task = Task::Stability,
+            |case| case.scene = SceneKind::XieLeo,
+            |case| case.column.height = 2.0,
+            |case| case.column.width = 2.0,
+            |case| case.column.load = 2.0,
+            |case| case.column.dimensions = 2,
+            |case| case.column.base = Some(Base::ALL[0]),
+            |case| case.column.loading_time = 2.0,
+            |case| case.column.points.offset = 0.1,
+            |case| case.column.points.jitter = 0.1,
+            |case| case.column.points.filling = 0.5,
+            |case| case.material.law = Law::LogLinear,
+            |case| case.material.youngs_modulus = 2.0,
+            |case| case.material.poissons_ratio = 0.1,
+            |case| case.material.porosity = 0.1,
+            |case| case.material.grain_density = 2.0,
+            |case| case.material.water_density = 2.0,
+            |case| case.material.water_bulk_modulus = 2.0,
+            |case| case.material.hydraulic_conductivity = 2.0,
+            |case| case.material.gravity = 2.0,
+            |case| case.material.continuity = Continuity::ConstantPorosityGradient,
+            |case| case.method = Method::named("GIMP").expect("a method"),
+            |case| case.method = Method::named("GIMP-SRI").expect("a method"),
+            |case| case.integrator = IntegratorKind::Implicit,
+            |case| case.formulation = Formulation::UP,
+            |case| case.settings.scheme = Scheme::Leapfrog,
+            |case| case.settings.drag = Drag::Centred,
+            |case| case.settings.flip = 0.5,
+            |case| case.settings.mapping_back = false,
+            |case| case.cells = 11,
+            |case| case.points_per_cell = 3,
+            |case| case.time_step = TimeStepRule::Stable(0.6),
+            |case| case.time_step = TimeStepRule::Courant(0.5),
+            |case| case.time_step = TimeStepRule::Seconds(0.5),
+            |case| case.time_step = TimeStepRule::Growth(0.5),
+            |case| case.time_factors = vec![0.2],
+            |case| case.time_factors = vec![0.1, 0.2],
+        ];
+        for change in changes {
+            let mut other = seed();
+            change(&mut other);
+            hashes.push(other.hash());
+        }
+        let all = hashes.len();
+        hashes.sort();
+        hashes.dedup();
+        assert_eq!(hashes.len(), all, "every change is another case");
     }
 
     #[test]

@@ -89,7 +89,8 @@ impl Study {
     /// Every complaint with its place.
     pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
         let file = source.parse()?;
-        let mut checker = Checker { source, diagnostics: Vec::new(), column_height: None, multiplied_out: 0, purpose };
+        let mut checker =
+            Checker { source, diagnostics: Vec::new(), column_height: None, multiplied_out: 0, purpose };
         let study = checker.study(&file);
         match study {
             Some(study) if checker.diagnostics.is_empty() => Ok(study),

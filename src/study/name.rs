@@ -30,7 +30,9 @@ pub fn refused_name(name: &str) -> Option<String> {
     if name.len() > LONGEST {
         return Some(format!("it has {} letters: take {LONGEST} at most", name.len()));
     }
-    TAKEN.contains(&name).then(|| format!("`{name}` is what a part of the report or of the golden values is called"))
+    TAKEN
+        .contains(&name)
+        .then(|| format!("`{name}` is what a part of the report or of the golden values is called"))
 }
 
 #[cfg(test)]
@@ -53,7 +55,22 @@ mod tests {
         }
         let long = "a".repeat(LONGEST + 1);
         let others = [
-            "", ".", "..", ".hidden", "-a", "a-", "a.", "MyStudy", "ä", "a b", "a/b", "a\\b", "a\n", "a--b", "con:", "references",
+            "",
+            ".",
+            "..",
+            ".hidden",
+            "-a",
+            "a-",
+            "a.",
+            "MyStudy",
+            "ä",
+            "a b",
+            "a/b",
+            "a\\b",
+            "a\n",
+            "a--b",
+            "con:",
+            "references",
             &long,
         ];
         for name in others {

@@ -124,7 +124,9 @@ impl RunError {
         match self {
             Self::Store(_) => None,
             Self::Case { label, source } => Some((label, source.to_string())),
-            Self::Crashed { label } => Some((label, "crashed; please report it with the study file".to_owned())),
+            Self::Crashed { label } => {
+                Some((label, "crashed; please report it with the study file".to_owned()))
+            }
         }
     }
 }
@@ -232,11 +234,7 @@ fn run_jobs(
 ) -> Vec<Option<Result<Record, RunError>>> {
     let mut order: Vec<usize> = (0..jobs.len()).collect();
     order.sort_by_key(|index| std::cmp::Reverse(estimated_work(jobs[*index].case)));
-    tell(Progress::Planned {
-        cases: jobs.len(),
-        resumed,
-        work: jobs.iter().fold(0, |sum, job| sum.saturating_add(estimated_work(job.case))),
-    });
+    tell(Progress::Planned { cases: jobs.len(), resumed, work: work_of(jobs.iter().map(|job| job.case)) });
     let results: Vec<Mutex<Option<Result<Record, RunError>>>> =
         jobs.iter().map(|_| Mutex::new(None)).collect();
     let next = AtomicUsize::new(0);
@@ -258,6 +256,11 @@ fn run_jobs(
         }
     });
     results.into_iter().map(|slot| slot.into_inner().ok().flatten()).collect()
+}
+
+/// Work of cases together: the largest number where there is more.
+fn work_of<'a>(cases: impl Iterator<Item = &'a Case>) -> u64 {
+    cases.fold(0, |sum, case| sum.saturating_add(estimated_work(case)))
 }
 
 /// Point updates, weighted with what one costs: operators that follow the points are built anew in
@@ -480,4 +483,36 @@ pub fn time_study(
         }
     }
     Ok(report)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::StudySource;
+
+    fn cases(head: &str, sweep: &str) -> Vec<Case> {
+        let text =
+            format!("title = \"t\"\nscene = \"terzaghi\"\n{head}\n[[sweep]]\nmethod = [\"MPM\"]\n{sweep}\n");
+        let study = Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound");
+        study.cases(Tier::Full).into_iter().cloned().collect()
+    }
+
+    #[test]
+    fn work_beyond_counting_stays_the_largest_number() {
+        let endless = cases("", "cells = [3, 4]\ntime_step = [{ seconds = 1e-300 }]");
+        assert_eq!(endless.len(), 2);
+        assert!(endless.iter().all(|case| estimated_work(case) == u64::MAX));
+        assert_eq!(work_of(endless.iter()), u64::MAX);
+        let short = cases("", "cells = [3, 4]");
+        assert_eq!(work_of(short.iter()), estimated_work(&short[0]) + estimated_work(&short[1]));
+    }
+
+    #[test]
+    fn the_work_of_a_critical_step_has_an_end() {
+        let endless = cases("task = \"stability\"", "cells = [8]\nhydraulic_conductivity = [1e-300]");
+        let most = (u64::from(BISECTIONS) * OBSERVED_STEPS + 2 * MOST_PROBE_STEPS) * 16;
+        assert_eq!(estimated_updates(&endless[0]), most);
+        let short = cases("task = \"stability\"\n[output]\ntime_factors = [1e-9]", "cells = [8]");
+        assert_eq!(estimated_updates(&short[0]), (u64::from(BISECTIONS) + 2) * OBSERVED_STEPS * 16);
+    }
 }

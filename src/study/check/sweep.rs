@@ -175,8 +175,10 @@ impl Checker<'_> {
         if self.multiplied_out <= MOST_CASES {
             return;
         }
-        let others = if so_far > 0 { format!(", with {so_far} of the sweeps before it") } else { String::new() };
-        let count = count.map_or("more cases than can be counted".to_owned(), |count| format!("{count} cases"));
+        let others =
+            if so_far > 0 { format!(", with {so_far} of the sweeps before it") } else { String::new() };
+        let count =
+            count.map_or("more cases than can be counted".to_owned(), |count| format!("{count} cases"));
         self.complain(
             span.start..span.start + 1,
             format!("the sweep multiplies out to {count}{others}"),
