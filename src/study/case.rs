@@ -232,7 +232,7 @@ pub fn step_label(rule: &TimeStepRule) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Base;
+    use crate::exact::cosine_layer::Base;
     use crate::solver::material::Law;
     use crate::solver::scheme::Scheme;
 
