@@ -3,9 +3,12 @@
 
 mod program;
 
+use oedometer::assess::study_check::{CheckEnd, StudyCheck};
+use oedometer::exact::ReferenceKind;
+use oedometer::golden::GoldenFile;
 use oedometer::record::{Origins, Record, RecordStore, Status};
 use oedometer::solver::outcome::{Failure, FailureKind};
-use oedometer::study::{RunOptions, Study, StudySource, Tier, run_study};
+use oedometer::study::{RunOptions, Selected, Study, StudySource, Tier, run_studies, run_study};
 use program::{Told, call, folder_with};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -488,6 +491,29 @@ fn a_reference_that_refuses_fails_its_case_and_no_other() {
     assert!(told.err.contains("refusing: 2 cases (0 from disk, 1 failed)"), "{}", told.err);
     assert!(told.err.contains("short: 8 cases (0 from disk, 0 failed)"), "{}", told.err);
     assert!(at.join("out/refusing/refusing.csv").is_file() && at.join("out/short/short.csv").is_file());
+}
+
+/// The same without the program, for a reference that refuses at once: Xie & Leo's for a load that grows.
+#[test]
+fn a_study_with_a_refused_case_fails_by_its_name_and_keeps_the_others() {
+    let mut refusing = study();
+    refusing.references = vec![ReferenceKind::XieLeo];
+    refusing.planned[3].case.column.loading_time = 1.0;
+    let (refusing, sound) = (refusing, study());
+    let selected = [&refusing, &sound].map(|study| Selected { study, store: None });
+    let reports = run_studies(&selected, &RunOptions::whole(Tier::Full, 2), &|_| {});
+    assert_eq!((reports[0].records.len(), reports[0].errors.len()), (7, 1));
+    assert_eq!((reports[1].records.len(), reports[1].errors.len()), (8, 0));
+    let golden = GoldenFile::of("short", &reports[0].records, "for a test");
+    let check = StudyCheck::new(&refusing, &reports[0].records, Tier::Full, Ok(golden));
+    assert_eq!(check.end(), CheckEnd::Pass, "the other cases are sound");
+    let check = check.with_errors(&reports[0].errors);
+    assert_eq!(check.end(), CheckEnd::CaseFailed);
+    let note = &check.failed_cases[0];
+    assert!(
+        note.case.contains("cells=6") && note.sentence.contains("Xie & Leo's load acts at once"),
+        "{note:?}"
+    );
 }
 
 // ---- the list of faults ----
