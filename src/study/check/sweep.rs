@@ -157,23 +157,21 @@ impl Checker<'_> {
                 "give the axes of a path lists of one length",
             );
         }
-        if self.diagnostics.len() == before {
-            self.can_be_multiplied_out(&span, &sweep);
-        }
-        if self.diagnostics.len() == before {
+        if self.diagnostics.len() == before && self.can_be_multiplied_out(&span, &sweep) {
             self.rules_fit(table, &sweep);
             self.formulations_fit(table, &span, &sweep, scene);
         }
         (self.diagnostics.len() == before).then_some(sweep)
     }
 
-    /// Complains where the sweeps so far have more cases than a study may: before they are made.
-    fn can_be_multiplied_out(&mut self, span: &Range<usize>, sweep: &Sweep) {
+    /// Whether the sweeps so far have no more cases than a study may; a complaint where they do, before any
+    /// is made.
+    fn can_be_multiplied_out(&mut self, span: &Range<usize>, sweep: &Sweep) -> bool {
         let count = sweep.count();
         let so_far = self.multiplied_out;
         self.multiplied_out = count.map_or(usize::MAX, |count| so_far.saturating_add(count));
         if self.multiplied_out <= MOST_CASES {
-            return;
+            return true;
         }
         let others =
             if so_far > 0 { format!(", with {so_far} of the sweeps before it") } else { String::new() };
@@ -186,6 +184,7 @@ impl Checker<'_> {
                 "a study has at most {MOST_CASES}: shorten its lists, tie axes with `path`, or part it into several"
             ),
         );
+        false
     }
 
     pub(super) fn tier(&mut self, table: &SweepTable) -> Tier {
