@@ -506,9 +506,10 @@ fn a_study_with_a_refused_case_fails_by_its_name_and_keeps_the_others() {
     assert_eq!((reports[1].records.len(), reports[1].errors.len()), (8, 0));
     let golden = GoldenFile::of("short", &reports[0].records, "for a test");
     let check = StudyCheck::new(&refusing, &reports[0].records, Tier::Full, Ok(golden));
-    assert_eq!(check.end(), CheckEnd::Pass, "the other cases are sound");
+    assert!(check.failed_cases.is_empty(), "the other cases are sound: {:?}", check.failed_cases);
     let check = check.with_errors(&reports[0].errors);
-    assert_eq!(check.end(), CheckEnd::CaseFailed);
+    assert_ne!(check.end(), CheckEnd::Pass);
+    assert_eq!(check.failed_cases.len(), 1);
     let note = &check.failed_cases[0];
     assert!(
         note.case.contains("cells=6") && note.sentence.contains("Xie & Leo's load acts at once"),
