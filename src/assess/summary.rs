@@ -73,12 +73,11 @@ pub fn paths(records: &[Record], axis: Axis) -> Vec<Path<'_>> {
     for record in records {
         let near = places.entry(without_axes(&record.case)).or_default();
         let place = near.iter().find(|place| alike(&groups[**place].records[0].case, &record.case, axis));
-        match place {
-            Some(place) => groups[*place].records.push(record),
-            None => {
-                near.push(groups.len());
-                groups.push(Path { axis, records: vec![record] });
-            }
+        if let Some(place) = place {
+            groups[*place].records.push(record);
+        } else {
+            near.push(groups.len());
+            groups.push(Path { axis, records: vec![record] });
         }
     }
     groups.retain(|group| group.records.len() > 1);

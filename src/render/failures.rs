@@ -4,6 +4,7 @@ use super::changes::{count_of, judgement_of, summary};
 use super::number;
 use crate::assess::study_check::{CaseNote, StudyCheck};
 use crate::golden::{CaseChange, Difference};
+use std::fmt::Write;
 
 /// Columns of a terminal.
 const WIDTH: usize = 80;
@@ -79,7 +80,7 @@ fn section(title: &str, items: Vec<String>) -> String {
     let mut text = format!("\n{title}\n");
     text.extend(items.into_iter().take(MOST));
     if rest > 0 {
-        text += &format!("  and {rest} more\n");
+        let _ = writeln!(text, "  and {rest} more");
     }
     text
 }

@@ -63,7 +63,9 @@ pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
     let mut paths_with: BTreeMap<&str, usize> = BTreeMap::new();
     for own in &parts {
         let once: BTreeSet<&str> = own.iter().map(String::as_str).collect();
-        once.into_iter().for_each(|part| *paths_with.entry(part).or_default() += 1);
+        for part in once {
+            *paths_with.entry(part).or_default() += 1;
+        }
     }
     let is_shared = |part: &String| paths_with.get(part.as_str()) == Some(&parts.len());
     let each = parts.iter().map(|own| {
