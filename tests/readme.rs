@@ -123,7 +123,7 @@ fn is_equal(shown: &str, found: &str) -> bool {
     }
     let plain = |text: &str| text.replace('−', "-").parse::<f64>().ok();
     let (Some(value), Some(other)) = (plain(shown), plain(found)) else { return false };
-    (value - other).abs() <= 0.5000001 * last_digit(shown)
+    (value - other).abs() <= 0.500_000_1 * last_digit(shown)
 }
 
 /// Size of one unit of the last digit of a number as it is written.

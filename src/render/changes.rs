@@ -4,6 +4,7 @@ use super::number;
 use super::table::{Cell, Column, Mood, Table};
 use crate::assess::pareto::ParetoChange;
 use crate::golden::{CaseChange, Change, Difference, DifferenceGroup};
+use std::fmt::Write;
 
 /// Differences shown in a table before the rest is only counted.
 const MOST_DIFFERENCES: usize = 40;
@@ -31,16 +32,13 @@ pub(super) fn summary(group: &DifferenceGroup) -> String {
     let shared =
         |words: &[String]| words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
     if group.values > 1 && !group.shared_by_cases.is_empty() {
-        sentence += ", all with ";
-        sentence += &shared(&group.shared_by_cases);
+        let _ = write!(sentence, ", all with {}", shared(&group.shared_by_cases));
     }
     if group.values > 1 && !group.shared_by_measures.is_empty() {
-        sentence += ", all of ";
-        sentence += &shared(&group.shared_by_measures);
+        let _ = write!(sentence, ", all of {}", shared(&group.shared_by_measures));
     }
     if let Some(change) = group.worst.relative_change() {
-        sentence += "; largest relative change ";
-        sentence += &number::error(change);
+        let _ = write!(sentence, "; largest relative change {}", number::error(change));
     }
     sentence
 }

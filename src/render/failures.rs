@@ -4,6 +4,7 @@ use super::changes::{count_of, judgement_of, summary};
 use super::number;
 use crate::assess::study_check::{CaseNote, StudyCheck};
 use crate::golden::{CaseChange, Difference};
+use std::fmt::Write;
 
 /// Columns of a terminal.
 const WIDTH: usize = 80;
@@ -77,8 +78,10 @@ fn section(title: &str, items: Vec<String>) -> String {
     }
     let rest = items.len().saturating_sub(MOST);
     let mut text = format!("\n{title}\n");
-    let more = (rest > 0).then(|| format!("  and {rest} more\n"));
-    text.extend(items.into_iter().take(MOST).chain(more));
+    text.extend(items.into_iter().take(MOST));
+    if rest > 0 {
+        let _ = writeln!(text, "  and {rest} more");
+    }
     text
 }
 

@@ -191,7 +191,9 @@ mod tests {
         for owner in 0..6 {
             let curve: Vec<Px> = (0..8).map(|_| (number(700.0), number(400.0))).collect();
             space.add_line(&curve, owner);
-            curve.iter().for_each(|&at| space.add_marker(at));
+            for at in curve {
+                space.add_marker(at);
+            }
         }
         let all: Vec<Obstacle> = space.bins.values().flat_map(|bin| bin.obstacles.clone()).collect();
         for owner in [None, Some(0), Some(5)] {
