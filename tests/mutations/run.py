@@ -376,9 +376,8 @@ def campaign(faults, wanted, studies, tests, jobs):
         else:
             # Neighbours in the list are neighbours in the code: what caught one may catch the next.
             row = last_time.get(fault["name"], {})
-            # Outcomes of before the tests name a study in a column of that name.
-            before = row.get("caught_by") or row.get("study") or ""
-            caught_by, said = studies.outcome_of(fault, [before, caught_in_file.get(fault["file"], "")])
+            first = [row.get("caught_by", ""), caught_in_file.get(fault["file"], "")]
+            caught_by, said = studies.outcome_of(fault, first)
             caught_in_file[fault["file"]] = caught_by
         return fault, caught_by, said, time.monotonic() - start
 
