@@ -14,6 +14,7 @@ use oedometer::scene::{Column, SceneKind, column_problem};
 use oedometer::solver::assembled::AssembledColumn;
 use oedometer::solver::assembled_plane::AssembledPlane;
 use oedometer::solver::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
+use oedometer::solver::bounds::PhysicalBounds;
 use oedometer::solver::explicit::ExplicitSettings;
 use oedometer::solver::implicit::drive::Plan;
 use oedometer::solver::implicit::linear::LinearMarch;
@@ -113,7 +114,7 @@ fn implicit_step<const C: usize>(bencher: Bencher, method: &str) {
         sizes: StepSizes::default(),
         pressure_scale: 1.0,
         initial_height: 1.0,
-        settlement_scale: 1e-6,
+        bounds: PhysicalBounds::of(&problem),
         loading_time: 0.0,
     };
     match problem.method.basis {

@@ -85,7 +85,10 @@ fn differing(told: &Told) -> Vec<String> {
     let mut items: Vec<String> = Vec::new();
     for line in list.lines() {
         match items.last_mut() {
-            Some(item) if line.starts_with("    ") => *item += &format!(" {}", line.trim()),
+            Some(item) if line.starts_with("    ") => {
+                item.push(' ');
+                item.push_str(line.trim());
+            }
             _ => items.push(line.trim().to_owned()),
         }
     }

@@ -46,6 +46,11 @@ mod tests {
     use super::*;
 
     #[test]
+    #[expect(
+        clippy::unreadable_literal,
+        clippy::excessive_precision,
+        reason = "values as they were computed"
+    )]
     fn the_quantile_matches_high_precision_values() {
         // mpmath, 40 digits: root of the regularised incomplete beta function.
         for (freedom, exact) in [

@@ -5,6 +5,7 @@ use nalgebra::{Matrix4, Vector4};
 use proptest::prelude::*;
 
 /// `exp(A)`, by Taylor's series of `A/2^k` and `k` squarings.
+#[expect(clippy::cast_possible_truncation, reason = "a logarithm is a small number")]
 fn exponential(matrix: Matrix4<f64>) -> Matrix4<f64> {
     let halvings = 2 + matrix.norm().max(1.0).log2() as i32;
     let small = matrix / 2.0_f64.powi(halvings);
