@@ -11,8 +11,9 @@ const MOST_RELATIVE: f64 = 1e-6;
 const MOST_ABSOLUTE: f64 = 1e-9;
 /// Largest tolerance by a measured spread, over the largest value of the spread's group.
 const MOST_OF_THE_LARGEST: f64 = 0.1;
-/// Spread that round-off around zero explains, whatever the size of the values.
-const ROUND_OFF: f64 = 1e-10;
+/// Spread that round-off around zero explains, whatever the size of the values: balances on 640 cells
+/// scatter by 1.5e-10.
+const ROUND_OFF: f64 = 1e-9;
 
 impl GoldenFile {
     /// What is out of bounds in the file, as a sentence; `None` where it is sound.
