@@ -90,8 +90,10 @@ fn the_exact_layer_has_no_error_wherever_it_is_sampled() {
         let is_profile = ratios.split(',').count() < 4;
         assert_eq!(told.err.contains("nothing is known of the rest"), is_profile, "{ratios}: {}", told.err);
         for quantity in ["pressure", "displacement"] {
+            // Half a wave from the crest nothing presses, and a zero has no relative error.
+            let is_zero = quantity == "pressure" && ratios == "0.5";
             let rows = told.out.lines().filter(|line| line.contains(&format!(",{quantity},points,l2,")));
-            assert_eq!(rows.count(), 2, "{ratios}: {}", told.out);
+            assert_eq!(rows.count(), if is_zero { 0 } else { 2 }, "{ratios}: {}", told.out);
         }
         assert_eq!(told.out.contains("settlement"), ratios.starts_with("0,") || ratios == "0");
     }

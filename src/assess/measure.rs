@@ -424,7 +424,9 @@ const MOST_INERTIA: f64 = 1e-3;
 /// Why a quasi-static reference does not hold for a case that is solved with its inertia, where it does
 /// not. A scene of waves is about that difference and measures it.
 fn inertia_rules(case: &Case, reference: ReferenceKind) -> Option<String> {
-    let has_inertia = case.formulation != Formulation::QuasiStatic;
+    // The undrained start is an equilibrium, whatever comes after it.
+    let moves = case.time_factors.iter().any(|time_factor| *time_factor > 0.0);
+    let has_inertia = moves && case.formulation != Formulation::QuasiStatic;
     let change = skeleton_inertia(case);
     let holds = change <= MOST_INERTIA;
     (has_inertia && !case.scene.has_waves() && !holds).then(|| {

@@ -7,6 +7,8 @@ use crate::scene::{Arrangement, SceneKind};
 use crate::solver::material::Continuity;
 use crate::solver::method::Basis;
 
+/// The check that is told in numbers of points.
+const POINTS_MISSING: &str = "points missing at the start";
 /// What sums of numbers of like size leave.
 const ROUND_OFF: f64 = 1e-9;
 /// Force over the load that a direct solver may leave of an equilibrium.
@@ -55,7 +57,7 @@ pub fn start_checks(record: &Record) -> Vec<RecordCheck> {
     let is_exact = case.scene.is_plane() || !matches!(case.method.basis, Basis::Bspline2 | Basis::Bspline3);
     let is_judged = rests && is_exact && !deforms(record);
     vec![
-        RecordCheck::of("points missing at the start", missing, 0.0),
+        RecordCheck::of(POINTS_MISSING, missing, 0.0),
         RecordCheck::of("volume at the start, relative error", start.volume_error, volume_bound(record)),
         RecordCheck::of(
             "undrained pressure at the start, relative error",
@@ -129,6 +131,11 @@ fn water_bound(record: &Record) -> Option<f64> {
 pub fn complaints(record: &Record) -> Vec<String> {
     let told = |check: RecordCheck, when: &str| {
         let bound = check.bound.filter(|_| !check.holds())?;
+        if check.what == POINTS_MISSING {
+            return record.start.map(|start| {
+                format!("{} points at the start instead of {}", start.points, start.points_expected)
+            });
+        }
         Some(format!("{} is {:.2e}{when}, more than {bound:.0e}", check.what, check.value))
     };
     let at_start = start_checks(record).into_iter().filter_map(|check| told(check, ""));

@@ -84,13 +84,16 @@ time_step = [{ growth = 0.05 }]
         assert_eq!(lost, "19 points at the start instead of 20");
         for drift in [2e-9, -2e-9, f64::NAN] {
             let mass = said(|record| record.balance[1].solid_mass_drift = drift);
-            assert!(mass.contains("the mass of solids") && mass.contains("at T_v = 0.2"), "{mass}");
+            assert!(mass.contains("mass of solids, drift is") && mass.contains("at T_v = 0.2"), "{mass}");
             let forces = said(|record| record.balance[0].internal_force_imbalance = drift);
-            assert!(forces.contains("the internal forces") && forces.contains("at T_v = 0.05"), "{forces}");
+            assert!(
+                forces.contains("sum of internal forces") && forces.contains("at T_v = 0.05"),
+                "{forces}"
+            );
         }
         assert_eq!(said(|record| record.balance[0].solid_mass_drift = 0.9e-9), "");
         let gap = said(|record| record.balance[0].settlement_curve_gap = 2.1e-3);
-        assert!(gap.contains("the gap between the settlement and the settlement curve is 2.10e-3"), "{gap}");
+        assert!(gap.contains("settlement off the settlement curve is 2.10e-3"), "{gap}");
         assert_eq!(said(|record| record.balance[0].settlement_curve_gap = 1.9e-3), "");
         let nonsense = said(|record| record.errors[0].value = f64::NAN);
         assert!(nonsense.contains("is NaN"), "{nonsense}");
