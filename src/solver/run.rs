@@ -164,9 +164,10 @@ struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
     snapshots: Vec<Snapshot>,
     history: Vec<HistoryPoint>,
     time: f64,
-    /// Largest velocity at the last look, m/s, and its growth a step since the one before.
+    /// Largest velocity at the last look, m/s.
     watched_velocity: f64,
-    growth: Option<f64>,
+    /// Largest velocity over that of the look before, and the steps between them.
+    growth: Option<(f64, u64)>,
     failure: Option<Failure>,
 }
 
@@ -371,7 +372,8 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
     }
 
     fn failure(&self, kind: FailureKind, reason: String) -> Failure {
-        Failure { kind, step: self.counters.steps, time: self.time, growth: self.growth, reason }
+        let a_step = |(ratio, steps): (f64, u64)| elementary::powf(ratio, 1.0 / steps as f64);
+        Failure { kind, step: self.counters.steps, time: self.time, growth: self.growth.map(a_step), reason }
     }
 
     fn stopped(&self) -> Failure {
@@ -402,7 +404,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
             None => self.body.largest_velocity(),
         };
         if velocity.is_finite() && self.watched_velocity > 0.0 && velocity > 0.0 {
-            self.growth = Some(elementary::powf(velocity / self.watched_velocity, 1.0 / steps as f64));
+            self.growth = Some((velocity / self.watched_velocity, steps));
         }
         self.watched_velocity = velocity;
     }

@@ -2,6 +2,7 @@
 
 mod case;
 mod check;
+mod deadline;
 mod diagnostic;
 mod expectation;
 mod file;

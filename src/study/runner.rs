@@ -2,6 +2,7 @@
 
 use super::case::{Case, Task};
 use super::check::Study;
+use super::deadline::Deadline;
 use super::tier::Tier;
 use crate::assess::measure::{record_of, record_of_critical_step, record_of_stopped_search};
 use crate::elementary;
@@ -16,12 +17,10 @@ use crate::solver::run::{Kernel, Schedule, TimeStepRule};
 use std::cell::Cell;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Points of the settlement curve of a run.
 const HISTORY_POINTS: usize = 48;
-/// No limit on a case's time is longer than this, s: a century.
-const MOST_SECONDS: f64 = 3e9;
 /// Steps after which a run at a share of the critical step has shown that it is clean.
 const MOST_PROBE_STEPS: u64 = 1_000_000;
 /// First time factor of the settlement curve.
@@ -329,14 +328,9 @@ pub fn run_case_within(
     alone: bool,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
-    let deadline = deadline_of(seconds);
-    let in_time = |done: u64, expected: u64| observe(done, expected) && Instant::now() < deadline;
+    let deadline = Deadline::after(seconds);
+    let in_time = |done: u64, expected: u64| observe(done, expected) && !deadline.is_over();
     Ok(named_if_late(run_case(case, references, kernel, alone, &in_time)?, seconds))
-}
-
-/// When a case that starts now is to end at the latest.
-fn deadline_of(seconds: f64) -> Instant {
-    Instant::now() + Duration::from_secs_f64(seconds.min(MOST_SECONDS))
 }
 
 /// The record of a case that was stopped because its time was over says so.

@@ -34,8 +34,9 @@ REPORT = HERE / "OUTCOME.md"
 # What is copied: folders and files that the program, the benches and the tests are made of.
 PARTS = ["src", "studies", "golden", "benches", "tests", "examples"]
 FILES = ["Cargo.toml", "Cargo.lock", "build.rs", "rust-toolchain.toml", "README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
-# Seconds after which a study or a test that hangs counts as objecting.
+# Seconds after which a study, or a test, that hangs counts as objecting.
 LONGEST = 900
+LONGEST_TEST = 200
 # Seconds that a study is taken to cost whose golden file does not say.
 UNKNOWN_COST = 5.0
 
@@ -254,7 +255,7 @@ class Tests:
         command = [self.program[self.target[name]], name]
         try:
             done = subprocess.run(
-                command, cwd=self.tree, env=environment, capture_output=True, text=True, timeout=LONGEST
+                command, cwd=self.tree, env=environment, capture_output=True, text=True, timeout=LONGEST_TEST
             )
         except subprocess.TimeoutExpired:
             return "hangs"
