@@ -1,7 +1,7 @@
 //! The undrained start of the cosine-loaded layer against the figures of an independent
 //! implementation: where volumetric locking shows.
 
-use oedometer::assess::norms::Norm;
+use oedometer::assess::norm::Norm;
 use oedometer::record::{Quantity, Record, Sample};
 use oedometer::solver::run::Kernel;
 use oedometer::study::{Study, StudySource, run_case};

@@ -1,95 +1,13 @@
-//! What a study expects of single cases: how they end, where their critical step lies, how large an
-//! error or a drift may be. Hard cases are judged by this, not by series.
+//! Judges what a study expects of single cases; hard cases are judged by this, not by series.
 
 use super::class::{Class, Classification};
 use super::summary::Judgement;
 use super::verdict::{Check, Outcome, Verdict};
 use super::wording::typed;
 use crate::record::{Record, Status};
-use crate::solver::explicit::Drag;
-use crate::solver::integrator::IntegratorKind;
-use crate::solver::method::Method;
-use crate::solver::scheme::Scheme;
-use crate::study::{Measure, Tier};
-
-/// Which cases of a study an expectation is about; what is not named fits every case.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Selection {
-    /// Method.
-    pub method: Option<Method>,
-    /// Integrator.
-    pub integrator: Option<IntegratorKind>,
-    /// Cells over the height.
-    pub cells: Option<usize>,
-    /// Points a cell.
-    pub points_per_cell: Option<usize>,
-    /// Time level of the drag.
-    pub drag: Option<Drag>,
-    /// Scheme of the explicit step.
-    pub scheme: Option<Scheme>,
-}
-
-/// Bounds on one error of a case.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ErrorRange {
-    /// Which error.
-    pub measure: Measure,
-    /// It must be smaller than this.
-    pub below: f64,
-    /// It must be at least this.
-    pub above: f64,
-}
-
-/// What is wanted of a case; everything asked is judged.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct CaseDemand {
-    /// Name of its end: `ok`, or a failure's.
-    pub status: Option<String>,
-    /// Largest relative difference of the observed from the predicted critical step.
-    pub critical_step_within: Option<f64>,
-    /// Bounds on an error.
-    pub error: Option<ErrorRange>,
-    /// Largest drift of the mass of solids at any output, relative.
-    pub solid_drift_below: Option<f64>,
-    /// Largest imbalance of the water at any output, over what the load presses out.
-    pub water_drift_below: Option<f64>,
-}
-
-/// An expectation of single cases.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CaseExpectation {
-    /// Which cases.
-    pub selection: Selection,
-    /// What of each.
-    pub demand: CaseDemand,
-    /// Smallest tier whose cases can answer it.
-    pub tier: Tier,
-    /// The file's line, for messages.
-    pub line: usize,
-}
-
-impl Selection {
-    fn fits(&self, record: &Record) -> bool {
-        fn fit<T: PartialEq>(asked: Option<&T>, has: &T) -> bool {
-            asked.is_none_or(|asked| asked == has)
-        }
-        let case = &record.case;
-        fit(self.method.as_ref(), &case.method)
-            && fit(self.integrator.as_ref(), &case.integrator)
-            && fit(self.cells.as_ref(), &case.cells)
-            && fit(self.points_per_cell.as_ref(), &case.points_per_cell)
-            && fit(self.drag.as_ref(), &case.settings.drag)
-            && fit(self.scheme.as_ref(), &case.settings.scheme)
-    }
-}
+use crate::study::case_expectation::{CaseDemand, CaseExpectation, ErrorRange};
 
 impl CaseExpectation {
-    /// Whether it says how a record is to end.
-    pub fn foresees(&self, record: &Record) -> bool {
-        self.selection.fits(record)
-            && self.demand.status.as_ref().is_some_and(|status| *status == record.status.name())
-    }
-
     /// One judgement a case that it selects; where it selects none, one that fails.
     pub fn judge(&self, records: &[Record]) -> Vec<Judgement> {
         let selected: Vec<&Record> = records.iter().filter(|record| self.selection.fits(record)).collect();
@@ -218,7 +136,7 @@ fn drift_found(what: &str, found: Option<f64>, below: f64) -> Check {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::{RunOptions, Study, StudySource, run_study};
+    use crate::study::{Measure, RunOptions, Study, StudySource, Tier, run_study};
 
     const STUDY: &str = r#"title = "One case"
 scene = "terzaghi"

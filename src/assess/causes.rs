@@ -116,7 +116,7 @@ fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
 mod tests {
     use super::*;
     use crate::assess::class::{Class, Classification};
-    use crate::assess::norms::Norm;
+    use crate::assess::norm::Norm;
     use crate::assess::summary::{first_norm, paths};
     use crate::study::{RunOptions, Study, StudySource, Tier, run_study};
 

@@ -3,7 +3,7 @@
 
 use super::classify::classify;
 use super::measure::exact_samples;
-use super::norms::Norm;
+use super::norm::Norm;
 use super::places::contributions;
 use super::series::{ErrorSeries, Level};
 use super::summary::{level_size, paths};

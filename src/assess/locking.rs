@@ -2,7 +2,7 @@
 //! skeleton, stable step and cost.
 
 use super::class::Class;
-use super::norms::Norm;
+use super::norm::Norm;
 use super::plane_field::PlaneField;
 use super::statistics::median;
 use super::summary::paths;

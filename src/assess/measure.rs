@@ -1,6 +1,7 @@
 //! From a run to its record: errors against every reference, start checks, balances, groups.
 
-use super::norms::{self, Norm};
+use super::norm::Norm;
+use super::norms;
 use crate::elementary;
 use crate::exact::cosine_layer::{LayerFields, LayerState};
 use crate::exact::{ExactError, Reference, ReferenceKind};

@@ -23,6 +23,7 @@ mod least_squares;
 pub mod limiter;
 pub mod locking;
 pub mod measure;
+pub mod norm;
 pub mod norms;
 pub mod numerical_uncertainty;
 pub mod orders;

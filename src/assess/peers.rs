@@ -7,7 +7,7 @@ use super::work_precision::TimedRun;
 use crate::exact::ReferenceKind;
 use crate::record::{Quantity, Sample};
 
-use super::norms::Norm;
+use super::norm::Norm;
 
 /// Time factors of the comparison.
 pub const TIME_FACTORS: [f64; 3] = [0.05, 0.2, 1.0];

@@ -217,7 +217,7 @@ fn displacement_of_surface(
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::assess::norms::Norm;
+    use crate::assess::norm::Norm;
 
     /// The exact fields on places, the pressure off by `error(ζ)`.
     pub(super) fn state(places: usize, time_factor: f64, error: impl Fn(f64) -> f64) -> SampledState {

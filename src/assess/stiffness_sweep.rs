@@ -1,7 +1,7 @@
 //! Errors of a layer against the stiffness of its water and of its skeleton, at the start and
 //! through consolidation.
 
-use super::norms::Norm;
+use super::norm::Norm;
 use super::plane_field::PlaneField;
 use crate::exact::ExactError;
 use crate::record::{Quantity, Record, Sample, Status};

@@ -3,7 +3,8 @@
 use super::class::{Classification, Context};
 use super::classify::classify;
 use super::expectation::Expectation as Demand;
-use super::norms::{Norm, relative_error};
+use super::norm::Norm;
+use super::norms::relative_error;
 use super::numerical_uncertainty::NumericalUncertainty;
 use super::orders::{FinestOrder, PairOrder, SlopeFit, finest_order, pair_orders, slope};
 use super::series::{ErrorSeries, Level, Undefined};

@@ -5,17 +5,19 @@
 
 mod origins;
 mod provenance;
+mod quantity;
 mod store;
 mod tidy;
 mod whole;
 
 pub use origins::Origins;
 pub use provenance::Provenance;
+pub use quantity::{Quantity, Sample};
 pub use store::{Found, RecordStore, StoreError};
 pub use tidy::tidy_csv;
 pub use whole::write_whole;
 
-use crate::assess::norms::Norm;
+use crate::assess::norm::Norm;
 use crate::solver::critical::CriticalStep;
 use crate::solver::outcome::{Counters, Failure, FailureKind, StepSizes};
 use crate::solver::snapshot::Snapshot;
@@ -24,64 +26,6 @@ use serde::{Deserialize, Serialize};
 
 /// Version of the record's layout.
 pub const SCHEMA: u32 = 2;
-
-/// A measured quantity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Quantity {
-    /// Excess pore pressure.
-    Pressure,
-    /// Vertical effective stress.
-    EffectiveStress,
-    /// Vertical displacement of the skeleton.
-    Displacement,
-    /// Settlement of the surface.
-    Settlement,
-}
-
-impl Quantity {
-    /// Every quantity.
-    pub const ALL: [Self; 4] = [Self::Pressure, Self::EffectiveStress, Self::Displacement, Self::Settlement];
-
-    /// Name in study files, records and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Pressure => "pressure",
-            Self::EffectiveStress => "effective_stress",
-            Self::Displacement => "displacement",
-            Self::Settlement => "settlement",
-        }
-    }
-}
-
-/// Where a quantity is sampled: it decides the order that is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Sample {
-    /// At the material points.
-    Points,
-    /// Means of cells at their centres.
-    Centres,
-    /// At the nodes.
-    Nodes,
-    /// At the loaded surface.
-    Surface,
-}
-
-impl Sample {
-    /// Every sample.
-    pub const ALL: [Self; 4] = [Self::Points, Self::Centres, Self::Nodes, Self::Surface];
-
-    /// Name in study files, records and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Points => "points",
-            Self::Centres => "centres",
-            Self::Nodes => "nodes",
-            Self::Surface => "surface",
-        }
-    }
-}
 
 /// How a case ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

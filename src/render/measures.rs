@@ -3,7 +3,7 @@
 use super::RenderError;
 use super::number;
 use super::table::{Cell, Column, Mood, Table};
-use crate::assess::norms::Norm;
+use crate::assess::norm::Norm;
 use crate::assess::record_checks::{self, RecordCheck};
 use crate::record::{Quantity, Record, Sample, Status};
 use std::fmt::Write;

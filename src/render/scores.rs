@@ -2,7 +2,7 @@
 
 use super::measures::NOT_RESOLVED;
 use super::table::{Cell, Column, Table};
-use crate::assess::norms::Norm;
+use crate::assess::norm::Norm;
 use crate::assess::score::series::ScoredSeries;
 use crate::assess::score::{Score, WorstPlace};
 use crate::record::{ErrorRow, Quantity};

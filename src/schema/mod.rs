@@ -7,7 +7,7 @@ mod node;
 mod tracer;
 
 use crate::assess::class::Class;
-use crate::assess::norms::Norm;
+use crate::assess::norm::Norm;
 use crate::exact::ReferenceKind;
 use crate::import::Mapping;
 use crate::record::{Quantity, Record, Sample};

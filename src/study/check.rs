@@ -15,7 +15,7 @@ use super::expectation::Expectation;
 use super::file::{OutputTable, StudyFile, StudySource};
 use super::name::name_of;
 use super::tier::Tier;
-use crate::assess::case_expectation::CaseExpectation;
+use super::case_expectation::CaseExpectation;
 use crate::exact::ReferenceKind;
 use crate::record::Record;
 use crate::scene::{Column, SceneKind};

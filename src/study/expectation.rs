@@ -2,7 +2,7 @@
 
 use super::tier::Tier;
 use crate::assess::expectation::Expectation as Demand;
-use crate::assess::norms::Norm;
+use crate::assess::norm::Norm;
 use crate::assess::wording::typed;
 use crate::exact::ReferenceKind;
 use crate::record::{Quantity, Sample};

@@ -1,6 +1,7 @@
 //! Studies: what was typed (`file`), what will run (`check`, `sweep`, `case`, `tier`), and the runner.
 
 mod case;
+pub mod case_expectation;
 mod check;
 mod deadline;
 mod diagnostic;

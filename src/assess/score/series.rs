@@ -4,7 +4,7 @@ use super::Score;
 use super::times::TimeGroups;
 use crate::assess::class::{Classification, Context};
 use crate::assess::classify::classify;
-use crate::assess::norms::Norm;
+use crate::assess::norm::Norm;
 use crate::assess::orders::{FinestOrder, finest_order};
 use crate::assess::series::{ErrorSeries, Level, Undefined};
 use crate::record::ErrorRow;

@@ -1,7 +1,7 @@
 //! What a score comes to: warnings, guesses at their cause, and the verdict of a gate.
 
 use super::results::{Read, Results};
-use crate::assess::norms::Norm;
+use crate::assess::norm::Norm;
 use crate::assess::wording::typed;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;

@@ -1,7 +1,7 @@
 //! How the numbers were made: norms, references with their truncation, provenance.
 
 use super::StudyResults;
-use crate::assess::norms::Norm;
+use crate::assess::norm::Norm;
 use crate::render::page::{Block, Section};
 use crate::render::table::{Cell, Column, Table};
 use std::collections::BTreeMap;

@@ -5,7 +5,7 @@ use crate::assess::curves::{
     computed_consolidation, computed_isochrone, constant_recovery_error, theory_consolidation, theory_degree,
     theory_isochrone,
 };
-use crate::assess::norms::Norm;
+use crate::assess::norm::Norm;
 use crate::exact::ExactError;
 use crate::record::{Quantity, Record, Sample, Status};
 use crate::render::chart::{Axis as ChartAxis, Chart, Series, Size, Style};

@@ -1,8 +1,8 @@
 //! Checks of what is said about single cases: where their points lie, and what must become of them.
 
 use super::{Checker, MOST_CELLS, MOST_POINTS};
-use crate::assess::case_expectation::{CaseDemand, CaseExpectation, ErrorRange, Selection};
-use crate::assess::norms::Norm;
+use crate::study::case_expectation::{CaseDemand, CaseExpectation, ErrorRange, Selection};
+use crate::assess::norm::Norm;
 use crate::exact::ReferenceKind;
 use crate::record::{Quantity, Sample};
 use crate::scene::{Arrangement, SceneKind};

@@ -3,7 +3,7 @@
 use super::{Checker, MOST_CELLS, MOST_POINTS};
 use crate::assess::class::Class;
 use crate::assess::expectation::{Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure};
-use crate::assess::norms::Norm;
+use crate::assess::norm::Norm;
 use crate::exact::ReferenceKind;
 use crate::record::{Quantity, Sample};
 use crate::scene::SceneKind;
