@@ -6,8 +6,11 @@
 //! what counts.
 #![allow(clippy::print_stdout, reason = "a benchmark prints what it measured")]
 
-use oedometer::record::RecordStore;
-use oedometer::study::{RunOptions, Selected, Study, StudySource, Tier, run_studies};
+use oedometer::campaign::{RunOptions, Selected, run_studies};
+use oedometer::case::tier::Tier;
+use oedometer::record::store::RecordStore;
+use oedometer::study::check::Study;
+use oedometer::study::file::StudySource;
 use std::fmt::Write;
 use std::time::Instant;
 use tempfile::TempDir;

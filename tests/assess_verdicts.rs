@@ -1,9 +1,9 @@
 //! Expectations are judged in full, and nothing passes by absence or nonsense.
 
-use oedometer::assess::class::{Class, Context};
-use oedometer::assess::expectation::{Band, ErrorBound, Expectation, FloorBand, KnownFailure};
-use oedometer::assess::series::{ErrorSeries, Level};
-use oedometer::assess::verdict::{Beside, Outcome, Verdict, judge};
+use oedometer::convergence::class::{Class, Context};
+use oedometer::convergence::series::{ErrorSeries, Level};
+use oedometer::convergence::series_expectation::{Band, ErrorBound, Expectation, FloorBand, KnownFailure};
+use oedometer::judge::verdict::{Beside, Outcome, Verdict, judge};
 
 fn series(error: impl Fn(f64) -> f64) -> ErrorSeries {
     let sizes = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0].map(|cells| 1.0 / cells);

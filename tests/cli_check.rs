@@ -3,9 +3,13 @@
 
 mod program;
 
+use oedometer::campaign::{RunOptions, run_study};
+use oedometer::case::tier::Tier;
 use oedometer::golden::GoldenFile;
-use oedometer::record::{Provenance, Record};
-use oedometer::study::{RunOptions, Study, StudySource, Tier, run_study};
+use oedometer::record::Record;
+use oedometer::record::provenance::Provenance;
+use oedometer::study::check::Study;
+use oedometer::study::file::StudySource;
 use program::{Told, assert_words, call_with, folder_with};
 use std::fs;
 use std::path::Path;

@@ -3,12 +3,17 @@
 
 mod program;
 
-use oedometer::assess::study_check::{CheckEnd, StudyCheck};
-use oedometer::exact::ReferenceKind;
+use oedometer::campaign::{RunOptions, Selected, run_studies, run_study};
+use oedometer::case::tier::Tier;
+use oedometer::exact::reference::ReferenceKind;
 use oedometer::golden::GoldenFile;
-use oedometer::record::{Origins, Record, RecordStore, Status};
-use oedometer::solver::outcome::{Failure, FailureKind};
-use oedometer::study::{RunOptions, Selected, Study, StudySource, Tier, run_studies, run_study};
+use oedometer::judge::study_check::{CheckEnd, StudyCheck};
+use oedometer::mpm::run::outcome::{Failure, FailureKind};
+use oedometer::record::origins::Origins;
+use oedometer::record::store::RecordStore;
+use oedometer::record::{Record, Status};
+use oedometer::study::check::Study;
+use oedometer::study::file::StudySource;
 use program::{Told, call, folder_with};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -77,7 +82,7 @@ fn change_records(results: &Path, change: impl Fn(usize, &mut Record)) {
     }
 }
 
-fn provenance_of(results: &Path) -> Vec<oedometer::record::Provenance> {
+fn provenance_of(results: &Path) -> Vec<oedometer::record::provenance::Provenance> {
     let store = RecordStore::new(results, "short");
     study().cases(Tier::Full).into_iter().filter_map(|case| store.origin(case)).collect()
 }

@@ -3,7 +3,8 @@
 
 mod program;
 
-use oedometer::record::{Record, RecordStore};
+use oedometer::record::Record;
+use oedometer::record::store::RecordStore;
 use program::{assert_snapshot, assert_words, call, folder_with};
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -221,8 +222,11 @@ fn one_case_can_be_explained_and_run_again() {
 
 #[test]
 fn an_explanation_says_what_changed_against_the_golden_values() {
+    use oedometer::campaign::{RunOptions, run_study};
+    use oedometer::case::tier::Tier;
     use oedometer::golden::GoldenFile;
-    use oedometer::study::{RunOptions, Study, StudySource, Tier, run_study};
+    use oedometer::study::check::Study;
+    use oedometer::study::file::StudySource;
     let folder = place();
     let source = StudySource { name: "short.toml".to_owned(), text: STUDY.to_owned() };
     let study = Study::check(&source).expect("sound");
@@ -270,9 +274,14 @@ fn threads_make_no_spread_and_last_digits_and_kernels_a_little() {
 /// were derived from last digits alone.
 #[test]
 fn tolerances_from_last_digits_hold_for_another_kernel() {
-    use oedometer::golden::{GoldenFile, compare, spread_by_group, values_of};
-    use oedometer::solver::run::Kernel;
-    use oedometer::study::{LastDigit, Study, StudySource, Tier, run_case};
+    use oedometer::campaign::run_case;
+    use oedometer::case::tier::Tier;
+    use oedometer::golden::tolerance::spread_by_group;
+    use oedometer::golden::{GoldenFile, compare, values_of};
+    use oedometer::mpm::run::Kernel;
+    use oedometer::study::check::Study;
+    use oedometer::study::file::StudySource;
+    use oedometer::study::perturbed::LastDigit;
     let source = StudySource { name: "short.toml".to_owned(), text: STUDY.to_owned() };
     let study = Study::check(&source).expect("sound");
     let records_by = |study: &Study, kernel: Kernel| -> Vec<Record> {

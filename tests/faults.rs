@@ -245,8 +245,8 @@ proptest! {
 
     #[test]
     fn a_mangled_study_is_taken_or_refused_with_a_place_and_never_panics(text in mangled()) {
-        let source = oedometer::study::StudySource { name: "mangled.toml".to_owned(), text };
-        if let Err(error) = oedometer::study::Study::check(&source) {
+        let source = oedometer::study::file::StudySource { name: "mangled.toml".to_owned(), text };
+        if let Err(error) = oedometer::study::check::Study::check(&source) {
             let told = error.to_string();
             prop_assert!(told.contains("mangled.toml") || told.contains("error"), "{told}");
             prop_assert!(told.len() > 20, "a sentence: {told}");
@@ -255,15 +255,15 @@ proptest! {
 
     #[test]
     fn any_text_is_refused_with_words(text in "\\PC{0,200}") {
-        let source = oedometer::study::StudySource { name: "any.toml".to_owned(), text };
-        let refused = oedometer::study::Study::check(&source);
+        let source = oedometer::study::file::StudySource { name: "any.toml".to_owned(), text };
+        let refused = oedometer::study::check::Study::check(&source);
         prop_assert!(refused.is_err_and(|error| error.to_string().len() > 20));
     }
 }
 
 #[test]
 fn any_damage_to_a_record_leaves_it_whole_or_unread() {
-    use oedometer::record::RecordStore;
+    use oedometer::record::store::RecordStore;
     let (folder, file, sound) = one_record();
     let text = String::from_utf8(sound.clone()).expect("words");
     let mut record: oedometer::record::Record = serde_json::from_str(&text).expect("a record");

@@ -3,15 +3,19 @@
 
 mod program;
 
-use oedometer::assess::record_checks::{balance_checks, start_checks};
-use oedometer::assess::soundness;
-use oedometer::record::{Quantity, Record, Sample, Status};
+use oedometer::campaign::{RunOptions, run_case, run_study};
+use oedometer::case::quantity::{Quantity, Sample};
+use oedometer::case::tier::Tier;
+use oedometer::judge::soundness;
+use oedometer::measure::record_checks::{balance_checks, start_checks};
+use oedometer::mpm::run::Kernel;
+use oedometer::mpm::run::outcome::FailureKind;
+use oedometer::record::{Record, Status};
 use oedometer::render::measures;
 use oedometer::render::page::render_markdown;
 use oedometer::render::report::{StudyResults, page_of};
-use oedometer::solver::outcome::FailureKind;
-use oedometer::solver::run::Kernel;
-use oedometer::study::{RunOptions, Study, StudySource, Tier, run_case, run_study};
+use oedometer::study::check::Study;
+use oedometer::study::file::StudySource;
 use program::call;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -188,7 +192,8 @@ fn no_error_is_held_against_a_theory_that_leaves_out_what_rules() {
 #[test]
 fn beyond_the_bound_of_inertia_theory_is_off_by_thousandths() {
     // Terzaghi's settlement against that of the column with its inertia, both exact.
-    use oedometer::exact::{ColumnParameters, Reference, ReferenceKind};
+    use oedometer::exact::parameters::ColumnParameters;
+    use oedometer::exact::reference::{Reference, ReferenceKind};
     let gap = |conductivity: f64| {
         let column = ColumnParameters { hydraulic_conductivity: conductivity, ..ColumnParameters::default() };
         let settlement = |kind| {

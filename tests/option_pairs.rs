@@ -4,17 +4,19 @@
 //! case; pairs of values that a study may ask for and none does are listed in a snapshot, so that the list
 //! changes knowingly. What cannot go together is told by the checker itself.
 
+use oedometer::case::tier::Tier;
+use oedometer::case::{Case, Task};
 use oedometer::exact::cosine_layer::Base;
+use oedometer::mpm::explicit::Drag;
+use oedometer::mpm::explicit::scheme::Scheme;
+use oedometer::mpm::method::{Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient};
+use oedometer::mpm::run::TimeStepRule;
+use oedometer::mpm::run::integrator::{Formulation, IntegratorKind};
 use oedometer::scene::SceneKind;
-use oedometer::solver::explicit::Drag;
-use oedometer::solver::integrator::{Formulation, IntegratorKind};
-use oedometer::solver::material::{Continuity, Law, Material};
-use oedometer::solver::method::{
-    Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient,
-};
-use oedometer::solver::run::TimeStepRule;
-use oedometer::solver::scheme::Scheme;
-use oedometer::study::{Case, Study, StudySource, Task, Tier, shipped_studies};
+use oedometer::soil::material::{Continuity, Law, Material};
+use oedometer::study::check::Study;
+use oedometer::study::file::StudySource;
+use oedometer::study::shipped::shipped_studies;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 

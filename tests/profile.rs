@@ -1,9 +1,11 @@
 //! Where the time goes, and which formulations an integrator takes: whole cases of every integrator.
 
+use oedometer::campaign::run_case;
+use oedometer::mpm::run::Kernel;
+use oedometer::mpm::run::profile::{Phase, PhaseTime, profiled};
 use oedometer::record::Record;
-use oedometer::solver::profile::{Phase, PhaseTime, profiled};
-use oedometer::solver::run::Kernel;
-use oedometer::study::{Study, StudySource, run_case};
+use oedometer::study::check::Study;
+use oedometer::study::file::StudySource;
 
 fn study_of(scene: &str, sweep: &str) -> Study {
     let text = format!(

@@ -5,15 +5,18 @@
 
 mod program;
 
-use oedometer::assess::study_check::StudyCheck;
+use oedometer::campaign::{RunOptions, run_study};
+use oedometer::case::tier::Tier;
 use oedometer::golden::{GoldenFile, values_of};
-use oedometer::record::{Provenance, Record, WallSample};
-use oedometer::render::measures;
+use oedometer::judge::study_check::StudyCheck;
+use oedometer::record::provenance::Provenance;
+use oedometer::record::{Record, WallSample};
 use oedometer::render::page::{Block, Page, figures, render_html, render_markdown};
 use oedometer::render::report::{StudyResults, page_of};
 use oedometer::render::table::Table;
-use oedometer::render::{junit, verdicts};
-use oedometer::study::{RunOptions, Study, StudySource, Tier, run_study};
+use oedometer::render::{junit, measures, verdicts};
+use oedometer::study::check::Study;
+use oedometer::study::file::StudySource;
 use program::assert_snapshot;
 
 const STUDY: &str = r#"

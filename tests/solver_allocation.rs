@@ -1,12 +1,13 @@
 //! A step allocates nothing, whatever the method, the configuration and the kernel.
 
-use oedometer::scene::{Column, SceneKind, column_problem};
-use oedometer::solver::assembled::AssembledColumn;
-use oedometer::solver::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
-use oedometer::solver::explicit::{Drag, ExplicitSettings};
-use oedometer::solver::material::{Continuity, Material};
-use oedometer::solver::method::{Basis, Configuration, Method};
-use oedometer::solver::run::predicted_critical_step;
+use oedometer::mpm::assembled::column::AssembledColumn;
+use oedometer::mpm::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
+use oedometer::mpm::critical_step::predicted::predicted_critical_step;
+use oedometer::mpm::explicit::{Drag, ExplicitSettings};
+use oedometer::mpm::method::{Basis, Configuration, Method};
+use oedometer::scene::SceneKind;
+use oedometer::scene::column::{Column, column_problem};
+use oedometer::soil::material::{Continuity, Material};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
 

@@ -1,13 +1,14 @@
 //! What holds of the solver whatever the numbers: scaling of units, linearity, balances, and the
 //! equalities between methods that theory demands on the regular lattice.
 
-use oedometer::scene::{Column, SceneKind, column_problem};
-use oedometer::solver::explicit::{Drag, ExplicitSettings};
-use oedometer::solver::material::Material;
-use oedometer::solver::method::{Configuration, Method};
-use oedometer::solver::outcome::{Outcome, RunStatus};
-use oedometer::solver::run::{Kernel, Schedule, TimeStepRule, run};
-use oedometer::solver::snapshot::Snapshot;
+use oedometer::mpm::explicit::{Drag, ExplicitSettings};
+use oedometer::mpm::method::{Configuration, Method};
+use oedometer::mpm::run::outcome::{Outcome, RunStatus};
+use oedometer::mpm::run::snapshot::Snapshot;
+use oedometer::mpm::run::{Kernel, Schedule, TimeStepRule, run};
+use oedometer::scene::SceneKind;
+use oedometer::scene::column::{Column, column_problem};
+use oedometer::soil::material::Material;
 use proptest::prelude::*;
 
 /// A run in dimensionless words, small enough for many of them.
@@ -59,9 +60,9 @@ impl Setup {
         .expect("a possible column");
         let seconds = self.column.height * self.column.height / self.soil.coefficient_of_consolidation();
         let schedule = Schedule {
-            integrator: oedometer::solver::integrator::IntegratorKind::Explicit,
+            integrator: oedometer::mpm::run::integrator::IntegratorKind::Explicit,
             critical_step: None,
-            formulation: oedometer::solver::integrator::Formulation::VW,
+            formulation: oedometer::mpm::run::integrator::Formulation::VW,
             outputs: self.time_factors.iter().map(|factor| factor * seconds).collect(),
             history: Vec::new(),
             rule: self.rule,

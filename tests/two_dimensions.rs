@@ -2,15 +2,16 @@
 //! dimensions, one result.
 
 use oedometer::exact::cosine_layer::Base;
-use oedometer::scene::{Column, SceneKind, column_problem};
-use oedometer::solver::body::Problem;
-use oedometer::solver::explicit::{Drag, ExplicitSettings};
-use oedometer::solver::integrator::IntegratorKind;
-use oedometer::solver::material::Material;
-use oedometer::solver::method::{Basis, Method};
-use oedometer::solver::outcome::{Outcome, RunStatus};
-use oedometer::solver::run::{Kernel, Schedule, TimeStepRule, run};
-use oedometer::solver::snapshot::Snapshot;
+use oedometer::mpm::body::Problem;
+use oedometer::mpm::explicit::{Drag, ExplicitSettings};
+use oedometer::mpm::method::{Basis, Method};
+use oedometer::mpm::run::integrator::IntegratorKind;
+use oedometer::mpm::run::outcome::{Outcome, RunStatus};
+use oedometer::mpm::run::snapshot::Snapshot;
+use oedometer::mpm::run::{Kernel, Schedule, TimeStepRule, run};
+use oedometer::scene::SceneKind;
+use oedometer::scene::column::{Column, column_problem};
+use oedometer::soil::material::Material;
 
 const CELLS: usize = 10;
 const PER_CELL: usize = 2;

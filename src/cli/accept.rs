@@ -1,15 +1,19 @@
 //! `oedometer accept`: the present values of a study become its golden values.
 
-use super::check::run_quietly;
-use super::destination::is_on;
-use super::exit::{Ended, Exit};
-use super::run::{jobs_of, load};
-use super::stream::say;
-use crate::assess::study_check::StudyCheck;
-use crate::golden::{GoldenFile, spread_by_group, values_of};
-use crate::record::{Provenance, Record};
+use crate::case::tier::Tier;
+use crate::cli::check::run_quietly;
+use crate::cli::destination::is_on;
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::run::{jobs_of, load};
+use crate::cli::stream::say;
+use crate::golden::tolerance::spread_by_group;
+use crate::golden::{GoldenFile, values_of};
+use crate::judge::study_check::StudyCheck;
+use crate::record::Record;
+use crate::record::provenance::Provenance;
 use crate::render::verdicts::objections_of;
-use crate::study::{LastDigit, Study, Tier};
+use crate::study::check::Study;
+use crate::study::perturbed::LastDigit;
 use std::path::PathBuf;
 
 /// Arguments of `accept`.
@@ -28,7 +32,7 @@ pub struct Arguments {
     #[arg(long, value_name = "TEXT")]
     reason: String,
     /// Folder of the golden values
-    #[arg(long, value_name = "DIR", default_value = super::check::GOLDEN)]
+    #[arg(long, value_name = "DIR", default_value = crate::cli::check::GOLDEN)]
     golden: PathBuf,
     /// Cases at the same time; all cores where not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
@@ -110,7 +114,7 @@ fn keep(golden: &GoldenFile, arguments: &Arguments) -> anyhow::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::StudySource;
+    use crate::study::file::StudySource;
 
     #[test]
     fn values_of_a_study_whose_expectations_fail_are_taken_only_when_told() {

@@ -1,18 +1,24 @@
 //! `oedometer check`: the CI tier again, judged by its expectations and by its golden values.
 
-use super::destination::{append, is_on, path_in, write_document};
-use super::exit::{Ended, Exit, sentence};
-use super::output::{TableFormat, coloured, json_of};
-use super::progress::StudyBar;
-use super::run::{jobs_of, load_or_shipped};
-use super::stream::{print_data, say};
-use crate::assess::study_check::{CaseNote, CheckEnd, StudyCheck};
-use crate::assess::summary::Judgement;
-use crate::golden::{CaseChange, Difference, DifferenceGroup, GoldenFile, REFERENCES};
+use crate::campaign::{RunOptions, RunReport, Selected, run_studies};
+use crate::case::tier::Tier;
+use crate::cli::destination::{append, is_on, path_in, write_document};
+use crate::cli::exit::{Ended, Exit, sentence};
+use crate::cli::output::{TableFormat, coloured, json_of};
+use crate::cli::progress::StudyBar;
+use crate::cli::run::{jobs_of, load_or_shipped};
+use crate::cli::stream::{print_data, say};
+use crate::golden::GoldenFile;
+use crate::golden::case_changes::CaseChange;
+use crate::golden::compare::Difference;
+use crate::golden::difference_groups::DifferenceGroup;
+use crate::golden::references::REFERENCES;
+use crate::judge::paths::Judgement;
+use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::record::Record;
 use crate::render::annotations::annotations_of;
 use crate::render::{junit, verdicts};
-use crate::study::{RunOptions, RunReport, Selected, Study, Tier, run_studies};
+use crate::study::check::Study;
 use std::path::PathBuf;
 
 /// Folder of the golden values.

@@ -1,7 +1,7 @@
 //! `oedometer completions`: what a shell needs to complete the command line.
 
-use super::exit::Exit;
-use super::stream::print_data;
+use crate::cli::exit::Exit;
+use crate::cli::stream::print_data;
 use clap_complete::Shell;
 
 /// Arguments of `completions`.
@@ -13,7 +13,7 @@ pub struct Arguments {
 
 /// Prints the script of a shell.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let mut command = super::command();
+    let mut command = crate::cli::command();
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut command, "oedometer", &mut script);
     print_data(&String::from_utf8(script)?)?;

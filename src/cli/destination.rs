@@ -1,8 +1,8 @@
 //! Files that a user names for a copy of the verdicts. A regular file is replaced as a whole; a link is
 //! followed, and what is no file (a terminal, a pipe, `/dev/stdout`) is written to and stays what it is.
 
-use super::exit::{Ended, Exit};
-use crate::record::write_whole;
+use crate::cli::exit::{Ended, Exit};
+use crate::record::whole_file::write_whole;
 use std::ffi::OsString;
 use std::fs::{self, OpenOptions};
 use std::io::Write;

@@ -1,13 +1,17 @@
 //! `oedometer exact`: an exact solution as numbers.
 
-use super::exit::{Ended, Exit};
-use super::output::json_of;
-use super::overrides::{self, StudyLines};
-use super::stream::{print_data, say};
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::output::json_of;
+use crate::cli::overrides;
+use crate::cli::overrides::StudyLines;
+use crate::cli::stream::{print_data, say};
+use crate::exact::consolidation;
 use crate::exact::cosine_layer::LayerFields;
-use crate::exact::{ColumnParameters, Reference, ReferenceKind, consolidation};
-use crate::scene::{SceneKind, column_parameters};
-use crate::study::Purpose;
+use crate::exact::parameters::ColumnParameters;
+use crate::exact::reference::{Reference, ReferenceKind};
+use crate::scene::SceneKind;
+use crate::scene::column::column_parameters;
+use crate::study::check::Purpose;
 use clap::ValueEnum;
 
 /// Depths printed where none are asked for.

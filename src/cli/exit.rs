@@ -1,8 +1,8 @@
 //! Exit codes, decided in one place.
 
-use crate::exact::ExactError;
-use crate::import::ImportError;
-use crate::study::StudyError;
+use crate::exact::error::ExactError;
+use crate::import::error::ImportError;
+use crate::study::diagnostic::StudyError;
 use std::process::ExitCode;
 
 /// The exit codes, as `--help` tells them.

@@ -1,16 +1,20 @@
 //! `oedometer explain`: which norm and place carries the error of a case, how it stands among the
 //! other levels, what changed against the golden values, and the command that runs it again.
 
-use super::exit::{Ended, Exit};
-use super::output::{TableFormat, json_of, print_tables};
-use super::run::{DEFAULT_RESULTS, load_or_shipped};
-use super::stream::{print_data, say};
-use crate::assess::explain::explain;
+use crate::campaign::run_case;
+use crate::case::Case;
+use crate::case::tier::Tier;
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::output::{TableFormat, json_of, print_tables};
+use crate::cli::run::{DEFAULT_RESULTS, load_or_shipped};
+use crate::cli::stream::{print_data, say};
 use crate::golden::{GoldenError, GoldenFile};
-use crate::record::{Record, RecordStore};
+use crate::judge::explain::explain;
+use crate::mpm::run::Kernel;
+use crate::record::Record;
+use crate::record::store::RecordStore;
 use crate::render::explanation;
-use crate::solver::run::Kernel;
-use crate::study::{Case, Study, Tier, run_case};
+use crate::study::check::Study;
 use std::path::{Path, PathBuf};
 
 /// Cases that are named where a description fits several.
@@ -28,7 +32,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
     /// Folder of the golden values
-    #[arg(long, value_name = "DIR", default_value = super::check::GOLDEN)]
+    #[arg(long, value_name = "DIR", default_value = crate::cli::check::GOLDEN)]
     golden: PathBuf,
     /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]

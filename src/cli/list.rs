@@ -1,11 +1,13 @@
 //! `oedometer list`: what there is to choose from.
 
-use super::exit::Exit;
-use super::stream::print_data;
-use crate::exact::ReferenceKind;
+use crate::cli::exit::Exit;
+use crate::cli::stream::print_data;
+use crate::exact::reference::ReferenceKind;
+use crate::mpm::method::Method;
+use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::SceneKind;
-use crate::solver::method::Method;
-use crate::study::{IntegratorKind, Study, shipped_studies};
+use crate::study::check::Study;
+use crate::study::shipped::shipped_studies;
 use std::fmt::Write;
 
 /// Prints scenes, methods, integrators, references and shipped studies.

@@ -1,10 +1,13 @@
 //! `oedometer merge`: the records of shards into one folder, with the whole table of each study.
 
-use super::exit::{Ended, Exit};
-use super::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped, write_table};
-use super::stream::say;
-use crate::record::{Origins, Record, RecordStore};
-use crate::study::{Case, Study};
+use crate::case::Case;
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped, write_table};
+use crate::cli::stream::say;
+use crate::record::Record;
+use crate::record::origins::Origins;
+use crate::record::store::RecordStore;
+use crate::study::check::Study;
 use std::path::PathBuf;
 
 /// Holes that are named before the rest is only counted.

@@ -2,35 +2,34 @@
 //!
 //! Data goes to standard output, everything else to standard error.
 
-mod accept;
-mod check;
-mod completions;
-mod destination;
-mod exact;
-mod exit;
-mod explain;
-mod list;
-mod merge;
-mod output;
-mod overrides;
-mod plan;
-mod progress;
-mod report;
-mod run;
-mod schema;
-mod score;
-mod solve;
-mod spread;
-mod stability;
-mod stream;
-mod study_files;
+pub mod accept;
+pub mod check;
+pub mod completions;
+pub mod destination;
+pub mod exact;
+pub mod exit;
+pub mod explain;
+pub mod list;
+pub mod merge;
+pub mod output;
+pub mod overrides;
+pub mod plan;
+pub mod progress;
+pub mod report;
+pub mod run;
+pub mod schema;
+pub mod score;
+pub mod solve;
+pub mod spread;
+pub mod stability;
+pub mod stream;
+pub mod study_files;
 
-pub use exit::Exit;
-
+use crate::cli::exit::Exit;
+use crate::cli::stream::{say, written};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::io::Write;
 use std::process::ExitCode;
-use stream::{say, written};
 
 /// Verifies coupled material point solvers for saturated soil against exact solutions.
 #[derive(Debug, Parser)]

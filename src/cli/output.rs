@@ -1,6 +1,6 @@
 //! Tables on standard output: their formats, and colour on a terminal only.
 
-use super::stream::print_data;
+use crate::cli::stream::print_data;
 use crate::render::table::Table;
 use clap::ValueEnum;
 use std::io::IsTerminal;

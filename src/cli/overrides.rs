@@ -1,8 +1,9 @@
 //! Studies from the command line: `--set`, lists and step rules become the text of a study file,
 //! so that one checker judges both and its messages point at what was typed.
 
-use super::exit::Ended;
-use crate::study::{Purpose, Study, StudySource};
+use crate::cli::exit::Ended;
+use crate::study::check::{Purpose, Study};
+use crate::study::file::StudySource;
 
 /// Repeats are for the cases of a study.
 pub const TIMING: (&str, &str) = ("timing.repeats", "cases are timed by `oedometer run` with a study file");
@@ -94,7 +95,7 @@ impl StudyLines {
         self.lines.push("[[sweep]]".to_owned());
         self.lines.extend(sweep);
         let text = self.lines.join("\n") + "\n";
-        super::run::checked(&StudySource { name: "command line".to_owned(), text }, purpose)
+        crate::cli::run::checked(&StudySource { name: "command line".to_owned(), text }, purpose)
     }
 }
 

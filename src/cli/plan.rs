@@ -1,9 +1,9 @@
 //! `oedometer plan`: which cases there are, with their hashes, before anything runs.
 
-use super::exit::Exit;
-use super::run::{TierArgument, load_or_shipped};
-use super::stream::print_data;
-use crate::study::estimated_updates;
+use crate::campaign::estimated_updates;
+use crate::cli::exit::Exit;
+use crate::cli::run::{TierArgument, load_or_shipped};
+use crate::cli::stream::print_data;
 use std::path::PathBuf;
 
 /// Arguments of `plan`.

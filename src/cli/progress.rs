@@ -1,8 +1,8 @@
 //! Progress of long work on standard error: a bar with an estimate on a terminal, nothing but
 //! failures elsewhere.
 
-use super::stream::say;
-use crate::study::Progress;
+use crate::campaign::Progress;
+use crate::cli::stream::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 

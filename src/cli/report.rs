@@ -1,12 +1,13 @@
 //! `oedometer report`: run what is missing, render everything.
 
-use super::exit::Exit;
-use super::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
-use super::stream::say;
-use crate::record::write_whole;
+use crate::campaign::RunOptions;
+use crate::case::tier::Tier;
+use crate::cli::exit::Exit;
+use crate::cli::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
+use crate::cli::stream::say;
+use crate::record::whole_file::write_whole;
 use crate::render::page::{figures, render_html, render_markdown};
 use crate::render::report::{StudyResults, page_of};
-use crate::study::{RunOptions, Tier};
 use std::path::PathBuf;
 
 /// Arguments of `report`.

@@ -1,14 +1,20 @@
 //! `oedometer run`: the cases of study files, their records and one tidy CSV a study.
 
-use super::exit::{Ended, Exit};
-use super::progress::StudyBar;
-use super::stream::say;
-use super::study_files;
-use crate::record::{Provenance, Record, RecordStore, tidy_csv, write_whole};
-use crate::study::{
-    Case, Purpose, RunError, RunOptions, RunReport, Selected, Shard, Study, StudySource, Tier, run_studies,
-    shipped_studies, time_study,
-};
+use crate::campaign::{RunError, RunOptions, RunReport, Selected, Shard, run_studies, time_study};
+use crate::case::Case;
+use crate::case::tier::Tier;
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::progress::StudyBar;
+use crate::cli::stream::say;
+use crate::cli::study_files;
+use crate::record::Record;
+use crate::record::provenance::Provenance;
+use crate::record::store::RecordStore;
+use crate::record::tidy::tidy_csv;
+use crate::record::whole_file::write_whole;
+use crate::study::check::{Purpose, Study};
+use crate::study::file::StudySource;
+use crate::study::shipped::shipped_studies;
 use clap::ValueEnum;
 use std::borrow::Cow;
 use std::collections::HashMap;

@@ -1,8 +1,8 @@
 //! `oedometer schema`: JSON Schemas of study files, records and mappings.
 
-use super::exit::Exit;
-use super::output::json_of;
-use super::stream::print_data;
+use crate::cli::exit::Exit;
+use crate::cli::output::json_of;
+use crate::cli::stream::print_data;
 use crate::schema::{Document, schema_of};
 
 /// Arguments of `schema`.

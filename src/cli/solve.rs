@@ -1,16 +1,19 @@
 //! `oedometer solve`: one case from the command line, its errors on standard output.
 
-use super::exit::{Ended, Exit};
-use super::output::json_of;
-use super::overrides::{self, StudyLines};
-use super::stream::{print_data, say};
-use crate::assess::soundness;
+use crate::campaign::{estimated_updates, run_case_within};
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::output::json_of;
+use crate::cli::overrides;
+use crate::cli::overrides::StudyLines;
+use crate::cli::stream::{print_data, say};
+use crate::judge::soundness;
+use crate::mpm::run::Kernel;
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::profile::{PhaseTime, profiled};
 use crate::record::{ERROR_COLUMNS, ErrorRow, Record, Status};
 use crate::render::measures;
 use crate::render::phases::phases_table;
-use crate::solver::profile::{PhaseTime, profiled};
-use crate::solver::run::Kernel;
-use crate::study::{IntegratorKind, Study, estimated_updates, run_case_within};
+use crate::study::check::Study;
 use clap::ValueEnum;
 
 /// Output format.
@@ -206,14 +209,14 @@ struct SolveJson<'a> {
     start: Option<crate::record::StartChecks>,
     balance: &'a [crate::record::Balance],
     references: &'a [crate::record::ReferenceUse],
-    step_sizes: crate::solver::outcome::StepSizes,
-    failure: Option<&'a crate::solver::outcome::Failure>,
-    case: &'a crate::study::Case,
+    step_sizes: crate::mpm::run::outcome::StepSizes,
+    failure: Option<&'a crate::mpm::run::outcome::Failure>,
+    case: &'a crate::case::Case,
     hash: &'a str,
     /// Where the time went, with `--profile`.
     #[serde(skip_serializing_if = "<[PhaseTime]>::is_empty")]
     phases: &'a [PhaseTime],
-    provenance: &'a crate::record::Provenance,
+    provenance: &'a crate::record::provenance::Provenance,
 }
 
 impl<'a> SolveJson<'a> {

@@ -1,18 +1,23 @@
 //! `oedometer spread`: how far results scatter that should be equal, by number of threads, by the last
 //! digit of an input, by kernel and by build: what the tolerances of golden values are derived from.
 
-use super::accept::refuse_without_origin;
-use super::check::run_quietly;
-use super::exit::{Ended, Exit};
-use super::output::{TableFormat, json_of, print_tables};
-use super::run::{jobs_of, load_or_shipped};
-use super::stream::print_data;
-use crate::assess::spread::{Spread, spread_of};
-use crate::golden::{GoldenFile, spread_by_group, values_of};
-use crate::record::{Record, RecordStore};
+use crate::campaign::run_case;
+use crate::case::tier::Tier;
+use crate::cli::accept::refuse_without_origin;
+use crate::cli::check::run_quietly;
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::output::{TableFormat, json_of, print_tables};
+use crate::cli::run::{jobs_of, load_or_shipped};
+use crate::cli::stream::print_data;
+use crate::golden::tolerance::spread_by_group;
+use crate::golden::{GoldenFile, values_of};
+use crate::judge::scatter::{Spread, spread_of};
+use crate::mpm::run::Kernel;
+use crate::record::Record;
+use crate::record::store::RecordStore;
 use crate::render::spreads;
-use crate::solver::run::Kernel;
-use crate::study::{LastDigit, Study, Tier, run_case};
+use crate::study::check::Study;
+use crate::study::perturbed::LastDigit;
 use std::path::PathBuf;
 
 /// Arguments of `spread`.

@@ -1,15 +1,17 @@
 //! `oedometer stability`: the critical step of a case, predicted and observed.
 
-use super::exit::{Ended, Exit};
-use super::output::json_of;
-use super::overrides::{self, StudyLines};
-use super::run::jobs_of;
-use super::solve::Format;
-use super::stream::print_data;
+use crate::campaign::{RunOptions, run_study};
+use crate::case::tier::Tier;
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::output::json_of;
+use crate::cli::overrides;
+use crate::cli::overrides::StudyLines;
+use crate::cli::run::jobs_of;
+use crate::cli::solve::Format;
+use crate::cli::stream::print_data;
+use crate::mpm::critical_step::observed::CriticalStep;
 use crate::record::{Record, Status};
 use crate::render::stability;
-use crate::solver::critical::CriticalStep;
-use crate::study::{RunOptions, Tier, run_study};
 
 /// Difference of observed from predicted step up to which they agree.
 const AGREEMENT: f64 = 0.02;
@@ -90,7 +92,7 @@ struct StabilityJson<'a> {
     label: String,
     deviation: Option<f64>,
     stability: Option<&'a CriticalStep>,
-    case: &'a crate::study::Case,
+    case: &'a crate::case::Case,
 }
 
 impl<'a> StabilityJson<'a> {

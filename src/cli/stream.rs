@@ -2,7 +2,7 @@
 //! is no failure, and the command goes on to the exit code that stands. A full device under standard
 //! output is one, for data are lost; what cannot be said on standard error stays unsaid and stops nothing.
 
-use super::exit::{Ended, Exit};
+use crate::cli::exit::{Ended, Exit};
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Result, Write};
 
@@ -12,7 +12,7 @@ macro_rules! say {
         $crate::cli::stream::say_line(format_args!($($words)*))
     };
 }
-pub(super) use say;
+pub(crate) use say;
 
 /// Writes data to standard output, down to the last byte.
 ///

@@ -1,7 +1,8 @@
 //! Study files, read and named before any work begins: every result is kept under the name of its study.
 
-use super::exit::Ended;
-use crate::study::{StudySource, name_of, refused_name};
+use crate::cli::exit::Ended;
+use crate::study::file::StudySource;
+use crate::study::name::{name_of, refused_name};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};

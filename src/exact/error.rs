@@ -107,7 +107,7 @@ fn short(value: f64) -> String {
 }
 
 /// Passes a positive finite `value` on, refuses any other.
-pub(super) fn positive(quantity: &'static str, value: f64) -> Result<f64, ExactError> {
+pub(crate) fn positive(quantity: &'static str, value: f64) -> Result<f64, ExactError> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
@@ -128,7 +128,7 @@ pub fn normal(quantity: &'static str, value: f64) -> Result<f64, ExactError> {
 }
 
 /// Passes a finite `time_factor ≥ 0` on, refuses any other.
-pub(super) fn checked_time_factor(time_factor: f64) -> Result<f64, ExactError> {
+pub(crate) fn checked_time_factor(time_factor: f64) -> Result<f64, ExactError> {
     if time_factor.is_finite() && time_factor >= 0.0 {
         Ok(time_factor)
     } else {
@@ -137,6 +137,6 @@ pub(super) fn checked_time_factor(time_factor: f64) -> Result<f64, ExactError> {
 }
 
 /// Passes a relative depth `0 ≤ zeta ≤ 1` on, refuses any other.
-pub(super) fn checked_depth(zeta: f64) -> Result<f64, ExactError> {
+pub(crate) fn checked_depth(zeta: f64) -> Result<f64, ExactError> {
     if (0.0..=1.0).contains(&zeta) { Ok(zeta) } else { Err(ExactError::Depth(zeta)) }
 }

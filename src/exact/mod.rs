@@ -9,15 +9,15 @@
 pub mod consolidation;
 pub mod cosine_layer;
 pub mod dynamic_column;
-mod error;
+pub mod error;
 pub mod large_strain;
-mod parameters;
-mod quadrature;
+pub mod parameters;
+pub mod quadrature;
 pub mod reference;
 pub mod single_mode;
 pub mod terzaghi;
 pub mod xie_leo;
 
-pub use error::{ExactError, normal};
-pub use parameters::ColumnParameters;
-pub use reference::{Accuracy, FieldValues, Reference, ReferenceKind};
+pub use crate::exact::error::{ExactError, normal};
+pub use crate::exact::parameters::ColumnParameters;
+pub use crate::exact::reference::{Accuracy, FieldValues, Reference, ReferenceKind};

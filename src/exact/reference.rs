@@ -3,14 +3,15 @@
 use core::fmt;
 use core::str::FromStr;
 
-use super::cosine_layer::{CosineLayer, LayerState};
-use super::dynamic_column::{DynamicColumn, Start};
-use super::error::ExactError;
-use super::large_strain::{Continuity, LargeStrain, LargeStrainModel, SoilLaw, Water};
-use super::parameters::ColumnParameters;
-use super::single_mode::SingleMode;
-use super::terzaghi::Terzaghi;
-use super::xie_leo::XieLeo;
+use crate::exact::cosine_layer::{CosineLayer, LayerState};
+use crate::exact::dynamic_column::{DynamicColumn, Start};
+use crate::exact::error::ExactError;
+use crate::exact::large_strain::LargeStrain;
+use crate::exact::large_strain::law::{Continuity, LargeStrainModel, SoilLaw, Water};
+use crate::exact::parameters::ColumnParameters;
+use crate::exact::single_mode::SingleMode;
+use crate::exact::terzaghi::Terzaghi;
+use crate::exact::xie_leo::XieLeo;
 
 /// Which exact solution a run is held against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -157,7 +158,7 @@ impl Reference {
         time_factors: &[f64],
     ) -> Result<Self, ExactError> {
         for &time_factor in time_factors {
-            super::error::checked_time_factor(time_factor)?;
+            crate::exact::error::checked_time_factor(time_factor)?;
         }
         let layer = |water| CosineLayer::new(parameters, parameters.length, parameters.base, water);
         let solution = match kind {

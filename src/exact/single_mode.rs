@@ -2,10 +2,10 @@
 
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
-use super::error::{ExactError, checked_depth, checked_time_factor};
-use super::parameters::ColumnParameters;
-use super::reference::{Accuracy, FieldValues};
 use crate::elementary;
+use crate::exact::error::{ExactError, checked_depth, checked_time_factor};
+use crate::exact::parameters::ColumnParameters;
+use crate::exact::reference::{Accuracy, FieldValues};
 
 /// Decay of `p = σ' = p_0 sin(M_0 ζ)`, `M_0 = π/2`, without any load.
 ///

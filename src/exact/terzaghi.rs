@@ -1,9 +1,9 @@
 //! Terzaghi's column under a suddenly applied load, with and without the water's compressibility.
 
-use super::consolidation::{consolidated_below, isochrone};
-use super::error::ExactError;
-use super::parameters::ColumnParameters;
-use super::reference::{Accuracy, FieldValues};
+use crate::exact::consolidation::{consolidated_below, isochrone};
+use crate::exact::error::ExactError;
+use crate::exact::parameters::ColumnParameters;
+use crate::exact::reference::{Accuracy, FieldValues};
 
 /// Small-strain consolidation of a column that drains at its top (Terzaghi 1943).
 ///

@@ -1,11 +1,11 @@
 //! Large-strain consolidation in closed form.
 
-use super::consolidation::{consolidated_below, isochrone};
-use super::error::{ExactError, checked_time_factor, positive};
-use super::parameters::ColumnParameters;
-use super::quadrature::integrate;
-use super::reference::{Accuracy, FieldValues};
 use crate::elementary;
+use crate::exact::consolidation::{consolidated_below, isochrone};
+use crate::exact::error::{ExactError, checked_time_factor, positive};
+use crate::exact::parameters::ColumnParameters;
+use crate::exact::quadrature::integrate;
+use crate::exact::reference::{Accuracy, FieldValues};
 
 /// Xie & Leo (2004): consolidation at large strain of a soil with constant
 /// `m_vl = −(1/(1 + e)) de/dσ'` and `k = k_0 J²`, incompressible water.
@@ -182,4 +182,5 @@ impl XieLeo {
 }
 
 #[cfg(test)]
+#[path = "../../tests/unit/exact_xie_leo.rs"]
 mod tests;

@@ -1,8 +1,8 @@
 //! What a golden file may allow: a tolerance is room for round-off, and one that lets an error of the
 //! method pass is no tolerance. A file edited by hand is held to the same bounds as one that `accept` wrote.
 
-use super::GoldenFile;
-use super::tolerance::{ROOM, spread_group};
+use crate::golden::GoldenFile;
+use crate::golden::tolerance::{ROOM, spread_group};
 use std::collections::BTreeMap;
 
 /// Largest relative tolerance of a file: a hundred times the one that holds where no spread was measured.

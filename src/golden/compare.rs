@@ -1,7 +1,7 @@
 //! Golden values against present ones.
 
-use super::GoldenFile;
-use super::gate::{is_better_if_smaller, parts};
+use crate::golden::GoldenFile;
+use crate::golden::case_changes::{is_better_if_smaller, parts};
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -4,21 +4,20 @@
 //! comparison reports what moved, what is missing and what is new; better than the golden beyond
 //! the tolerance is stale, not wrong.
 
-mod bounds;
-mod compare;
-mod gate;
-mod group;
-mod references;
-mod tolerance;
+pub mod bounds;
+pub mod case_changes;
+pub mod compare;
+pub mod difference_groups;
+pub mod references;
+pub mod tolerance;
 
-pub use compare::{Change, Difference, compare};
-pub use gate::{CaseChange, case_changes};
-pub use group::{DifferenceGroup, groups_of};
-pub use references::{REFERENCES, perturbed_reference_values, reference_values};
-pub use tolerance::{ROOM, spread_by_group, spread_group};
-
-use crate::exact::ExactError;
-use crate::record::{ErrorRow, Provenance, Record, StoreError, write_whole};
+use crate::exact::error::ExactError;
+use crate::golden::references::{REFERENCES, perturbed_reference_values, reference_values};
+use crate::golden::tolerance::spread_by_group;
+use crate::record::provenance::Provenance;
+use crate::record::store::StoreError;
+use crate::record::whole_file::write_whole;
+use crate::record::{ErrorRow, Record};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

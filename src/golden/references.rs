@@ -4,10 +4,12 @@
 use crate::elementary;
 use crate::exact::cosine_layer::{Base, CosineLayer};
 use crate::exact::dynamic_column::{DynamicColumn, Start};
-use crate::exact::large_strain::Water;
+use crate::exact::error::ExactError;
+use crate::exact::large_strain::law::Water;
+use crate::exact::parameters::ColumnParameters;
+use crate::exact::reference::{Reference, ReferenceKind};
 use crate::exact::xie_leo::{Drainage, XieLeo};
-use crate::exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
-use crate::study::LastDigit;
+use crate::study::perturbed::LastDigit;
 use std::collections::BTreeMap;
 
 /// Name under which their golden values are kept.

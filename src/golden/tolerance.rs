@@ -1,6 +1,6 @@
 //! The tolerance of each golden value, from how far round-off alone was seen to move it.
 
-use super::GoldenFile;
+use crate::golden::GoldenFile;
 use std::collections::BTreeMap;
 
 /// Factor between the largest change seen and a tolerance that leaves room for other machines.

@@ -1,8 +1,9 @@
 //! The declared meaning of a file's columns.
 
-use super::units::{Configuration, Direction, LengthUnit, Side, StressSign, StressUnit, TimeUnit};
-use crate::record::Sample;
-use crate::study::{StudyError, StudySource};
+use crate::case::quantity::Sample;
+use crate::import::units::{Configuration, Direction, LengthUnit, Side, StressSign, StressUnit, TimeUnit};
+use crate::study::diagnostic::StudyError;
+use crate::study::file::StudySource;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 

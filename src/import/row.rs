@@ -1,9 +1,9 @@
 //! One file's rows in SI, with the signs of this program.
 
-use super::error::ImportError;
-use super::mapping::Mapping;
-use super::table::Frame;
-use super::units::{Configuration, Direction, Side, StressSign, StressUnit};
+use crate::import::error::ImportError;
+use crate::import::mapping::Mapping;
+use crate::import::table::Frame;
+use crate::import::units::{Configuration, Direction, Side, StressSign, StressUnit};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! From the rows of files to states of a column or a layer.
 
-use super::error::ImportError;
-use super::mapping::Mapping;
-use super::row::{Row, rows_of};
+use crate::import::error::ImportError;
+use crate::import::mapping::Mapping;
+use crate::import::row::{Row, rows_of};
 use std::path::PathBuf;
 
 /// Rows closer than this share of their time are of one time.
@@ -103,7 +103,7 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::StudySource;
+    use crate::study::file::StudySource;
 
     const STRANGE: &str = r#"
 [columns]
@@ -174,7 +174,7 @@ delimiter = ";"
 
     #[test]
     fn places_along_a_layer_have_an_end_an_origin_and_a_range() {
-        let mapping = crate::import::PLANE_CONVENTION
+        let mapping = crate::import::mapping::PLANE_CONVENTION
             .replace("x = \"right\"\ny", "x = \"left\"\ny")
             .replace("u_x = \"right\"", "u_x = \"left\"")
             .replace("x = 0.0", "x = 5.0")
@@ -190,7 +190,7 @@ delimiter = ";"
     #[test]
     fn a_repeated_row_is_told_from_a_second_column_of_samples() {
         let text = "t,id,y,p,u_y\n1,1,0.5,3,0\n1,2,0.5,3,0\n1,2,0.5,3,0\n1,3,0.25,3,0\n";
-        let states = states(crate::import::CONVENTION, text).expect("rows");
+        let states = states(crate::import::mapping::CONVENTION, text).expect("rows");
         assert_eq!(states[0].repeated, 1, "rows 1 and 2 differ in a column without meaning");
     }
 }

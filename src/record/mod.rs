@@ -3,25 +3,19 @@
 //! A record is plain data on disk. Tables, plots, verdicts and goldens read records and never a
 //! live solver, so that a report can be made again without solving.
 
-mod origins;
-mod provenance;
-mod quantity;
-mod store;
-mod tidy;
-mod whole;
+pub mod origins;
+pub mod provenance;
+pub mod store;
+pub mod tidy;
+pub mod whole_file;
 
-pub use origins::Origins;
-pub use provenance::Provenance;
-pub use quantity::{Quantity, Sample};
-pub use store::{Found, RecordStore, StoreError};
-pub use tidy::tidy_csv;
-pub use whole::write_whole;
-
-use crate::assess::norm::Norm;
-use crate::solver::critical::CriticalStep;
-use crate::solver::outcome::{Counters, Failure, FailureKind, StepSizes};
-use crate::solver::snapshot::Snapshot;
-use crate::study::Case;
+use crate::case::Case;
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::mpm::critical_step::observed::CriticalStep;
+use crate::mpm::run::outcome::{Counters, Failure, FailureKind, StepSizes};
+use crate::mpm::run::snapshot::Snapshot;
+use crate::record::provenance::Provenance;
 use serde::{Deserialize, Serialize};
 
 /// Version of the record's layout.

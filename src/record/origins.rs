@@ -1,6 +1,6 @@
 //! What made the records that are taken together: told apart, counted and put into words.
 
-use super::Provenance;
+use crate::record::provenance::Provenance;
 
 /// A property in which builds of one program may differ: its name, and its word for an origin.
 type Property = (&'static str, fn(&Provenance) -> &str);

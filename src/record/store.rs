@@ -1,8 +1,9 @@
 //! Records on disk: one folder a case, named after its hash, written whole or not at all.
 
-use super::whole::{remove_stale, write_renamed};
-use super::{Provenance, Record, SCHEMA};
-use crate::study::Case;
+use crate::case::Case;
+use crate::record::provenance::Provenance;
+use crate::record::whole_file::{remove_stale, write_renamed};
+use crate::record::{Record, SCHEMA};
 use serde::Deserialize;
 use std::fs;
 use std::path::{Path, PathBuf};

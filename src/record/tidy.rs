@@ -1,7 +1,7 @@
 //! One row a measure: the tidy CSV of a study.
 
-use super::{ErrorRow, Record};
-use crate::study::step_label;
+use crate::case::step_label;
+use crate::record::{ErrorRow, Record};
 
 /// Columns of the tidy CSV.
 const COLUMNS: [&str; 21] = [

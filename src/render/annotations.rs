@@ -1,8 +1,8 @@
 //! Annotations of GitHub's workflows: what is wrong, at the line of the study that asked for it.
 
-use super::changes::sentence;
-use crate::assess::study_check::StudyCheck;
-use crate::golden::Change;
+use crate::golden::compare::Change;
+use crate::judge::study_check::StudyCheck;
+use crate::render::changes::sentence;
 
 /// Annotations before the rest is only counted: GitHub shows ten a step.
 const MOST: usize = 9;
@@ -84,7 +84,7 @@ fn property(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assess::study_check::CaseNote;
+    use crate::judge::study_check::CaseNote;
 
     fn check(failures: usize) -> StudyCheck {
         let note =

@@ -1,21 +1,23 @@
 //! Golden values that changed, in words and as tables, the worst first.
 
-use super::number;
-use super::table::{Cell, Column, Mood, Table};
-use crate::assess::pareto::ParetoChange;
-use crate::golden::{CaseChange, Change, Difference, DifferenceGroup};
+use crate::convergence::pareto::ParetoChange;
+use crate::golden::case_changes::CaseChange;
+use crate::golden::compare::{Change, Difference};
+use crate::golden::difference_groups::DifferenceGroup;
+use crate::render::number;
+use crate::render::table::{Cell, Column, Mood, Table};
 use std::fmt::Write;
 
 /// Differences shown in a table before the rest is only counted.
 const MOST_DIFFERENCES: usize = 40;
 
 /// A count of things, in the singular where there is one.
-pub(super) fn count_of(count: usize, one: &str, several: &str) -> String {
+pub(crate) fn count_of(count: usize, one: &str, several: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { several })
 }
 
 /// What values of one kind have in common and how far the worst is off, in one sentence.
-pub(super) fn summary(group: &DifferenceGroup) -> String {
+pub(crate) fn summary(group: &DifferenceGroup) -> String {
     let is = if group.values == 1 { "is" } else { "are" };
     let what = match group.change {
         Change::Moved => "moved".to_owned(),
@@ -49,7 +51,7 @@ pub fn sentence(group: &DifferenceGroup) -> String {
 }
 
 /// How accuracy and cost of a case changed together.
-pub(super) fn judgement_of(one: &CaseChange) -> (Mood, &'static str) {
+pub(crate) fn judgement_of(one: &CaseChange) -> (Mood, &'static str) {
     match one.change {
         ParetoChange::Same => (Mood::Pass, "same"),
         ParetoChange::Better => (Mood::Note, "better"),
@@ -61,7 +63,7 @@ pub(super) fn judgement_of(one: &CaseChange) -> (Mood, &'static str) {
 }
 
 /// Cases that differ from their golden values, accuracy and cost together.
-pub(super) fn changes_table(changes: &[CaseChange]) -> Table {
+pub(crate) fn changes_table(changes: &[CaseChange]) -> Table {
     let rows = changes.iter().take(MOST_DIFFERENCES).map(|one| {
         let (mood, word) = judgement_of(one);
         vec![

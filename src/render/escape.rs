@@ -1,5 +1,5 @@
 //! Text made safe for the document it goes into.
-use super::script::{Level, runs};
+use crate::render::script::{Level, runs};
 
 /// Text for HTML, with real subscripts and superscripts.
 pub(crate) fn html(text: &str) -> String {

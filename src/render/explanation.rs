@@ -1,10 +1,11 @@
 //! The tables of an explained case.
 
-use super::changes::differences_table;
-use super::number;
-use super::table::{Cell, Column, Mood, Table};
-use crate::assess::explain::{Carrier, Explanation, LevelSeries};
-use crate::record::{Quantity, Record, Status};
+use crate::case::quantity::Quantity;
+use crate::judge::explain::{Carrier, Explanation, LevelSeries};
+use crate::record::{Record, Status};
+use crate::render::changes::differences_table;
+use crate::render::number;
+use crate::render::table::{Cell, Column, Mood, Table};
 
 /// Carriers, levels and changes of a case.
 pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {

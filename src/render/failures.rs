@@ -1,9 +1,10 @@
 //! What failed in a check, as lines of a terminal's width: the worst first, and the rest counted.
 
-use super::changes::{count_of, judgement_of, summary};
-use super::number;
-use crate::assess::study_check::{CaseNote, StudyCheck};
-use crate::golden::{CaseChange, Difference};
+use crate::golden::case_changes::CaseChange;
+use crate::golden::compare::Difference;
+use crate::judge::study_check::{CaseNote, StudyCheck};
+use crate::render::changes::{count_of, judgement_of, summary};
+use crate::render::number;
 use std::fmt::Write;
 
 /// Columns of a terminal.
@@ -12,7 +13,7 @@ const WIDTH: usize = 80;
 const MOST: usize = 10;
 
 /// A text in lines that fit a terminal; a longer word stays whole.
-pub(super) fn wrapped(text: &str, first: &str, others: &str) -> String {
+pub(crate) fn wrapped(text: &str, first: &str, others: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     let mut line = first.to_owned();
     let mut is_empty = true;
@@ -32,12 +33,12 @@ pub(super) fn wrapped(text: &str, first: &str, others: &str) -> String {
 }
 
 /// Everything that failed, section by section.
-pub(super) fn text_of(check: &StudyCheck) -> String {
+pub(crate) fn text_of(check: &StudyCheck) -> String {
     text_of_failures(check) + &text_of_changes(check)
 }
 
 /// Expectations that are not met, cases that failed and records that cannot be right.
-pub(super) fn text_of_failures(check: &StudyCheck) -> String {
+pub(crate) fn text_of_failures(check: &StudyCheck) -> String {
     let unmet = check.judgements.iter().filter(|judgement| !judgement.verdict.pass);
     let unmet = unmet.map(|judgement| {
         let verdict = &judgement.verdict;

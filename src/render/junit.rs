@@ -1,10 +1,10 @@
 //! `JUnit`, in the Jenkins dialect: one suite a study, one case a check of an expectation, named
 //! `study/method/quantity/check`, and one for its records and its golden values each.
 
-use super::changes::sentence;
-use crate::assess::study_check::{CaseNote, StudyCheck};
-use crate::assess::summary::Judgement;
-use crate::assess::verdict::Outcome;
+use crate::judge::paths::Judgement;
+use crate::judge::study_check::{CaseNote, StudyCheck};
+use crate::judge::verdict::Outcome;
+use crate::render::changes::sentence;
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::collections::BTreeMap;
 

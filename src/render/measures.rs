@@ -1,11 +1,13 @@
 //! Tables of one record.
 
-use super::RenderError;
-use super::number;
-use super::table::{Cell, Column, Mood, Table};
-use crate::assess::norm::Norm;
-use crate::assess::record_checks::{self, RecordCheck};
-use crate::record::{Quantity, Record, Sample, Status};
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::measure::record_checks;
+use crate::measure::record_checks::RecordCheck;
+use crate::record::{Record, Status};
+use crate::render::error::RenderError;
+use crate::render::number;
+use crate::render::table::{Cell, Column, Mood, Table};
 use std::fmt::Write;
 
 /// Errors of a record, start checks and balances, as text.
@@ -62,7 +64,7 @@ const MEASURES: [(Quantity, Sample, Norm); 5] = [
 ];
 
 /// Why a relative error has no value.
-pub(super) const NOT_RESOLVED: &str = "the exact value is zero, or below what round-off of the run and the accuracy of the reference leave of it";
+pub(crate) const NOT_RESOLVED: &str = "the exact value is zero, or below what round-off of the run and the accuracy of the reference leave of it";
 
 fn missing_reason(record: &Record) -> String {
     match &record.status {

@@ -1,12 +1,13 @@
 //! Tables, charts and pages out of plain data. Nothing here computes science, and nothing here
 //! knows a solver: the same description always gives the same bytes.
+
 pub mod annotations;
-mod changes;
+pub mod changes;
 pub mod chart;
-mod error;
-mod escape;
+pub mod error;
+pub mod escape;
 pub mod explanation;
-mod failures;
+pub mod failures;
 pub mod junit;
 pub mod measures;
 pub mod number;
@@ -14,13 +15,12 @@ pub mod page;
 pub mod phases;
 pub mod report;
 pub mod scores;
-mod script;
+pub mod script;
 #[cfg(test)]
+#[path = "../../tests/unit/render_showcase.rs"]
 mod showcase;
 pub mod spreads;
 pub mod stability;
 pub mod table;
 pub mod uncertainties;
 pub mod verdicts;
-
-pub use error::RenderError;

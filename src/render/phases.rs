@@ -1,8 +1,8 @@
 //! The table of where the time of a case went.
 
-use super::table::{Cell, Column, Table};
+use crate::mpm::run::profile::PhaseTime;
 use crate::record::Record;
-use crate::solver::profile::PhaseTime;
+use crate::render::table::{Cell, Column, Table};
 
 /// One row a phase, in the order of a run, with its share and what it costs a point and step.
 pub fn phases_table(phases: &[PhaseTime], record: &Record) -> Table {

@@ -1,11 +1,12 @@
 //! Tables of somebody else's result held against references.
 
-use super::measures::NOT_RESOLVED;
-use super::table::{Cell, Column, Table};
-use crate::assess::norm::Norm;
-use crate::assess::score::series::ScoredSeries;
-use crate::assess::score::{Score, WorstPlace};
-use crate::record::{ErrorRow, Quantity};
+use crate::case::norm::Norm;
+use crate::case::quantity::Quantity;
+use crate::judge::score::series::ScoredSeries;
+use crate::judge::score::{Score, WorstPlace};
+use crate::record::ErrorRow;
+use crate::render::measures::NOT_RESOLVED;
+use crate::render::table::{Cell, Column, Table};
 use std::collections::HashMap;
 
 /// Times closer than this, relative, are equal but for the digits that were written.

@@ -1,7 +1,7 @@
 //! The table of measured spreads.
 
-use super::table::{Cell, Column, Table};
-use crate::assess::spread::Spread;
+use crate::judge::scatter::Spread;
+use crate::render::table::{Cell, Column, Table};
 
 /// One row a study and source.
 pub fn table_of(spreads: &[Spread]) -> Table {

@@ -1,8 +1,8 @@
 //! Tables of predicted and observed critical steps.
 
-use super::table::{Cell, Column, Mood, Table};
+use crate::mpm::critical_step::observed::Probe;
 use crate::record::Record;
-use crate::solver::critical::Probe;
+use crate::render::table::{Cell, Column, Mood, Table};
 
 /// One row a case: predicted and observed step, and what the runs beside the limit did.
 pub fn table_of(records: &[Record]) -> Table {

@@ -1,9 +1,9 @@
 //! The table of values that have no exact one, with what refinement tells of them.
 
-use super::table::{Cell, Column, Table};
-use crate::assess::eca_hoekstra::ErrorModel;
-use crate::assess::summary::Judgement;
-use crate::assess::uncertainty::Behaviour;
+use crate::convergence::uncertainty::eca_hoekstra::ErrorModel;
+use crate::convergence::uncertainty::grid_convergence::Behaviour;
+use crate::judge::paths::Judgement;
+use crate::render::table::{Cell, Column, Table};
 
 /// One row a value that was asked for; none where none was.
 pub fn table_of(judgements: &[Judgement]) -> Option<Table> {

@@ -1,14 +1,12 @@
 //! What `check` says: verdicts and golden values of studies, as text and as Markdown.
 
-use super::RenderError;
-use super::changes;
-use super::failures;
-use super::table::{Cell, Column, Mood, Table};
-use super::uncertainties;
-use crate::assess::study_check::{CaseNote, CheckEnd, StudyCheck};
-use crate::assess::summary::Judgement;
-use crate::assess::verdict::Outcome;
-use crate::golden::Change;
+use crate::golden::compare::Change;
+use crate::judge::paths::Judgement;
+use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
+use crate::judge::verdict::Outcome;
+use crate::render::error::RenderError;
+use crate::render::table::{Cell, Column, Mood, Table};
+use crate::render::{changes, failures, uncertainties};
 use std::fmt::Write;
 
 /// A study's check as text, what failed in lines of a terminal's width. `file` is the study's own.

@@ -1,7 +1,7 @@
 //! Where the points lie in their cells: the regular lattice, or one of the arrangements that moving
 //! points come to sooner or later.
 
-use crate::solver::points::Points;
+use crate::mpm::state::points::Points;
 use serde::{Deserialize, Serialize};
 
 /// Departure of the points from the regular lattice, the same for every point of a row.

@@ -1,17 +1,19 @@
 //! Columns and layers drained at their top: the lattice of points and its start.
 
-use super::{Arrangement, SceneKind};
 use crate::exact::cosine_layer::Base;
 use crate::exact::dynamic_column::{DynamicColumn, Start};
+use crate::exact::error::ExactError;
+use crate::exact::parameters::ColumnParameters;
 use crate::exact::single_mode::SingleMode;
-use crate::exact::{ColumnParameters, ExactError};
-use crate::solver::body::Problem;
-use crate::solver::grid::{Grid, Tensor};
-use crate::solver::material::Material;
-use crate::solver::method::Method;
-use crate::solver::nodes::Support;
-use crate::solver::points::Points;
-use crate::solver::surface::LoadShape;
+use crate::mpm::body::Problem;
+use crate::mpm::method::Method;
+use crate::mpm::operators::surface_load::LoadShape;
+use crate::mpm::state::grid::{Grid, Tensor};
+use crate::mpm::state::nodes::Support;
+use crate::mpm::state::points::Points;
+use crate::scene::SceneKind;
+use crate::scene::arrangement::Arrangement;
+use crate::soil::material::Material;
 use serde::{Deserialize, Serialize};
 
 /// Cells above the column, so that a surface that rises stays on the grid.
@@ -265,7 +267,7 @@ fn start_standing_wave<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::material::Law;
+    use crate::soil::material::Law;
 
     #[test]
     fn the_undrained_start_is_in_equilibrium_whatever_the_law() {

@@ -2,18 +2,16 @@
 //! that hold for it. It knows the exact solutions and the solver, and makes a problem for one from
 //! the other.
 
-mod arrangement;
-mod column;
-mod problem;
+pub mod arrangement;
+pub mod column;
+pub mod problem;
 
-pub use arrangement::Arrangement;
-pub use column::{Column, column_parameters, column_problem};
-pub use problem::SceneProblem;
-
-use crate::exact::large_strain::{self, LargeStrainModel, SoilLaw, Water};
+use crate::exact::large_strain;
+use crate::exact::large_strain::law::{LargeStrainModel, SoilLaw, Water};
 use crate::exact::reference::ReferenceKind;
-use crate::solver::material::{Continuity, Law, Material};
-use crate::solver::method::Configuration;
+use crate::mpm::method::Configuration;
+use crate::scene::column::Column;
+use crate::soil::material::{Continuity, Law, Material};
 use serde::{Deserialize, Serialize};
 
 /// A physical problem by name.

@@ -1,15 +1,16 @@
 //! A scene's problem in the dimension that its case asks for: where one `match` turns a number into
 //! a type.
 
-use super::{Column, SceneKind, column_problem};
-use crate::exact::ExactError;
-use crate::solver::body::Problem;
-use crate::solver::critical::{CriticalStep, Stopped, critical_step};
-use crate::solver::explicit::ExplicitSettings;
-use crate::solver::material::Material;
-use crate::solver::method::Method;
-use crate::solver::outcome::Outcome;
-use crate::solver::run::{Observer, Schedule, run};
+use crate::exact::error::ExactError;
+use crate::mpm::body::Problem;
+use crate::mpm::critical_step::observed::{CriticalStep, Stopped, critical_step};
+use crate::mpm::explicit::ExplicitSettings;
+use crate::mpm::method::Method;
+use crate::mpm::run::outcome::Outcome;
+use crate::mpm::run::{Observer, Schedule, run};
+use crate::scene::SceneKind;
+use crate::scene::column::{Column, column_problem};
+use crate::soil::material::Material;
 
 /// A problem of one or of two dimensions.
 #[derive(Clone, Debug)]

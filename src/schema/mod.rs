@@ -3,24 +3,27 @@
 //! They are traced from the very types that read the files, so that they cannot fall behind the
 //! code; the words of text keys and what keys mean are told here.
 
-mod node;
-mod tracer;
+pub mod node;
+pub mod tracer;
 
-use crate::assess::class::Class;
-use crate::assess::norm::Norm;
-use crate::exact::ReferenceKind;
-use crate::import::Mapping;
-use crate::record::{Quantity, Record, Sample};
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::case::tier::Tier;
+use crate::convergence::class::Class;
+use crate::exact::reference::ReferenceKind;
+use crate::import::mapping::Mapping;
+use crate::mpm::explicit::Drag;
+use crate::mpm::explicit::scheme::Scheme;
+use crate::mpm::method::{Configuration, Method};
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::record::Record;
 use crate::scene::SceneKind;
-use crate::solver::explicit::Drag;
-use crate::solver::material::{Continuity, Law};
-use crate::solver::method::{Configuration, Method};
-use crate::solver::scheme::Scheme;
-use crate::study::{Axis, IntegratorKind, MethodTable, StudyFile, Tier};
-use crate::study::{NEXT_FINER, NO_REFERENCE};
-use node::Language;
+use crate::schema::node::Language;
+use crate::schema::tracer::shape_of;
+use crate::soil::material::{Continuity, Law};
+use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
+use crate::study::file::{MethodTable, StudyFile};
 use serde_json::{Value, json};
-use tracer::shape_of;
 
 /// Dialect of the schemas.
 const DIALECT: &str = "https://json-schema.org/draft/2020-12/schema";
@@ -160,7 +163,7 @@ fn study_language() -> Result<Language, serde::de::value::Error> {
         ("axis", owned(Axis::ALL.map(Axis::name))),
         ("class", owned(Class::ALL.map(Class::name))),
         ("tier", owned(Tier::ALL.map(Tier::name))),
-        ("path", owned(crate::study::AXES)),
+        ("path", owned(crate::study::sweep::AXES)),
     ];
     let choices =
         shape_of::<MethodTable>()?.to_schema("", &Language { words: words.clone(), ..Language::default() });
@@ -169,4 +172,5 @@ fn study_language() -> Result<Language, serde::de::value::Error> {
 }
 
 #[cfg(test)]
+#[path = "../../tests/unit/schema.rs"]
 mod tests;

@@ -1,7 +1,7 @@
 //! A deserialiser that hands out dummies and notes what was asked for: the shape of a type as the
 //! program itself reads it, so that a schema cannot fall behind the code.
 
-use super::node::{Field, Node};
+use crate::schema::node::{Field, Node};
 use serde::de::{
     DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error as _, IntoDeserializer, MapAccess,
     SeqAccess, VariantAccess, Visitor, value::Error,
@@ -339,7 +339,7 @@ impl<'de> VariantAccess<'de> for Variant<'_> {
 
 /// `toml::Spanned`, which asks for start, end and value under private names.
 mod toml_spanned {
-    use super::{Error, Tracer};
+    use crate::schema::tracer::{Error, Tracer};
     use serde::de::value::BorrowedStrDeserializer;
     use serde::de::{DeserializeSeed, IntoDeserializer, MapAccess};
 

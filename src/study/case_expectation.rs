@@ -1,13 +1,13 @@
 //! What a study expects of single cases: how they end, where their critical step lies, how large an
 //! error or a drift may be. Hard cases are judged by this, not by series.
 
-use super::expectation::Measure;
-use super::tier::Tier;
+use crate::case::tier::Tier;
+use crate::mpm::explicit::Drag;
+use crate::mpm::explicit::scheme::Scheme;
+use crate::mpm::method::Method;
+use crate::mpm::run::integrator::IntegratorKind;
 use crate::record::Record;
-use crate::solver::explicit::Drag;
-use crate::solver::integrator::IntegratorKind;
-use crate::solver::method::Method;
-use crate::solver::scheme::Scheme;
+use crate::study::expectation::Measure;
 
 /// Which cases of a study an expectation is about; what is not named fits every case.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,16 +1,16 @@
 //! What a study expects of its own results: which series, and what of it.
 
-use super::tier::Tier;
-use crate::assess::expectation::Expectation as Demand;
-use crate::assess::norm::Norm;
-use crate::assess::wording::typed;
-use crate::exact::ReferenceKind;
-use crate::record::{Quantity, Sample};
-use crate::solver::explicit::Drag;
-use crate::solver::integrator::IntegratorKind;
-use crate::solver::material::{Continuity, Law};
-use crate::solver::method::Method;
-use crate::solver::scheme::Scheme;
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::case::tier::Tier;
+use crate::convergence::series_expectation::Expectation as Demand;
+use crate::exact::reference::ReferenceKind;
+use crate::mpm::explicit::Drag;
+use crate::mpm::explicit::scheme::Scheme;
+use crate::mpm::method::Method;
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::soil::material::{Continuity, Law};
+use crate::wording::typed;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

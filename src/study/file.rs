@@ -1,6 +1,6 @@
 //! A study as it was typed: every value with its place in the text, nothing judged yet.
 
-use super::diagnostic::{Diagnostic, StudyError, nearest};
+use crate::study::diagnostic::{Diagnostic, StudyError, nearest};
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};

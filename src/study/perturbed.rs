@@ -1,6 +1,6 @@
 //! A study with the last digit of one input changed: what its results move by is round-off.
 
-use super::check::{PlannedCase, Study};
+use crate::study::check::{PlannedCase, Study};
 
 /// The input whose last digit changes. Every operator's entries follow, and with them every rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

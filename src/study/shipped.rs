@@ -1,6 +1,6 @@
 //! The studies that ship, inside the program: it makes its report wherever it is run.
 
-use super::file::StudySource;
+use crate::study::file::StudySource;
 
 /// Every shipped study, in the order of the report.
 pub fn shipped_studies() -> Vec<StudySource> {

@@ -1,11 +1,11 @@
 //! Sweeps: lists of choices, multiplied out or tied to a path.
 
-use crate::solver::explicit::Drag;
-use crate::solver::integrator::{Formulation, IntegratorKind};
-use crate::solver::material::{Continuity, Law};
-use crate::solver::method::Method;
-use crate::solver::run::TimeStepRule;
-use crate::solver::scheme::Scheme;
+use crate::mpm::explicit::Drag;
+use crate::mpm::explicit::scheme::Scheme;
+use crate::mpm::method::Method;
+use crate::mpm::run::TimeStepRule;
+use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::soil::material::{Continuity, Law};
 
 /// One block of a study, checked.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,12 +1,12 @@
 //! What a score comes to: warnings, guesses at their cause, and the verdict of a gate.
 
-use super::results::{Read, Results};
-use crate::assess::norm::Norm;
-use crate::assess::wording::typed;
+use crate::case::norm::Norm;
+use crate::case::quantity::Quantity;
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::score::results::{Read, Results};
 use crate::cli::stream::say;
-use crate::exact::ReferenceKind;
-use crate::record::Quantity;
+use crate::exact::reference::ReferenceKind;
+use crate::wording::typed;
 
 /// Tells what the results lack and whether they pass. In a gate, and where it is asked for, a result
 /// that is not whole fails.

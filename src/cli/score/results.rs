@@ -1,16 +1,18 @@
 //! The results that are scored: read, their times matched, each held against the references.
 
-use crate::assess::score::completeness::{Whole, missing_times, uneven_meshes};
-use crate::assess::score::diagnosis::diagnosis;
-use crate::assess::score::series::{ScoredSeries, series_of};
-use crate::assess::score::times::TimeGroups;
-use crate::assess::score::{Score, score, time_factors};
+use crate::case::Case;
+use crate::case::quantity::Quantity;
 use crate::cli::exit::{Ended, Exit};
-use crate::exact::{ColumnParameters, ReferenceKind};
-use crate::import::{Frame, Mapping, SampledState, states_of};
-use crate::record::Quantity;
-use crate::scene::column_parameters;
-use crate::study::Case;
+use crate::exact::parameters::ColumnParameters;
+use crate::exact::reference::ReferenceKind;
+use crate::import::mapping::Mapping;
+use crate::import::table::{Frame, SampledState, states_of};
+use crate::judge::score::completeness::{Whole, missing_times, uneven_meshes};
+use crate::judge::score::diagnosis::diagnosis;
+use crate::judge::score::series::{ScoredSeries, series_of};
+use crate::judge::score::times::TimeGroups;
+use crate::judge::score::{Score, score, time_factors};
+use crate::scene::column::column_parameters;
 use std::path::PathBuf;
 
 /// What results are held against, and how they are read.

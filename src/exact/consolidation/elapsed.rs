@@ -12,7 +12,8 @@ use core::f64::consts::FRAC_2_SQRT_PI;
 
 use crate::elementary;
 
-use super::{SWITCH, eigenvalue};
+use crate::exact::consolidation::SWITCH;
+use crate::exact::consolidation::series::eigenvalue;
 
 /// Exponents of `exp` beyond which nothing is left of 1.
 const NOTHING_LEFT: f64 = 42.0;

@@ -2,9 +2,9 @@
 
 use core::f64::consts::PI;
 
-use super::super::error::ExactError;
-use super::{SWITCH, images, series};
 use crate::elementary;
+use crate::exact::consolidation::{SWITCH, images, series};
+use crate::exact::error::ExactError;
 
 /// Newton's iteration converges quadratically from both starts; this is far more than it takes.
 const MOST_STEPS: usize = 60;

@@ -13,14 +13,14 @@
 //! `f64`'s digits.
 
 pub mod elapsed;
-mod images;
-mod inverse;
-mod series;
+pub mod images;
+pub mod inverse;
+pub mod series;
 
-pub use inverse::time_factor_for_degree;
-pub use series::eigenvalue;
+pub use crate::exact::consolidation::inverse::time_factor_for_degree;
+pub use crate::exact::consolidation::series::eigenvalue;
 
-use super::error::{ExactError, checked_depth, checked_time_factor};
+use crate::exact::error::{ExactError, checked_depth, checked_time_factor};
 
 /// Time factor below which the images are summed, above which the modes.
 pub const SWITCH: f64 = 0.2;
@@ -97,4 +97,5 @@ pub fn degree_of_consolidation(time_factor: f64) -> Result<SeriesValue, ExactErr
 }
 
 #[cfg(test)]
+#[path = "../../../tests/unit/exact_consolidation.rs"]
 mod tests;

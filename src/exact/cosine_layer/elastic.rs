@@ -2,9 +2,9 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::super::error::ExactError;
-use super::Base;
 use crate::elementary;
+use crate::exact::cosine_layer::Base;
+use crate::exact::error::ExactError;
 
 /// Elastic and hydraulic constants of the layer, SI.
 #[derive(Clone, Copy, Debug)]

@@ -1,18 +1,18 @@
 //! A layer under a cosine load: Biot's consolidation in two dimensions.
 
-mod elastic;
-mod talbot;
+pub mod elastic;
+pub mod talbot;
 
 use core::f64::consts::PI;
 
 use nalgebra::Complex;
 
-use super::error::{ExactError, checked_depth, checked_time_factor, positive};
-use super::large_strain::Water;
-use super::parameters::ColumnParameters;
-use super::reference::{Accuracy, FieldValues};
 use crate::elementary;
-use elastic::{Constants, Local, Regime, Solution};
+use crate::exact::cosine_layer::elastic::{Constants, Local, Regime, Solution};
+use crate::exact::error::{ExactError, checked_depth, checked_time_factor, positive};
+use crate::exact::large_strain::law::Water;
+use crate::exact::parameters::ColumnParameters;
+use crate::exact::reference::{Accuracy, FieldValues};
 
 /// `B T_v` from which on the slowest mode is below round-off, and the contour so near the origin
 /// that flow and stress can hardly be told apart.
@@ -287,4 +287,5 @@ impl LayerState {
 }
 
 #[cfg(test)]
+#[path = "../../../tests/unit/exact_cosine_layer.rs"]
 mod tests;

@@ -7,11 +7,12 @@
 
 use crate::elementary;
 
-use super::super::consolidation::{self, eigenvalue};
-use super::super::error::ExactError;
-use super::DynamicColumn;
-use super::modes::{Amplitude, Growth, Mode};
-use super::steady::Steady;
+use crate::exact::consolidation;
+use crate::exact::consolidation::series::eigenvalue;
+use crate::exact::dynamic_column::DynamicColumn;
+use crate::exact::dynamic_column::modes::{Amplitude, Growth, Mode};
+use crate::exact::dynamic_column::steady::Steady;
+use crate::exact::error::ExactError;
 
 /// Whether a load that has grown over `duration` is so long past that the modes alone converge.
 pub fn is_past(duration: f64, time: f64) -> bool {
@@ -25,7 +26,7 @@ impl DynamicColumn {
     }
 
     /// Coefficients of one mode at a time in s, of a load that grows over `duration`.
-    pub(super) fn growing_amplitude(
+    pub(crate) fn growing_amplitude(
         &self,
         oscillator: &Mode,
         mode: usize,
@@ -87,7 +88,7 @@ impl DynamicColumn {
     ///
     /// # Errors
     /// When the time or the depth is impossible.
-    pub(super) fn diffusion(&self, duration: f64, time: f64, zeta: f64) -> Result<Steady, ExactError> {
+    pub(crate) fn diffusion(&self, duration: f64, time: f64, zeta: f64) -> Result<Steady, ExactError> {
         let column = &self.parameters;
         let strain = -column.load / column.oedometric_modulus();
         let y = column.height * (1.0 - zeta);

@@ -1,21 +1,21 @@
 //! The column with inertia of both phases, exact.
 
-mod growing;
-mod modes;
-mod quartic;
-mod steady;
-mod summation;
+pub mod growing;
+pub mod modes;
+pub mod quartic;
+pub mod steady;
+pub mod summation;
 
 use std::borrow::Cow;
 
-use super::consolidation::eigenvalue;
-use super::error::{ExactError, checked_depth, checked_time_factor, positive};
-use super::parameters::ColumnParameters;
-use super::reference::{Accuracy, FieldValues};
-use super::single_mode::PhaseVelocities;
 use crate::elementary;
-use steady::Steady;
-use summation::Snapshot;
+use crate::exact::consolidation::series::eigenvalue;
+use crate::exact::dynamic_column::steady::Steady;
+use crate::exact::dynamic_column::summation::Snapshot;
+use crate::exact::error::{ExactError, checked_depth, checked_time_factor, positive};
+use crate::exact::parameters::ColumnParameters;
+use crate::exact::reference::{Accuracy, FieldValues};
+use crate::exact::single_mode::PhaseVelocities;
 
 /// How the column is set in motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub enum Start {
         duration: f64,
     },
     /// No load; let go from `p = σ' = p_0 sin(M_0 ζ)` with the velocities that
-    /// [`SingleMode::velocities`](super::single_mode::SingleMode::velocities) has at `t = 0`.
+    /// [`SingleMode::velocities`](crate::exact::single_mode::SingleMode::velocities) has at `t = 0`.
     Mode,
     /// No load; let go at rest from `u = U_w = −(p_0/(Q M_0/H)) sin(M_0 y/H)`: an undrained wave that
     /// stands, `p = p_0 sin(M_0 ζ)` at first.
@@ -205,4 +205,5 @@ impl DynamicColumn {
 }
 
 #[cfg(test)]
+#[path = "../../../tests/unit/exact_dynamic_column.rs"]
 mod tests;

@@ -4,10 +4,11 @@ use core::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use crate::elementary::{self, modulus};
+use crate::elementary;
+use crate::elementary::modulus;
 
-use super::super::parameters::ColumnParameters;
-use super::quartic;
+use crate::exact::dynamic_column::quartic;
+use crate::exact::parameters::ColumnParameters;
 
 /// Roots closer than this, relative to their size, are treated as one cluster.
 const CLUSTER: f64 = 0.05;
@@ -277,4 +278,5 @@ impl Mode {
 }
 
 #[cfg(test)]
+#[path = "../../../tests/unit/exact_dynamic_column_modes.rs"]
 mod tests;

@@ -4,7 +4,8 @@ use core::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use crate::elementary::{self, modulus};
+use crate::elementary;
+use crate::elementary::modulus;
 
 /// Aberth's iteration converges cubically; tens of steps are a generous bound.
 const MOST_STEPS: usize = 200;

@@ -1,8 +1,8 @@
 //! How many modes are summed, and what the others may add.
 
-use super::super::consolidation::eigenvalue;
-use super::modes::{Amplitude, Drive, Growth, InitialState, Mode};
-use super::{DynamicColumn, Start};
+use crate::exact::consolidation::series::eigenvalue;
+use crate::exact::dynamic_column::modes::{Amplitude, Drive, Growth, InitialState, Mode};
+use crate::exact::dynamic_column::{DynamicColumn, Start};
 
 /// More modes are not summed: beyond, a wave front is still sharp and the sum's tail says so.
 const MOST_MODES: usize = 4096;
@@ -20,12 +20,12 @@ pub struct Snapshot {
 
 impl DynamicColumn {
     /// Wave number `M_j/H`, 1/m.
-    pub(super) fn wave_number(&self, mode: usize) -> f64 {
+    pub(crate) fn wave_number(&self, mode: usize) -> f64 {
         eigenvalue(mode) / self.parameters.height
     }
 
     /// Drive of a mode: the whole load's force on `sin(M_j y/H)`, or the state it is let go from.
-    pub(super) fn drive(&self, mode: usize) -> Drive {
+    pub(crate) fn drive(&self, mode: usize) -> Drive {
         // −q m² b, with y = Σ b_j sin(m_j y).
         let sign = if mode.is_multiple_of(2) { -2.0 } else { 2.0 };
         let force = sign * self.parameters.load / self.parameters.height;
@@ -36,7 +36,7 @@ impl DynamicColumn {
     }
 
     /// Coefficients of the slowest mode where the column is let go.
-    pub(super) fn released(&self) -> InitialState {
+    pub(crate) fn released(&self) -> InitialState {
         let column = &self.parameters;
         let wave_number = self.wave_number(0);
         if self.start == Start::StandingWave {
@@ -64,7 +64,7 @@ impl DynamicColumn {
     }
 
     /// Sums as many modes as matter at a time factor.
-    pub(super) fn snapshot(&self, time_factor: f64) -> Snapshot {
+    pub(crate) fn snapshot(&self, time_factor: f64) -> Snapshot {
         let time = self.parameters.time(time_factor);
         let mut snapshot = Snapshot { time_factor, amplitudes: Vec::new(), tail: 0.0 };
         if self.start.is_release() {

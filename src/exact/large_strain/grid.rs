@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::chebyshev;
+use crate::exact::large_strain::chebyshev;
 
 /// Matrices of the derivatives in depth of functions that are even about the base.
 ///

@@ -3,9 +3,9 @@
 use core::fmt;
 use core::str::FromStr;
 
-use super::super::error::{ExactError, positive};
-use super::super::parameters::ColumnParameters;
 use crate::elementary;
+use crate::exact::error::{ExactError, positive};
+use crate::exact::parameters::ColumnParameters;
 
 /// Relation of vertical effective stress and conductivity to the volume ratio `J`.
 ///

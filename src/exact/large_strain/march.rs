@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::chebyshev;
-use super::grid::EvenGrid;
-use super::law::Diffusion;
-use super::loading::{LoadAt, Loading};
-use super::radau::{POINTS, STAGES, weights};
-use super::similarity::{Front, with_slopes};
+use crate::exact::large_strain::chebyshev;
+use crate::exact::large_strain::grid::EvenGrid;
+use crate::exact::large_strain::law::Diffusion;
+use crate::exact::large_strain::loading::{LoadAt, Loading};
+use crate::exact::large_strain::radau::{POINTS, STAGES, weights};
+use crate::exact::large_strain::similarity::{Front, with_slopes};
 
 /// Simplified Newton iterations before a step is halved.
 const MOST_ITERATIONS: usize = 40;

@@ -1,22 +1,22 @@
 //! Large-strain consolidation for any soil law, by a spectral method to round-off.
 
-mod chebyshev;
-mod grid;
-mod law;
-mod loading;
-mod march;
-mod radau;
-mod similarity;
+pub mod chebyshev;
+pub mod grid;
+pub mod law;
+pub mod loading;
+pub mod march;
+pub mod radau;
+pub mod similarity;
 
-pub use law::{Continuity, LargeStrainModel, SoilLaw, Water};
+pub use crate::exact::large_strain::law::{Continuity, LargeStrainModel, SoilLaw, Water};
 
-use super::error::{ExactError, checked_depth, checked_time_factor};
-use super::parameters::ColumnParameters;
-use super::reference::{Accuracy, FieldValues};
-use law::Diffusion;
-use loading::Loading;
-use march::{March, Profile, State};
-use similarity::Front;
+use crate::exact::error::{ExactError, checked_depth, checked_time_factor};
+use crate::exact::large_strain::law::Diffusion;
+use crate::exact::large_strain::loading::Loading;
+use crate::exact::large_strain::march::{March, Profile, State};
+use crate::exact::large_strain::similarity::Front;
+use crate::exact::parameters::ColumnParameters;
+use crate::exact::reference::{Accuracy, FieldValues};
 
 /// Resolutions: points in depth and growth of the time step. Each is held against the one before.
 const RESOLUTIONS: [(usize, f64); 5] = [(14, 0.45), (20, 0.3), (30, 0.22), (44, 0.15), (64, 0.1)];
@@ -251,4 +251,5 @@ impl Attempt {
 }
 
 #[cfg(test)]
+#[path = "../../../tests/unit/exact_large_strain.rs"]
 mod tests;

@@ -1,6 +1,6 @@
 //! The implicit Runge–Kutta method of Radau IIA with five stages: order nine, stiffly accurate.
 
-use super::super::quadrature::integrate;
+use crate::exact::quadrature::integrate;
 
 /// Number of stages.
 pub const STAGES: usize = 5;

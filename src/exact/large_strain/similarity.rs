@@ -2,10 +2,10 @@
 
 use nalgebra::DVector;
 
-use super::super::error::ExactError;
-use super::chebyshev;
-use super::law::Diffusion;
 use crate::elementary;
+use crate::exact::error::ExactError;
+use crate::exact::large_strain::chebyshev;
+use crate::exact::large_strain::law::Diffusion;
 
 /// Front in `η = ζ/(2√T)`: `f'' − G f'² + 2ηβ f' = 0`, `f(0) = 0`, `f(∞) = r_0`.
 #[derive(Clone, Debug)]

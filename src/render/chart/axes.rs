@@ -1,14 +1,14 @@
 //! Grid, frame, ticks and words around the plot.
-use super::canvas::{Canvas, Hold, Rgb, Type};
-use super::clip::Frame;
-use super::layout::{Edge, LABEL, Layout, NOTE, SMALL, TITLE};
-use super::palette::{FRAME, MAJOR, MINOR, QUIET, TEXT};
+use crate::render::chart::canvas::{Canvas, Hold, Rgb, Type};
+use crate::render::chart::clip::Frame;
+use crate::render::chart::layout::{Edge, LABEL, Layout, NOTE, SMALL, TITLE};
+use crate::render::chart::palette::{FRAME, MAJOR, MINOR, QUIET, TEXT};
 
 const PLAIN: Type = Type { size: SMALL, ink: TEXT, bold: false, hold: Hold::Start, upright: false };
 const LINE: f64 = 1.3;
 
 /// Thin lines behind the data.
-pub(super) fn draw_grid(canvas: &mut Canvas, layout: &Layout) {
+pub(crate) fn draw_grid(canvas: &mut Canvas, layout: &Layout) {
     let plot = layout.plot;
     for (major, ink) in [(false, MINOR), (true, MAJOR)] {
         canvas.group(&[], |b| {
@@ -28,7 +28,7 @@ pub(super) fn draw_grid(canvas: &mut Canvas, layout: &Layout) {
 }
 
 /// The frame, its ticks, labels, titles and notes.
-pub(super) fn draw_axes(canvas: &mut Canvas, layout: &Layout) {
+pub(crate) fn draw_axes(canvas: &mut Canvas, layout: &Layout) {
     let plot = layout.plot;
     outline(canvas, &plot);
     canvas.group(&[], |b| {
@@ -76,7 +76,7 @@ pub(super) fn draw_axes(canvas: &mut Canvas, layout: &Layout) {
 }
 
 /// The colour bar of a field, in as many steps as it has colours.
-pub(super) fn draw_bar(canvas: &mut Canvas, layout: &Layout, colour: impl Fn(f64) -> Rgb) {
+pub(crate) fn draw_bar(canvas: &mut Canvas, layout: &Layout, colour: impl Fn(f64) -> Rgb) {
     let Some(bar) = &layout.bar else { return };
     let frame = bar.frame;
     canvas.group(&[("shape-rendering", "crispEdges")], |b| {
@@ -103,7 +103,12 @@ pub(super) fn draw_bar(canvas: &mut Canvas, layout: &Layout, colour: impl Fn(f64
     });
 }
 
-fn upright(b: &super::canvas::Brush<'_, '_>, edge: &Edge, x: f64, frame: &Frame) -> Result<(), String> {
+fn upright(
+    b: &crate::render::chart::canvas::Brush<'_, '_>,
+    edge: &Edge,
+    x: f64,
+    frame: &Frame,
+) -> Result<(), String> {
     let look = Type { size: LABEL, hold: Hold::Middle, upright: true, ..PLAIN };
     edge.words.iter().enumerate().try_for_each(|(i, words)| {
         b.text(words, (x + i as f64 * LABEL * LINE, f64::midpoint(frame.top, frame.bottom)), look)

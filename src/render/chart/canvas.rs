@@ -3,8 +3,8 @@
 //! The library's coordinates are whole numbers, so everything is drawn ten times larger and shown
 //! through the view box. Each group is drawn on a sheet of its own, which lets it carry what the
 //! library cannot say: dashes, halos, crisp edges.
-use super::polish::{marked, polish};
-use crate::render::RenderError;
+use crate::render::chart::polish::{marked, polish};
+use crate::render::error::RenderError;
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
 use plotters::prelude::{
@@ -20,11 +20,11 @@ const FONTS: &str = "'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', 'Dej
 
 /// A colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Rgb(pub u8, pub u8, pub u8);
+pub(crate) struct Rgb(pub u8, pub u8, pub u8);
 
 /// A colour and how much of it: 1 hides what is beneath.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ink(pub Rgb, pub f64);
+pub(crate) struct Ink(pub Rgb, pub f64);
 
 impl From<Rgb> for Ink {
     fn from(colour: Rgb) -> Self {
@@ -40,11 +40,11 @@ impl Ink {
 }
 
 /// A place on the canvas in pixels, from the upper left corner.
-pub(super) type Px = (f64, f64);
+pub(crate) type Px = (f64, f64);
 
 /// Which end of a text its place names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Hold {
+pub(crate) enum Hold {
     Start,
     Middle,
     End,
@@ -52,7 +52,7 @@ pub(super) enum Hold {
 
 /// How a text looks.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Type {
+pub(crate) struct Type {
     pub size: f64,
     pub ink: Rgb,
     pub bold: bool,
@@ -65,10 +65,10 @@ type Drawn = Result<(), String>;
 type Sheet<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Draws on the sheet of one group.
-pub(super) struct Brush<'a, 'b>(&'a Sheet<'b>);
+pub(crate) struct Brush<'a, 'b>(&'a Sheet<'b>);
 
 /// A figure in the making.
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     size: (u32, u32),
     body: String,
     failure: Option<String>,

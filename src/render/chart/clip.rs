@@ -1,9 +1,9 @@
 //! Curves cut at the frame.
-use super::canvas::Px;
+use crate::render::chart::canvas::Px;
 
 /// A rectangle in pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Frame {
+pub(crate) struct Frame {
     pub left: f64,
     pub top: f64,
     pub right: f64,
@@ -42,7 +42,7 @@ impl Frame {
 }
 
 /// The pieces of a curve inside the frame. A missing point breaks the curve.
-pub(super) fn pieces(points: &[Option<Px>], frame: &Frame) -> Vec<Vec<Px>> {
+pub(crate) fn pieces(points: &[Option<Px>], frame: &Frame) -> Vec<Vec<Px>> {
     let mut out: Vec<Vec<Px>> = Vec::new();
     let mut open = false;
     for pair in points.windows(2) {

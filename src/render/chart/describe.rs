@@ -1,5 +1,5 @@
 //! What a figure shows, as plain data.
-use super::field::Field;
+use crate::render::chart::field::Field;
 
 /// A figure: axes, what is drawn between them, and what is said about it.
 #[derive(Debug, Clone, PartialEq)]

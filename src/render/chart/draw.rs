@@ -1,17 +1,17 @@
 //! Puts a figure together, from the back to the front.
-use super::axes::{draw_axes, draw_bar, draw_grid};
-use super::canvas::{Canvas, Hold, Px, Type};
-use super::clip::{Frame, pieces};
-use super::describe::{Chart, Series, Style};
-use super::layout::{Layout, Side, lay_out};
-use super::legend::{Legend, Look, looks, stroke};
-use super::missing::place;
-use super::palette::{DARK, QUIET, WHITE, marker};
-use super::space::Space;
-use super::triangle::draw_triangles;
-use super::words::{draw_annotations, draw_rules, draw_tag};
 use crate::elementary;
-use crate::render::RenderError;
+use crate::render::chart::axes::{draw_axes, draw_bar, draw_grid};
+use crate::render::chart::canvas::{Canvas, Hold, Px, Type};
+use crate::render::chart::clip::{Frame, pieces};
+use crate::render::chart::describe::{Chart, Series, Style};
+use crate::render::chart::layout::{Layout, Side, lay_out};
+use crate::render::chart::legend::{Legend, Look, looks, stroke};
+use crate::render::chart::missing::place;
+use crate::render::chart::palette::{DARK, QUIET, WHITE, marker};
+use crate::render::chart::space::Space;
+use crate::render::chart::triangle::draw_triangles;
+use crate::render::chart::words::{draw_annotations, draw_rules, draw_tag};
+use crate::render::error::RenderError;
 
 /// Radius of markers. Later ones are smaller, so that points that coincide are seen to be several,
 /// above all where no line tells of it.
@@ -60,8 +60,12 @@ impl Chart {
             self.draw_cells(canvas, layout);
             draw_bar(canvas, layout, |share| {
                 let value = match span.kind {
-                    super::Scale::Linear => span.low + share * (span.high - span.low),
-                    super::Scale::Log10 => span.low * elementary::powf(span.high / span.low, share),
+                    crate::render::chart::describe::Scale::Linear => {
+                        span.low + share * (span.high - span.low)
+                    }
+                    crate::render::chart::describe::Scale::Log10 => {
+                        span.low * elementary::powf(span.high / span.low, share)
+                    }
                 };
                 field.colour(&span, value)
             });

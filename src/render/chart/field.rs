@@ -1,7 +1,7 @@
 //! Cells coloured by a value: fields over a body, maps over two parameters.
-use super::canvas::Rgb;
-use super::describe::{Range, Scale};
-use super::scale::{Span, drawable};
+use crate::render::chart::canvas::Rgb;
+use crate::render::chart::describe::{Range, Scale};
+use crate::render::chart::scale::{Span, drawable};
 
 /// A value a cell, on a grid of straight lines.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,18 +58,18 @@ const DIVERGING: [Rgb; 9] = [
     Rgb(0xB2, 0x18, 0x2B),
 ];
 
-pub(super) const MISSING: Rgb = Rgb(0xC9, 0xC9, 0xC9);
+pub(crate) const MISSING: Rgb = Rgb(0xC9, 0xC9, 0xC9);
 
 impl Field {
     /// Columns and rows, and nothing at all where edges and values do not belong together.
-    pub(super) fn shape(&self) -> Option<(usize, usize)> {
+    pub(crate) fn shape(&self) -> Option<(usize, usize)> {
         let columns = self.x_edges.len().checked_sub(1)?;
         let rows = self.y_edges.len().checked_sub(1)?;
         (columns > 0 && rows > 0 && self.values.len() == columns * rows).then_some((columns, rows))
     }
 
     /// What the colours span. A diverging family reaches as far on both sides of its middle.
-    pub(super) fn span(&self) -> Span {
+    pub(crate) fn span(&self) -> Span {
         let span = Span::over(self.scale, self.range, self.values.iter().copied(), 0.0);
         match (self.colours, self.range, self.scale) {
             (Colours::Diverging(middle), Range::Auto, Scale::Linear) if middle.is_finite() => {
@@ -81,7 +81,7 @@ impl Field {
     }
 
     /// The colour of a value.
-    pub(super) fn colour(&self, span: &Span, value: f64) -> Rgb {
+    pub(crate) fn colour(&self, span: &Span, value: f64) -> Rgb {
         let Ok(value) = drawable(value, self.scale) else {
             return MISSING;
         };
@@ -102,7 +102,7 @@ impl Field {
     }
 
     /// Cells without a colour of their own.
-    pub(super) fn missing(&self) -> usize {
+    pub(crate) fn missing(&self) -> usize {
         self.values.iter().filter(|&&v| drawable(v, self.scale).is_err()).count()
     }
 }

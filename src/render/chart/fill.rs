@@ -1,12 +1,12 @@
 //! Areas of colour: shaded intervals and the cells of a field.
-use super::canvas::{Canvas, Ink, Px};
-use super::describe::Chart;
-use super::layout::Layout;
-use super::palette::colour;
-use super::scale::Ruler;
+use crate::render::chart::canvas::{Canvas, Ink, Px};
+use crate::render::chart::describe::Chart;
+use crate::render::chart::layout::Layout;
+use crate::render::chart::palette::colour;
+use crate::render::chart::scale::Ruler;
 
 impl Chart {
-    pub(super) fn draw_bands(&self, canvas: &mut Canvas, layout: &Layout) {
+    pub(crate) fn draw_bands(&self, canvas: &mut Canvas, layout: &Layout) {
         for band in &self.bands {
             let ends: Vec<(Px, Px)> = band
                 .points
@@ -24,7 +24,7 @@ impl Chart {
         }
     }
 
-    pub(super) fn draw_cells(&self, canvas: &mut Canvas, layout: &Layout) {
+    pub(crate) fn draw_cells(&self, canvas: &mut Canvas, layout: &Layout) {
         let Some(field) = &self.field else { return };
         let Some((columns, rows)) = field.shape() else {
             return;

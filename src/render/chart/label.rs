@@ -3,7 +3,7 @@ use crate::elementary;
 use crate::render::script::exponent;
 
 /// A number as `1.5·10⁻³`, down to the decimal place `digits` if that is given.
-pub(super) fn power(value: f64, digits: Option<f64>) -> String {
+pub(crate) fn power(value: f64, digits: Option<f64>) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -28,17 +28,17 @@ pub(super) fn power(value: f64, digits: Option<f64>) -> String {
 }
 
 /// Decimals that the place of the last digit asks for.
-pub(super) fn decimals(digit: f64) -> usize {
+pub(crate) fn decimals(digit: f64) -> usize {
     usize::try_from(whole(-digit)).unwrap_or(0).min(15)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the cast saturates, and exponents are small")]
-pub(super) fn whole(x: f64) -> i32 {
+pub(crate) fn whole(x: f64) -> i32 {
     x.round() as i32
 }
 
 /// The typographic minus, and no minus before a zero.
-pub(super) fn minus(text: String) -> String {
+pub(crate) fn minus(text: String) -> String {
     match text.strip_prefix('-') {
         Some(rest) if rest.chars().all(|c| matches!(c, '0' | '.')) => rest.to_owned(),
         Some(rest) => format!("−{rest}"),

@@ -1,21 +1,21 @@
 //! How a figure shares out its room.
-use super::clip::Frame;
-use super::describe::{Axis, Chart};
-use super::legend::Legend;
-use super::scale::{Ruler, Span};
-use super::ticks::{Room, Tick, ticks};
+use crate::render::chart::clip::Frame;
+use crate::render::chart::describe::{Axis, Chart};
+use crate::render::chart::legend::Legend;
+use crate::render::chart::scale::{Ruler, Span};
+use crate::render::chart::ticks::{Room, Tick, ticks};
 use crate::render::script::{width, wrap};
 
-pub(super) const TITLE: f64 = 15.0;
-pub(super) const SMALL: f64 = 12.0;
-pub(super) const LABEL: f64 = 13.0;
-pub(super) const NOTE: f64 = 11.0;
+pub(crate) const TITLE: f64 = 15.0;
+pub(crate) const SMALL: f64 = 12.0;
+pub(crate) const LABEL: f64 = 13.0;
+pub(crate) const NOTE: f64 = 11.0;
 const PAD: f64 = 14.0;
 const LINE: f64 = 1.3;
 
 /// Where the legend goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
+pub(crate) enum Side {
     None,
     Right,
     Below,
@@ -23,7 +23,7 @@ pub(super) enum Side {
 
 /// An axis laid out: where its values stand, its ticks and its words.
 #[derive(Debug, Clone)]
-pub(super) struct Edge {
+pub(crate) struct Edge {
     pub ruler: Ruler,
     pub ticks: Vec<Tick>,
     pub words: Vec<String>,
@@ -31,14 +31,14 @@ pub(super) struct Edge {
 
 /// A colour bar and its axis.
 #[derive(Debug, Clone)]
-pub(super) struct Bar {
+pub(crate) struct Bar {
     pub frame: Frame,
     pub edge: Edge,
 }
 
 /// A figure laid out, in pixels.
 #[derive(Debug, Clone)]
-pub(super) struct Layout {
+pub(crate) struct Layout {
     pub width: f64,
     pub height: f64,
     pub plot: Frame,
@@ -85,7 +85,7 @@ fn outer(chart: &Chart) -> (f64, f64) {
 }
 
 /// Lays the figure out. `notes` stand below it.
-pub(super) fn lay_out(chart: &Chart, legend: &Legend, notes: &[String]) -> Layout {
+pub(crate) fn lay_out(chart: &Chart, legend: &Legend, notes: &[String]) -> Layout {
     let (wide, tall) = outer(chart);
     let (xs, ys) = spans(chart);
     let inner = wide - 2.0 * PAD;

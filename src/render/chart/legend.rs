@@ -1,11 +1,11 @@
 //! The legend: what it says, and how much room it needs.
-use super::canvas::{Canvas, Hold, Px, Rgb, Type};
-use super::describe::{Chart, Style};
-use super::palette::{DARK, QUIET, TEXT, colour, dash, marker};
 use crate::elementary;
+use crate::render::chart::canvas::{Canvas, Hold, Px, Rgb, Type};
+use crate::render::chart::describe::{Chart, Style};
+use crate::render::chart::palette::{DARK, QUIET, TEXT, colour, dash, marker};
 use crate::render::script::{width, wrap};
 
-pub(super) const FONT: f64 = 12.0;
+pub(crate) const FONT: f64 = 12.0;
 const SAMPLE: f64 = 34.0;
 const GAP: f64 = 8.0;
 const ROW: f64 = 19.0;
@@ -14,7 +14,7 @@ const BETWEEN: f64 = 22.0;
 
 /// How a series looks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Look {
+pub(crate) struct Look {
     pub colour: Rgb,
     pub line: bool,
     pub dash: Option<&'static str>,
@@ -24,7 +24,7 @@ pub(super) struct Look {
 
 /// The looks of all series, in their order. Numbers that are not given run on by name, so that one
 /// method looks the same at every time.
-pub(super) fn looks(chart: &Chart) -> Vec<Look> {
+pub(crate) fn looks(chart: &Chart) -> Vec<Look> {
     let mut names: Vec<&str> = Vec::new();
     let mut theories: Vec<&str> = Vec::new();
     chart
@@ -60,7 +60,7 @@ enum Sample {
 
 /// The legend of a chart.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Legend {
+pub(crate) struct Legend {
     entries: Vec<(Sample, Vec<String>)>,
 }
 
@@ -160,7 +160,7 @@ fn draw_entry(canvas: &mut Canvas, sample: Sample, lines: &[String], at: Px) {
             }
         }
         Sample::Band(colour) => canvas.group(&[], |b| {
-            let ink = super::canvas::Ink(colour, 0.22);
+            let ink = crate::render::chart::canvas::Ink(colour, 0.22);
             b.rect((at.0 + 2.0, middle - 6.0), (at.0 + SAMPLE - 2.0, middle + 6.0), ink)
         }),
         Sample::Ring => canvas.group(&[], |b| b.ring(centre, 7.0, DARK, 1.3)),
@@ -177,7 +177,7 @@ fn draw_entry(canvas: &mut Canvas, sample: Sample, lines: &[String], at: Px) {
 }
 
 /// Draws lines in the look of a series.
-pub(super) fn stroke(canvas: &mut Canvas, pieces: &[Vec<Px>], look: Look) {
+pub(crate) fn stroke(canvas: &mut Canvas, pieces: &[Vec<Px>], look: Look) {
     let mut attributes = vec![("stroke-linejoin", "round")];
     attributes.extend(look.dash.map(|d| ("stroke-dasharray", d)));
     canvas.group(&attributes, |b| {
@@ -200,7 +200,7 @@ fn thinned(piece: &[Px]) -> Vec<Px> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::chart::{Axis, Series};
+    use crate::render::chart::describe::{Axis, Series};
 
     #[test]
     fn a_name_has_one_look_and_one_entry() {

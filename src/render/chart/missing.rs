@@ -1,17 +1,17 @@
 //! What a chart could not show, in words.
-use super::canvas::Px;
-use super::clip::Frame;
-use super::describe::{Chart, Style};
-use super::scale::{Reason, Ruler};
+use crate::render::chart::canvas::Px;
+use crate::render::chart::clip::Frame;
+use crate::render::chart::describe::{Chart, Style};
+use crate::render::chart::scale::{Reason, Ruler};
 
 /// The places of the points of each series, and what is to be said about those without one.
-pub(super) struct Placed {
+pub(crate) struct Placed {
     pub points: Vec<Vec<Option<Px>>>,
     pub notes: Vec<String>,
 }
 
 /// Puts every point of every series in its place.
-pub(super) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &Frame) -> Placed {
+pub(crate) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &Frame) -> Placed {
     let mut lost: Vec<(Reason, usize, Vec<&str>)> = Vec::new();
     let mut lose = |reason: Reason, name| {
         let i = lost.iter().position(|(r, ..)| *r == reason).unwrap_or_else(|| {

@@ -2,31 +2,30 @@
 //!
 //! One type serves every picture of a report: convergence, isochrones, work and precision, maps.
 //! Nothing is hidden silently: what cannot be drawn is counted below the figure.
-mod axes;
-mod canvas;
-mod clip;
-mod describe;
-mod draw;
-mod field;
-mod fill;
-mod label;
-mod layout;
-mod legend;
-mod missing;
-mod palette;
-mod polish;
-mod scale;
-mod space;
-mod ticks;
-mod triangle;
-mod words;
+
+pub mod axes;
+pub mod canvas;
+pub mod clip;
+pub mod describe;
+pub mod draw;
+pub mod field;
+pub mod fill;
+pub mod label;
+pub mod layout;
+pub mod legend;
+pub mod missing;
+pub mod palette;
+pub mod polish;
+pub mod scale;
+pub mod space;
+pub mod ticks;
+pub mod triangle;
+pub mod words;
 
 #[cfg(test)]
-pub(in crate::render) mod gallery;
+#[path = "../../../tests/unit/render_chart_gallery.rs"]
+pub mod gallery;
+
 #[cfg(test)]
+#[path = "../../../tests/unit/render_chart.rs"]
 mod tests;
-
-pub use describe::{
-    Annotation, Axis, Band, Chart, Direction, Place, Range, Rule, Scale, Series, Size, SlopeTriangle, Style,
-};
-pub use field::{Colours, Field};

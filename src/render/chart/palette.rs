@@ -1,6 +1,6 @@
 //! Colours, markers and dashes by number: any two of the first six series differ in all three, so
 //! that they are told apart by the colour-blind and on grey paper.
-use super::canvas::{Brush, Ink, Px, Rgb};
+use crate::render::chart::canvas::{Brush, Ink, Px, Rgb};
 
 /// Okabe and Ito (2008), without the yellow that vanishes on white; black belongs to the theory.
 const COLOURS: [Rgb; 7] = [
@@ -13,13 +13,13 @@ const COLOURS: [Rgb; 7] = [
     Rgb(0x7A, 0x7A, 0x7A),
 ];
 
-pub(super) const DARK: Rgb = Rgb(0x1A, 0x1A, 0x1A);
-pub(super) const TEXT: Rgb = Rgb(0x26, 0x26, 0x26);
-pub(super) const QUIET: Rgb = Rgb(0x5F, 0x5F, 0x5F);
-pub(super) const FRAME: Rgb = Rgb(0x8A, 0x8A, 0x8A);
-pub(super) const MAJOR: Rgb = Rgb(0xDC, 0xDC, 0xDC);
-pub(super) const MINOR: Rgb = Rgb(0xF0, 0xF0, 0xF0);
-pub(super) const WHITE: Rgb = Rgb(0xFF, 0xFF, 0xFF);
+pub(crate) const DARK: Rgb = Rgb(0x1A, 0x1A, 0x1A);
+pub(crate) const TEXT: Rgb = Rgb(0x26, 0x26, 0x26);
+pub(crate) const QUIET: Rgb = Rgb(0x5F, 0x5F, 0x5F);
+pub(crate) const FRAME: Rgb = Rgb(0x8A, 0x8A, 0x8A);
+pub(crate) const MAJOR: Rgb = Rgb(0xDC, 0xDC, 0xDC);
+pub(crate) const MINOR: Rgb = Rgb(0xF0, 0xF0, 0xF0);
+pub(crate) const WHITE: Rgb = Rgb(0xFF, 0xFF, 0xFF);
 
 /// Lengths of dashes and gaps in drawing units.
 const DASHES: [Option<&str>; 7] = [
@@ -32,11 +32,11 @@ const DASHES: [Option<&str>; 7] = [
     Some("40 30"),
 ];
 
-pub(super) fn colour(slot: usize) -> Rgb {
+pub(crate) fn colour(slot: usize) -> Rgb {
     COLOURS[slot % COLOURS.len()]
 }
 
-pub(super) fn dash(slot: usize) -> Option<&'static str> {
+pub(crate) fn dash(slot: usize) -> Option<&'static str> {
     DASHES[slot % DASHES.len()]
 }
 
@@ -80,7 +80,7 @@ fn outline(shape: usize) -> &'static [Px] {
 }
 
 /// Draws a marker. Beyond the seven full ones come the same shapes, hollow.
-pub(super) fn marker(
+pub(crate) fn marker(
     brush: &Brush<'_, '_>,
     at: Px,
     slot: usize,

@@ -12,7 +12,7 @@ const MARKS: [(char, &str); 5] = [
 ];
 
 /// The text with stand-ins for its scripts.
-pub(super) fn marked(text: &str) -> String {
+pub(crate) fn marked(text: &str) -> String {
     let mut out = String::new();
     let mut back: Option<char> = None;
     let all = runs(text);
@@ -59,7 +59,7 @@ fn edges_kept(text: &str) -> String {
 }
 
 /// Removes what says nothing, puts the scripts in, and leaves font and base line to us.
-pub(super) fn polish(svg: &str) -> String {
+pub(crate) fn polish(svg: &str) -> String {
     let mut out = svg
         .replace(r#" opacity="1""#, "")
         .replace(r#" stroke="none""#, "")

@@ -1,13 +1,13 @@
 //! From values to pixels.
-use super::describe::{Range, Scale as Kind};
 use crate::elementary;
+use crate::render::chart::describe::{Range, Scale as Kind};
 
 /// Beyond these, no picture of the rest would be left.
 const HUGE: f64 = 1e150;
 
 /// Why a value is not drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Reason {
+pub(crate) enum Reason {
     NotFinite,
     NotPositive,
     Extreme,
@@ -26,7 +26,7 @@ impl Reason {
 }
 
 /// Whether a value can be put on such an axis at all.
-pub(super) fn drawable(value: f64, kind: Kind) -> Result<f64, Reason> {
+pub(crate) fn drawable(value: f64, kind: Kind) -> Result<f64, Reason> {
     match kind {
         _ if !value.is_finite() => Err(Reason::NotFinite),
         Kind::Log10 if value <= 0.0 => Err(Reason::NotPositive),
@@ -38,7 +38,7 @@ pub(super) fn drawable(value: f64, kind: Kind) -> Result<f64, Reason> {
 
 /// The lower and upper end of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Span {
+pub(crate) struct Span {
     pub kind: Kind,
     pub low: f64,
     pub high: f64,
@@ -99,7 +99,7 @@ fn widen(low: f64, high: f64, margin: f64) -> (f64, f64) {
 
 /// A span laid out over pixels.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ruler {
+pub(crate) struct Ruler {
     pub span: Span,
     /// Pixel of the lower and of the upper end.
     pub from: f64,
@@ -126,7 +126,7 @@ impl Ruler {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::chart::Axis;
+    use crate::render::chart::describe::Axis;
 
     fn of(axis: &Axis, values: impl Iterator<Item = f64>) -> Span {
         Span::over(axis.scale, axis.range, values, 0.04)

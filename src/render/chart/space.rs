@@ -1,7 +1,7 @@
 //! Finds room for words and triangles among the data.
-use super::canvas::Px;
-use super::clip::Frame;
 use crate::elementary;
+use crate::render::chart::canvas::Px;
+use crate::render::chart::clip::Frame;
 use std::collections::HashMap;
 
 /// Width of a bin, px: about that of a word's height, so that a room covers some bins whole.
@@ -14,7 +14,7 @@ const MOST_OFFERS: usize = 4000;
 /// What is in the way, and how much it matters. Markers and lines lie in bins, so that a room is held
 /// against what is near it alone.
 #[derive(Debug, Default)]
-pub(super) struct Space {
+pub(crate) struct Space {
     frame: Option<Frame>,
     bins: HashMap<(i64, i64), Bin>,
     taken: Vec<Frame>,
@@ -37,7 +37,7 @@ struct Obstacle {
 
 /// A box that would do, and what speaks against it from the start.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Offer {
+pub(crate) struct Offer {
     pub room: Frame,
     pub penalty: f64,
 }
@@ -119,7 +119,7 @@ fn is_within(x: i64, y: i64, room: &Frame) -> bool {
 }
 
 /// Half a width and half a height around a place.
-pub(super) fn around(at: Px, half_width: f64, half_height: f64) -> Frame {
+pub(crate) fn around(at: Px, half_width: f64, half_height: f64) -> Frame {
     Frame {
         left: at.0 - half_width,
         right: at.0 + half_width,
@@ -129,7 +129,7 @@ pub(super) fn around(at: Px, half_width: f64, half_height: f64) -> Frame {
 }
 
 /// Places along a curve, about `step` apart, its first and last point included.
-pub(super) fn trail(piece: &[Px], step: f64) -> Vec<Px> {
+pub(crate) fn trail(piece: &[Px], step: f64) -> Vec<Px> {
     let mut out: Vec<Px> = piece.first().copied().into_iter().collect();
     for pair in piece.windows(2) {
         let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);

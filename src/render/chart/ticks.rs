@@ -1,13 +1,13 @@
 //! Where an axis has ticks and what they say.
-use super::describe::Scale as Kind;
-use super::label::{decimals, minus, power, whole};
-use super::scale::{Ruler, Span, drawable};
 use crate::elementary;
+use crate::render::chart::describe::Scale as Kind;
+use crate::render::chart::label::{decimals, minus, power, whole};
+use crate::render::chart::scale::{Ruler, Span, drawable};
 use crate::render::script::{exponent, width};
 
 /// A tick; without a label it is a minor one.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Tick {
+pub(crate) struct Tick {
     pub value: f64,
     pub label: Option<String>,
 }
@@ -17,13 +17,13 @@ const LONGEST_LABEL: usize = 8;
 
 /// What labels need: the size of their font, and whether they stand beside each other or above.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Room {
+pub(crate) struct Room {
     pub font: f64,
     pub beside: bool,
 }
 
 /// The ticks of an axis, with labels that never overlap.
-pub(super) fn ticks(ruler: &Ruler, wanted: Option<&[f64]>, room: Room) -> Vec<Tick> {
+pub(crate) fn ticks(ruler: &Ruler, wanted: Option<&[f64]>, room: Room) -> Vec<Tick> {
     let mut all = match wanted {
         Some(values) => given(&ruler.span, values),
         None => automatic(ruler, room),

@@ -1,13 +1,13 @@
 //! Triangles that show what an order looks like.
-use super::canvas::{Canvas, Ink, Px};
-use super::clip::Frame;
-use super::describe::{Chart, Place, Scale};
-use super::layout::Layout;
-use super::palette::{DARK, QUIET};
-use super::scale::Ruler;
-use super::space::{Offer, Space};
-use super::words::write;
 use crate::elementary;
+use crate::render::chart::canvas::{Canvas, Ink, Px};
+use crate::render::chart::clip::Frame;
+use crate::render::chart::describe::{Chart, Place, Scale};
+use crate::render::chart::layout::Layout;
+use crate::render::chart::palette::{DARK, QUIET};
+use crate::render::chart::scale::Ruler;
+use crate::render::chart::space::{Offer, Space};
+use crate::render::chart::words::write;
 
 /// A triangle with its right angle at the second corner.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +19,7 @@ struct Triangle {
 }
 
 /// Triangles with a given slope, where both axes are logarithmic.
-pub(super) fn draw_triangles(
+pub(crate) fn draw_triangles(
     canvas: &mut Canvas,
     space: &mut Space,
     chart: &Chart,
@@ -119,9 +119,9 @@ fn beside(at: Px, slope: f64, layout: &Layout, distances: &[f64]) -> Vec<(Triang
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::chart::describe::{Axis, Series};
     use crate::render::chart::layout::lay_out;
     use crate::render::chart::legend::Legend;
-    use crate::render::chart::{Axis, Series};
 
     #[test]
     fn the_slanted_side_has_the_slope_it_is_named_after() {

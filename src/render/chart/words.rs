@@ -1,19 +1,19 @@
 //! What is written and drawn inside the plot beside the data: tags at curves, rules,
 //! annotations.
-use super::canvas::{Canvas, Hold, Px, Rgb, Type};
-use super::clip::Frame;
-use super::describe::{Chart, Direction};
-use super::layout::Layout;
-use super::legend::Look;
-use super::palette::{DARK, QUIET};
-use super::space::{Offer, Space, around, trail};
+use crate::render::chart::canvas::{Canvas, Hold, Px, Rgb, Type};
+use crate::render::chart::clip::Frame;
+use crate::render::chart::describe::{Chart, Direction};
+use crate::render::chart::layout::Layout;
+use crate::render::chart::legend::Look;
+use crate::render::chart::palette::{DARK, QUIET};
+use crate::render::chart::space::{Offer, Space, around, trail};
 use crate::render::script::width;
 
 const FONT: f64 = 11.0;
 const HALO: [(&str, &str); 4] =
     [("paint-order", "stroke"), ("stroke", "#FFFFFF"), ("stroke-width", "36"), ("stroke-linejoin", "round")];
 
-pub(super) fn write(canvas: &mut Canvas, text: &str, centre: Px, ink: Rgb) {
+pub(crate) fn write(canvas: &mut Canvas, text: &str, centre: Px, ink: Rgb) {
     let look = Type { size: FONT, ink, bold: false, hold: Hold::Middle, upright: false };
     canvas.group(&HALO, |b| b.text(text, (centre.0, centre.1 + 0.36 * FONT), look));
 }
@@ -21,7 +21,9 @@ pub(super) fn write(canvas: &mut Canvas, text: &str, centre: Px, ink: Rgb) {
 /// Blanks what is beneath, but for a trace.
 fn blank(canvas: &mut Canvas, room: Frame) {
     let (corner, opposite) = ((room.left, room.top), (room.right, room.bottom));
-    canvas.group(&[], |b| b.rect(corner, opposite, super::canvas::Ink(super::palette::WHITE, 0.9)));
+    canvas.group(&[], |b| {
+        b.rect(corner, opposite, crate::render::chart::canvas::Ink(crate::render::chart::palette::WHITE, 0.9))
+    });
 }
 
 fn half(text: &str) -> (f64, f64) {
@@ -50,7 +52,7 @@ fn write_best(
 }
 
 /// The tag of a curve, on it or right beside it, as near its middle as there is room.
-pub(super) fn draw_tag(
+pub(crate) fn draw_tag(
     canvas: &mut Canvas,
     space: &mut Space,
     text: &str,
@@ -75,7 +77,7 @@ pub(super) fn draw_tag(
 }
 
 /// Lines at one value, with their words.
-pub(super) fn draw_rules(canvas: &mut Canvas, space: &mut Space, chart: &Chart, layout: &Layout) {
+pub(crate) fn draw_rules(canvas: &mut Canvas, space: &mut Space, chart: &Chart, layout: &Layout) {
     let plot = layout.plot;
     for rule in &chart.rules {
         let (ruler, upright) = match rule.axis {
@@ -110,7 +112,7 @@ pub(super) fn draw_rules(canvas: &mut Canvas, space: &mut Space, chart: &Chart, 
 }
 
 /// Words at points.
-pub(super) fn draw_annotations(canvas: &mut Canvas, space: &mut Space, chart: &Chart, layout: &Layout) {
+pub(crate) fn draw_annotations(canvas: &mut Canvas, space: &mut Space, chart: &Chart, layout: &Layout) {
     for note in &chart.annotations {
         let (Ok(x), Ok(y)) = (layout.x.ruler.px(note.at.0), layout.y.ruler.px(note.at.1)) else {
             continue;

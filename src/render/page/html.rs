@@ -1,7 +1,8 @@
 //! Pages as one HTML file. What stands around the sections is in `page.html` and `page.css`.
-use super::inline::{paragraphs, to_html};
-use super::{Block, Figure, Mood, Page};
-use crate::render::{RenderError, escape};
+use crate::render::error::RenderError;
+use crate::render::escape;
+use crate::render::page::inline::{paragraphs, to_html};
+use crate::render::page::{Block, Figure, Mood, Page};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::{Environment, Value, context};
 use std::fmt::Write as _;
@@ -9,7 +10,7 @@ use std::fmt::Write as _;
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 
-pub(super) fn write(page: &Page) -> Result<String, RenderError> {
+pub(crate) fn write(page: &Page) -> Result<String, RenderError> {
     let fail =
         |e: minijinja::Error| RenderError::Template { title: page.title.clone(), reason: e.to_string() };
     let mut sections = Vec::new();

@@ -3,7 +3,7 @@ use crate::render::escape::{html, markdown, plain_html};
 
 /// A piece of running text.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Inline {
+pub(crate) enum Inline {
     Text(String),
     Code(String),
     Strong(Vec<Inline>),
@@ -12,7 +12,7 @@ pub(super) enum Inline {
 }
 
 /// The paragraphs of a text, each on one line.
-pub(super) fn paragraphs(text: &str) -> Vec<String> {
+pub(crate) fn paragraphs(text: &str) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     let mut open = false;
     for line in text.lines().map(str::trim) {
@@ -30,7 +30,7 @@ pub(super) fn paragraphs(text: &str) -> Vec<String> {
 }
 
 /// Takes the marks of a text apart. A mark without its partner is text.
-pub(super) fn parse(text: &str) -> Vec<Inline> {
+pub(crate) fn parse(text: &str) -> Vec<Inline> {
     let mut out = Vec::new();
     let mut plain = String::new();
     let mut rest = text;
@@ -99,7 +99,7 @@ fn closing(inside: &str, mark: &str) -> Option<usize> {
 }
 
 /// Marked text as HTML.
-pub(super) fn to_html(text: &str) -> String {
+pub(crate) fn to_html(text: &str) -> String {
     write_html(&parse(text))
 }
 
@@ -119,7 +119,7 @@ fn write_html(pieces: &[Inline]) -> String {
 }
 
 /// Marked text as Markdown, with everything escaped that is not a mark.
-pub(super) fn to_markdown(text: &str) -> String {
+pub(crate) fn to_markdown(text: &str) -> String {
     write_markdown(&parse(text))
 }
 

@@ -1,9 +1,10 @@
 //! Pages in GitHub's Markdown.
-use super::inline::{paragraphs, to_markdown};
-use super::{Block, Figure, Mood, Page};
-use crate::render::{RenderError, escape};
+use crate::render::error::RenderError;
+use crate::render::escape;
+use crate::render::page::inline::{paragraphs, to_markdown};
+use crate::render::page::{Block, Figure, Mood, Page};
 
-pub(super) fn write(page: &Page) -> Result<String, RenderError> {
+pub(crate) fn write(page: &Page) -> Result<String, RenderError> {
     let mut out = vec![format!("# {}", escape::markdown(&page.title))];
     out.extend(paragraphs(&page.lead).iter().map(|p| to_markdown(p)));
     if page.sections.len() > 2 {

@@ -3,16 +3,14 @@
 //!
 //! Running text is lightly marked: `` `code` ``, `**strong**`, `*stressed*`, `[words](target)`; a
 //! blank line ends a paragraph. Symbols such as `T_v` get their subscripts by themselves.
-mod html;
-mod inline;
-mod markdown;
 
-#[cfg(test)]
-mod tests;
+pub mod html;
+pub mod inline;
+pub mod markdown;
 
-use super::RenderError;
-use super::chart::Chart;
-use super::table::{Mood, Table};
+use crate::render::chart::describe::Chart;
+use crate::render::error::RenderError;
+use crate::render::table::{Mood, Table};
 
 /// A page.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -182,3 +180,7 @@ pub fn slug(text: &str) -> String {
     }
     out.trim_matches(['-', '.']).to_owned()
 }
+
+#[cfg(test)]
+#[path = "../../../tests/unit/render_page.rs"]
+mod tests;

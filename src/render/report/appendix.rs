@@ -1,8 +1,8 @@
 //! How the numbers were made: norms, references with their truncation, provenance.
 
-use super::StudyResults;
-use crate::assess::norm::Norm;
+use crate::case::norm::Norm;
 use crate::render::page::{Block, Section};
+use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Column, Table};
 use std::collections::BTreeMap;
 

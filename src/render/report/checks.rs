@@ -1,10 +1,11 @@
 //! Start checks, balances and dimensionless groups of a study's runs, the worst of each.
 
-use super::StudyResults;
-use crate::assess::record_checks::{self, RecordCheck};
+use crate::measure::record_checks;
+use crate::measure::record_checks::RecordCheck;
 use crate::record::{Record, Status};
 use crate::render::measures::bound_cell;
 use crate::render::page::Block;
+use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Column, Table};
 
 /// The worst of every check over the runs of a study, and the groups of its first run.

@@ -1,16 +1,17 @@
 //! Errors under refinement: figures with slope triangles, and tables of orders.
 
-use super::{StudyResults, labels};
-use crate::assess::orders::WINDOW;
-use crate::assess::summary::{Path, SeriesSummary, first_norm, paths};
-use crate::exact::ReferenceKind;
-use crate::record::{Quantity, Sample};
-use crate::render::chart::{
+use crate::case::quantity::{Quantity, Sample};
+use crate::case::step_label;
+use crate::convergence::orders::WINDOW;
+use crate::exact::reference::ReferenceKind;
+use crate::judge::paths::{Path, SeriesSummary, first_norm, paths};
+use crate::render::chart::describe::{
     Axis as ChartAxis, Chart, Direction, Place, Rule, Series, Size, SlopeTriangle, Style,
 };
 use crate::render::page::{Block, Figure, slug};
+use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Column, Table};
-use crate::study::{Axis, Measure, NEXT_FINER, step_label};
+use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 
 /// Quantities of one figure, side by side; a layer's settlement says less than its displacements.
 fn panels(results: &StudyResults<'_>) -> [(Quantity, Sample); 4] {

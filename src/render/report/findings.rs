@@ -1,15 +1,15 @@
 //! The first screen: what each method converges to and how fast, in one table.
 
-use super::{StudyResults, labels};
-use crate::assess::class::Class;
-use crate::assess::orders::WINDOW;
-use crate::assess::summary::{Path, first_norm, paths};
-use crate::assess::wording::typed;
-use crate::record::{Quantity, Sample};
+use crate::case::quantity::{Quantity, Sample};
+use crate::convergence::class::Class;
+use crate::convergence::orders::WINDOW;
+use crate::judge::paths::{Path, first_norm, paths};
 use crate::render::number;
 use crate::render::page::{Block, Section};
+use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Column, Mood, Table};
-use crate::study::{Axis, Measure};
+use crate::study::expectation::{Axis, Measure};
+use crate::wording::typed;
 
 /// Cells at which an error is quoted.
 const QUOTED_CELLS: usize = 10;

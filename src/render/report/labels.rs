@@ -1,8 +1,8 @@
 //! Words for quantities, samples and axes, the same in every figure and table.
 
-use crate::assess::summary::Path;
-use crate::record::{Quantity, Sample};
-use crate::study::{Axis, Measure};
+use crate::case::quantity::{Quantity, Sample};
+use crate::judge::paths::Path;
+use crate::study::expectation::{Axis, Measure};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A quantity in words.

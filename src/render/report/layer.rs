@@ -1,16 +1,17 @@
 //! What a plane layer shows: pressure fields beside the exact one, and the ranking of the methods.
 
-use super::{StudyResults, stiffness};
-use crate::assess::class::Class;
-use crate::assess::locking::{Standing, standings};
-use crate::assess::plane_field::PlaneField;
-use crate::exact::ExactError;
+use crate::convergence::class::Class;
+use crate::exact::error::ExactError;
+use crate::judge::locking::{Standing, standings};
+use crate::measure::plane_field::PlaneField;
 use crate::record::{Record, Status};
-use crate::render::chart::{Axis, Chart, Colours, Field, Range, Scale, Size};
+use crate::render::chart::describe::{Axis, Chart, Range, Scale, Size};
+use crate::render::chart::field::{Colours, Field};
 use crate::render::number;
 use crate::render::page::{Block, Figure, slug};
+use crate::render::report::{StudyResults, stiffness};
 use crate::render::table::{Cell, Column, Mood, Table};
-use crate::solver::material::Material;
+use crate::soil::material::Material;
 
 /// Cells over the height of the runs whose fields are drawn.
 const SHOWN_CELLS: usize = 8;

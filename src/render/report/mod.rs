@@ -1,25 +1,26 @@
 //! The report: one page over the records of studies, as HTML and as Markdown.
 
-mod appendix;
-mod checks;
-mod convergence;
-mod findings;
-mod labels;
-mod layer;
-mod precision;
-mod profiles;
-mod section;
-mod stability;
-mod stiffness;
-mod survival;
-mod work;
+pub mod appendix;
+pub mod checks;
+pub mod convergence;
+pub mod findings;
+pub mod labels;
+pub mod layer;
+pub mod precision;
+pub mod profiles;
+pub mod section;
+pub mod stability;
+pub mod stiffness;
+pub mod survival;
+pub mod work;
 
-use super::page::Page;
-use crate::assess::soundness;
-use crate::assess::summary::{Judgement, judge_study};
-use crate::exact::ExactError;
+use crate::case::tier::Tier;
+use crate::exact::error::ExactError;
+use crate::judge::paths::{Judgement, judge_study};
+use crate::judge::soundness;
 use crate::record::{Record, Status};
-use crate::study::{Study, Tier};
+use crate::render::page::Page;
+use crate::study::check::Study;
 
 /// A study with its records and the judgements on them.
 pub struct StudyResults<'a> {

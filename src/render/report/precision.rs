@@ -1,13 +1,14 @@
 //! Error against wall time over every integrator: the front, the first way to a tolerance, one more
 //! level, and other programs.
 
-use super::StudyResults;
-use crate::assess::peers::{self, Comparison};
-use crate::assess::work_precision::{NextLevel, TimedRun, WorkPrecision};
-use crate::render::chart::{Axis as ChartAxis, Chart, Series, Style};
+use crate::judge::peers;
+use crate::judge::peers::Comparison;
+use crate::judge::work_precision::{NextLevel, TimedRun, WorkPrecision};
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::render::chart::describe::{Axis as ChartAxis, Chart, Series, Style};
 use crate::render::page::{Block, Figure, slug};
+use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Column, Table};
-use crate::study::IntegratorKind;
 
 /// The comparison of a study with timed runs of several integrators.
 pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {

@@ -1,17 +1,18 @@
 //! Isochrones of the pore pressure and the degree of consolidation, with the theory line.
 
-use super::StudyResults;
-use crate::assess::curves::{
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::exact::error::ExactError;
+use crate::measure::theory_curves::{
     computed_consolidation, computed_isochrone, constant_recovery_error, theory_consolidation, theory_degree,
     theory_isochrone,
 };
-use crate::assess::norm::Norm;
-use crate::exact::ExactError;
-use crate::record::{Quantity, Record, Sample, Status};
-use crate::render::chart::{Axis as ChartAxis, Chart, Series, Size, Style};
+use crate::mpm::method::{PressureIntegration, Recovery};
+use crate::record::{Record, Status};
+use crate::render::chart::describe::{Axis as ChartAxis, Chart, Series, Size, Style};
 use crate::render::page::{Block, Figure, slug};
+use crate::render::report::StudyResults;
 use crate::scene::SceneKind;
-use crate::solver::method::{PressureIntegration, Recovery};
 
 /// Cells of the runs whose profiles are drawn: the paper's column.
 const SHOWN_CELLS: usize = 10;

@@ -1,12 +1,12 @@
 //! The section of one study: what it asks, what was expected, figures, tables, checks.
 
-use super::{StudyResults, checks, convergence, layer, precision, profiles, stability, work};
-use crate::exact::ExactError;
+use crate::exact::error::ExactError;
 use crate::render::page::{Block, Section};
+use crate::render::report::{StudyResults, checks, convergence, layer, precision, profiles, stability, work};
 use crate::render::table::Mood;
 use crate::render::uncertainties;
 use crate::render::verdicts::judgements_table;
-use crate::study::Axis;
+use crate::study::expectation::Axis;
 
 /// The section of a study.
 pub fn of_study(results: &StudyResults<'_>) -> Result<Section, ExactError> {

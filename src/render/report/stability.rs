@@ -1,9 +1,9 @@
 //! Maps of the critical step: the predicted line with the observed marks, a method a colour.
 
-use super::StudyResults;
-use crate::assess::stability_map::{MapAxis, maps_of};
-use crate::render::chart::{Axis as ChartAxis, Chart, Series, Size, Style};
+use crate::judge::stability_map::{MapAxis, maps_of};
+use crate::render::chart::describe::{Axis as ChartAxis, Chart, Series, Size, Style};
 use crate::render::page::{Block, Figure, slug};
+use crate::render::report::StudyResults;
 use crate::render::stability::table_of;
 
 /// Height over which a map needs a logarithmic axis.

@@ -1,11 +1,11 @@
 //! Errors and oscillation against the stiffness of the water and of the skeleton, through
 //! consolidation.
 
-use super::StudyResults;
-use crate::assess::stiffness_sweep::{Showing, Stiffness, StiffnessSweep};
-use crate::exact::ExactError;
-use crate::render::chart::{Axis, Chart, Direction, Rule, Series, Size, Style};
+use crate::exact::error::ExactError;
+use crate::judge::stiffness_sweep::{Showing, Stiffness, StiffnessSweep};
+use crate::render::chart::describe::{Axis, Chart, Direction, Rule, Series, Size, Style};
 use crate::render::page::{Block, Figure, slug};
+use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Column, Table};
 
 /// Figures of the last output and, behind a click, every number.

@@ -1,12 +1,13 @@
 //! What each method survives: how every hard case ended, with its error where it has one.
 
-use super::StudyResults;
-use crate::assess::summary::first_norm;
-use crate::record::{Quantity, Record, Sample, Status};
+use crate::case::quantity::{Quantity, Sample};
+use crate::judge::paths::first_norm;
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::record::{Record, Status};
 use crate::render::number;
 use crate::render::page::{Block, Section};
+use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Column, Mood, Table};
-use crate::study::IntegratorKind;
 
 /// An error as large as the answer: the run went on, and its result is none.
 const MEANINGLESS: f64 = 1.0;

@@ -1,13 +1,14 @@
 //! Error against work, and the wall times that were measured fairly.
 
-use super::{StudyResults, labels};
-use crate::assess::statistics::median;
-use crate::assess::summary::{first_norm, paths};
-use crate::record::{Quantity, Record, Sample, Status};
-use crate::render::chart::{Axis as ChartAxis, Chart, Series};
+use crate::case::quantity::{Quantity, Sample};
+use crate::judge::paths::{first_norm, paths};
+use crate::measure::wall_times::median;
+use crate::record::{Record, Status};
+use crate::render::chart::describe::{Axis as ChartAxis, Chart, Series};
 use crate::render::page::{Block, Figure, slug};
+use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Column, Table};
-use crate::study::{Axis, Measure};
+use crate::study::expectation::{Axis, Measure};
 
 /// Error over point updates, and over wall time where runs had the machine to themselves.
 pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {

@@ -1,8 +1,9 @@
 //! Tables for machines.
-use super::{Cell, Table};
-use crate::render::{RenderError, number};
+use crate::render::error::RenderError;
+use crate::render::number;
+use crate::render::table::{Cell, Table};
 
-pub(super) fn write(table: &Table) -> Result<String, RenderError> {
+pub(crate) fn write(table: &Table) -> Result<String, RenderError> {
     let fail = |reason: String| RenderError::Csv { title: table.title.clone(), reason };
     let wide: Vec<bool> = (0..table.columns.len())
         .map(|i| table.rows.iter().any(|row| matches!(row[i], Cell::OrderWithin(..))))

@@ -1,9 +1,9 @@
 //! Tables as fragments of HTML.
-use super::{Align, Cell, Table, mark, marked};
 use crate::render::escape::{html, plain_html};
+use crate::render::table::{Align, Cell, Table, mark, marked};
 use std::fmt::Write as _;
 
-pub(super) fn write(table: &Table) -> String {
+pub(crate) fn write(table: &Table) -> String {
     let footnotes = table.footnotes();
     let mut out = String::from("<div class=\"table\">\n<table>\n");
     if !table.title.is_empty() {

@@ -1,9 +1,9 @@
 //! Tables in GitHub's Markdown.
-use super::{Align, Cell, Table, mark, marked};
 use crate::render::escape;
+use crate::render::table::{Align, Cell, Table, mark, marked};
 use std::fmt::Write as _;
 
-pub(super) fn write(table: &Table) -> String {
+pub(crate) fn write(table: &Table) -> String {
     let footnotes = table.footnotes();
     let mut out = String::new();
     if !table.title.is_empty() {

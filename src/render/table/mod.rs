@@ -1,13 +1,12 @@
 //! A table as plain data, and its writers: text, Markdown, HTML and CSV.
-mod csv;
-mod html;
-mod markdown;
-mod text;
 
-#[cfg(test)]
-mod tests;
+pub mod csv;
+pub mod html;
+pub mod markdown;
+pub mod text;
 
-use super::{RenderError, number};
+use crate::render::error::RenderError;
+use crate::render::number;
 
 /// A table.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -241,3 +240,7 @@ fn marked(cell: &Cell, footnotes: &[&str]) -> (String, Option<String>) {
     };
     (cell.show(), place.map(mark))
 }
+
+#[cfg(test)]
+#[path = "../../../tests/unit/render_table.rs"]
+mod tests;

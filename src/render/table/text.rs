@@ -1,8 +1,8 @@
 //! Tables for a terminal, without colours.
-use super::{Align, Table, mark, marked};
+use crate::render::table::{Align, Table, mark, marked};
 use comfy_table::{CellAlignment, ContentArrangement};
 
-pub(super) fn write(table: &Table) -> String {
+pub(crate) fn write(table: &Table) -> String {
     let footnotes = table.footnotes();
     let mut grid = comfy_table::Table::new();
     grid.load_style(comfy_table::presets::ASCII_MARKDOWN);

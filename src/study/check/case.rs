@@ -1,22 +1,23 @@
 //! Checks of what is said about single cases: where their points lie, and what must become of them.
 
-use super::{Checker, MOST_CELLS, MOST_POINTS};
+use crate::case::Task;
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::case::tier::Tier;
+use crate::exact::reference::ReferenceKind;
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::outcome::FailureKind;
+use crate::scene::SceneKind;
+use crate::scene::arrangement::Arrangement;
 use crate::study::case_expectation::{CaseDemand, CaseExpectation, ErrorRange, Selection};
-use crate::assess::norm::Norm;
-use crate::exact::ReferenceKind;
-use crate::record::{Quantity, Sample};
-use crate::scene::{Arrangement, SceneKind};
-use crate::solver::integrator::IntegratorKind;
-use crate::solver::outcome::FailureKind;
-use crate::study::case::Task;
+use crate::study::check::{Checker, MOST_CELLS, MOST_POINTS};
 use crate::study::expectation::Measure;
 use crate::study::file::{ExpectCaseTable, PointsTable, RangeTable, StudyFile};
-use crate::study::tier::Tier;
 use toml::Spanned;
 
 impl Checker<'_> {
     /// What is done with the cases.
-    pub(super) fn task(&mut self, file: &StudyFile) -> Option<Task> {
+    pub(crate) fn task(&mut self, file: &StudyFile) -> Option<Task> {
         match &file.task {
             Some(word) => Some(Task::ALL[self.word(word, "task", &Task::ALL.map(Task::name))?]),
             None => Some(Task::default()),
@@ -24,7 +25,7 @@ impl Checker<'_> {
     }
 
     /// What single cases must do, all of it.
-    pub(super) fn case_expectations(
+    pub(crate) fn case_expectations(
         &mut self,
         file: &StudyFile,
         scene: SceneKind,
@@ -34,7 +35,7 @@ impl Checker<'_> {
     }
 
     /// Where the points lie in their cells.
-    pub(super) fn arrangement(&mut self, table: &PointsTable) -> Arrangement {
+    pub(crate) fn arrangement(&mut self, table: &PointsTable) -> Arrangement {
         let regular = Arrangement::default();
         let filling = table.filling.as_ref().map_or(regular.filling, |typed| *typed.get_ref());
         if let Some(typed) = table.filling.as_ref().filter(|_| !(filling > 0.0 && filling <= 1.0)) {
@@ -52,7 +53,7 @@ impl Checker<'_> {
     }
 
     /// A shift of points, in spacings.
-    pub(super) fn offset(&mut self, typed: &Spanned<f64>) -> Option<f64> {
+    pub(crate) fn offset(&mut self, typed: &Spanned<f64>) -> Option<f64> {
         let offset = *typed.get_ref();
         if (-0.5..=0.5).contains(&offset) {
             // No shift downwards is none: both zeros are one case.

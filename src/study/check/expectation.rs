@@ -1,22 +1,24 @@
 //! Checks of what a study expects of its series: the blocks `[[expect]]`.
 
-use super::{Checker, MOST_CELLS, MOST_POINTS};
-use crate::assess::class::Class;
-use crate::assess::expectation::{Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure};
-use crate::assess::norm::Norm;
-use crate::exact::ReferenceKind;
-use crate::record::{Quantity, Sample};
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::case::tier::Tier;
+use crate::convergence::class::Class;
+use crate::convergence::series_expectation::{
+    Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure,
+};
+use crate::exact::reference::ReferenceKind;
 use crate::scene::SceneKind;
+use crate::study::check::{Checker, MOST_CELLS, MOST_POINTS};
 use crate::study::expectation::{Axis, Expectation, Measure, NEXT_FINER, NO_REFERENCE};
 use crate::study::file::{ExpectTable, LevelTable};
-use crate::study::tier::Tier;
 use toml::Spanned;
 
 /// Half-width of an order's band where an expectation names none.
 const DEFAULT_BAND: f64 = 0.1;
 
 impl Checker<'_> {
-    pub(super) fn expectation(
+    pub(crate) fn expectation(
         &mut self,
         entry: &Spanned<ExpectTable>,
         scene: SceneKind,

@@ -1,12 +1,14 @@
 //! Checks of where the soil is and what loads it: the tables `[column]` and `[layer]`.
 
-use super::Checker;
 use crate::elementary;
-use crate::exact::ExactError;
 use crate::exact::cosine_layer::Base;
+use crate::exact::error::ExactError;
 use crate::exact::xie_leo::XieLeo;
-use crate::scene::{Arrangement, Column, SceneKind, column_parameters};
-use crate::solver::material::Material;
+use crate::scene::SceneKind;
+use crate::scene::arrangement::Arrangement;
+use crate::scene::column::{Column, column_parameters};
+use crate::soil::material::Material;
+use crate::study::check::Checker;
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::{ColumnTable, LayerTable, StudyFile};
 use toml::Spanned;
@@ -16,7 +18,7 @@ const LARGEST_SMALL_STRAIN: f64 = 1e-2;
 
 impl Checker<'_> {
     /// The column's or the layer's table, whichever the scene is about; the other is refused.
-    pub(super) fn geometry(&mut self, file: &StudyFile, scene: SceneKind) -> Column {
+    pub(crate) fn geometry(&mut self, file: &StudyFile, scene: SceneKind) -> Column {
         if scene.is_plane() {
             if let Some(span) = file.column.typed() {
                 let name = scene.name();
@@ -51,7 +53,7 @@ impl Checker<'_> {
         }
     }
 
-    pub(super) fn column(&mut self, table: &ColumnTable, scene: SceneKind) -> Column {
+    pub(crate) fn column(&mut self, table: &ColumnTable, scene: SceneKind) -> Column {
         let seed = Column::default();
         if let Some(typed) = table.loading_time.as_ref().filter(|_| !scene.takes_loading_time()) {
             self.complain(
@@ -75,7 +77,7 @@ impl Checker<'_> {
 
     /// A load that would press out more water than the pores hold has no end state: the exact
     /// solutions say so before anything runs.
-    pub(super) fn porosity_at_the_end(
+    pub(crate) fn porosity_at_the_end(
         &mut self,
         file: &StudyFile,
         scene: SceneKind,
@@ -100,7 +102,7 @@ impl Checker<'_> {
     }
 
     /// A load under which a theory of small strain is off by more than a percent.
-    pub(super) fn large_for_small_strain(
+    pub(crate) fn large_for_small_strain(
         &self,
         file: &StudyFile,
         scene: SceneKind,

@@ -1,15 +1,15 @@
 //! Checks of how time is stepped: the table `[integrator]` and the rules of step sizes.
 
-use super::Checker;
-use crate::solver::explicit::{Drag, ExplicitSettings};
-use crate::solver::integrator::{Formulation, IntegratorKind};
-use crate::solver::run::TimeStepRule;
-use crate::solver::scheme::Scheme;
+use crate::mpm::explicit::scheme::Scheme;
+use crate::mpm::explicit::{Drag, ExplicitSettings};
+use crate::mpm::run::TimeStepRule;
+use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::study::check::Checker;
 use crate::study::file::{IntegratorTable, TimeStepTable};
 use toml::Spanned;
 
 impl Checker<'_> {
-    pub(super) fn settings(&mut self, table: &IntegratorTable) -> ExplicitSettings {
+    pub(crate) fn settings(&mut self, table: &IntegratorTable) -> ExplicitSettings {
         let default = ExplicitSettings::default();
         ExplicitSettings {
             scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)).unwrap_or(default.scheme),
@@ -19,25 +19,25 @@ impl Checker<'_> {
         }
     }
 
-    pub(super) fn integrator(&mut self, word: &Spanned<String>) -> Option<IntegratorKind> {
+    pub(crate) fn integrator(&mut self, word: &Spanned<String>) -> Option<IntegratorKind> {
         let index = self.word(word, "integrator", &IntegratorKind::ALL.map(IntegratorKind::name))?;
         Some(IntegratorKind::ALL[index])
     }
 
-    pub(super) fn formulation(&mut self, word: &Spanned<String>) -> Option<Formulation> {
+    pub(crate) fn formulation(&mut self, word: &Spanned<String>) -> Option<Formulation> {
         let index = self.word(word, "formulation", &Formulation::ALL.map(Formulation::name))?;
         Some(Formulation::ALL[index])
     }
 
-    pub(super) fn drag(&mut self, word: &Spanned<String>) -> Option<Drag> {
+    pub(crate) fn drag(&mut self, word: &Spanned<String>) -> Option<Drag> {
         Some(Drag::ALL[self.word(word, "drag", &Drag::ALL.map(Drag::name))?])
     }
 
-    pub(super) fn scheme(&mut self, word: &Spanned<String>) -> Option<Scheme> {
+    pub(crate) fn scheme(&mut self, word: &Spanned<String>) -> Option<Scheme> {
         Some(Scheme::ALL[self.word(word, "scheme", &Scheme::ALL.map(Scheme::name))?])
     }
 
-    pub(super) fn flip(&mut self, typed: &Spanned<f64>) -> f64 {
+    pub(crate) fn flip(&mut self, typed: &Spanned<f64>) -> f64 {
         let flip = *typed.get_ref();
         if !(0.0..=1.0).contains(&flip) {
             self.complain(
@@ -49,7 +49,7 @@ impl Checker<'_> {
         flip + 0.0
     }
 
-    pub(super) fn time_step(&mut self, typed: &Spanned<TimeStepTable>) -> Option<TimeStepRule> {
+    pub(crate) fn time_step(&mut self, typed: &Spanned<TimeStepTable>) -> Option<TimeStepRule> {
         let table = typed.get_ref();
         let given = [
             table.stable.as_ref().map(|value| (TimeStepRule::Stable(*value.get_ref()), value)),

@@ -1,13 +1,13 @@
 //! Checks of what the soil is made of: the table `[material]`.
 
-use super::Checker;
 use crate::scene::SceneKind;
-use crate::solver::material::{Continuity, Law, Material};
+use crate::soil::material::{Continuity, Law, Material};
+use crate::study::check::Checker;
 use crate::study::file::MaterialTable;
 use toml::Spanned;
 
 impl Checker<'_> {
-    pub(super) fn material(&mut self, table: &MaterialTable, scene: SceneKind) -> Material {
+    pub(crate) fn material(&mut self, table: &MaterialTable, scene: SceneKind) -> Material {
         let seed = Material::default();
         let law = table.law.as_ref().and_then(|word| self.law(word, scene));
         let continuity = table.continuity.as_ref().and_then(|word| self.continuity(word));
@@ -58,7 +58,7 @@ impl Checker<'_> {
         soil
     }
 
-    pub(super) fn law(&mut self, word: &Spanned<String>, scene: SceneKind) -> Option<Law> {
+    pub(crate) fn law(&mut self, word: &Spanned<String>, scene: SceneKind) -> Option<Law> {
         let law = Law::ALL[self.word(word, "law", &Law::ALL.map(Law::name))?];
         if let Some(why) = scene.refuses_law(law) {
             let fit = Law::ALL.into_iter().filter(|law| scene.refuses_law(*law).is_none());
@@ -73,7 +73,7 @@ impl Checker<'_> {
         Some(law)
     }
 
-    pub(super) fn continuity(&mut self, word: &Spanned<String>) -> Option<Continuity> {
+    pub(crate) fn continuity(&mut self, word: &Spanned<String>) -> Option<Continuity> {
         let index = self.word(word, "continuity", &Continuity::ALL.map(Continuity::name))?;
         Some(Continuity::ALL[index])
     }

@@ -1,17 +1,17 @@
 //! Checks of methods, by name or choice by choice.
 
-use super::Checker;
-use crate::scene::SceneKind;
-use crate::solver::method::{
+use crate::mpm::method::{
     Basis, Configuration, Memory, Method, PressureIntegration, Recovery, StrainGradient,
 };
+use crate::scene::SceneKind;
+use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
 use crate::study::file::{MethodEntry, MethodTable};
 use std::ops::Range;
 use toml::Spanned;
 
 impl Checker<'_> {
-    pub(super) fn method(&mut self, typed: &Spanned<MethodEntry>) -> Option<Method> {
+    pub(crate) fn method(&mut self, typed: &Spanned<MethodEntry>) -> Option<Method> {
         match typed.get_ref() {
             MethodEntry::Name(name) => {
                 let method = Method::named(name);
@@ -31,7 +31,7 @@ impl Checker<'_> {
     }
 
     /// Whether a scene takes the configuration that a method insists on.
-    pub(super) fn configuration_fits(
+    pub(crate) fn configuration_fits(
         &mut self,
         typed: &Spanned<MethodEntry>,
         scene: SceneKind,

@@ -1,14 +1,16 @@
 //! Checks of what is varied: the blocks `[[sweep]]`, axis by axis and together.
 
-use super::{Checker, MOST_CASES, MOST_CELLS, MOST_POINTS};
-use crate::scene::{Arrangement, Column, SceneKind};
-use crate::solver::explicit::ExplicitSettings;
-use crate::solver::integrator::{Formulation, IntegratorKind};
-use crate::solver::material::Material;
-use crate::study::case::{Case, Task};
+use crate::case::tier::Tier;
+use crate::case::{Case, Task};
+use crate::mpm::explicit::ExplicitSettings;
+use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::scene::SceneKind;
+use crate::scene::arrangement::Arrangement;
+use crate::scene::column::Column;
+use crate::soil::material::Material;
+use crate::study::check::{Checker, MOST_CASES, MOST_CELLS, MOST_POINTS};
 use crate::study::file::SweepTable;
 use crate::study::sweep::{AXES, Combination, Sweep};
-use crate::study::tier::Tier;
 use std::ops::Range;
 use toml::Spanned;
 
@@ -17,18 +19,18 @@ const MOST_BYTES: f64 = 32e9;
 
 /// What the cases of a study share where a sweep does not say otherwise.
 #[derive(Clone, Copy)]
-pub(super) struct Common {
-    pub(super) task: Task,
-    pub(super) scene: SceneKind,
-    pub(super) column: Column,
-    pub(super) soil: Material,
-    pub(super) settings: ExplicitSettings,
-    pub(super) formulation: Option<Formulation>,
+pub(crate) struct Common {
+    pub(crate) task: Task,
+    pub(crate) scene: SceneKind,
+    pub(crate) column: Column,
+    pub(crate) soil: Material,
+    pub(crate) settings: ExplicitSettings,
+    pub(crate) formulation: Option<Formulation>,
 }
 
 impl Common {
     /// The case of one combination of a sweep.
-    pub(super) fn case_of(&self, one: &Combination, time_factors: &[f64]) -> Case {
+    pub(crate) fn case_of(&self, one: &Combination, time_factors: &[f64]) -> Case {
         Case {
             task: self.task,
             scene: self.scene,
@@ -63,7 +65,7 @@ impl Common {
 }
 
 impl Checker<'_> {
-    pub(super) fn sweep(&mut self, table: &SweepTable, span: Range<usize>, common: &Common) -> Option<Sweep> {
+    pub(crate) fn sweep(&mut self, table: &SweepTable, span: Range<usize>, common: &Common) -> Option<Sweep> {
         let Common { scene, column, soil, settings, formulation, .. } = *common;
         let before = self.diagnostics.len();
         if table.method.is_none() {
@@ -192,7 +194,7 @@ impl Checker<'_> {
         false
     }
 
-    pub(super) fn tier(&mut self, table: &SweepTable) -> Tier {
+    pub(crate) fn tier(&mut self, table: &SweepTable) -> Tier {
         let names = Tier::ALL.map(Tier::name);
         let index = table.tier.as_ref().and_then(|word| self.word(word, "tier", &names));
         index.map_or(Tier::default(), |index| Tier::ALL[index])
@@ -234,7 +236,7 @@ impl Checker<'_> {
     }
 
     /// Square cells must fill the width: their number over the height decides their size.
-    pub(super) fn cells_fill_the_width(&mut self, table: &SweepTable, column: &Column) {
+    pub(crate) fn cells_fill_the_width(&mut self, table: &SweepTable, column: &Column) {
         for typed in table.cells.iter().flat_map(Spanned::get_ref) {
             let cells = usize::try_from(*typed.get_ref()).unwrap_or(0);
             if cells == 0 || column.cells_across(cells).is_some() {
@@ -250,7 +252,7 @@ impl Checker<'_> {
     }
 
     /// Complains of a mesh whose run would end for want of memory, and the others with it.
-    pub(super) fn memory_fits(&mut self, table: &SweepTable, cases: impl Iterator<Item = Case>) {
+    pub(crate) fn memory_fits(&mut self, table: &SweepTable, cases: impl Iterator<Item = Case>) {
         let largest = cases.max_by(|a, b| a.estimated_bytes().total_cmp(&b.estimated_bytes()));
         let (Some(case), Some(cells)) = (largest, &table.cells) else { return };
         let bytes = case.estimated_bytes();

@@ -1,13 +1,13 @@
 //! Checks of single values: words among their choices, counts and numbers in their range.
 
-use super::Checker;
+use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
 use std::ops::RangeInclusive;
 use toml::Spanned;
 
 impl Checker<'_> {
     /// Index of an optional word, or that of the default.
-    pub(super) fn choice(
+    pub(crate) fn choice(
         &mut self,
         typed: Option<&Spanned<String>>,
         name: &str,
@@ -18,7 +18,7 @@ impl Checker<'_> {
     }
 
     /// Index of a word among its choices.
-    pub(super) fn word(&mut self, typed: &Spanned<String>, name: &str, choices: &[&str]) -> Option<usize> {
+    pub(crate) fn word(&mut self, typed: &Spanned<String>, name: &str, choices: &[&str]) -> Option<usize> {
         let word = typed.get_ref();
         let index = choices.iter().position(|choice| choice == word);
         if index.is_none() {
@@ -27,7 +27,7 @@ impl Checker<'_> {
         index
     }
 
-    pub(super) fn count(
+    pub(crate) fn count(
         &mut self,
         typed: Option<&Spanned<i64>>,
         name: &str,
@@ -47,7 +47,7 @@ impl Checker<'_> {
         usize::try_from(count).ok()
     }
 
-    pub(super) fn positive(
+    pub(crate) fn positive(
         &mut self,
         typed: Option<&Spanned<f64>>,
         name: &str,
@@ -66,7 +66,7 @@ impl Checker<'_> {
         value
     }
 
-    pub(super) fn not_negative(&mut self, typed: Option<&Spanned<f64>>, name: &str, unit: &str) -> f64 {
+    pub(crate) fn not_negative(&mut self, typed: Option<&Spanned<f64>>, name: &str, unit: &str) -> f64 {
         let Some(typed) = typed else { return 0.0 };
         let value = *typed.get_ref();
         if !(value.is_finite() && value >= 0.0) {
@@ -80,7 +80,7 @@ impl Checker<'_> {
         value + 0.0
     }
 
-    pub(super) fn between(
+    pub(crate) fn between(
         &mut self,
         typed: Option<&Spanned<f64>>,
         name: &str,

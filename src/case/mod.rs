@@ -1,0 +1,339 @@
+//! A case: everything that decides a run, as plain data with an identity.
+
+pub mod norm;
+pub mod quantity;
+pub mod tier;
+
+use crate::elementary;
+use crate::mpm::explicit::{Drag, ExplicitSettings};
+use crate::mpm::method::Method;
+use crate::mpm::run::TimeStepRule;
+use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::scene::SceneKind;
+use crate::scene::arrangement::Arrangement;
+use crate::scene::column::Column;
+use crate::soil::material::{Continuity, Material};
+use serde::{Deserialize, Serialize};
+
+/// State and operators of a point, bytes.
+const BYTES_A_POINT: f64 = 500.0;
+
+/// Hexadecimal digits of a case's hash: enough that a million cases do not meet.
+const HASH_DIGITS: usize = 16;
+
+/// What is done with a case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Task {
+    /// It is solved, and held against the references of its scene.
+    #[default]
+    Solve,
+    /// Its critical step is predicted and observed.
+    Stability,
+}
+
+impl Task {
+    /// Every task.
+    pub const ALL: [Self; 2] = [Self::Solve, Self::Stability];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Solve => "solve",
+            Self::Stability => "stability",
+        }
+    }
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+    fn is_solve(&self) -> bool {
+        *self == Self::Solve
+    }
+}
+
+/// All inputs of one run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// What is done with it.
+    #[serde(default, skip_serializing_if = "Task::is_solve")]
+    pub task: Task,
+    /// Physical problem.
+    pub scene: SceneKind,
+    /// Geometry and load.
+    pub column: Column,
+    /// Soil.
+    pub material: Material,
+    /// Operators.
+    pub method: Method,
+    /// Integrator.
+    pub integrator: IntegratorKind,
+    /// Accelerations that the balances keep.
+    pub formulation: Formulation,
+    /// Choices of the explicit integrator.
+    pub settings: ExplicitSettings,
+    /// Cells over the height.
+    pub cells: usize,
+    /// Points a cell and direction.
+    pub points_per_cell: usize,
+    /// Step size.
+    pub time_step: TimeStepRule,
+    /// Time factors of the outputs, ascending.
+    pub time_factors: Vec<f64>,
+}
+
+impl Case {
+    /// Identity over the meaning: equal for equal inputs, whatever file or path they came from.
+    pub fn hash(&self) -> String {
+        // Serialising plain numbers and words cannot fail; were it to, an empty text still hashes.
+        let canonical = serde_json::to_string(self).unwrap_or_default();
+        blake3::hash(canonical.as_bytes()).to_hex()[..HASH_DIGITS].to_owned()
+    }
+
+    /// Cell size, m.
+    pub fn cell_size(&self) -> f64 {
+        self.column.points.cell_size(self.column.height, self.cells)
+    }
+
+    /// Points there are to be: cells times points a cell, in every direction.
+    pub fn expected_points(&self) -> usize {
+        let along = self.cells * self.points_per_cell;
+        match self.column.dimensions {
+            1 => along,
+            _ => along * self.column.cells_across(self.cells).unwrap_or(1) * self.points_per_cell,
+        }
+    }
+
+    /// Time, s, at which `T_v = 1`.
+    pub fn seconds_per_time_factor(&self) -> f64 {
+        self.column.height * self.column.height / self.material.coefficient_of_consolidation()
+    }
+
+    /// Memory that a run may take, bytes, to an order of magnitude: its points, and the band of the direct
+    /// solver, which the undrained start of an explicit run needs too.
+    pub fn estimated_bytes(&self) -> f64 {
+        let across = self.column.cells_across(self.cells).unwrap_or(1) as f64;
+        let (short, long) = (across.min(self.cells as f64), across.max(self.cells as f64));
+        let dimensions = self.column.dimensions as f64;
+        let points_a_cell = elementary::powf(self.points_per_cell as f64, dimensions);
+        let sites = if self.method.pressure.is_by_cells() { 1.0 } else { points_a_cell };
+        // Unknowns of one row of cells across the layer; a node couples to four rows above and below.
+        let row = short * (dimensions + sites);
+        let band = 12.0 * row;
+        let solves = self.integrator != IntegratorKind::Explicit || self.scene.is_plane();
+        let solver = if solves { 16.0 * long * row * band } else { 0.0 };
+        solver + BYTES_A_POINT * short * long * points_a_cell
+    }
+
+    /// What is special about integration and equations: empty for the paper's integration of the
+    /// scene's own equations.
+    pub fn variant(&self) -> String {
+        let defaults = ExplicitSettings::default();
+        let mut parts = Vec::new();
+        if self.formulation != self.integrator.default_formulation() {
+            parts.push(self.formulation.name().to_owned());
+        }
+        if self.settings.scheme != defaults.scheme {
+            parts.push(self.settings.scheme.name().to_owned());
+        }
+        if self.settings.drag != defaults.drag {
+            parts.push(match self.settings.drag {
+                Drag::Explicit => "explicit drag".to_owned(),
+                Drag::Implicit => "implicit drag".to_owned(),
+                Drag::Centred => "centred drag".to_owned(),
+            });
+        }
+        if self.settings.flip != defaults.flip {
+            parts.push(format!("FLIP {}", self.settings.flip));
+        }
+        if self.settings.mapping_back != defaults.mapping_back {
+            parts.push("no mapping back".to_owned());
+        }
+        if self.column.dimensions == 2 && !self.scene.is_plane() {
+            parts.push("two dimensions".to_owned());
+        }
+        if self.material.law != self.scene.default_law() {
+            parts.push(format!("{} law", self.material.law.name()));
+        }
+        if self.material.continuity != Continuity::Conservative {
+            parts.push("porosity gradient dropped".to_owned());
+        }
+        parts.extend(self.arrangement());
+        let seed = Material::default();
+        if self.scene.is_plane() && self.material.water_bulk_modulus != seed.water_bulk_modulus {
+            parts
+                .push(format!("K_w/E {:e}", self.material.water_bulk_modulus / self.material.youngs_modulus));
+        }
+        if self.scene.is_plane() && self.material.poissons_ratio != seed.poissons_ratio {
+            parts.push(format!("ν {}", self.material.poissons_ratio));
+        }
+        if self.task == Task::Stability {
+            parts.extend(self.departure_from_the_seed());
+        }
+        parts.join(", ")
+    }
+
+    /// Where the points lie, where that is not the regular lattice.
+    fn arrangement(&self) -> Vec<String> {
+        let (points, regular) = (&self.column.points, Arrangement::default());
+        [
+            (points.offset, regular.offset, "points shifted by"),
+            (points.jitter, regular.jitter, "points jittered by"),
+            (points.filling, regular.filling, "top cell filled to"),
+        ]
+        .into_iter()
+        .filter(|(value, usual, _)| value != usual)
+        .map(|(value, _, what)| format!("{what} {value}"))
+        .collect()
+    }
+
+    /// Parameters that maps of the critical step sweep, where they are not the seed's.
+    fn departure_from_the_seed(&self) -> Vec<String> {
+        let (soil, seed) = (&self.material, Material::default());
+        [
+            (soil.hydraulic_conductivity, seed.hydraulic_conductivity, "k ="),
+            (soil.water_bulk_modulus, seed.water_bulk_modulus, "K_w ="),
+            (soil.porosity, seed.porosity, "n ="),
+        ]
+        .into_iter()
+        .filter(|(value, usual, _)| value != usual)
+        .map(|(value, _, what)| format!("{what} {value:e}"))
+        .collect()
+    }
+
+    /// Words by which a person knows the case within its study.
+    pub fn label(&self) -> String {
+        self.label_with(&step_label(&self.time_step))
+    }
+
+    /// The same for a case whose step is the question.
+    pub fn label_without_step(&self) -> String {
+        self.label_with("")
+    }
+
+    fn label_with(&self, step: &str) -> String {
+        let mut label = format!(
+            "{} {} cells={} points={} {step}",
+            self.method,
+            self.integrator.name(),
+            self.cells,
+            self.points_per_cell,
+        );
+        let variant = self.variant();
+        if !variant.is_empty() {
+            label = format!("{} ({variant})", label.trim_end());
+        }
+        label
+    }
+}
+
+/// A step rule as the command line takes it.
+pub fn step_label(rule: &TimeStepRule) -> String {
+    match rule {
+        TimeStepRule::Stable(share) => format!("stable={share}"),
+        TimeStepRule::Courant(share) => format!("courant={share}"),
+        TimeStepRule::Seconds(seconds) => format!("seconds={seconds:e}"),
+        TimeStepRule::Growth(growth) => format!("growth={growth}"),
+        TimeStepRule::Tolerance(tolerance) => format!("tolerance={tolerance:e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::cosine_layer::Base;
+    use crate::mpm::explicit::scheme::Scheme;
+    use crate::soil::material::Law;
+
+    fn seed() -> Case {
+        Case {
+            task: Task::Solve,
+            scene: SceneKind::Terzaghi,
+            column: Column::default(),
+            material: Material::default(),
+            method: Method::named("GC-SRI-patch").expect("the paper's method"),
+            integrator: IntegratorKind::Explicit,
+            formulation: Formulation::VW,
+            settings: ExplicitSettings::default(),
+            cells: 10,
+            points_per_cell: 2,
+            time_step: TimeStepRule::Stable(0.5),
+            time_factors: vec![0.1],
+        }
+    }
+
+    #[test]
+    fn the_hash_follows_the_meaning() {
+        let case = seed();
+        assert_eq!(case.hash(), seed().hash());
+        assert_eq!(case.hash().len(), HASH_DIGITS);
+        for change in [
+            |case: &mut Case| case.cells = 11,
+            |case: &mut Case| case.material.porosity = 0.300_000_000_000_000_04,
+            |case: &mut Case| case.settings.mapping_back = false,
+            |case: &mut Case| case.time_factors.push(0.2),
+        ] {
+            let mut other = seed();
+            change(&mut other);
+            assert_ne!(other.hash(), case.hash());
+        }
+    }
+
+    #[test]
+    fn the_hash_follows_every_input() {
+        let mut hashes = vec![seed().hash()];
+        let changes: [fn(&mut Case); 37] = [
+            |case| case.task = Task::Stability,
+            |case| case.scene = SceneKind::XieLeo,
+            |case| case.column.height = 2.0,
+            |case| case.column.width = 2.0,
+            |case| case.column.load = 2.0,
+            |case| case.column.dimensions = 2,
+            |case| case.column.base = Some(Base::ALL[0]),
+            |case| case.column.loading_time = 2.0,
+            |case| case.column.points.offset = 0.1,
+            |case| case.column.points.jitter = 0.1,
+            |case| case.column.points.filling = 0.5,
+            |case| case.material.law = Law::LogLinear,
+            |case| case.material.youngs_modulus = 2.0,
+            |case| case.material.poissons_ratio = 0.1,
+            |case| case.material.porosity = 0.1,
+            |case| case.material.grain_density = 2.0,
+            |case| case.material.water_density = 2.0,
+            |case| case.material.water_bulk_modulus = 2.0,
+            |case| case.material.hydraulic_conductivity = 2.0,
+            |case| case.material.gravity = 2.0,
+            |case| case.material.continuity = Continuity::ConstantPorosityGradient,
+            |case| case.method = Method::named("GIMP").expect("a method"),
+            |case| case.method = Method::named("GIMP-SRI").expect("a method"),
+            |case| case.integrator = IntegratorKind::Implicit,
+            |case| case.formulation = Formulation::UP,
+            |case| case.settings.scheme = Scheme::Leapfrog,
+            |case| case.settings.drag = Drag::Centred,
+            |case| case.settings.flip = 0.5,
+            |case| case.settings.mapping_back = false,
+            |case| case.cells = 11,
+            |case| case.points_per_cell = 3,
+            |case| case.time_step = TimeStepRule::Stable(0.6),
+            |case| case.time_step = TimeStepRule::Courant(0.5),
+            |case| case.time_step = TimeStepRule::Seconds(0.5),
+            |case| case.time_step = TimeStepRule::Growth(0.5),
+            |case| case.time_factors = vec![0.2],
+            |case| case.time_factors = vec![0.1, 0.2],
+        ];
+        for change in changes {
+            let mut other = seed();
+            change(&mut other);
+            hashes.push(other.hash());
+        }
+        let all = hashes.len();
+        hashes.sort();
+        hashes.dedup();
+        assert_eq!(hashes.len(), all, "every change is another case");
+    }
+
+    #[test]
+    fn the_label_tells_what_is_special() {
+        let mut case = seed();
+        case.settings.drag = Drag::Implicit;
+        assert_eq!(case.label(), "GC-SRI-patch explicit cells=10 points=2 stable=0.5 (implicit drag)");
+    }
+}

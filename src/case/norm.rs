@@ -1,0 +1,74 @@
+//! Norms by name, with their formulas.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+use thiserror::Error;
+
+/// How the error of a field is turned into one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Norm {
+    /// Mean of the absolute error over the volume.
+    L1,
+    /// Root of the mean squared error over the volume.
+    L2,
+    /// Largest absolute error among the samples; weights only decide which samples count.
+    Linf,
+    /// Relative error of a single number, such as a settlement.
+    Relative,
+}
+
+/// A name that is no norm.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("unknown norm `{0}`: one of l1, l2, linf, relative")]
+pub struct UnknownNorm(pub String);
+
+impl Norm {
+    /// Every norm, in the order of reports.
+    pub const ALL: [Self; 4] = [Self::L1, Self::L2, Self::Linf, Self::Relative];
+
+    /// Name in study files and records.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::L1 => "l1",
+            Self::L2 => "l2",
+            Self::Linf => "linf",
+            Self::Relative => "relative",
+        }
+    }
+
+    /// Formula of the relative form, for reports; `x` computed, `x̂` exact, `V` volume.
+    pub const fn formula(self) -> &'static str {
+        match self {
+            Self::L1 => "Σ V|x − x̂| / Σ V|x̂|",
+            Self::L2 => "√(Σ V(x − x̂)²) / √(Σ V x̂²)",
+            Self::Linf => "max|x − x̂| / max|x̂|",
+            Self::Relative => "|x − x̂| / |x̂|",
+        }
+    }
+
+    /// Formula of the absolute form, for reports; in the unit of the field.
+    pub const fn absolute_formula(self) -> &'static str {
+        match self {
+            Self::L1 => "Σ V|x − x̂| / Σ V",
+            Self::L2 => "√(Σ V(x − x̂)² / Σ V)",
+            Self::Linf => "max|x − x̂|",
+            Self::Relative => "|x − x̂|",
+        }
+    }
+}
+
+impl fmt::Display for Norm {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.name())
+    }
+}
+
+impl FromStr for Norm {
+    type Err = UnknownNorm;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Self::ALL.into_iter().find(|norm| norm.name() == text).ok_or_else(|| UnknownNorm(text.to_owned()))
+    }
+}

@@ -1,0 +1,193 @@
+//! `oedometer score`: hold somebody else's result against the references of a scene.
+
+pub mod gate;
+pub mod results;
+
+use crate::case::Case;
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::output::{TableFormat, json_of, print_tables};
+use crate::cli::overrides;
+use crate::cli::overrides::StudyLines;
+use crate::cli::score::results::{Held, Results};
+use crate::cli::stream::{print_data, say};
+use crate::import::mapping::{CONVENTION, Mapping, PLANE_CONVENTION};
+use crate::judge::score::Score;
+use crate::record::ERROR_COLUMNS;
+use crate::render::scores;
+use crate::scene::SceneKind;
+use crate::study::check::Study;
+use crate::study::file::StudySource;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `score`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// CSV files of one result; with --cells one file a mesh
+    #[arg(required_unless_present = "show_mapping", value_name = "RESULT.csv")]
+    results: Vec<PathBuf>,
+    /// Scene that the result is of, like `terzaghi`
+    #[arg(long, required_unless_present = "show_mapping", default_value = "")]
+    scene: String,
+    /// What the columns mean; see --show-mapping. Where none is given, the columns are t, y, p, `u_y`
+    #[arg(long, value_name = "FILE.toml")]
+    mapping: Option<PathBuf>,
+    /// Print the mapping that holds where none is given, as a start for one's own; with --scene that
+    /// of the scene
+    #[arg(long)]
+    show_mapping: bool,
+    /// Hold the result against this reference only
+    #[arg(long, value_name = "NAME")]
+    reference: Option<String>,
+    /// Time factors `T_v` that the result must have, comma-separated; its other times are left out
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    time_factor: Option<String>,
+    /// How far, relative, a time may lie from the one that it stands for: the requested one, or that
+    /// of another mesh
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-3, allow_hyphen_values = true)]
+    time_tolerance: f64,
+    /// Cells over the height of each result, comma-separated: adds orders and classes
+    #[arg(long, value_name = "LIST")]
+    cells: Option<String>,
+    /// Fail with exit code 1 where an error (L2, settlement relative) against the first reference is
+    /// not below this, or where the result is not whole
+    #[arg(long, value_name = "ERROR")]
+    below: Option<f64>,
+    /// Fail with exit code 1 where the result is not whole: volume, height, rows, times
+    #[arg(long)]
+    strict: bool,
+    /// Set a dotted key of a study file, like material.porosity=0.45
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    assignments: Vec<String>,
+    /// Output format
+    #[arg(long, value_enum, default_value_t = TableFormat::Table)]
+    format: TableFormat,
+}
+
+/// Scores and prints.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    if arguments.show_mapping {
+        let is_plane = SceneKind::named(&arguments.scene).is_some_and(SceneKind::is_plane);
+        print_data(if is_plane { PLANE_CONVENTION } else { CONVENTION })?;
+        return Ok(Exit::Pass);
+    }
+    let tolerance = arguments.time_tolerance;
+    if !(0.0..1.0).contains(&tolerance) {
+        return Err(Ended::usage(format!(
+            "`--time-tolerance {tolerance}` is no share: give a number from 0 to below 1"
+        )));
+    }
+    let (study, requested) = study_of(arguments)?;
+    let Some(planned) = study.planned.first() else {
+        return Err(Ended::usage("the assignments leave no column"));
+    };
+    let case = &planned.case;
+    let held = Held {
+        case,
+        mapping: &mapping_of(arguments.mapping.as_deref(), case)?,
+        references: &study
+            .references
+            .iter()
+            .map(|kind| SceneKind::reference_for(*kind, &case.material))
+            .collect::<Vec<_>>(),
+        requested: &requested,
+        tolerance,
+    };
+    let results = Results::of(&arguments.results, arguments.cells.as_deref(), &held)?;
+    match arguments.format {
+        TableFormat::Json => print_data(&json_of(&results.scores())?)?,
+        TableFormat::Csv => print_data(&csv_of(&results.scores(), &arguments.results)?)?,
+        _ => {
+            let mut tables = Vec::new();
+            for one in &results.all {
+                let title = format!("{}: {}", case.scene.name(), one.name());
+                tables.push(scores::errors_table(&one.score, &title));
+            }
+            if let Some((series, cells)) = results.series(case) {
+                tables.push(scores::series_table(&series, &cells));
+            }
+            print_tables(&tables, arguments.format)?;
+        }
+    }
+    say!("{}", groups_of(case));
+    gate::judge(&results, arguments.below, arguments.strict, held.references)
+}
+
+/// The declared meaning of the columns.
+fn mapping_of(path: Option<&Path>, case: &Case) -> anyhow::Result<Mapping> {
+    let is_plane = case.scene.is_plane();
+    let Some(path) = path else {
+        let along = if is_plane {
+            ", x is the initial distance from the crest of the load in m, u_x is in m and positive away from it"
+        } else {
+            ""
+        };
+        say!(
+            "note: no --mapping, so t is in s, y is the initial height over the base in m, p is in Pa and positive \
+             in compression, u_y is in m and positive upward{along}; --show-mapping prints this as a file to change"
+        );
+        return Ok(Mapping::convention(is_plane)?);
+    };
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| Ended::usage(format!("cannot read the mapping {}: {error}", path.display())))?;
+    let source = StudySource { name: path.display().to_string(), text };
+    let mapping = Mapping::read(&source)?;
+    if is_plane {
+        mapping.check_plane(&source)?;
+    }
+    Ok(mapping)
+}
+
+/// The scene with the column that the result is of, as a study with one case, and the time factors
+/// that were asked for.
+fn study_of(arguments: &Arguments) -> anyhow::Result<(Study, Vec<f64>)> {
+    let mut lines = StudyLines::default();
+    lines.give("title", "\"score\"", "`score`")?;
+    lines.give("scene", &overrides::quoted(&arguments.scene), "`--scene`")?;
+    if let Some(reference) = &arguments.reference {
+        lines.give("output.references", &format!("[{}]", overrides::quoted(reference)), "`--reference`")?;
+    }
+    if let Some(typed) = &arguments.time_factor {
+        let list = overrides::list("--time-factor", typed)?;
+        lines.give("output.time_factors", &list, "`--time-factor`")?;
+    }
+    lines.assign(&arguments.assignments)?;
+    lines.refuse_without_effect(&overrides::OF_RUNS)?;
+    let is_requested = lines.has("output.time_factors");
+    let study = lines.study_with(["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned))?;
+    let requested = match study.planned.first() {
+        Some(planned) if is_requested => planned.case.time_factors.clone(),
+        _ => Vec::new(),
+    };
+    Ok((study, requested))
+}
+
+/// Which theory can hold, in one line.
+fn groups_of(case: &Case) -> String {
+    let soil = &case.material;
+    format!(
+        "groups: storage n E_oed/K_w = {:.2e}, finite strain m_vl q = {:.2e}; an error of their size is the model's, \
+         not the solver's",
+        soil.oedometric_modulus() / soil.coupling_modulus(),
+        case.column.load / soil.oedometric_modulus()
+    )
+}
+
+fn csv_of(scores: &[&Score], results: &[PathBuf]) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let several = scores.len() > 1;
+    let mut header = ERROR_COLUMNS.to_vec();
+    if several {
+        header.insert(0, "result");
+    }
+    writer.write_record(&header)?;
+    for (score, result) in scores.iter().zip(results) {
+        for row in &score.errors {
+            let mut fields = row.csv_fields().to_vec();
+            if several {
+                fields.insert(0, result.display().to_string());
+            }
+            writer.write_record(&fields)?;
+        }
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}

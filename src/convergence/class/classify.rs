@@ -1,0 +1,295 @@
+//! Puts a series of errors into a class, before any order is quoted.
+//!
+//! The checks run in a fixed order and the first that applies decides:
+//!
+//! 1. a context of nonsense (`not-evaluable`), errors that are all round-off (`exact`), levels that are
+//!    missing, too few or too close (`not-evaluable`), a body that hardly moves (`locked`);
+//! 2. a finest error of round-off, and a limit that is not zero (`floor-limited`; `pre-asymptotic` where
+//!    only three levels say so), before any growth;
+//! 3. growth (`divergent`), plateaus (`floor-limited`; `pre-asymptotic` on three levels), ups and downs
+//!    (`oscillatory`, `divergent`), alternating orders (`oscillatory`);
+//! 4. what is left falls steadily, and is judged on its finest window in [`window`](crate::convergence::class::finest_window).
+//!
+//! Last, evidence of a reference no better than the smallest error makes a class of step 4, or a
+//! `pre-asymptotic` one, `not-evaluable`.
+
+use crate::convergence::class::evaluable_series::{Case, FLOOR_LEVELS, advised, plain};
+use crate::convergence::class::finest_window::judge_window;
+use crate::convergence::class::{Class, Classification, Context};
+use crate::convergence::fit::approach_to_limit::{Limit, limit_of};
+use crate::convergence::fit::cancelling_terms::fit_cancelling;
+use crate::convergence::limiter::LimiterKind;
+use crate::convergence::orders::WINDOW;
+use crate::convergence::series::{ErrorSeries, Undefined};
+use crate::wording::{orders, short};
+
+/// Neighbouring sizes closer than this give no order worth quoting: at a ratio of 1.1 an error
+/// in the error of 1 % is one of 0.1 in the order. (Celik et al. 2008 ask for 1.3.)
+pub const LEAST_RATIO: f64 = 1.15;
+
+/// Pair orders smaller than this, of either sign, are a standstill and not a direction.
+const FLAT: f64 = 0.15;
+
+/// Below this order refining no longer helps.
+const STALLED: f64 = 0.3;
+
+/// Errors within this factor over the finest levels are a plateau.
+const PLATEAU: f64 = 1.5;
+
+/// The class of a series, with its reason.
+pub fn classify(series: &ErrorSeries, context: &Context) -> Classification {
+    let found = wrong_context(context)
+        .or_else(|| exact(series, context))
+        .or_else(|| not_evaluable(series))
+        .or_else(|| locked(context));
+    if let Some(found) = found {
+        return found;
+    }
+    let evaluated = series.points().and_then(|points| {
+        let case = Case::of(&points, context)?;
+        Ok(case.classify(context))
+    });
+    evaluated.unwrap_or_else(|undefined| plain(Class::NotEvaluable, undefined.to_string()))
+}
+
+fn wrong_context(context: &Context) -> Option<Classification> {
+    let wrong = |name: &str, value: Option<f64>, least: f64| {
+        value.filter(|value| !value.is_finite() || *value <= least).map(|value| {
+            let reason = format!("the {name} given, {}, is none", short(value));
+            plain(Class::NotEvaluable, reason)
+        })
+    };
+    // A round-off or a reference error of exactly 0 is a claim, and a legal one.
+    wrong("formal order", context.formal_order, 0.0)
+        .or_else(|| wrong("round-off", context.round_off.filter(|value| *value != 0.0), 0.0))
+        .or_else(|| {
+            let accuracy = context.reference_accuracy.filter(|value| *value != 0.0);
+            wrong("reference accuracy", accuracy, 0.0)
+        })
+}
+
+/// A body that reaches less than this share of its displacement on the finest mesh is locked.
+const LEAST_MOBILITY: f64 = 0.5;
+
+/// A body that gives way less than half of what it should on every mesh: whatever its errors do
+/// under refinement, they are those of a body at a standstill.
+fn locked(context: &Context) -> Option<Classification> {
+    if context.mobility.is_empty() || !context.mobility.iter().all(|share| *share < LEAST_MOBILITY) {
+        return None;
+    }
+    let shares: Vec<String> =
+        context.mobility.iter().map(|share| format!("{:.1} %", 100.0 * share)).collect();
+    Some(advised(
+        Class::Locked,
+        format!("the body reaches {} of its displacement: volumetric locking", shares.join(", ")),
+        "take the divergence at the cell centres, for the skeleton too where that is what is incompressible",
+    ))
+}
+
+fn exact(series: &ErrorSeries, context: &Context) -> Option<Classification> {
+    let round_off = context.round_off.unwrap_or(0.0).max(f64::MIN_POSITIVE);
+    let levels = series.levels();
+    let below = |error: f64| (0.0..=round_off).contains(&error);
+    if levels.is_empty() || !levels.iter().all(|level| level.error.is_some_and(below)) {
+        return None;
+    }
+    let largest = levels.iter().filter_map(|level| level.error).fold(0.0, f64::max);
+    let reason = format!("every error is round-off: the largest is {}", short(largest));
+    Some(advised(
+        Class::Exact,
+        reason,
+        "make sure that the result is not held against itself; a harder scene shows an order",
+    ))
+}
+
+fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
+    let levels = series.levels();
+    let undefined = series.points().err();
+    let reason = match undefined {
+        Some(Undefined::Vanishing { size }) => {
+            let reason = format!(
+                "the error at size {} vanishes while others do not: no discretisation does that",
+                short(size)
+            );
+            let advice = "look whether that level is held against itself, or was not run";
+            return Some(advised(Class::NotEvaluable, reason, advice));
+        }
+        Some(other) => other.to_string(),
+        None if levels.len() < WINDOW => {
+            format!("{} levels: a class needs {WINDOW}, two orders to compare", levels.len())
+        }
+        None => {
+            let close = levels.windows(2).find(|pair| pair[0].size < LEAST_RATIO * pair[1].size)?;
+            let ratio = close[0].size / close[1].size;
+            format!(
+                "sizes {} and {} are too close for an order: ratio {ratio:.3}, {LEAST_RATIO} is needed",
+                short(close[0].size),
+                short(close[1].size)
+            )
+        }
+    };
+    Some(plain(Class::NotEvaluable, reason))
+}
+
+impl Case<'_> {
+    fn classify(&self, context: &Context) -> Classification {
+        let found = self
+            .round_off(context)
+            .or_else(|| self.limit())
+            .or_else(|| self.growth())
+            .or_else(|| self.plateau())
+            .or_else(|| self.ups_and_downs())
+            .or_else(|| self.alternation())
+            .unwrap_or_else(|| judge_window(self));
+        self.poor_reference(context, &found).unwrap_or(found)
+    }
+
+    /// A limit that is not zero, approached from either side.
+    fn limit(&self) -> Option<Classification> {
+        Some(match limit_of(&self.values)? {
+            Limit::Confirmed(found) => self.approaching(&found),
+            Limit::Suggested(found) => self.seen_floor().unwrap_or_else(|| self.may_approach(&found)),
+            Limit::Reached => self.limited(&self.standstill()),
+        })
+    }
+
+    /// A floor that the levels show by standing still, or by a dip that all of them fit: it needs no limit
+    /// that is only guessed.
+    fn seen_floor(&self) -> Option<Classification> {
+        let still = self.plateau().filter(|still| still.class == Class::FloorLimited);
+        still.or_else(|| fit_cancelling(self.points).ok().map(|fit| self.cancelled(&fit)))
+    }
+
+    /// Rises that no fall makes up for.
+    fn growth(&self) -> Option<Classification> {
+        let ((coarse, first), (fine, last)) = (self.coarsest(), self.finest());
+        let falls = self.pairs.iter().any(|order| *order > FLAT);
+        let rises = self.pairs.iter().any(|order| *order < -FLAT) || last > 1.3 * first;
+        (rises && !falls).then(|| {
+            advised(
+                Class::Divergent,
+                format!(
+                    "the error grows under refinement, from {} at size {} to {} at {}",
+                    short(first),
+                    short(coarse),
+                    short(last),
+                    short(fine)
+                ),
+                "look at stability and at the reference: the method does not converge to it",
+            )
+        })
+    }
+
+    fn round_off(&self, context: &Context) -> Option<Classification> {
+        let (size, error) = self.finest();
+        let round_off = context.round_off.filter(|round_off| error <= *round_off)?;
+        let reason = format!(
+            "the error at size {}, {}, is round-off ({})",
+            short(size),
+            short(error),
+            short(round_off)
+        );
+        let mut found = self.limited(&reason);
+        if let Some(floor) = &mut found.floor {
+            floor.limiter = Some(LimiterKind::RoundOff);
+        }
+        found.advice = Some("drop the finest levels: they show round-off".to_owned());
+        Some(found)
+    }
+
+    /// The finest levels stand still.
+    fn plateau(&self) -> Option<Classification> {
+        let last = *self.pairs.last()?;
+        let stalled = (-FLAT..STALLED).contains(&last);
+        let window = &self.points[self.points.len() - WINDOW..];
+        let highest = window.iter().map(|point| point.1).fold(0.0, f64::max);
+        let lowest = window.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
+        let level = self.order.abs() < STALLED && highest <= PLATEAU * lowest;
+        let fell = self.coarsest().1 > PLATEAU * highest;
+        let still = self.pairs.iter().all(|order| order.abs() <= FLAT);
+        (stalled || still || (level && fell)).then(|| {
+            if self.points.len() < FLOOR_LEVELS {
+                return self.may_be_limited(&self.standstill(), self.finest().1);
+            }
+            self.limited(&self.standstill())
+        })
+    }
+
+    fn standstill(&self) -> String {
+        let ((size, error), (before, earlier)) = (self.finest(), self.points[self.points.len() - 2]);
+        format!(
+            "refining from size {} to {} leaves the error at {} (was {})",
+            short(before),
+            short(size),
+            short(error),
+            short(earlier)
+        )
+    }
+
+    /// Changes of direction, standstills left out.
+    fn ups_and_downs(&self) -> Option<Classification> {
+        let moves: Vec<_> = self.pairs.iter().filter(|order| order.abs() > FLAT).collect();
+        let turns = moves.windows(2).filter(|pair| (*pair[0] > 0.0) != (*pair[1] > 0.0)).count();
+        let (coarse, fine) = (self.coarsest(), self.finest());
+        if turns > 1 {
+            let reason = format!(
+                "the error turns {turns} times between {} at size {} and {} at {}: orders {}",
+                short(coarse.1),
+                short(coarse.0),
+                short(fine.1),
+                short(fine.0),
+                orders(&self.pairs)
+            );
+            let advice = "look for cell crossing, waves or a start that differs from level to level";
+            return Some(advised(Class::Oscillatory, reason, advice));
+        }
+        moves.last().filter(|order| ***order < 0.0)?;
+        if let Ok(fit) = fit_cancelling(self.points) {
+            return Some(self.cancelled(&fit));
+        }
+        let least = self.points.iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(&fine);
+        Some(advised(
+            Class::Divergent,
+            format!(
+                "the error falls to {} at size {} and grows again to {} at {}",
+                short(least.1),
+                short(least.0),
+                short(fine.1),
+                short(fine.0)
+            ),
+            "look at stability on the fine levels, or for two errors of opposite sign that cancel",
+        ))
+    }
+
+    /// The error falls throughout, and its order jumps to and fro.
+    fn alternation(&self) -> Option<Classification> {
+        let [a, b, c] = *self.pairs.last_chunk::<3>()?;
+        let (first, second) = (b - a, c - b);
+        let jumps = first * second < 0.0 && first.abs().min(second.abs()) > 0.5;
+        jumps.then(|| {
+            advised(
+                Class::Oscillatory,
+                format!("the order jumps to and fro under refinement: {}", orders(&self.pairs)),
+                "look whether every level keeps the same path of points per cell and time step",
+            )
+        })
+    }
+
+    /// Errors that the reference is not good enough to show are no evidence of an order.
+    fn poor_reference(&self, context: &Context, found: &Classification) -> Option<Classification> {
+        let judged = [Class::FloorLimited, Class::Divergent, Class::Oscillatory];
+        let least = self.points.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
+        let accuracy = context.reference_accuracy.filter(|accuracy| 10.0 * accuracy > least)?;
+        (!judged.contains(&found.class)).then(|| {
+            advised(
+                Class::NotEvaluable,
+                format!(
+                    "the reference is good to {} only, and the smallest error is {}",
+                    short(accuracy),
+                    short(least)
+                ),
+                "use a reference ten times better than the smallest error, or leave the finest levels out",
+            )
+        })
+    }
+}

@@ -1,0 +1,222 @@
+//! A series that can be evaluated, and how a floor under it is described.
+
+use crate::convergence::class::{Class, Classification, Context, Floor};
+use crate::convergence::fit::approach_to_limit::Approach;
+use crate::convergence::fit::cancelling_terms::CancellingFit;
+use crate::convergence::fit::floor::fit_floor;
+use crate::convergence::limiter::{Limiter, LimiterKind, advice, identify};
+use crate::convergence::orders::{WINDOW, log_ratio, slope_of};
+use crate::convergence::series::{ErrorSeries, Undefined};
+use crate::elementary;
+use crate::wording::{order, short};
+
+/// A series that can be evaluated, with what the checks share.
+pub(crate) struct Case<'a> {
+    /// Sizes and errors from coarse to fine, all positive.
+    pub(crate) points: &'a [(f64, f64)],
+    /// The same with the errors' signs, where they have one.
+    pub(crate) values: Vec<(f64, f64)>,
+    /// Orders between neighbouring levels.
+    pub(crate) pairs: Vec<f64>,
+    /// Least-squares order on the finest window.
+    pub(crate) order: f64,
+    /// Formal order, where known.
+    pub(crate) formal: Option<f64>,
+    /// What may put a floor under the errors.
+    pub(crate) limiters: Vec<Limiter>,
+}
+
+/// A classification without order, floor and advice.
+pub(crate) fn plain(class: Class, reason: String) -> Classification {
+    Classification { class, reason, advice: None, order: None, floor: None }
+}
+
+/// A classification with advice.
+pub(crate) fn advised(class: Class, reason: String, advice: &str) -> Classification {
+    Classification { advice: Some(advice.to_owned()), ..plain(class, reason) }
+}
+
+/// Levels at which a floor can be claimed: three show it, and a fourth could have refuted it.
+pub(crate) const FLOOR_LEVELS: usize = 4;
+
+/// The points with the signs of values of the same size; as they are where the values are others.
+fn with_signs(points: &[(f64, f64)], signed: &[f64]) -> Vec<(f64, f64)> {
+    let same = |(point, value): (&(f64, f64), &f64)| (value.abs() - point.1).abs() <= 1e-9 * point.1;
+    if signed.len() != points.len() || !points.iter().zip(signed).all(same) {
+        return points.to_vec();
+    }
+    points.iter().zip(signed).map(|(point, value)| (point.0, *value)).collect()
+}
+
+/// `, by the inertia`; of a cause whose height nobody knows, that no other is left.
+fn put_down_to(limiter: Option<&Limiter>) -> String {
+    match limiter {
+        None => String::new(),
+        Some(limiter) if limiter.magnitude.is_some() => format!(", by {}", limiter.name),
+        Some(limiter) => format!(", most likely by {}: no other cause is known", limiter.name),
+    }
+}
+
+impl<'a> Case<'a> {
+    pub(crate) fn of(points: &'a [(f64, f64)], context: &Context) -> Result<Self, Undefined> {
+        let pair = |pair: &[(f64, f64)]| log_ratio(pair[0].1, pair[1].1) / log_ratio(pair[0].0, pair[1].0);
+        let mut limiters = context.limiters.clone();
+        let known = |kind, name: &str, magnitude: Option<f64>| {
+            magnitude.filter(|magnitude| *magnitude > 0.0).map(|magnitude| Limiter {
+                kind,
+                name: name.to_owned(),
+                magnitude: Some(magnitude),
+                order: None,
+            })
+        };
+        limiters.extend(known(
+            LimiterKind::Reference,
+            "the reference's accuracy",
+            context.reference_accuracy,
+        ));
+        limiters.extend(known(LimiterKind::RoundOff, "round-off", context.round_off));
+        let window = &points[points.len().saturating_sub(WINDOW)..];
+        Ok(Self {
+            points,
+            values: with_signs(points, &context.signed),
+            pairs: points.windows(2).map(pair).collect(),
+            order: slope_of(window)?.order,
+            formal: context.formal_order,
+            limiters,
+        })
+    }
+
+    pub(crate) fn finest(&self) -> (f64, f64) {
+        self.points.last().copied().unwrap_or((f64::NAN, f64::NAN))
+    }
+
+    pub(crate) fn coarsest(&self) -> (f64, f64) {
+        self.points.first().copied().unwrap_or((f64::NAN, f64::NAN))
+    }
+
+    /// A converging error and a floor of opposite sign that cancel at one level.
+    pub(crate) fn cancelled(&self, fit: &CancellingFit) -> Classification {
+        let limiter = identify(fit.floor, &self.limiters);
+        let limits_from = self.points.iter().find(|(_, error)| *error <= 2.0 * fit.floor);
+        let limits_from = limits_from.map_or(self.finest().0, |point| point.0);
+        let target = 0.1 * fit.coefficient * elementary::powf(self.finest().0, fit.order);
+        let cause = put_down_to(limiter);
+        Classification {
+            class: Class::FloorLimited,
+            reason: format!(
+                "the error falls, cancels near size {} and grows again to a floor of {} of opposite \
+                 sign, which limits the levels from size {} on{cause}",
+                short(fit.cancels_at),
+                short(fit.floor),
+                short(limits_from)
+            ),
+            advice: Some(advice(fit.floor, Some(target), limiter, &self.limiters)),
+            order: Some(fit.order),
+            floor: Some(Floor {
+                value: fit.floor,
+                fitted: true,
+                limits_from,
+                limiter: limiter.map(|limiter| limiter.kind),
+            }),
+        }
+    }
+
+    /// A series that goes to a limit which is not zero.
+    pub(crate) fn approaching(&self, found: &Approach) -> Classification {
+        let (size, _) = self.finest();
+        let floor = found.limit.abs();
+        let limiter = identify(floor, &self.limiters);
+        let limits_from = self.points.iter().find(|(_, error)| *error <= 2.0 * floor);
+        let limits_from = limits_from.map_or(size, |point| point.0);
+        let target = 0.1 * (found.at(size) - found.limit).abs();
+        Classification {
+            class: Class::FloorLimited,
+            reason: format!(
+                "the error goes from {} to {} at order {} towards a limit of {}, and the finest level lies where \
+                 those before it say: a floor that limits the levels from size {} on{}",
+                short(self.values[0].1),
+                short(self.values[self.values.len() - 1].1),
+                order(found.order),
+                short(found.limit),
+                short(limits_from),
+                put_down_to(limiter)
+            ),
+            advice: Some(advice(floor, Some(target).filter(|target| *target > 0.0), limiter, &self.limiters)),
+            order: Some(found.order),
+            floor: Some(Floor {
+                value: floor,
+                fitted: true,
+                limits_from,
+                limiter: limiter.map(|limiter| limiter.kind),
+            }),
+        }
+    }
+
+    /// A limit that the three finest levels suggest and none confirms.
+    pub(crate) fn may_approach(&self, found: &Approach) -> Classification {
+        let (size, _) = self.finest();
+        advised(
+            Class::PreAsymptotic,
+            format!(
+                "the error goes from {} to {} as if towards a limit of {} at order {}: {} levels cannot tell a \
+                 limit from growth",
+                short(self.values[0].1),
+                short(self.values[self.values.len() - 1].1),
+                short(found.limit),
+                order(found.order),
+                self.points.len()
+            ),
+            &format!(
+                "add a level: at size {} the limit promises {}",
+                short(0.5 * size),
+                short(found.at(0.5 * size))
+            ),
+        )
+    }
+
+    /// The floor that a short series may have, and what is not known.
+    pub(crate) fn may_be_limited(&self, reason: &str, height: f64) -> Classification {
+        let limiter = identify(height, &self.limiters);
+        let suspect = limiter.map_or_else(String::new, |limiter| format!(" ({})", limiter.name));
+        advised(
+            Class::PreAsymptotic,
+            format!(
+                "{reason}; {} levels cannot tell a floor of about {}{suspect} from an order that has not settled",
+                self.points.len(),
+                short(height)
+            ),
+            "add a finer level: a floor shows itself on four",
+        )
+    }
+
+    /// A floor-limited classification with the floor fitted, its cause and advice.
+    pub(crate) fn limited(&self, reason: &str) -> Classification {
+        let series = ErrorSeries::of(self.points);
+        let fit = fit_floor(&series).ok().filter(|fit| fit.significant && fit.residual < 0.1);
+        let (size, error) = self.finest();
+        let value = fit.map_or(error, |fit| fit.floor);
+        let from = self.points.iter().find(|point| point.1 <= 2.0 * value);
+        let converging = fit.map(|fit| fit.coefficient * elementary::powf(size, fit.order));
+        let limiter = identify(value, &self.limiters);
+        let target = converging.map(|part| 0.1 * part).filter(|target| *target > 0.0);
+        let limits_from = from.map_or(size, |point| point.0);
+        let cause = put_down_to(limiter);
+        let height = if fit.is_some() { "a floor of" } else { "a floor not above" };
+        Classification {
+            class: Class::FloorLimited,
+            reason: format!(
+                "{reason}; {height} {} limits the levels from size {} on{cause}",
+                short(value),
+                short(limits_from)
+            ),
+            advice: Some(advice(value, target, limiter, &self.limiters)),
+            order: fit.map(|fit| fit.order),
+            floor: Some(Floor {
+                value,
+                fitted: fit.is_some(),
+                limits_from,
+                limiter: limiter.map(|limiter| limiter.kind),
+            }),
+        }
+    }
+}

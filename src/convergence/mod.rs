@@ -1,0 +1,11 @@
+//! TODO
+
+pub mod class;
+pub mod fit;
+pub mod limiter;
+pub mod orders;
+pub mod pareto;
+pub mod series;
+pub mod series_expectation;
+pub mod student;
+pub mod uncertainty;

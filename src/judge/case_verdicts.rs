@@ -1,0 +1,200 @@
+//! Judges what a study expects of single cases; hard cases are judged by this, not by series.
+
+use crate::convergence::class::{Class, Classification};
+use crate::judge::paths::Judgement;
+use crate::judge::verdict::{Check, Outcome, Verdict};
+use crate::record::{Record, Status};
+use crate::study::case_expectation::{CaseDemand, CaseExpectation, ErrorRange};
+use crate::wording::typed;
+
+impl CaseExpectation {
+    /// One judgement a case that it selects; where it selects none, one that fails.
+    pub fn judge(&self, records: &[Record]) -> Vec<Judgement> {
+        let selected: Vec<&Record> = records.iter().filter(|record| self.selection.fits(record)).collect();
+        if selected.is_empty() {
+            let check = check("cases", false, None, "no case is selected".to_owned());
+            return vec![self.judgement("any case".to_owned(), vec![check])];
+        }
+        selected
+            .iter()
+            .map(|record| self.judgement(record.case.label(), self.demand.checks(record)))
+            .collect()
+    }
+
+    fn judgement(&self, subject: String, checks: Vec<Check>) -> Judgement {
+        let pass = checks.iter().all(|check| check.pass);
+        let told: Vec<&str> =
+            checks.iter().filter(|check| pass || !check.pass).map(|check| check.reason.as_str()).collect();
+        let classification = Classification {
+            class: Class::NotEvaluable,
+            reason: "a case is no series".to_owned(),
+            advice: None,
+            order: None,
+            floor: None,
+        };
+        let outcome = if pass { Outcome::Passed } else { Outcome::Failed };
+        let verdict = Verdict { pass, outcome, reason: told.join("; "), classification, checks };
+        Judgement { line: self.line, subject, verdict, uncertainty: None }
+    }
+}
+
+impl CaseDemand {
+    /// Everything asked, judged; comparisons are written so that NaN fails.
+    fn checks(&self, record: &Record) -> Vec<Check> {
+        let mut checks = Vec::new();
+        checks.extend(self.status.as_ref().map(|wanted| status_found(wanted, record)));
+        checks.extend(self.critical_step_within.map(|within| critical_step_found(within, record)));
+        checks.extend(self.error.as_ref().map(|range| error_found(range, record)));
+        let worst = |of: fn(&crate::record::Balance) -> f64| {
+            record.balance.iter().map(|balance| of(balance).abs()).reduce(f64::max)
+        };
+        checks
+            .extend(self.solid_drift_below.map(|below| {
+                drift_found("mass of solids", worst(|balance| balance.solid_mass_drift), below)
+            }));
+        checks.extend(
+            self.water_drift_below
+                .map(|below| drift_found("water", worst(|balance| balance.water_imbalance), below)),
+        );
+        checks
+    }
+}
+
+fn check(name: &str, pass: bool, measured: Option<f64>, reason: String) -> Check {
+    Check { name: name.to_owned(), pass, measured: measured.filter(|value| value.is_finite()), reason }
+}
+
+fn status_found(wanted: &str, record: &Record) -> Check {
+    let found = record.status.name();
+    let how = match &record.status {
+        Status::Ok => String::new(),
+        Status::Failed(failure) => {
+            format!(" at step {}, t = {:.3e} s: {}", failure.step, failure.time, failure.reason)
+        }
+    };
+    let pass = found == wanted;
+    let instead = if pass { String::new() } else { format!(" instead of {wanted}") };
+    check("status", pass, None, format!("{found}{instead}{how}"))
+}
+
+fn critical_step_found(within: f64, record: &Record) -> Check {
+    let Some(found) = &record.stability else {
+        return check("critical step", false, None, "the critical step was not searched".to_owned());
+    };
+    let Some(deviation) = found.deviation() else {
+        return check("critical step", false, None, "no step was observed to leave".to_owned());
+    };
+    let clean = found.probes_agree();
+    let probes: Vec<String> = found
+        .probes
+        .iter()
+        .map(|probe| match &probe.failure {
+            None => format!("{} runs {} steps", probe.share, probe.steps),
+            Some(failure) => format!("{} is {} at step {}", probe.share, failure.kind.name(), failure.step),
+        })
+        .collect();
+    let reason = format!(
+        "observed {:+.2} % of the predicted {:.4e} s, {} % allowed; {}",
+        100.0 * deviation,
+        found.predicted,
+        100.0 * within,
+        probes.join(", ")
+    );
+    check("critical step", deviation.abs() <= within && clean, Some(deviation), reason)
+}
+
+fn error_found(range: &ErrorRange, record: &Record) -> Check {
+    let measure = &range.measure;
+    let row =
+        record.error(measure.quantity, measure.sample, measure.norm, &measure.reference, measure.time_factor);
+    let Some(error) = row.map(|row| row.value.abs()) else {
+        return check("error", false, None, format!("no error at T_v = {}", typed(measure.time_factor)));
+    };
+    let pass = error < range.below && error >= range.above;
+    let inside = if pass { "in" } else { "outside" };
+    let reason = format!(
+        "{} {} {} at T_v = {}: {error:.3e} {inside} {:.1e} … {:.1e}",
+        measure.quantity.name(),
+        measure.norm,
+        measure.sample.name(),
+        typed(measure.time_factor),
+        range.above,
+        range.below
+    );
+    check("error", pass, Some(error), reason)
+}
+
+fn drift_found(what: &str, found: Option<f64>, below: f64) -> Check {
+    let Some(drift) = found else {
+        return check("drift", false, None, format!("no balance of the {what}"));
+    };
+    let pass = drift < below;
+    let relation = if pass { "below" } else { "not below" };
+    check("drift", pass, Some(drift), format!("{what}: drift {drift:.1e}, {relation} {below:.0e}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::{RunOptions, run_study};
+    use crate::case::tier::Tier;
+    use crate::study::check::Study;
+    use crate::study::expectation::Measure;
+    use crate::study::file::StudySource;
+
+    const STUDY: &str = r#"title = "One case"
+scene = "terzaghi"
+output = { time_factors = [0.05] }
+
+[[sweep]]
+method = ["GC-SRI-patch"]
+integrator = ["implicit"]
+cells = [10]
+time_step = [{ growth = 0.05 }]
+"#;
+
+    fn record() -> Record {
+        let source = StudySource { name: "one.toml".to_owned(), text: STUDY.to_owned() };
+        let study = Study::check(&source).expect("a sound study");
+        run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records.remove(0)
+    }
+
+    #[test]
+    fn an_error_is_held_from_both_sides_and_a_missing_one_fails() {
+        let mut record = record();
+        let row = record.errors[0].clone();
+        let measure = Measure {
+            quantity: row.quantity,
+            sample: row.sample,
+            norm: row.norm,
+            reference: row.reference.clone(),
+            time_factor: row.time_factor,
+            probe: None,
+        };
+        let error = row.value.abs();
+        let found = |record: &Record, above: f64, below: f64| {
+            error_found(&ErrorRange { measure: measure.clone(), above, below }, record)
+        };
+        assert!(found(&record, 0.9 * error, 1.1 * error).pass);
+        assert!(found(&record, error, 1.1 * error).pass, "the lower end belongs to the range");
+        let too_good = found(&record, 1.1 * error, 2.0 * error);
+        assert!(!too_good.pass && too_good.reason.contains("outside"), "{}", too_good.reason);
+        assert!(!found(&record, 0.0, error).pass, "the upper end does not");
+        record.errors[0].value = f64::NAN;
+        assert!(!found(&record, 0.0, 1e9).pass);
+        record.errors.clear();
+        assert!(!found(&record, 0.0, 1e9).pass);
+    }
+
+    #[test]
+    fn drifts_are_judged_at_every_output_and_say_on_which_side_they_are() {
+        let mut record = record();
+        let demand = CaseDemand { solid_drift_below: Some(1e-9), ..CaseDemand::default() };
+        assert!(demand.checks(&record)[0].pass);
+        record.balance[0].solid_mass_drift = -2e-9;
+        let check = demand.checks(&record).remove(0);
+        assert!(!check.pass && check.reason.contains("not below"), "{}", check.reason);
+        record.balance.clear();
+        assert!(!demand.checks(&record)[0].pass, "without a balance there is no drift to pass");
+    }
+}

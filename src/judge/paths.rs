@@ -1,0 +1,355 @@
+//! From the records of a study to its series of errors, and to verdicts on them.
+
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::case::tier::Tier;
+use crate::case::{Case, step_label};
+use crate::convergence::class::classify::classify;
+use crate::convergence::class::{Classification, Context};
+use crate::convergence::orders::{FinestOrder, PairOrder, SlopeFit, finest_order, pair_orders, slope};
+use crate::convergence::series::{ErrorSeries, Level, Undefined};
+use crate::convergence::series_expectation::Expectation as Demand;
+use crate::convergence::uncertainty::NumericalUncertainty;
+use crate::judge::verdict::{Beside, Verdict, judge};
+use crate::measure::norms::relative_error;
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::snapshot::{Samples, Snapshot};
+use crate::record::Record;
+use crate::soil::material::Material;
+use crate::study::check::Study;
+use crate::study::expectation::{Axis, Expectation, Measure, NEXT_FINER, NO_REFERENCE};
+use std::collections::HashMap;
+
+/// Errors up to this are round-off of a long run.
+const ROUND_OFF: f64 = 1e-12;
+
+/// The records of one path through a study: alike in everything but the axis.
+#[derive(Clone, Debug)]
+pub struct Path<'a> {
+    /// What is refined.
+    pub axis: Axis,
+    /// Records from coarse to fine.
+    pub records: Vec<&'a Record>,
+}
+
+/// A series of errors with everything that is said of it.
+#[derive(Clone, Debug)]
+pub struct SeriesSummary<'a> {
+    /// The runs.
+    pub path: Path<'a>,
+    /// Which error.
+    pub measure: Measure,
+    /// Sizes and absolute values of the errors.
+    pub series: ErrorSeries,
+    /// Orders between neighbours.
+    pub pairs: Vec<PairOrder>,
+    /// Straight fit over all levels.
+    pub slope: Result<SlopeFit, Undefined>,
+    /// Order on the finest window.
+    pub finest: Result<FinestOrder, Undefined>,
+    /// Class, reason and floor.
+    pub classification: Classification,
+}
+
+/// The judgement of one expectation of a study.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Judgement {
+    /// Line of the expectation in its file.
+    pub line: usize,
+    /// What was judged, in words.
+    pub subject: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// What refinement tells of the value, where that was asked for and could be had.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<NumericalUncertainty>,
+}
+
+/// Paths of the records along an axis: every group of at least two levels.
+pub fn paths(records: &[Record], axis: Axis) -> Vec<Path<'_>> {
+    let mut groups: Vec<Path<'_>> = Vec::new();
+    // Groups by what all of their cases share, so that a sweep of thousands is not held case against case.
+    let mut places: HashMap<String, Vec<usize>> = HashMap::new();
+    for record in records {
+        let near = places.entry(without_axes(&record.case)).or_default();
+        let place = near.iter().find(|place| alike(&groups[**place].records[0].case, &record.case, axis));
+        if let Some(place) = place {
+            groups[*place].records.push(record);
+        } else {
+            near.push(groups.len());
+            groups.push(Path { axis, records: vec![record] });
+        }
+    }
+    groups.retain(|group| group.records.len() > 1);
+    for group in &mut groups {
+        group.records.sort_by(|a, b| level_size(b, axis).total_cmp(&level_size(a, axis)));
+    }
+    groups
+}
+
+/// What cases that differ along axes alone have in common.
+fn without_axes(case: &Case) -> String {
+    format!(
+        "{:?} {:?} {:?} {:?} {:?} {:?}",
+        case.task, case.scene, case.column, case.method, case.integrator, case.settings
+    ) + &format!("{:?} {:?}", case.formulation, Material { water_bulk_modulus: 0.0, ..case.material })
+}
+
+/// Whether two cases differ along the axis at most. What is only asked for at the output, time
+/// factors, makes no difference.
+fn alike(a: &Case, b: &Case, axis: Axis) -> bool {
+    let mut b = Case { time_factors: a.time_factors.clone(), ..b.clone() };
+    match axis {
+        Axis::Cells => b.cells = a.cells,
+        // Rules of one kind are steps of one path; of different kinds they are different schemes.
+        Axis::TimeStep if std::mem::discriminant(&a.time_step) == std::mem::discriminant(&b.time_step) => {
+            b.time_step = a.time_step;
+        }
+        Axis::TimeStep => {}
+        Axis::PointsPerCell => b.points_per_cell = a.points_per_cell,
+        Axis::WaterBulkModulus => b.material.water_bulk_modulus = a.material.water_bulk_modulus,
+    }
+    *a == b
+}
+
+/// Size of a record's level: cell size (m), time step (s), spacing of points in cells, or
+/// compressibility of the water (1/Pa).
+pub fn level_size(record: &Record, axis: Axis) -> f64 {
+    match axis {
+        Axis::Cells => record.case.cell_size(),
+        Axis::TimeStep => record.step_sizes.target,
+        Axis::PointsPerCell => 1.0 / record.case.points_per_cell as f64,
+        Axis::WaterBulkModulus => 1.0 / record.case.material.water_bulk_modulus,
+    }
+}
+
+impl<'a> Path<'a> {
+    /// The series of one error along the path. Levels whose case does not ask for the time factor
+    /// are no levels of it; a level that should have an error and has none stays, empty.
+    pub fn series(&self, measure: &Measure) -> ErrorSeries {
+        if measure.reference == NO_REFERENCE {
+            return self.values(measure).differences();
+        }
+        let asked = |record: &&&Record| record.case.time_factors.contains(&measure.time_factor);
+        let records: Vec<&Record> = self.records.iter().filter(asked).copied().collect();
+        let level = |record: &Record, error| Level { size: level_size(record, self.axis), error };
+        let levels = if measure.reference == NEXT_FINER {
+            let neighbours = records.windows(2);
+            neighbours.map(|pair| level(pair[0], difference_of(pair[0], pair[1], measure))).collect()
+        } else {
+            records.iter().map(|record| level(record, error_of(record, measure))).collect()
+        };
+        ErrorSeries::new(levels)
+    }
+
+    /// The series with orders and class.
+    pub fn summary(&self, measure: &Measure) -> SeriesSummary<'a> {
+        let series = self.series(measure);
+        SeriesSummary {
+            pairs: pair_orders(&series),
+            slope: slope(&series),
+            finest: finest_order(&series),
+            classification: classify(&series, &self.context(measure)),
+            path: self.clone(),
+            measure: measure.clone(),
+            series,
+        }
+    }
+
+    /// What is known beside the errors: formal order, accuracy of the reference, and the model's
+    /// difference where the reference is not of the scene's own equations.
+    fn context(&self, measure: &Measure) -> Context {
+        let case = &self.records[0].case;
+        let finest = self.records[self.records.len() - 1];
+        let used = finest.references.iter().find(|used| used.name == measure.reference);
+        Context {
+            formal_order: (self.axis == Axis::Cells).then(|| formal_order(case, measure)).flatten(),
+            round_off: Some(ROUND_OFF),
+            reference_accuracy: used.map(|used| used.tail_bound),
+            limiters: self.limiters(measure),
+            mobility: self.mobility(measure),
+            signed: self.signed(measure),
+        }
+    }
+
+    /// The errors with their signs, where they are of a single number.
+    fn signed(&self, measure: &Measure) -> Vec<f64> {
+        if measure.norm != Norm::Relative {
+            return Vec::new();
+        }
+        let value = |record: &&Record| {
+            let (quantity, sample) = (measure.quantity, measure.sample);
+            let row =
+                record.error(quantity, sample, measure.norm, &measure.reference, measure.time_factor)?;
+            Some(row.value)
+        };
+        self.records.iter().filter_map(value).collect()
+    }
+
+    /// Settlement over the exact one at each level, for the errors of displacements: a locked body
+    /// has hardly any.
+    fn mobility(&self, measure: &Measure) -> Vec<f64> {
+        if !matches!(measure.quantity, Quantity::Displacement | Quantity::Settlement) {
+            return Vec::new();
+        }
+        let settlement = |record: &&Record| {
+            let (sample, norm) = (Sample::Surface, Norm::Relative);
+            let row =
+                record.error(Quantity::Settlement, sample, norm, &measure.reference, measure.time_factor)?;
+            Some(1.0 + row.value)
+        };
+        self.records.iter().filter_map(settlement).collect()
+    }
+
+    /// What the runs of the path share, in words, the method first.
+    pub fn parts(&self) -> Vec<String> {
+        let mut case = self.records[0].case.clone();
+        if self.axis == Axis::WaterBulkModulus {
+            case.material.water_bulk_modulus = Material::default().water_bulk_modulus;
+        }
+        let mut parts = vec![case.method.to_string()];
+        if case.integrator != IntegratorKind::Explicit {
+            parts.push(case.integrator.name().to_owned());
+            // Steps of the explicit integrator go by its limit, and say little of the result.
+            parts.extend((self.axis != Axis::TimeStep).then(|| step_label(&case.time_step)));
+        }
+        if self.axis != Axis::Cells {
+            parts.push(format!("{} cells", case.cells));
+        }
+        if self.axis != Axis::PointsPerCell {
+            parts.push(format!("{} points a cell", case.points_per_cell));
+        }
+        parts.extend(Some(case.variant()).filter(|variant| !variant.is_empty()));
+        parts
+    }
+
+    /// The parts in one line.
+    pub fn label(&self) -> String {
+        self.parts().join(", ")
+    }
+}
+
+/// Size of a measured error.
+fn error_of(record: &Record, measure: &Measure) -> Option<f64> {
+    record
+        .error(measure.quantity, measure.sample, measure.norm, &measure.reference, measure.time_factor)
+        .map(|row| row.value.abs())
+}
+
+/// Difference of a run from the next finer one, whose places are the same.
+fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f64> {
+    let at = |record: &Record| {
+        let factors = &record.case.time_factors;
+        let index = factors.iter().position(|factor| *factor == measure.time_factor)?;
+        record.snapshots.get(index).cloned()
+    };
+    let (coarse, fine) = (at(record)?, at(finer)?);
+    if measure.quantity == Quantity::Settlement {
+        return Some((coarse.settlement / fine.settlement - 1.0).abs());
+    }
+    let samples = |snapshot: &Snapshot| match measure.sample {
+        Sample::Points => snapshot.points.clone(),
+        Sample::Centres => snapshot.centres.clone(),
+        Sample::Nodes | Sample::Surface => snapshot.nodes.clone(),
+    };
+    let (coarse, fine) = (samples(&coarse), samples(&fine));
+    let field = |samples: &Samples| match measure.quantity {
+        Quantity::Pressure => samples.pressure.clone(),
+        Quantity::EffectiveStress => samples.effective_stress.clone(),
+        Quantity::Displacement | Quantity::Settlement => samples.displacement.clone(),
+    };
+    relative_error(measure.norm, &field(&coarse), &field(&fine), &fine.volume).ok()
+}
+
+/// Order in the cell size that a method's operators promise at small strain, where they promise
+/// one: constant fields in a cell are of first order at points and of second at the centres.
+fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
+    let method = &case.method;
+    let by_points = |second: bool| if second { 2.0 } else { 1.0 };
+    match (measure.quantity, measure.sample) {
+        (Quantity::Pressure, Sample::Points) => Some(by_points(method.uses_patch())),
+        (Quantity::EffectiveStress, Sample::Points) => Some(by_points(method.strain.is_composite())),
+        (Quantity::Pressure | Quantity::EffectiveStress, Sample::Centres)
+        | (Quantity::Settlement, _)
+        | (Quantity::Displacement, Sample::Nodes) => Some(2.0),
+        _ => None,
+    }
+}
+
+/// Judges every expectation of a study that its tier can answer.
+pub fn judge_study(study: &Study, records: &[Record], tier: Tier) -> Vec<Judgement> {
+    study
+        .expectations
+        .iter()
+        .filter(|expectation| expectation.tier <= tier)
+        .flat_map(|expectation| judge_expectation(expectation, records))
+        .chain(
+            study
+                .case_expectations
+                .iter()
+                .filter(|expectation| expectation.tier <= tier)
+                .flat_map(|expectation| expectation.judge(records)),
+        )
+        .collect()
+}
+
+/// One judgement a path that the expectation selects; where it selects none, one that fails.
+fn judge_expectation(expectation: &Expectation, records: &[Record]) -> Vec<Judgement> {
+    let measure = &expectation.measure;
+    let what = measure.to_string();
+    let all = paths(records, expectation.axis);
+    let selected: Vec<_> = all
+        .iter()
+        .filter(|path| selects(expectation, &path.records[0].case))
+        .filter(|path| !path.series(measure).levels().is_empty())
+        .collect();
+    if selected.is_empty() {
+        let method = expectation.method.map_or("any method".to_owned(), |method| method.to_string());
+        let nothing = ErrorSeries::new(Vec::new());
+        let verdict = judge(&strict(&expectation.demand), &nothing, &Context::default(), &Beside::default());
+        let subject = format!("{method}: {what}");
+        return vec![Judgement { line: expectation.line, subject, verdict, uncertainty: None }];
+    }
+    selected
+        .into_iter()
+        .map(|path| {
+            let context = path.context(measure);
+            let beside = path.beside(&expectation.demand, measure, context.formal_order);
+            Judgement {
+                line: expectation.line,
+                subject: format!("{}: {what}", path.label()),
+                verdict: judge(&expectation.demand, &path.series(measure), &context, &beside),
+                uncertainty: beside.uncertainty.and_then(Result::ok),
+            }
+        })
+        .collect()
+}
+
+/// A demand without its pardon: nothing was measured, and that is no known failure.
+fn strict(demand: &Demand) -> Demand {
+    Demand { xfail: None, ..demand.clone() }
+}
+
+fn selects(expectation: &Expectation, case: &Case) -> bool {
+    fn fits<T: PartialEq + Copy>(asked: Option<T>, has: T) -> bool {
+        asked.is_none_or(|asked| asked == has)
+    }
+    fits(expectation.method, case.method)
+        && fits(expectation.integrator, case.integrator)
+        && (expectation.axis == Axis::Cells || fits(expectation.cells, case.cells))
+        && (expectation.axis == Axis::PointsPerCell
+            || fits(expectation.points_per_cell, case.points_per_cell))
+        && fits(expectation.law, case.material.law)
+        && fits(expectation.continuity, case.material.continuity)
+        && (expectation.axis == Axis::WaterBulkModulus
+            || fits(expectation.water_bulk_modulus, case.material.water_bulk_modulus))
+        && fits(expectation.poissons_ratio, case.material.poissons_ratio)
+        && fits(expectation.scheme, case.settings.scheme)
+        && fits(expectation.drag, case.settings.drag)
+        && fits(expectation.mapping_back, case.settings.mapping_back)
+}
+
+/// The norm in which a quantity is reported first.
+pub fn first_norm(quantity: Quantity) -> Norm {
+    if quantity == Quantity::Settlement { Norm::Relative } else { Norm::L2 }
+}

@@ -1,0 +1,162 @@
+//! Other programs on the seed column, as they were measured: what users would run instead.
+//!
+//! Errors are relative L2 of the pore pressure against Terzaghi's solution for incompressible water,
+//! where each program samples best; times are CPU seconds of one thread of one machine under load.
+
+use crate::case::quantity::{Quantity, Sample};
+use crate::exact::reference::ReferenceKind;
+use crate::judge::work_precision::TimedRun;
+
+use crate::case::norm::Norm;
+
+/// Time factors of the comparison.
+pub const TIME_FACTORS: [f64; 3] = [0.05, 0.2, 1.0];
+
+/// Another program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peer {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is.
+    pub kind: &'static str,
+    /// Errors at the time factors, where they were measured.
+    pub errors: [Option<f64>; 3],
+    /// Seconds, where the run ended.
+    pub seconds: Option<f64>,
+}
+
+/// The programs that were measured.
+pub const PEERS: [Peer; 7] = [
+    Peer {
+        name: "geomechanics/mpm",
+        kind: "explicit two-phase MPM, cell centres; T_v = 1 not reached in 590 s",
+        errors: [Some(2.6e-3), Some(9e-4), None],
+        seconds: None,
+    },
+    Peer {
+        name: "geomechanics/mpm, semi-implicit",
+        kind: "projection, smoothing",
+        errors: [Some(7.8e-2), Some(4.5e-2), Some(1.8e-1)],
+        seconds: Some(16.6),
+    },
+    Peer {
+        name: "GeoTaichi",
+        kind: "explicit two-phase GIMP, 20 cells, to T_v = 0.05",
+        errors: [Some(3.0e-2), None, None],
+        seconds: Some(186.0),
+    },
+    Peer {
+        name: "Kratos Geo",
+        kind: "implicit FE, Q2–Q1, 10 cells",
+        errors: [Some(2.123e-3), Some(1.577e-3), Some(2.67e-4)],
+        seconds: Some(2.57),
+    },
+    Peer {
+        name: "OpenGeoSys",
+        kind: "implicit FE, Q2–Q1, 10 cells",
+        errors: [Some(2.123e-3), Some(1.577e-3), Some(2.67e-4)],
+        seconds: Some(1.67),
+    },
+    Peer {
+        name: "scikit-fem",
+        kind: "implicit FE, Q2–Q1, 10 cells",
+        errors: [Some(2.123e-3), Some(1.577e-3), Some(2.67e-4)],
+        seconds: Some(0.05),
+    },
+    Peer {
+        name: "OpenSees quadUP",
+        kind: "implicit FE",
+        errors: [Some(5.0e-3), Some(3.4e-3), Some(4.6e-3)],
+        seconds: Some(0.5),
+    },
+];
+
+/// Errors of a run as the peers' were measured, where it has them.
+pub fn comparable_errors(run: &TimedRun<'_>) -> [Option<f64>; 3] {
+    let reference = ReferenceKind::TerzaghiIncompressible.name();
+    TIME_FACTORS.map(|factor| {
+        let row = run.record.error(Quantity::Pressure, Sample::Points, Norm::L2, reference, factor);
+        row.map(|row| row.value.abs())
+    })
+}
+
+/// Whether some of the runs have what the peers' errors can be held against: elsewhere they say nothing.
+pub fn solve_their_column(runs: &[TimedRun<'_>]) -> bool {
+    runs.iter().any(|run| comparable_errors(run).iter().any(Option::is_some))
+}
+
+/// A peer beside the fastest run that is nowhere worse than it.
+#[derive(Clone, Debug)]
+pub struct Comparison<'a, 'b> {
+    /// The peer.
+    pub peer: Peer,
+    /// The run, and its errors; none where every run is somewhere worse.
+    pub ahead: Option<(&'b TimedRun<'a>, [Option<f64>; 3])>,
+}
+
+/// Each peer beside the first of the runs, the cheapest first, that is nowhere worse.
+pub fn compare<'a, 'b>(runs: &'b [TimedRun<'a>]) -> Vec<Comparison<'a, 'b>> {
+    PEERS
+        .iter()
+        .map(|peer| {
+            let ahead = runs.iter().map(|run| (run, comparable_errors(run))).find(|(_, errors)| {
+                peer.errors.iter().zip(errors).all(|(theirs, own)| match (theirs, own) {
+                    (Some(theirs), Some(own)) => own <= theirs,
+                    (None, _) => true,
+                    (Some(_), None) => false,
+                })
+            });
+            Comparison { peer: *peer, ahead }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::{RunOptions, run_study};
+    use crate::case::tier::Tier;
+    use crate::judge::work_precision::WorkPrecision;
+    use crate::record::{Record, WallSample};
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    /// Runs of a scene on two meshes, with a cost that is the same on every machine.
+    fn runs_of(scene: &str, table: &str) -> Vec<Record> {
+        let text = format!(
+            "title = \"Peers\"\nscene = \"{scene}\"\n{table}\n[output]\ntime_factors = [0.05, 0.2, 1.0]\n\
+             [[sweep]]\nmethod = [\"GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = [8, 16]\n\
+             time_step = [{{ growth = 0.02 }}]\n"
+        );
+        let study =
+            Study::check(&StudySource { name: "peers.toml".to_owned(), text }).expect("a sound study");
+        let mut records = run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records;
+        for record in &mut records {
+            let seconds = 1e-9 * record.counters.point_updates as f64;
+            record.wall = vec![WallSample { seconds, alone: true }; 2];
+        }
+        records
+    }
+
+    #[test]
+    fn peers_stand_beside_their_own_column_only() {
+        let column = runs_of("terzaghi", "");
+        let precision = WorkPrecision::of(&column, "terzaghi").expect("timed runs");
+        assert!(solve_their_column(&precision.runs));
+        let ahead: Vec<_> = compare(&precision.runs)
+            .into_iter()
+            .filter_map(|comparison| comparison.ahead.map(|(_, errors)| (comparison.peer, errors)))
+            .collect();
+        assert!(ahead.iter().any(|(peer, _)| peer.name == "OpenSees quadUP"), "{ahead:?}");
+        for (peer, errors) in ahead {
+            assert!(peer.errors.iter().zip(errors).all(|(theirs, own)| match (theirs, own) {
+                (Some(theirs), Some(own)) => own <= *theirs,
+                (theirs, _) => theirs.is_none(),
+            }));
+        }
+        // Large strain has no error against Terzaghi's solution, so nothing to hold theirs against.
+        let squeezed = runs_of("xie-leo", "[column]\nload = 1e5");
+        let precision = WorkPrecision::of(&squeezed, "large-strain").expect("timed runs");
+        assert!(!solve_their_column(&precision.runs));
+    }
+}

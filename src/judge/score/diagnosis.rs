@@ -1,0 +1,367 @@
+//! What seems to be wrong with somebody else's numbers: mistakes that are seen in them.
+//!
+//! Each mistake is mended by way of trial, with nothing fitted but a gradient; it is named only where
+//! the mended numbers agree with the exact ones and the given ones do not. A solver that is merely
+//! inaccurate agrees with none of them.
+
+use crate::case::quantity::Quantity;
+use crate::elementary::powi;
+use crate::exact::error::ExactError;
+use crate::exact::parameters::ColumnParameters;
+use crate::exact::reference::{Reference, ReferenceKind};
+use crate::import::mapping::Mapping;
+use crate::import::table::SampledState;
+use crate::import::units::{LengthUnit, StressUnit, TimeUnit};
+use crate::judge::score::completeness::short;
+use crate::judge::score::fields::ExactFields;
+
+/// Relative errors below this are an inaccurate solver's, and no mistake in a file.
+const INACCURATE: f64 = 0.1;
+/// Relative error that a mended result may have.
+const MENDED: f64 = 0.1;
+/// Share of its former error that a mended result may have.
+const IMPROVED: f64 = 0.1;
+/// The same where a number was fitted.
+const IMPROVED_BY_FIT: f64 = 0.01;
+/// Share of the unit weight of water by which a gradient may miss it.
+const UNIT_WEIGHT: f64 = 0.05;
+/// Exact values below this share of the load's are round-off: nothing is seen in them.
+const VANISHED: f64 = 1e-6;
+/// Exact values above this share of the load's are no zeros.
+const NOTABLE: f64 = 1e-3;
+/// States that are looked at, spread over all of them.
+const STATES: usize = 12;
+/// Time factors in which a wrong unit of time is looked for; before and after nothing changes.
+const TIME_FACTORS: std::ops::RangeInclusive<f64> = 1e-7..=20.0;
+
+/// A mistake, and the error that is left where it is mended.
+struct Mistake {
+    sentence: String,
+    left: f64,
+}
+
+/// One quantity of the states looked at: computed, exact, weights.
+struct Compared<'a> {
+    quantity: Quantity,
+    /// What a value of 1 is worth: the load, or the final settlement.
+    scale: f64,
+    states: &'a [&'a SampledState],
+}
+
+/// Sentences on what seems to be wrong with the numbers of a result, held against a reference.
+///
+/// # Errors
+/// When the reference refuses the result's own times.
+pub fn diagnosis(
+    parameters: &ColumnParameters,
+    reference: ReferenceKind,
+    states: &[SampledState],
+    mapping: &Mapping,
+) -> Result<Vec<String>, ExactError> {
+    let seen = spread(states);
+    let times: Vec<f64> = seen.iter().map(|state| parameters.time_factor(state.time)).collect();
+    let solution = Reference::new(reference, parameters, &times)?;
+    let exact = exact_of(&solution, parameters, &times, &seen)?;
+    let settled = parameters.final_settlement();
+    let mut sentences: Vec<(String, Vec<&str>)> = Vec::new();
+    for (quantity, column, scale) in [
+        (Quantity::Pressure, "p", parameters.load),
+        (Quantity::EffectiveStress, "effective_stress", parameters.load),
+        (Quantity::Displacement, "u_y", settled),
+    ] {
+        let compared = Compared { quantity, scale, states: &seen };
+        let error = compared.error(&exact, |value| value);
+        let vanishes = compared.size(&exact) < VANISHED * scale;
+        let is_wrong = error > INACCURATE;
+        if vanishes || !is_wrong {
+            continue;
+        }
+        let trials = Trials {
+            compared: &compared,
+            exact: &exact,
+            parameters,
+            solution: &solution,
+            times: &times,
+            mapping,
+        };
+        let mistakes = trials.all(error);
+        let Some(mistake) = mistakes.into_iter().min_by(|a, b| a.left.total_cmp(&b.left)) else { continue };
+        match sentences.iter_mut().find(|(sentence, _)| *sentence == mistake.sentence) {
+            Some((_, columns)) => columns.push(column),
+            None => sentences.push((mistake.sentence, vec![column])),
+        }
+    }
+    Ok(sentences
+        .into_iter()
+        .map(|(sentence, columns)| format!("your {} {sentence}", columns.join(" and your ")))
+        .collect())
+}
+
+/// Some of the states, from the first to the last.
+fn spread(states: &[SampledState]) -> Vec<&SampledState> {
+    let count = states.len().min(STATES);
+    let last = states.len().saturating_sub(1);
+    (0..count).filter_map(|one| states.get(one * last / count.saturating_sub(1).max(1))).collect()
+}
+
+fn exact_of(
+    solution: &Reference,
+    parameters: &ColumnParameters,
+    times: &[f64],
+    states: &[&SampledState],
+) -> Result<Vec<ExactFields>, ExactError> {
+    let of = |(time, state): (&f64, &&SampledState)| ExactFields::of(solution, parameters, *time, state);
+    times.iter().zip(states).map(of).collect()
+}
+
+impl Compared<'_> {
+    fn computed<'a>(&self, state: &'a SampledState) -> &'a [f64] {
+        match self.quantity {
+            Quantity::Pressure => &state.pressure,
+            Quantity::EffectiveStress => &state.effective_stress,
+            _ => &state.displacement,
+        }
+    }
+
+    fn exact<'a>(&self, fields: &'a ExactFields) -> &'a [f64] {
+        match self.quantity {
+            Quantity::Pressure => &fields.pressure,
+            Quantity::EffectiveStress => &fields.effective_stress,
+            _ => &fields.displacement,
+        }
+    }
+
+    /// Every sample: computed, exact, depth in m, weight.
+    fn samples<'a>(&'a self, exact: &'a [ExactFields], height: f64) -> impl Iterator<Item = [f64; 4]> + 'a {
+        self.states.iter().zip(exact).flat_map(move |(state, fields)| {
+            let places = state.initial_height.iter().zip(&state.volume);
+            (self.computed(state).iter().zip(self.exact(fields)).zip(places))
+                .map(move |((computed, exact), (y, volume))| [*computed, *exact, height - y, *volume])
+        })
+    }
+
+    /// Relative error over all states, with every computed value mended.
+    fn error(&self, exact: &[ExactFields], mended: impl Fn(f64) -> f64) -> f64 {
+        self.error_over(exact, 0.0, |value, _| mended(value))
+    }
+
+    /// The same where the depth below a height counts.
+    fn error_over(&self, exact: &[ExactFields], height: f64, mended: impl Fn(f64, f64) -> f64) -> f64 {
+        let (mut difference, mut size) = (0.0, 0.0);
+        for [computed, exact, depth, volume] in self.samples(exact, height) {
+            difference += volume * powi((mended(computed, depth) - exact) / self.scale, 2);
+            size += volume * powi(exact / self.scale, 2);
+        }
+        (difference / size).sqrt()
+    }
+
+    /// Root of the mean square of the exact values.
+    fn size(&self, exact: &[ExactFields]) -> f64 {
+        let (mut sum, mut volumes) = (0.0, 0.0);
+        for [_, exact, _, volume] in self.samples(exact, 0.0) {
+            sum += volume * powi(exact / self.scale, 2);
+            volumes += volume;
+        }
+        (sum / volumes).sqrt() * self.scale
+    }
+}
+
+/// All that is tried on one quantity.
+struct Trials<'a> {
+    compared: &'a Compared<'a>,
+    exact: &'a [ExactFields],
+    parameters: &'a ColumnParameters,
+    solution: &'a Reference,
+    times: &'a [f64],
+    mapping: &'a Mapping,
+}
+
+impl Trials<'_> {
+    /// The mistakes that would explain the error.
+    fn all(&self, error: f64) -> Vec<Mistake> {
+        let convinces =
+            |mistake: &Mistake, improved: f64| mistake.left <= MENDED && mistake.left <= improved * error;
+        let mut mistakes = self.signs_and_units();
+        mistakes.extend(self.total_stress());
+        mistakes.extend(self.turned());
+        mistakes.extend(self.units_of_time());
+        mistakes.extend(self.zeros());
+        mistakes.retain(|mistake| convinces(mistake, IMPROVED));
+        mistakes.extend(self.gradient().filter(|mistake| convinces(mistake, IMPROVED_BY_FIT)));
+        mistakes
+    }
+
+    /// The exact field times −1, or in another unit.
+    fn signs_and_units(&self) -> Vec<Mistake> {
+        let units: Vec<(&str, f64)> = if self.compared.quantity == Quantity::Displacement {
+            let given = self.mapping.units.displacement.unwrap_or(self.mapping.units.length);
+            LengthUnit::ALL.map(|unit| (unit.name(), unit.metres() / given.metres())).to_vec()
+        } else {
+            let given = self.mapping.units.stress.unwrap_or(StressUnit::Pascal);
+            StressUnit::ALL.map(|unit| (unit.name(), unit.pascals() / given.pascals())).to_vec()
+        };
+        let given = units.iter().find(|(_, factor)| *factor == 1.0).map_or("", |(name, _)| name);
+        let mut mistakes = Vec::new();
+        for (name, factor) in &units {
+            for sign in [1.0, -1.0] {
+                if *factor == 1.0 && sign > 0.0 {
+                    continue;
+                }
+                let unit = format!("is it in {name} where {given} is declared?");
+                let asked = match (*factor == 1.0, sign > 0.0) {
+                    (true, _) => format!("is the sign declared wrongly?{}", self.other_end()),
+                    (false, true) => unit,
+                    (false, false) => format!("{unit} And is the sign declared wrongly?"),
+                };
+                mistakes.push(Mistake {
+                    sentence: format!("is {} × the exact one: {asked}", short_factor(sign / factor)),
+                    left: self.compared.error(self.exact, |value| sign * factor * value),
+                });
+            }
+        }
+        mistakes
+    }
+
+    /// In a layer under a cosine the other end looks like the other sign.
+    fn other_end(&self) -> &'static str {
+        if self.solution.is_plane() { " Or does `x` count from the other end?" } else { "" }
+    }
+
+    /// The total stress where the effective one is declared.
+    fn total_stress(&self) -> Option<Mistake> {
+        if self.compared.quantity != Quantity::EffectiveStress {
+            return None;
+        }
+        let total = self.exact.iter().map(|fields| ExactFields {
+            effective_stress: fields
+                .effective_stress
+                .iter()
+                .zip(&fields.pressure)
+                .map(|(s, p)| s - p)
+                .collect(),
+            ..ExactFields::default()
+        });
+        Some(Mistake {
+            sentence: "matches the exact total stress: is the pore pressure left in?".to_owned(),
+            left: self.compared.error(&total.collect::<Vec<_>>(), |value| value),
+        })
+    }
+
+    /// The exact field with the height upside down.
+    fn turned(&self) -> Option<Mistake> {
+        let height = self.parameters.height;
+        let turned: Vec<SampledState> = (self.compared.states.iter())
+            .map(|state| SampledState {
+                initial_height: state.initial_height.iter().map(|y| (height - y).max(0.0)).collect(),
+                initial_distance: state.initial_distance.clone(),
+                ..SampledState::default()
+            })
+            .collect();
+        let exact =
+            exact_of(self.solution, self.parameters, self.times, &turned.iter().collect::<Vec<_>>()).ok()?;
+        Some(Mistake {
+            sentence: "matches the exact one upside down: is `y` counted from the other end?".to_owned(),
+            left: self.compared.error(&exact, |value| value),
+        })
+    }
+
+    /// The exact field at times in another unit.
+    fn units_of_time(&self) -> Vec<Mistake> {
+        let per_time_factor = self.parameters.time(1.0);
+        let given = self.mapping.units.time;
+        let is_slow = !matches!(
+            self.solution.kind(),
+            ReferenceKind::DynamicColumn | ReferenceKind::DynamicSingleMode | ReferenceKind::StandingWave
+        );
+        let others = TimeUnit::ALL.into_iter().filter(|unit| is_slow && *unit != given);
+        others
+            .filter_map(|unit| {
+                let ratio = unit.seconds(1.0, per_time_factor) / given.seconds(1.0, per_time_factor);
+                let times: Vec<f64> = self.times.iter().map(|time| time * ratio).collect();
+                let is_seen = times.iter().any(|time| TIME_FACTORS.contains(time));
+                if !is_seen || times.iter().any(|time| *time > *TIME_FACTORS.end()) {
+                    return None;
+                }
+                let solution = Reference::new(self.solution.kind(), self.parameters, &times).ok()?;
+                let exact = exact_of(&solution, self.parameters, &times, self.compared.states).ok()?;
+                Some(Mistake {
+                    sentence: format!(
+                        "matches the exact one at {} × the time: are times in {} where {} is declared?",
+                        short_factor(ratio),
+                        unit.name(),
+                        given.name()
+                    ),
+                    left: self.compared.error(&exact, |value| value),
+                })
+            })
+            .collect()
+    }
+
+    /// Places inside at which nothing was written: mid-side nodes of elements that carry the pressure
+    /// at their corners.
+    fn zeros(&self) -> Option<Mistake> {
+        let samples: Vec<[f64; 4]> = self.compared.samples(self.exact, 0.0).collect();
+        let is_inside = |exact: f64| exact.abs() > NOTABLE * self.compared.scale;
+        let inside = samples.iter().filter(|[_, exact, ..]| is_inside(*exact)).count();
+        let is_zero = |sample: &&[f64; 4]| sample[0] == 0.0 && is_inside(sample[1]);
+        let zeros = samples.iter().filter(is_zero).count();
+        if zeros < 2 || 4 * zeros > 3 * inside {
+            return None;
+        }
+        let (mut difference, mut size) = (0.0, 0.0);
+        for [computed, exact, _, volume] in samples.iter().filter(|sample| !is_zero(sample)) {
+            difference += volume * powi((computed - exact) / self.compared.scale, 2);
+            size += volume * powi(exact / self.compared.scale, 2);
+        }
+        Some(Mistake {
+            sentence: format!(
+                "is exactly 0 at {zeros} of {inside} samples where it should not be, and right at the others: are they \
+                 mid-side nodes without a value?"
+            ),
+            left: (difference / size).sqrt(),
+        })
+    }
+
+    /// A constant gradient over the depth beside the exact pressure: the weight of the water.
+    fn gradient(&self) -> Option<Mistake> {
+        if self.compared.quantity != Quantity::Pressure {
+            return None;
+        }
+        let height = self.parameters.height;
+        let (mut sums, mut offsets) = ([0.0; 3], [0.0; 2]);
+        for [computed, exact, depth, volume] in self.compared.samples(self.exact, height) {
+            let (depth, difference) = (depth / height, computed - exact);
+            sums = [sums[0] + volume, sums[1] + volume * depth, sums[2] + volume * depth * depth];
+            offsets = [offsets[0] + volume * difference, offsets[1] + volume * difference * depth];
+        }
+        let determinant = sums[0] * sums[2] - sums[1] * sums[1];
+        let slope = (sums[0] * offsets[1] - sums[1] * offsets[0]) / determinant;
+        let constant = (offsets[0] - slope * sums[1]) / sums[0];
+        let gradient = slope / height;
+        let weight = self.parameters.unit_weight_of_water();
+        let is_water = (gradient.abs() / weight - 1.0).abs() <= UNIT_WEIGHT;
+        // By fit for the judgement, for a level of the water above or below the surface is a constant.
+        let left =
+            self.compared.error_over(self.exact, height, |value, depth| value - constant - gradient * depth);
+        is_water.then(|| Mistake {
+            sentence: format!(
+                "differs from the exact one by a constant gradient of {} Pa/m: is the hydrostatic part left in?",
+                short(gradient)
+            ),
+            left,
+        })
+    }
+}
+
+/// A factor as one says it: −1.00, 0.001, 60.
+fn short_factor(factor: f64) -> String {
+    if factor.abs() == 1.0 {
+        format!("{factor:.2}").replace('-', "−")
+    } else {
+        short(factor).replace('-', "−")
+    }
+}
+
+#[cfg(test)]
+#[path = "../../../tests/unit/judge_score_diagnosis.rs"]
+mod tests;

@@ -1,0 +1,306 @@
+//! Somebody else's result held against the references of a scene.
+
+pub mod completeness;
+pub mod coverage;
+pub mod diagnosis;
+pub mod fields;
+pub mod series;
+pub mod times;
+
+use crate::case::quantity::{Quantity, Sample};
+use crate::exact::error::ExactError;
+use crate::exact::parameters::ColumnParameters;
+use crate::exact::reference::{Reference, ReferenceKind};
+use crate::import::table::SampledState;
+use crate::judge::score::completeness::Finding;
+use crate::judge::score::fields::ExactFields;
+use crate::measure::case_record::{FieldError, resolution, settlement_error};
+use crate::measure::error_contributions::contributions;
+use crate::record::ErrorRow;
+use std::collections::HashMap;
+
+/// Share of the height, and of the length, within which a sample counts as at the surface, and as
+/// under the crest.
+const RIM: f64 = 1e-6;
+/// Time factor by which every column is consolidated to round-off.
+const LONG_AFTER: f64 = 50.0;
+
+/// The place that carries most of a field's error.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct WorstPlace {
+    /// Time factor.
+    pub time_factor: f64,
+    /// What.
+    pub quantity: Quantity,
+    /// Initial depth over the height.
+    pub zeta: f64,
+    /// Initial distance from the crest of a layer's load over its length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// What the result has there.
+    pub computed: f64,
+    /// What the first reference has there.
+    pub exact: f64,
+    /// Its share of the squared L2 error.
+    pub share: f64,
+}
+
+/// A result with its errors.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Score {
+    /// Samples at each time factor.
+    pub samples: Vec<(f64, usize)>,
+    /// Errors against every reference.
+    pub errors: Vec<ErrorRow>,
+    /// Worst places against the first reference.
+    pub worst: Vec<WorstPlace>,
+    /// In what the result is not whole.
+    pub warnings: Vec<Finding>,
+    /// What seems to be wrong with its numbers, a sentence each.
+    pub diagnosis: Vec<String>,
+    /// What has no relative error, for the exact value is zero or below round-off.
+    pub unresolved: Vec<Unresolved>,
+}
+
+/// A quantity that cannot be held against a reference at a time.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Unresolved {
+    /// Time factor.
+    pub time_factor: f64,
+    /// What.
+    pub quantity: Quantity,
+    /// Where.
+    pub sample: Sample,
+    /// Which reference.
+    pub reference: String,
+}
+
+/// Errors by what they are of.
+pub struct ErrorIndex<'a> {
+    rows: HashMap<Key<'a>, &'a ErrorRow>,
+}
+
+/// Time factor (its bits), quantity, sample, norm, reference.
+type Key<'a> = (u64, &'static str, &'static str, &'static str, &'a str);
+
+fn key(row: &ErrorRow) -> Key<'_> {
+    (row.time_factor.to_bits(), row.quantity.name(), row.sample.name(), row.norm.name(), &row.reference)
+}
+
+impl<'a> ErrorIndex<'a> {
+    /// The error of a kind at its time, where it is defined.
+    pub fn find(&self, like: &ErrorRow) -> Option<&'a ErrorRow> {
+        self.rows.get(&key(like)).copied()
+    }
+}
+
+/// Time factors of states.
+pub fn time_factors(parameters: &ColumnParameters, states: &[SampledState]) -> Vec<f64> {
+    states.iter().map(|state| parameters.time_factor(state.time)).collect()
+}
+
+/// Holds states against references.
+///
+/// # Errors
+/// When a reference refuses the column or a time.
+pub fn score(
+    parameters: &ColumnParameters,
+    references: &[ReferenceKind],
+    states: &[SampledState],
+    sample: Sample,
+) -> Result<Score, ExactError> {
+    let times = time_factors(parameters, states);
+    let references: Vec<Reference> =
+        references.iter().map(|kind| Reference::new(*kind, parameters, &times)).collect::<Result<_, _>>()?;
+    let mut score = Score::default();
+    for (state, time_factor) in states.iter().zip(times) {
+        score.samples.push((time_factor, state.initial_height.len()));
+        for (place, reference) in references.iter().enumerate() {
+            score.add(parameters, reference, state, time_factor, sample, place == 0)?;
+        }
+    }
+    Ok(score)
+}
+
+impl Score {
+    /// Adds the errors of one state against one reference.
+    fn add(
+        &mut self,
+        parameters: &ColumnParameters,
+        reference: &Reference,
+        state: &SampledState,
+        time_factor: f64,
+        sample: Sample,
+        first: bool,
+    ) -> Result<(), ExactError> {
+        let exact = ExactFields::of(reference, parameters, time_factor, state)?;
+        let is_plane = reference.is_plane();
+        let settled =
+            if is_plane { reference.settlement(LONG_AFTER)? } else { parameters.final_settlement() };
+        // The components one after the other: the L2 norm of the list is that of the vectors.
+        let components = state.displacement.iter().chain(&state.horizontal_displacement);
+        let displacement: Vec<f64> = components.copied().collect();
+        let exact_components = (exact.displacement.iter().take(state.displacement.len()))
+            .chain(exact.horizontal_displacement.iter().take(state.horizontal_displacement.len()));
+        let exact_displacement: Vec<f64> = exact_components.copied().collect();
+        let volumes = state.volume.repeat(2);
+        for (quantity, computed, exact, scale) in [
+            (Quantity::Pressure, &state.pressure, &exact.pressure, parameters.load),
+            (Quantity::EffectiveStress, &state.effective_stress, &exact.effective_stress, parameters.load),
+            (Quantity::Displacement, &displacement, &exact_displacement, settled),
+        ] {
+            if computed.is_empty() {
+                continue;
+            }
+            let volumes = &volumes[..computed.len()];
+            let field = FieldError {
+                time_factor,
+                quantity,
+                sample,
+                reference: reference.name(),
+                scale,
+                resolution: resolution(reference, time_factor),
+            };
+            let known = self.errors.len();
+            self.errors.extend(field.rows(computed, exact, volumes));
+            if self.errors.len() == known {
+                let reference = reference.name().to_owned();
+                self.unresolved.push(Unresolved { time_factor, quantity, sample, reference });
+            }
+            let worst = contributions(computed, exact, volumes).first().copied();
+            if let Some(worst) = worst.filter(|_| first) {
+                let place = worst.index % state.initial_height.len();
+                let height = state.initial_height[place];
+                self.worst.push(WorstPlace {
+                    time_factor,
+                    quantity,
+                    zeta: (1.0 - height / parameters.height).clamp(0.0, 1.0),
+                    x: is_plane.then(|| state.initial_distance[place] / parameters.length),
+                    computed: computed[worst.index],
+                    exact: exact[worst.index],
+                    share: worst.share,
+                });
+            }
+        }
+        if let Some(displacement) = displacement_of_surface(parameters, is_plane, state) {
+            match settlement_error(reference, time_factor, -displacement, settled)? {
+                Some(row) => self.errors.push(row),
+                None => self.unresolved.push(Unresolved {
+                    time_factor,
+                    quantity: Quantity::Settlement,
+                    sample: Sample::Surface,
+                    reference: reference.name().to_owned(),
+                }),
+            }
+        }
+        Ok(())
+    }
+
+    /// Its errors by what they are of.
+    pub fn index(&self) -> ErrorIndex<'_> {
+        ErrorIndex { rows: self.errors.iter().map(|row| (key(row), row)).collect() }
+    }
+}
+
+/// Vertical displacement of the surface, of a layer under the crest of its load, where a sample lies
+/// there.
+fn displacement_of_surface(
+    parameters: &ColumnParameters,
+    is_plane: bool,
+    state: &SampledState,
+) -> Option<f64> {
+    let is_at_surface = |place: &usize| {
+        state.initial_height[*place] > (1.0 - RIM) * parameters.height
+            && (!is_plane || state.initial_distance[*place] < RIM * parameters.length)
+    };
+    let place = (0..state.initial_height.len()).find(is_at_surface)?;
+    state.displacement.get(place).copied()
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::case::norm::Norm;
+
+    /// The exact fields on places, the pressure off by `error(ζ)`.
+    pub(crate) fn state(places: usize, time_factor: f64, error: impl Fn(f64) -> f64) -> SampledState {
+        let column = ColumnParameters::default();
+        let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[]).expect("the seed column");
+        let mut state = SampledState { time: column.time(time_factor), ..SampledState::default() };
+        for place in 0..=places {
+            let zeta = 1.0 - place as f64 / places as f64;
+            let fields = reference.fields(time_factor, zeta).expect("inside");
+            state.initial_height.push(1.0 - zeta);
+            state.volume.push(1.0);
+            state.pressure.push(fields.pressure + error(zeta));
+            state.displacement.push(fields.displacement);
+        }
+        state
+    }
+
+    pub(crate) fn scored(states: &[SampledState]) -> Score {
+        score(&ColumnParameters::default(), &[ReferenceKind::Terzaghi], states, Sample::Nodes)
+            .expect("a score")
+    }
+
+    #[test]
+    fn the_exact_solution_scores_round_off_and_a_wrong_place_is_named() {
+        let clean = scored(&[state(20, 0.1, |_| 0.0)]);
+        assert!(clean.errors.iter().all(|row| row.value.abs() < 1e-9), "{clean:?}");
+        assert!(clean.errors.iter().any(|row| row.quantity == Quantity::Settlement));
+        assert!(clean.errors.iter().all(|row| row.quantity != Quantity::EffectiveStress), "no such column");
+        let off = scored(&[state(20, 0.1, |zeta| if (zeta - 0.25).abs() < 0.01 { 0.1 } else { 0.0 })]);
+        assert!((off.worst[0].zeta - 0.25).abs() < 1e-12 && off.worst[0].share > 0.999_999);
+    }
+
+    #[test]
+    fn what_the_reference_does_not_resolve_is_listed_and_has_no_error() {
+        let late = scored(&[state(20, 50.0, |_| 1e-13)]);
+        assert!(late.errors.iter().all(|row| row.quantity != Quantity::Pressure), "{:?}", late.errors);
+        let pressure: Vec<_> = late.unresolved.iter().map(|one| (one.quantity, one.time_factor)).collect();
+        assert_eq!(pressure.len(), 1);
+        assert_eq!(pressure[0].0, Quantity::Pressure);
+        assert!((pressure[0].1 - 50.0).abs() < 1e-9);
+        assert_eq!(scored(&[state(20, 0.1, |_| 0.0)]).unresolved, []);
+    }
+
+    #[test]
+    fn a_layer_is_measured_where_its_samples_are_and_by_vectors() {
+        let layer = ColumnParameters { length: 2.0, ..ColumnParameters::default() };
+        let reference = Reference::new(ReferenceKind::CosineLayer, &layer, &[]).expect("a layer");
+        let exact = reference.plane_state(0.1).expect("a state").expect("in the plane");
+        let mut state = SampledState { time: layer.time(0.1), ..SampledState::default() };
+        for (x, y) in (0..=4).flat_map(|i| (0..=4).map(move |j| (0.5 * f64::from(i), 0.25 * f64::from(j)))) {
+            let fields = exact.fields(x, y).expect("inside");
+            state.initial_distance.push(x);
+            state.initial_height.push(y);
+            state.volume.push(1.0);
+            state.pressure.push(fields.pressure);
+            state.horizontal_displacement.push(1.01 * fields.displacement[0]);
+            state.displacement.push(1.01 * fields.displacement[1]);
+        }
+        let kinds = [ReferenceKind::CosineLayer];
+        let found = score(&layer, &kinds, &[state.clone()], Sample::Nodes).expect("a score");
+        let value = |quantity: Quantity, norm: Norm| {
+            found.errors.iter().find(|row| (row.quantity, row.norm) == (quantity, norm)).expect("a row").value
+        };
+        assert!(value(Quantity::Pressure, Norm::L2) < 1e-12);
+        for (quantity, norm) in [(Quantity::Displacement, Norm::L2), (Quantity::Settlement, Norm::Relative)] {
+            assert!((value(quantity, norm) - 0.01).abs() < 1e-12, "{quantity:?}");
+        }
+        assert!(found.worst.iter().all(|worst| worst.x.is_some()));
+        // Without the sample under the crest there is no settlement: that at the far end is another.
+        let far: Vec<usize> = (0..25).filter(|place| state.initial_distance[*place] > 0.1).collect();
+        let only = |list: &[f64]| far.iter().map(|place| list[*place]).collect::<Vec<f64>>();
+        let without = SampledState {
+            time: state.time,
+            initial_distance: only(&state.initial_distance),
+            initial_height: only(&state.initial_height),
+            volume: only(&state.volume),
+            displacement: only(&state.displacement),
+            ..SampledState::default()
+        };
+        let found = score(&layer, &kinds, &[without], Sample::Nodes).expect("a score");
+        assert!(found.errors.iter().all(|row| row.quantity != Quantity::Settlement));
+    }
+}

@@ -1,0 +1,140 @@
+//! Orders and classes of somebody else's results on finer and finer meshes.
+
+use crate::case::norm::Norm;
+use crate::convergence::class::classify::classify;
+use crate::convergence::class::{Classification, Context};
+use crate::convergence::orders::{FinestOrder, finest_order};
+use crate::convergence::series::{ErrorSeries, Level, Undefined};
+use crate::judge::score::Score;
+use crate::judge::score::times::TimeGroups;
+use crate::record::ErrorRow;
+use std::collections::HashMap;
+
+/// Errors up to this are round-off of a written number.
+const ROUND_OFF: f64 = 1e-12;
+
+/// A series of one error over results on finer and finer meshes, with its class.
+#[derive(Clone, Debug)]
+pub struct ScoredSeries {
+    /// What the errors are of; its time is that of the group, its value that on the coarsest mesh.
+    pub measure: ErrorRow,
+    /// Largest difference between the times of the meshes and that of the group, relative.
+    pub time_difference: f64,
+    /// Cell sizes, m, and errors.
+    pub series: ErrorSeries,
+    /// Order on the finest window.
+    pub finest: Result<FinestOrder, Undefined>,
+    /// Class with its reason.
+    pub classification: Classification,
+}
+
+/// What a series is of: the group of its times, quantity, sample, norm and reference.
+type Key = (usize, &'static str, &'static str, &'static str, String);
+
+/// The series over results with numbers of cells over the height, coarsest first, the main norm of
+/// each quantity; `times` groups the times of the results in the same order. An error that a level
+/// lacks leaves a hole, and a series with a hole is not evaluable.
+pub fn series_of(levels: &[(usize, &Score)], times: &TimeGroups, height: f64) -> Vec<ScoredSeries> {
+    let mut order: Vec<Key> = Vec::new();
+    let mut found: HashMap<Key, Vec<Option<&ErrorRow>>> = HashMap::new();
+    for (place, (_, score)) in levels.iter().enumerate() {
+        let group_of: HashMap<u64, usize> = (score.samples.iter().zip(&times.groups[place]))
+            .filter_map(|((time, _), group)| Some((time.to_bits(), (*group)?)))
+            .collect();
+        for row in score.errors.iter().filter(|row| matches!(row.norm, Norm::L2 | Norm::Relative)) {
+            let Some(group) = group_of.get(&row.time_factor.to_bits()) else { continue };
+            let names = (row.quantity.name(), row.sample.name(), row.norm.name());
+            let key = (*group, names.0, names.1, names.2, row.reference.clone());
+            let rows = found.entry(key.clone()).or_insert_with(|| {
+                order.push(key);
+                vec![None; levels.len()]
+            });
+            rows[place] = Some(row);
+        }
+    }
+    // Stable: within a time in the order in which the first level has them.
+    order.sort_by_key(|key| key.0);
+    order
+        .iter()
+        .filter_map(|key| {
+            let rows = found.get(key)?;
+            let time_factor = times.time_factors[key.0];
+            let cells: Vec<usize> = levels.iter().map(|(cells, _)| *cells).collect();
+            one_series(rows, &cells, time_factor, height)
+        })
+        .collect()
+}
+
+/// The series of the rows of one measure, one a level.
+fn one_series(
+    rows: &[Option<&ErrorRow>],
+    cells: &[usize],
+    time_factor: f64,
+    height: f64,
+) -> Option<ScoredSeries> {
+    let first = rows.iter().flatten().next()?;
+    let level = |(row, cells): (Option<&ErrorRow>, &usize)| Level {
+        size: height / *cells as f64,
+        error: row.map(|row| row.value.abs()),
+    };
+    let series = ErrorSeries::new(rows.iter().copied().zip(cells).map(level).collect());
+    // A settlement's error has a sign, which tells a limit from a growing error.
+    let signed = match first.norm {
+        Norm::Relative => rows.iter().flatten().map(|row| row.value).collect(),
+        _ => Vec::new(),
+    };
+    let context = Context { round_off: Some(ROUND_OFF), signed, ..Context::default() };
+    let differences =
+        rows.iter().flatten().map(|row| (row.time_factor - time_factor).abs() / time_factor.abs());
+    Some(ScoredSeries {
+        measure: ErrorRow { time_factor, ..(*first).clone() },
+        time_difference: differences.filter(|difference| difference.is_finite()).fold(0.0, f64::max),
+        finest: finest_order(&series),
+        classification: classify(&series, &context),
+        series,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::convergence::class::Class;
+    use crate::judge::score::tests::{scored, state};
+
+    fn series(levels: &[(usize, Score)]) -> Vec<ScoredSeries> {
+        let levels: Vec<(usize, &Score)> = levels.iter().map(|(cells, score)| (*cells, score)).collect();
+        let times: Vec<Vec<f64>> =
+            levels.iter().map(|(_, score)| score.samples.iter().map(|(time, _)| *time).collect()).collect();
+        series_of(&levels, &TimeGroups::of(&[], &times, 1e-3), 1.0)
+    }
+
+    #[test]
+    fn results_on_finer_meshes_have_an_order_and_a_missing_time_none() {
+        let level = |cells: usize| {
+            let error = (cells as f64).powi(-2);
+            (cells, scored(&[state(4 * cells, 0.1, |_| error)]))
+        };
+        let levels: Vec<_> = [10, 20, 40].into_iter().map(level).collect();
+        let all = series(&levels);
+        let pressure = &all[0];
+        assert_eq!(pressure.classification.class, Class::Asymptotic, "{:?}", pressure.classification);
+        assert!((pressure.classification.order.expect("an order") - 2.0).abs() < 0.05);
+        let holes = [levels[0].clone(), levels[1].clone(), (40, scored(&[state(160, 0.2, |_| 0.0)]))];
+        let with_holes = series(&holes);
+        assert_eq!(with_holes.len(), 2 * all.len(), "the time that the finest alone has is there too");
+        assert!(with_holes.iter().all(|one| one.classification.class == Class::NotEvaluable));
+    }
+
+    #[test]
+    fn times_that_differ_a_little_are_one_series_each_held_against_its_own() {
+        let level = |(cells, time): (usize, f64)| {
+            let error = (cells as f64).powi(-2);
+            (cells, scored(&[state(4 * cells, time, |_| error)]))
+        };
+        let levels: Vec<_> = [(10, 0.049_98), (20, 0.050_01), (40, 0.05)].into_iter().map(level).collect();
+        let all = series(&levels);
+        assert_eq!(all[0].classification.class, Class::Asymptotic, "{:?}", all[0].classification);
+        assert!((all[0].measure.time_factor - 0.049_98).abs() < 1e-15);
+        assert!((all[0].time_difference - 3e-5 / 0.049_98).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,170 @@
+//! Errors of a layer against the stiffness of its water and of its skeleton, at the start and
+//! through consolidation.
+
+use crate::case::Case;
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::exact::error::ExactError;
+use crate::measure::plane_field::PlaneField;
+use crate::mpm::method::Method;
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::record::{Record, Status};
+use crate::soil::material::Material;
+use crate::study::check::Study;
+
+/// Fewer values than these are no sweep.
+const LEAST_VALUES: usize = 3;
+
+/// What makes a soil hard to compress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stiffness {
+    /// The water, by `K_w/E`.
+    Water,
+    /// The skeleton, by Poisson's ratio.
+    Skeleton,
+}
+
+impl Stiffness {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Water, Self::Skeleton];
+
+    /// Its number in a case.
+    fn of(self, case: &Case) -> f64 {
+        match self {
+            Self::Water => case.material.water_bulk_modulus / case.material.youngs_modulus,
+            Self::Skeleton => case.material.poissons_ratio,
+        }
+    }
+
+    /// Whether a case departs from the seed's soil in this stiffness at most.
+    fn is_alone_in(self, case: &Case) -> bool {
+        let seed = Material::default();
+        let mut soil = case.material;
+        match self {
+            Self::Water => soil.water_bulk_modulus = seed.water_bulk_modulus,
+            Self::Skeleton => soil.poissons_ratio = seed.poissons_ratio,
+        }
+        soil.water_bulk_modulus == seed.water_bulk_modulus && soil.poissons_ratio == seed.poissons_ratio
+    }
+}
+
+/// What is measured of each run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Showing {
+    /// Relative L2 error of the nodal displacement.
+    Displacement,
+    /// Relative L2 error of the pressure at the points.
+    Pressure,
+    /// Oscillation index of the pressure.
+    Oscillation,
+}
+
+impl Showing {
+    /// Everything measured.
+    pub const ALL: [Self; 3] = [Self::Displacement, Self::Pressure, Self::Oscillation];
+}
+
+/// One method at one time over all values of a stiffness.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepRow {
+    /// The method.
+    pub method: Method,
+    /// Time factor of the output.
+    pub time_factor: f64,
+    /// What was found at each value of the sweep, in the order of [`Showing::ALL`].
+    pub found: Vec<[Option<f64>; Showing::ALL.len()]>,
+}
+
+/// Every method over one stiffness.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StiffnessSweep {
+    /// What varies.
+    pub stiffness: Stiffness,
+    /// Cells over the height.
+    pub cells: usize,
+    /// Values, ascending.
+    pub values: Vec<f64>,
+    /// Time factors of the outputs, ascending.
+    pub time_factors: Vec<f64>,
+    /// A row a method and time.
+    pub rows: Vec<SweepRow>,
+}
+
+impl StiffnessSweep {
+    /// The sweep of a study's records over a stiffness on one mesh; `None` where the study has none that
+    /// goes beyond the start. Steps may differ: a stiffer skeleton consolidates faster.
+    ///
+    /// # Errors
+    /// When a reference refuses a case.
+    pub fn of(study: &Study, records: &[Record], stiffness: Stiffness) -> Result<Option<Self>, ExactError> {
+        let swept: Vec<&Record> = records
+            .iter()
+            .filter(|record| {
+                let case = &record.case;
+                record.status == Status::Ok
+                    && case.integrator != IntegratorKind::Explicit
+                    && case.time_factors.last().is_some_and(|last| *last > 0.0)
+                    && stiffness.is_alone_in(case)
+            })
+            .collect();
+        // The mesh of the runs that depart furthest from compressible.
+        let Some(hardest) = swept.iter().max_by(|a, b| {
+            stiffness.of(&a.case).total_cmp(&stiffness.of(&b.case)).then(a.case.cells.cmp(&b.case.cells))
+        }) else {
+            return Ok(None);
+        };
+        let (cells, per_cell) = (hardest.case.cells, hardest.case.points_per_cell);
+        let alike: Vec<&Record> = swept
+            .iter()
+            .copied()
+            .filter(|record| (record.case.cells, record.case.points_per_cell) == (cells, per_cell))
+            .collect();
+        let mut values: Vec<f64> = alike.iter().map(|record| stiffness.of(&record.case)).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        if values.len() < LEAST_VALUES {
+            return Ok(None);
+        }
+        let mut methods: Vec<Method> = Vec::new();
+        for record in &alike {
+            if !methods.contains(&record.case.method) {
+                methods.push(record.case.method);
+            }
+        }
+        let time_factors = hardest.case.time_factors.clone();
+        let reference = study.references[0].name();
+        let mut rows = Vec::new();
+        for time_factor in &time_factors {
+            for method in &methods {
+                let at = |value: f64| {
+                    let of = |record: &&&Record| {
+                        record.case.method == *method && stiffness.of(&record.case) == value
+                    };
+                    alike
+                        .iter()
+                        .find(of)
+                        .map_or(Ok([None; 3]), |record| found(record, *time_factor, reference))
+                };
+                let found = values.iter().map(|value| at(*value)).collect::<Result<_, _>>()?;
+                rows.push(SweepRow { method: *method, time_factor: *time_factor, found });
+            }
+        }
+        Ok(Some(Self { stiffness, cells, values, time_factors, rows }))
+    }
+
+    /// The rows of one output.
+    pub fn at(&self, time_factor: f64) -> impl Iterator<Item = &SweepRow> {
+        self.rows.iter().filter(move |row| row.time_factor == time_factor)
+    }
+}
+
+fn found(record: &Record, time_factor: f64, reference: &str) -> Result<[Option<f64>; 3], ExactError> {
+    let error = |quantity, sample| {
+        record.error(quantity, sample, Norm::L2, reference, time_factor).map(|row| row.value)
+    };
+    Ok([
+        error(Quantity::Displacement, Sample::Nodes),
+        error(Quantity::Pressure, Sample::Points),
+        PlaneField::of(record, time_factor)?.map(|field| field.oscillation_index()),
+    ])
+}

@@ -1,0 +1,193 @@
+//! A study held against its expectations, its golden values, and what must hold of any record.
+
+use crate::campaign::RunError;
+use crate::case::tier::Tier;
+use crate::exact::error::ExactError;
+use crate::golden::case_changes::{CaseChange, case_changes};
+use crate::golden::compare::{Change, Difference, compare};
+use crate::golden::difference_groups::{DifferenceGroup, groups_of};
+use crate::golden::references::{REFERENCES, reference_values};
+use crate::golden::{GoldenError, GoldenFile, seconds_of, values_of};
+use crate::judge::paths::{Judgement, judge_study};
+use crate::judge::soundness;
+use crate::record::{Record, Status};
+use crate::study::check::Study;
+use std::collections::BTreeMap;
+
+/// Wall time over the golden one from which on it is worth a word.
+const SLOW: f64 = 2.0;
+
+/// A case with what is said of it.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct CaseNote {
+    /// Label of the case.
+    pub case: String,
+    /// A sentence.
+    pub sentence: String,
+}
+
+/// Everything found about one study.
+#[derive(Debug)]
+pub struct StudyCheck {
+    /// Name of the study.
+    pub study: String,
+    /// Cases that failed, with their sentences.
+    pub failed_cases: Vec<CaseNote>,
+    /// Records that cannot be right, whatever they are expected to show.
+    pub unsound: Vec<CaseNote>,
+    /// Verdicts on expectations.
+    pub judgements: Vec<Judgement>,
+    /// Differences from the golden values, or why there are none to hold against.
+    pub golden: Result<Vec<Difference>, GoldenError>,
+    /// The same by kind, with what those of a kind have in common.
+    pub groups: Vec<DifferenceGroup>,
+    /// Cases with such differences: accuracy and cost together, the case with the worst first.
+    pub changes: Vec<CaseChange>,
+    /// Golden values that agree.
+    pub agreeing: usize,
+    /// What is odd and fails nothing.
+    pub warnings: Vec<String>,
+}
+
+/// How a check came out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CheckEnd {
+    /// All as expected.
+    Pass,
+    /// A verdict failed, a record is unsound, or a value moved.
+    Failed,
+    /// A case failed.
+    CaseFailed,
+    /// A golden value is missing or stale.
+    Golden,
+}
+
+impl StudyCheck {
+    /// Judges records and compares them.
+    pub fn new(
+        study: &Study,
+        records: &[Record],
+        tier: Tier,
+        golden: Result<GoldenFile, GoldenError>,
+    ) -> Self {
+        let slow = golden.as_ref().ok().and_then(|golden| slowness(golden, seconds_of(records)));
+        let notes = |of: &dyn Fn(&Record) -> Vec<String>| {
+            let of_record = |record: &Record| {
+                let label = record.case.label();
+                let note = move |sentence| CaseNote { case: label.clone(), sentence };
+                of(record).into_iter().map(note).collect::<Vec<_>>()
+            };
+            records.iter().flat_map(of_record).collect::<Vec<_>>()
+        };
+        Self {
+            failed_cases: notes(&|record| {
+                failure_sentence(record).filter(|_| !study.foresees(record)).into_iter().collect()
+            }),
+            // What a run that failed leaves behind is no result to complain of.
+            unsound: notes(&|record| match record.status {
+                Status::Ok => soundness::complaints(record),
+                Status::Failed(_) => Vec::new(),
+            }),
+            judgements: judge_study(study, records, tier),
+            warnings: slow.into_iter().collect(),
+            ..Self::of_values(&study.name, &values_of(records), golden)
+        }
+    }
+
+    /// Adds the cases that have no record, a refusing reference or a crash being the reason: they failed.
+    #[must_use]
+    pub fn with_errors(mut self, errors: &[RunError]) -> Self {
+        let notes = errors.iter().filter_map(RunError::of_case);
+        self.failed_cases.extend(notes.map(|(case, sentence)| CaseNote { case: case.to_owned(), sentence }));
+        self
+    }
+
+    /// Compares the exact solutions with their golden values.
+    ///
+    /// # Errors
+    /// When a solution refuses its column: a fault of this program.
+    pub fn of_references(golden: Result<GoldenFile, GoldenError>) -> Result<Self, ExactError> {
+        Ok(Self::of_values(REFERENCES, &reference_values()?, golden))
+    }
+
+    /// Compares values alone.
+    fn of_values(
+        name: &str,
+        values: &BTreeMap<String, f64>,
+        golden: Result<GoldenFile, GoldenError>,
+    ) -> Self {
+        let compared = golden.map(|golden| {
+            let differences = compare(&golden, values);
+            let known =
+                golden.values.keys().chain(values.keys().filter(|name| !golden.values.contains_key(*name)));
+            (groups_of(&differences, known.map(String::as_str)), differences)
+        });
+        let (groups, golden) = match compared {
+            Ok((groups, differences)) => (groups, Ok(differences)),
+            Err(error) => (Vec::new(), Err(error)),
+        };
+        let changed =
+            golden.as_ref().map_or(values.len(), |all| all.iter().filter(|one| one.found.is_some()).count());
+        Self {
+            study: name.to_owned(),
+            failed_cases: Vec::new(),
+            unsound: Vec::new(),
+            judgements: Vec::new(),
+            agreeing: values.len() - changed,
+            groups,
+            changes: golden.as_deref().map(case_changes).unwrap_or_default(),
+            golden,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Differences from the golden values; none where there is no golden file.
+    pub fn differences(&self) -> &[Difference] {
+        self.golden.as_deref().unwrap_or_default()
+    }
+
+    /// Whether a value moved that no better accuracy or lower cost of its case makes up for.
+    fn has_moved(&self) -> bool {
+        let excused = |name: &str| {
+            let of_case =
+                |change: &&CaseChange| name.rsplit_once(" | ").is_some_and(|parts| parts.0 == change.case);
+            self.changes.iter().find(of_case).is_some_and(CaseChange::is_stale)
+        };
+        self.differences().iter().any(|one| one.change == Change::Moved && !excused(&one.name))
+    }
+
+    /// How the check came out, the worst first: a verdict, an unsound record or a value that moved,
+    /// a failed case, a golden value that is missing or stale.
+    pub fn end(&self) -> CheckEnd {
+        let unmet = self.judgements.iter().any(|judgement| !judgement.verdict.pass);
+        if unmet || !self.unsound.is_empty() || self.has_moved() {
+            CheckEnd::Failed
+        } else if !self.failed_cases.is_empty() {
+            CheckEnd::CaseFailed
+        } else if self.golden.is_err() || !self.differences().is_empty() {
+            CheckEnd::Golden
+        } else {
+            CheckEnd::Pass
+        }
+    }
+}
+
+/// A word on a wall time far beyond the golden one: machine, load or code, and no verdict.
+fn slowness(golden: &GoldenFile, seconds: f64) -> Option<String> {
+    let before = golden.seconds.filter(|before| *before > 0.0)?;
+    (seconds > SLOW * before).then(|| {
+        format!(
+            "the cases took {seconds:.1} s of wall time in all, {:.1} times the {before:.1} s of the golden run: \
+             the machine, its load or the code; work counters judge, wall time does not",
+            seconds / before
+        )
+    })
+}
+
+fn failure_sentence(record: &Record) -> Option<String> {
+    match &record.status {
+        Status::Ok => None,
+        Status::Failed(failure) => Some(failure.to_string()),
+    }
+}

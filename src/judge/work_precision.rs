@@ -1,0 +1,211 @@
+//! What an error costs: timed runs on one scale of error and wall time.
+
+use crate::case::quantity::{Quantity, Sample};
+use crate::convergence::pareto::{CostLevel, CostPoint, Prediction, front, predict_next};
+use crate::judge::paths::{Path, first_norm, paths};
+use crate::measure::wall_times::{Spread, noise_floor, paired_ratio, spread};
+use crate::record::{Record, Status};
+use crate::study::expectation::{Axis, Measure};
+
+/// Tolerances that are asked for.
+pub const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
+/// Ratio of the cell size of one more level.
+const REFINEMENT: f64 = 2.0;
+
+/// A timed run.
+#[derive(Clone, Debug)]
+pub struct TimedRun<'a> {
+    /// The run.
+    pub record: &'a Record,
+    /// Error of the pore pressure at the points, the worst of all outputs.
+    pub error: f64,
+    /// Wall time over the repeats, s.
+    pub wall: Spread,
+    /// Whether no other run is both cheaper and better.
+    pub on_front: bool,
+}
+
+/// The first way to a tolerance.
+#[derive(Clone, Debug)]
+pub struct Cheapest<'a> {
+    /// The tolerance.
+    pub tolerance: f64,
+    /// The run with the least wall time whose error is within it, where one is.
+    pub run: Option<TimedRun<'a>>,
+}
+
+/// One more level of a path over the mesh, as its last levels predict it.
+#[derive(Clone, Debug)]
+pub struct NextLevel {
+    /// What the path is.
+    pub label: String,
+    /// Wall time, s, and error of its finest level.
+    pub finest: CostPoint,
+    /// Wall time and error of the next.
+    pub next: Prediction,
+    /// The finest level as the coarser ones predict it: how far such predictions are to be trusted.
+    pub finest_predicted: Option<Prediction>,
+}
+
+/// Timed runs of one study.
+#[derive(Clone, Debug)]
+pub struct WorkPrecision<'a> {
+    /// Every run that was timed alone, the cheapest first.
+    pub runs: Vec<TimedRun<'a>>,
+    /// The first way to each tolerance.
+    pub cheapest: Vec<Cheapest<'a>>,
+    /// One more level of each path.
+    pub next_levels: Vec<NextLevel>,
+    /// How far from 1 the ratio of the same run against itself lay in this session, the median over
+    /// the runs; none for fewer than two repeats.
+    pub noise_floor: Option<f64>,
+}
+
+impl<'a> WorkPrecision<'a> {
+    /// Compares the timed runs among records by the error against a reference; none where fewer
+    /// than two were timed.
+    pub fn of(records: &'a [Record], reference: &str) -> Option<Self> {
+        let mut runs: Vec<_> = records.iter().filter_map(|record| timed(record, reference)).collect();
+        if runs.len() < 2 {
+            return None;
+        }
+        runs.sort_by(|a, b| a.wall.median.total_cmp(&b.wall.median));
+        let points: Vec<_> = runs.iter().map(TimedRun::point).collect();
+        for (run, on_front) in runs.iter_mut().zip(front(&points)) {
+            run.on_front = on_front;
+        }
+        let cheapest = TOLERANCES.map(|tolerance| Cheapest {
+            tolerance,
+            run: runs.iter().find(|run| run.error <= tolerance).cloned(),
+        });
+        Some(Self {
+            cheapest: cheapest.to_vec(),
+            next_levels: next_levels(records, reference),
+            noise_floor: session_noise(&runs),
+            runs,
+        })
+    }
+}
+
+impl TimedRun<'_> {
+    fn point(&self) -> CostPoint {
+        CostPoint { cost: self.wall.median, error: self.error }
+    }
+}
+
+fn timed<'a>(record: &'a Record, reference: &str) -> Option<TimedRun<'a>> {
+    let wall = spread(&record.wall_alone()).ok()?;
+    let error = worst_error(record, reference).filter(|_| record.status == Status::Ok)?;
+    Some(TimedRun { record, error, wall, on_front: false })
+}
+
+/// Error of the pore pressure at the points in its first norm, the worst of all outputs.
+pub fn worst_error(record: &Record, reference: &str) -> Option<f64> {
+    let errors = record.case.time_factors.iter().filter(|factor| **factor > 0.0).map(|factor| {
+        let measure = pressure(reference, *factor);
+        record
+            .error(measure.quantity, measure.sample, measure.norm, reference, *factor)
+            .map(|row| row.value.abs())
+    });
+    errors.collect::<Option<Vec<_>>>()?.into_iter().reduce(f64::max)
+}
+
+fn pressure(reference: &str, time_factor: f64) -> Measure {
+    Measure {
+        quantity: Quantity::Pressure,
+        sample: Sample::Points,
+        norm: first_norm(Quantity::Pressure),
+        reference: reference.to_owned(),
+        time_factor,
+        probe: None,
+    }
+}
+
+/// The same run against itself: rounds of even number against those of odd.
+fn session_noise(runs: &[TimedRun<'_>]) -> Option<f64> {
+    let floors: Vec<f64> = runs
+        .iter()
+        .filter_map(|run| {
+            let wall = run.record.wall_alone();
+            let half = wall.len() / 2;
+            let every_other =
+                |first: usize| wall.iter().skip(first).step_by(2).take(half).copied().collect::<Vec<_>>();
+            paired_ratio(&every_other(0), &every_other(1)).ok().map(|ratio| noise_floor(&ratio))
+        })
+        .collect();
+    crate::measure::wall_times::median(&floors).ok()
+}
+
+fn next_levels(records: &[Record], reference: &str) -> Vec<NextLevel> {
+    let of_path = |path: Path<'_>| {
+        let levels: Vec<CostLevel> = path
+            .records
+            .iter()
+            .filter_map(|record| {
+                let run = timed(record, reference)?;
+                Some(CostLevel { size: record.case.cell_size(), point: run.point() })
+            })
+            .collect();
+        let last = *path.records.last()?.case.time_factors.last()?;
+        let class_of = |path: &Path<'_>| path.summary(&pressure(reference, last)).classification;
+        let next = predict_next(&levels, &class_of(&path), REFINEMENT).ok()?;
+        let (finest, coarser) = levels.split_last()?;
+        let known = path.records.len() - 1;
+        let coarser_path = Path { axis: path.axis, records: path.records[..known].to_vec() };
+        let ratio = coarser.last()?.size / finest.size;
+        let finest_predicted = predict_next(coarser, &class_of(&coarser_path), ratio).ok();
+        Some(NextLevel { label: path.label(), finest: finest.point, next, finest_predicted })
+    };
+    paths(records, Axis::Cells)
+        .into_iter()
+        .filter(|path| path.records.len() > 2)
+        .filter_map(of_path)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::{RunOptions, run_study};
+    use crate::case::tier::Tier;
+    use crate::record::WallSample;
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    const STUDY: &str = r#"title = "One more level"
+scene = "terzaghi"
+
+[output]
+time_factors = [0.05, 0.2]
+
+[[sweep]]
+method = ["GC-SRI-patch", "MPM"]
+integrator = ["implicit"]
+cells = [5, 10, 20, 40, 80]
+time_step = [{ growth = 0.005 }]
+"#;
+
+    #[test]
+    fn the_coarser_levels_predict_cost_and_error_of_the_finest() {
+        let source = StudySource { name: "levels.toml".to_owned(), text: STUDY.to_owned() };
+        let study = Study::check(&source).expect("a sound study");
+        let mut records = run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records;
+        for record in &mut records {
+            // A cost that is the same on every machine.
+            let seconds = 1e-9 * record.counters.point_updates as f64;
+            record.wall = vec![WallSample { seconds, alone: true }; 2];
+        }
+        let precision = WorkPrecision::of(&records, "terzaghi").expect("timed runs");
+        assert_eq!(precision.next_levels.len(), 2);
+        for level in &precision.next_levels {
+            let predicted = level.finest_predicted.expect("four coarser levels");
+            let cost = predicted.cost / level.finest.cost;
+            let error = predicted.error.expect("it converges") / level.finest.error;
+            assert!((cost - 1.0).abs() < 0.15, "{}: cost {cost} of the measured one", level.label);
+            assert!((error - 1.0).abs() < 0.1, "{}: error {error} of the measured one", level.label);
+        }
+        // Within the tightest tolerance that both reach, the cheapest is the method of second order.
+        let cheapest = precision.cheapest[1].run.as_ref().expect("within 0.1 %");
+        assert!(cheapest.record.case.label().starts_with("GC-SRI-patch"), "{}", cheapest.record.case.label());
+    }
+}

@@ -1,0 +1,101 @@
+//! The pressure of a plane run on the lattice of its points, beside the exact one.
+
+use crate::exact::error::ExactError;
+use crate::exact::reference::Reference;
+use crate::measure::case_record::exact_samples;
+use crate::measure::oscillation::total_variation;
+use crate::record::Record;
+use crate::scene::SceneKind;
+use crate::scene::column::column_parameters;
+
+/// Pressures over the load at the points, row after row from the base, each from `x = 0` on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlaneField {
+    /// Points along the layer.
+    pub columns: usize,
+    /// Lines between the points over the length, from 0 to `L/H`.
+    pub x_edges: Vec<f64>,
+    /// The same over the height.
+    pub y_edges: Vec<f64>,
+    /// `p/q` of the run.
+    pub computed: Vec<f64>,
+    /// `p/q` of the scene's own reference.
+    pub exact: Vec<f64>,
+}
+
+impl PlaneField {
+    /// The field of a record at one of its outputs; `None` where there is none or the run has no
+    /// second dimension.
+    ///
+    /// # Errors
+    /// When the reference refuses the case.
+    pub fn of(record: &Record, time_factor: f64) -> Result<Option<Self>, ExactError> {
+        let case = &record.case;
+        let index = case.time_factors.iter().position(|factor| *factor == time_factor);
+        let Some(snapshot) = index.and_then(|index| record.snapshots.get(index)) else { return Ok(None) };
+        let Some(across) = case.column.cells_across(case.cells).filter(|_| snapshot.points.plane.is_some())
+        else {
+            return Ok(None);
+        };
+        let parameters = column_parameters(&case.column, &case.material);
+        let own = SceneKind::reference_for(case.scene.references()[0], &case.material);
+        let reference = Reference::new(own, &parameters, &[time_factor])?;
+        let exact = exact_samples(case, &reference, time_factor, &snapshot.points)?;
+        let columns = across * case.points_per_cell;
+        let rows = case.cells * case.points_per_cell;
+        let per_height = 1.0 / rows as f64;
+        let over_load = |pressures: &[f64]| pressures.iter().map(|p| p / case.column.load).collect();
+        Ok(Some(Self {
+            columns,
+            x_edges: (0..=columns).map(|i| i as f64 * per_height).collect(),
+            y_edges: (0..=rows).map(|i| i as f64 * per_height).collect(),
+            computed: over_load(&snapshot.points.pressure),
+            exact: over_load(&exact.pressure),
+        }))
+    }
+
+    /// Oscillation index: total variation of the run's pressure along every row and column of
+    /// points over that of the exact one, minus one. A staircase of the right height has none.
+    pub fn oscillation_index(&self) -> f64 {
+        let variation = |field: &[f64]| {
+            let along: f64 = field.chunks(self.columns).map(total_variation).sum();
+            let up: f64 = (0..self.columns)
+                .map(|column| {
+                    let line: Vec<f64> = field.iter().skip(column).step_by(self.columns).copied().collect();
+                    total_variation(&line)
+                })
+                .sum();
+            along + up
+        };
+        variation(&self.computed) / variation(&self.exact) - 1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn field(computed: impl Fn(usize, usize) -> f64) -> PlaneField {
+        let exact = |i: usize, j: usize| (i + 2 * j) as f64;
+        let all = |f: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+            (0..6).flat_map(|j| (0..4).map(move |i| (i, j))).map(|(i, j)| f(i, j)).collect()
+        };
+        PlaneField {
+            columns: 4,
+            x_edges: Vec::new(),
+            y_edges: Vec::new(),
+            computed: all(&computed),
+            exact: all(&exact),
+        }
+    }
+
+    #[test]
+    fn a_smooth_error_has_no_oscillation_and_a_checkerboard_has() {
+        assert_eq!(field(|i, j| (i + 2 * j) as f64 + 7.0).oscillation_index(), 0.0);
+        // A staircase of two points a step.
+        let staircase = field(|i, j| (i / 2 * 2) as f64 + 2.0 * j as f64);
+        assert!(staircase.oscillation_index() <= 0.0);
+        let board = field(|i, j| (i + 2 * j) as f64 + if (i + j) % 2 == 0 { 5.0 } else { -5.0 });
+        assert!(board.oscillation_index() > 4.0, "{}", board.oscillation_index());
+    }
+}

@@ -1,0 +1,222 @@
+//! Stiffness of a body as sparse blocks between nodes: what its forces do under displacements.
+
+use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::operators::volumetric::VolumetricRows;
+use crate::mpm::state::grid::{Tensor, Vector};
+
+/// A sparse matrix of `D × D` blocks between nodes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NodeBlocks<const D: usize> {
+    /// Blocks of each node's row, ascending in the column's node.
+    pub rows: Vec<Vec<(usize, Tensor<D>)>>,
+}
+
+impl<const D: usize> NodeBlocks<D> {
+    /// No block at all, for a number of nodes.
+    pub fn zero(nodes: usize) -> Self {
+        Self { rows: vec![Vec::new(); nodes] }
+    }
+
+    /// The block between two nodes, made where there is none.
+    pub fn block(&mut self, row: usize, column: usize) -> &mut Tensor<D> {
+        let row = &mut self.rows[row];
+        let place = row.binary_search_by_key(&column, |entry| entry.0).unwrap_or_else(|place| {
+            row.insert(place, (column, [[0.0; D]; D]));
+            place
+        });
+        &mut row[place].1
+    }
+
+    /// Adds another matrix.
+    pub fn add(&mut self, other: &Self) {
+        for (row, blocks) in other.rows.iter().enumerate() {
+            for (column, block) in blocks {
+                let target = self.block(row, *column);
+                for d in 0..D {
+                    for e in 0..D {
+                        target[d][e] += block[d][e];
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What a node's displacement `u` does to the strain at a point: the gradient `u ⊗ g + (b·u/D) I`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrainEntry<const D: usize> {
+    /// Node.
+    pub node: usize,
+    /// `g`, 1/m.
+    pub gradient: Vector<D>,
+    /// `b`: what B-bar puts in the place of the trace, less the trace, 1/m; zero without it.
+    pub dilation: Vector<D>,
+}
+
+impl<const D: usize> StrainEntry<D> {
+    /// Adds what a displacement of the node does.
+    #[inline]
+    pub fn add_to(&self, gradient: &mut Tensor<D>, displacement: &Vector<D>) {
+        let mut dilation = 0.0;
+        for d in 0..D {
+            dilation += self.dilation[d] * displacement[d] / D as f64;
+            for e in 0..D {
+                gradient[d][e] += displacement[d] * self.gradient[e];
+            }
+        }
+        for d in 0..D {
+            gradient[d][d] += dilation;
+        }
+    }
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+    /// The gradient from which a point's effective stress takes its strain, as a row.
+    pub fn strain_row(&self, point: usize, rows: &VolumetricRows<D>) -> Vec<StrainEntry<D>> {
+        let mut gradients = Vec::new();
+        self.visit_strain(point, |node, gradient| gradients.push((node, *gradient)));
+        let is_bbar = self.method.strain.is_bbar();
+        let mut entries: Vec<StrainEntry<D>> = gradients
+            .into_iter()
+            .map(|(node, gradient)| {
+                let dilation = gradient.map(|component| if is_bbar { -component } else { 0.0 });
+                StrainEntry { node, gradient, dilation }
+            })
+            .collect();
+        if is_bbar {
+            for (node, coefficients) in rows.dilation_row(point) {
+                let place = entries.iter().position(|entry| entry.node == node).unwrap_or_else(|| {
+                    entries.push(StrainEntry { node, gradient: [0.0; D], dilation: [0.0; D] });
+                    entries.len() - 1
+                });
+                for d in 0..D {
+                    entries[place].dilation[d] += coefficients[d];
+                }
+            }
+        }
+        entries
+    }
+
+    /// `K_σ = Σ V ∇N ⊗ C G`: force of the effective stress on the nodes over their displacements,
+    /// N/m, with its sign turned.
+    pub fn skeleton_stiffness(&self, rows: &VolumetricRows<D>) -> NodeBlocks<D> {
+        let mut blocks = NodeBlocks::zero(self.nodes.len());
+        for point in 0..self.points.len() {
+            let volume = self.points.volume(point);
+            let forces = self.basis.gradient_row(&self.grid, point);
+            for entry in self.strain_row(point, rows) {
+                for e in 0..D {
+                    let (mut displaced, mut unit) = ([[0.0; D]; D], [0.0; D]);
+                    unit[e] = 1.0;
+                    entry.add_to(&mut displaced, &unit);
+                    let mut stress = self.stiffness.stress(&displaced);
+                    for d in 0..D {
+                        stress[d][d] += self.stiffness.shared_dilation_stress::<D>(entry.dilation[e]);
+                    }
+                    for (row, force) in &forces {
+                        let block = blocks.block(*row, entry.node);
+                        for d in 0..D {
+                            block[d][e] += volume * (0..D).map(|f| stress[d][f] * force[f]).sum::<f64>();
+                        }
+                    }
+                }
+            }
+        }
+        blocks
+    }
+
+    /// `B = Σ V ∇N ⊗ R`: force on the nodes of unit pressures at the sites, N/Pa, by site.
+    pub fn pressure_forces(&self, rows: &VolumetricRows<D>) -> Vec<Vec<(usize, Vector<D>)>> {
+        let mut forces: Vec<Vec<(usize, Vector<D>)>> = vec![Vec::new(); rows.divergence.len()];
+        for point in 0..self.points.len() {
+            let volume = self.points.volume(point);
+            let gradients = self.basis.gradient_row(&self.grid, point);
+            for (site, weight) in &rows.recovery[point] {
+                for (node, gradient) in &gradients {
+                    let share = gradient.map(|component| volume * weight * component);
+                    match forces[*site].binary_search_by_key(node, |entry| entry.0) {
+                        Ok(place) => {
+                            for d in 0..D {
+                                forces[*site][place].1[d] += share[d];
+                            }
+                        }
+                        Err(place) => forces[*site].insert(place, (*node, share)),
+                    }
+                }
+            }
+        }
+        forces
+    }
+
+    /// `K_p = B Q D`: force of the pressures of an undrained body over its displacements, N/m, with
+    /// its sign turned.
+    pub fn pressure_stiffness(&self, rows: &VolumetricRows<D>) -> NodeBlocks<D> {
+        let mut blocks = NodeBlocks::zero(self.nodes.len());
+        let forces = self.pressure_forces(rows);
+        for (site, divergence) in rows.divergence.iter().enumerate() {
+            for (row, force) in &forces[site] {
+                for (column, coefficients) in divergence {
+                    let block = blocks.block(*row, *column);
+                    for d in 0..D {
+                        for e in 0..D {
+                            block[d][e] += rows.coupling[site] * force[d] * coefficients[e];
+                        }
+                    }
+                }
+            }
+        }
+        blocks
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mpm::body::Gimp;
+    use crate::mpm::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::column::{Column, column_problem};
+    use crate::soil::material::Material;
+
+    #[test]
+    fn the_stiffness_is_what_the_forces_do() {
+        for name in Method::names().iter().filter(|name| *name != "MPM" && !name.starts_with("TL-")) {
+            let method = Method::named(name).expect("a known method");
+            let column = Column { load: 1.0, ..Column::layer() };
+            let soil = Material { water_bulk_modulus: 1e7, ..Material::default() };
+            let problem = column_problem::<2>(SceneKind::CosineLayer, &column, &soil, method, 4, 2);
+            let mut problem = problem.expect("the seed layer");
+            problem.undrained_start = false;
+            let mut body = Body::<2, 3, Gimp>::new(problem);
+            let field: Vec<Vector<2>> = (0..body.nodes.len())
+                .map(|node| {
+                    let [x, y] = body.grid.node_position(node);
+                    [(3.0 * x + y).sin(), (2.0 * x * y).cos()]
+                })
+                .collect();
+            let rows = body.volumetric_rows();
+            let mut stiffness = body.skeleton_stiffness(&rows);
+            stiffness.add(&body.pressure_stiffness(&rows));
+            // The explicit step's way: strains, pressures and forces of the points.
+            body.displace_undrained(&rows, &field);
+            body.nodes.external_force.fill([0.0; 2]);
+            body.map_forces();
+            let scale = body.nodes.mixture_force.iter().flatten().fold(0.0, |s: f64, f| s.max(f.abs()));
+            for (node, blocks) in stiffness.rows.iter().enumerate() {
+                for d in 0..2 {
+                    let force: f64 = blocks
+                        .iter()
+                        .map(|(column, block)| {
+                            block[d][0] * field[*column][0] + block[d][1] * field[*column][1]
+                        })
+                        .sum();
+                    let expected = -body.nodes.mixture_force[node][d];
+                    assert!(
+                        (force - expected).abs() < 1e-11 * scale,
+                        "{name} {node}: {force} for {expected}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,443 @@
+//! The discretised body: points, nodes and the operators that join them.
+
+use crate::mpm::method::{Basis, Configuration, Method, Recovery, StrainGradient};
+use crate::mpm::operators::recovery::Recovered;
+use crate::mpm::operators::recovery::patch::PatchRows;
+use crate::mpm::operators::shape;
+use crate::mpm::operators::shape::Row;
+use crate::mpm::operators::stencil::Stencils;
+use crate::mpm::operators::strain_gradient::ENDS_WIDTH;
+use crate::mpm::operators::surface_load::{LoadShape, LoadedSurface, visit_block};
+use crate::mpm::state::cell_memory::CellMemory;
+use crate::mpm::state::cells::Cells;
+use crate::mpm::state::grid::{Grid, Tensor, Vector};
+use crate::mpm::state::nodes::{Nodes, Support};
+use crate::mpm::state::points::Points;
+use crate::soil::material::{Continuity, Material, Stiffness};
+
+/// A basis as the compiler sees it: rows of `W` nodes a direction.
+pub trait ShapeFunction<const W: usize>: Clone {
+    /// Whether nodes beyond a wall would have a share in what is inside it.
+    const PASSES_WALLS: bool = false;
+
+    /// The row at a place (in cells), in a cell, of a point with a domain of half-length (in
+    /// cells).
+    fn row(place: f64, cell: usize, half_length: f64) -> Row<W>;
+}
+
+/// Hat functions.
+#[derive(Clone, Copy, Debug)]
+pub struct Hat;
+
+impl ShapeFunction<2> for Hat {
+    #[inline]
+    fn row(place: f64, cell: usize, _half_length: f64) -> Row<2> {
+        shape::hat(place, cell)
+    }
+}
+
+/// GIMP functions.
+#[derive(Clone, Copy, Debug)]
+pub struct Gimp;
+
+impl ShapeFunction<3> for Gimp {
+    #[inline]
+    fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
+        // A domain wider than a cell would need a fourth node; it is cut there.
+        shape::gimp(place, half_length.min(0.5))
+    }
+}
+
+/// Hat functions at the ends of the domains.
+#[derive(Clone, Copy, Debug)]
+pub struct DomainEnds;
+
+impl ShapeFunction<3> for DomainEnds {
+    #[inline]
+    fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
+        shape::domain_ends(place, half_length.min(0.5))
+    }
+}
+
+/// Quadratic B-splines.
+#[derive(Clone, Copy, Debug)]
+pub struct QuadraticSpline;
+
+impl ShapeFunction<3> for QuadraticSpline {
+    const PASSES_WALLS: bool = true;
+
+    #[inline]
+    fn row(place: f64, _cell: usize, _half_length: f64) -> Row<3> {
+        shape::quadratic_spline(place)
+    }
+}
+
+/// Cubic B-splines.
+#[derive(Clone, Copy, Debug)]
+pub struct CubicSpline;
+
+impl ShapeFunction<4> for CubicSpline {
+    const PASSES_WALLS: bool = true;
+
+    #[inline]
+    fn row(place: f64, cell: usize, _half_length: f64) -> Row<4> {
+        shape::cubic_spline(place, cell)
+    }
+}
+
+/// What is to be solved: geometry, material, load and initial state, and by which operators.
+#[derive(Clone, Debug)]
+pub struct Problem<const D: usize> {
+    /// Background grid.
+    pub grid: Grid<D>,
+    /// Faces that are held.
+    pub support: Support<D>,
+    /// Points in their initial state.
+    pub points: Points<D>,
+    /// Soil.
+    pub material: Material,
+    /// Operators.
+    pub method: Method,
+    /// Configuration of the weights.
+    pub configuration: Configuration,
+    /// Load on the surface, Pa.
+    pub load: f64,
+    /// How the load varies along the surface.
+    pub load_shape: LoadShape,
+    /// Whether the body is to find its undrained equilibrium under the load before it starts.
+    pub undrained_start: bool,
+    /// Time over which the load grows linearly, s; 0 where it acts at once.
+    pub loading_time: f64,
+    /// Displacement gradient of the start against the unloaded state.
+    pub initial_gradient: Tensor<D>,
+    /// Pressure that this problem is about, Pa: what leaves it a thousandfold has blown up.
+    pub pressure_scale: f64,
+    /// Whether a result that the scene cannot reach ends the run; not where growth is the question.
+    pub is_bounded: bool,
+}
+
+impl<const D: usize> Problem<D> {
+    /// The same problem with all loads, stresses and motions of its start times a factor.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.load *= factor;
+        self.pressure_scale *= factor;
+        let points = &mut self.points;
+        points.pressure.iter_mut().for_each(|pressure| *pressure *= factor);
+        points.effective_stress.iter_mut().flatten().flatten().for_each(|stress| *stress *= factor);
+        points.solid_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
+        points.water_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
+        self.initial_gradient.iter_mut().flatten().for_each(|gradient| *gradient *= factor);
+        self
+    }
+}
+
+/// The discretised body during a run.
+#[derive(Clone, Debug)]
+pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
+    /// Background grid.
+    pub grid: Grid<D>,
+    /// Material points.
+    pub points: Points<D>,
+    /// Nodal fields.
+    pub nodes: Nodes<D>,
+    /// Cell fields.
+    pub cells: Cells<D>,
+    /// Soil.
+    pub material: Material,
+    /// Stiffness of the skeleton.
+    pub stiffness: Stiffness,
+    /// Operators.
+    pub method: Method,
+    /// Configuration of the weights.
+    pub configuration: Configuration,
+    /// Loaded surface.
+    pub surface: LoadedSurface<D>,
+    /// `N` and `∇N` between points and nodes.
+    pub basis: Stencils<D, W>,
+    /// `G` of the composite MPM.
+    pub composite: Stencils<D, 4>,
+    /// `G` of the composite MPM between the ends of the domains, and what carries the points then.
+    pub between_ends: Stencils<D, ENDS_WIDTH>,
+    /// What the cells remember.
+    pub cell_memory: CellMemory<D>,
+    /// Faces that are held.
+    support: Support<D>,
+    /// Whether the basis reaches beyond a surface that moves through the grid.
+    splines_end_at_surface: bool,
+    /// `R` of the patch recovery.
+    pub patch: PatchRows<D>,
+    /// Values on their way from the sites of `D` to the points, where a method needs them kept.
+    pub recovered: Recovered<D>,
+    /// Mixture that passed the surface since the start, `∫ v_s + n(v_w − v_s) dt`, m.
+    pub surface_flux: f64,
+    shape_function: std::marker::PhantomData<S>,
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+    /// Discretises a problem: builds operators and nodal masses on the initial configuration and
+    /// maps the points' velocities to the nodes.
+    pub fn new(problem: Problem<D>) -> Self {
+        let Problem {
+            grid,
+            support,
+            points,
+            material,
+            method,
+            configuration,
+            load,
+            load_shape,
+            initial_gradient,
+            ..
+        } = problem;
+        let count = points.len();
+        let solid_cell_mass = (0..D).map(|_| grid.cell_size).product::<f64>()
+            * (1.0 - material.porosity)
+            * material.grain_density;
+        let between_ends = method.strain == StrainGradient::CmpmEnds;
+        let composite_rows = if method.strain.is_composite() && !between_ends { count } else { 0 };
+        let ends_rows = if between_ends { count } else { 0 };
+        let patch_rows = if method.uses_patch() { count } else { 0 };
+        let mut body = Self {
+            nodes: Nodes::new(&grid, &support, solid_cell_mass),
+            cells: Cells::new(&grid, count),
+            stiffness: material.stiffness(),
+            surface: LoadedSurface::of(&points, load)
+                .shaped(load_shape, &points)
+                .spread_by(method.basis, support)
+                .stretching(configuration.moves_points() && !method.domains_follow()),
+            basis: Stencils::with_points(count),
+            composite: Stencils::with_points(composite_rows),
+            between_ends: Stencils::with_points(ends_rows),
+            cell_memory: CellMemory::new(&grid),
+            support,
+            splines_end_at_surface: S::PASSES_WALLS && configuration.moves_points(),
+            patch: PatchRows::with_points(patch_rows),
+            recovered: Recovered::of(&grid, count, &method),
+            surface_flux: 0.0,
+            grid,
+            points,
+            material,
+            method,
+            configuration,
+            shape_function: std::marker::PhantomData,
+        };
+        body.displace(&initial_gradient);
+        body.build_operators();
+        body.map_masses();
+        body.map_velocities();
+        body
+    }
+
+    /// Displaces points and nodes by a uniform gradient; where strains are finite, the points take
+    /// their volumes with them, and where they move, their places and domains.
+    fn displace(&mut self, gradient: &Tensor<D>) {
+        let moved = |place: &Vector<D>| -> Vector<D> {
+            std::array::from_fn(|d| (0..D).map(|e| gradient[d][e] * place[e]).sum())
+        };
+        for node in 0..self.nodes.len() {
+            self.nodes.displacement[node] = moved(&self.grid.node_position(node));
+        }
+        let configuration = self.configuration;
+        let follow = self.method.domains_follow();
+        let points = &mut self.points;
+        for point in 0..points.len() {
+            points.displacement[point] = moved(&points.initial_position[point]);
+            for d in 0..D {
+                if configuration.deforms() {
+                    points.volume_ratio[point] *= 1.0 + gradient[d][d];
+                    points.inverse_deformation[point][d][d] /= 1.0 + gradient[d][d];
+                }
+                if configuration.moves_points() {
+                    points.position[point][d] += points.displacement[point][d];
+                    if follow {
+                        points.half_length[point][d] *= 1.0 + gradient[d][d];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether gradients on the initial configuration are to be pushed forward.
+    #[inline]
+    fn is_total(&self) -> bool {
+        self.configuration == Configuration::Total
+    }
+
+    /// Brings operators and masses up to the points' places and volumes: all of them where points
+    /// move, what follows the volumes where weights stay on the initial configuration.
+    pub fn follow_points(&mut self) {
+        self.follow_places();
+        if self.configuration.deforms() {
+            self.map_masses();
+        }
+    }
+
+    /// Brings the operators alone up to the points' places and volumes.
+    pub(crate) fn follow_places(&mut self) {
+        match self.configuration {
+            Configuration::Updated => self.build_operators(),
+            Configuration::Total => {
+                self.cells.sum_volumes(&self.points, self.material.porosity);
+                self.cells.average_deformation(&self.points);
+            }
+            Configuration::Frozen => {}
+        }
+    }
+
+    /// A gradient on the initial configuration on the present one, `∇₀v F⁻¹`.
+    #[inline]
+    pub fn pushed_forward(&self, point: usize, gradient: Tensor<D>) -> Tensor<D> {
+        if !self.is_total() {
+            return gradient;
+        }
+        pushed_forward(&self.points.inverse_deformation[point], &gradient)
+    }
+
+    /// Divergence of a nodal field at a point, on the present configuration.
+    #[inline]
+    pub fn divergence_at_point(&self, point: usize, field: &[Vector<D>]) -> f64 {
+        if !self.is_total() {
+            return self.basis.divergence(self.grid.node_stride(), point, field);
+        }
+        let gradient = self.pushed_forward(point, self.basis.gradient(self.grid.node_stride(), point, field));
+        (0..D).map(|d| gradient[d][d]).sum()
+    }
+
+    /// Divergence of a nodal field at a cell's centre, on the present configuration.
+    #[inline]
+    pub fn divergence_at_centre(&self, cell: usize, field: &[Vector<D>]) -> f64 {
+        if self.is_total() {
+            self.cells.deformed_centre_divergence(&self.grid, cell, field)
+        } else {
+            self.cells.centre_divergence(&self.grid, cell, field)
+        }
+    }
+
+    /// Builds `N` and `∇N` of every point.
+    fn build_basis(&mut self) {
+        let grid = &self.grid;
+        let places = self.cells.place.iter().zip(&self.points.half_length);
+        for (point, (place, half_length)) in places.enumerate() {
+            let rows = rows_at::<D, W, S>(grid, &self.support, place, half_length);
+            self.basis.set(grid, point, &rows);
+        }
+    }
+
+    /// Builds every operator of the method on the points' present places, and puts the load on
+    /// the surface there.
+    pub fn build_operators(&mut self) {
+        self.cells.locate(&self.grid, &self.points, self.material.porosity);
+        if self.method.strain.is_composite() {
+            self.cells.find_reached(&self.grid, &self.points);
+        }
+        if self.splines_end_at_surface {
+            self.support = self.surface.end_splines(&self.grid, &self.points);
+            self.cells.end_at(&self.grid, self.support.outermost.unwrap_or(usize::MAX));
+        }
+        self.build_basis();
+        self.build_strain_gradients();
+        if self.method.uses_patch() {
+            self.patch.build(&self.grid, &self.cells);
+        }
+        if self.is_total() {
+            self.cells.average_deformation(&self.points);
+        }
+        self.surface.apply(&self.grid, &self.points, &mut self.nodes);
+    }
+
+    /// Last node of splines that end at a surface on its way through the grid.
+    pub fn last_spline_node(&self) -> Option<usize> {
+        self.support.outermost
+    }
+
+    /// Displacement of the skeleton at the place of a node, m: that of the node itself, but for splines,
+    /// whose coefficients are no values.
+    pub fn displacement_at_node(&self, node: usize) -> Vector<D> {
+        if !S::PASSES_WALLS {
+            return self.nodes.displacement[node];
+        }
+        let position = self.grid.node_position(node);
+        let place = self.grid.held_in_cells(&position);
+        let rows = rows_at::<D, W, S>(&self.grid, &self.support, &place, &[0.0; D]);
+        let mut value = [0.0; D];
+        visit_block(&self.grid, &rows, |node, weight| {
+            for d in 0..D {
+                value[d] += weight * self.nodes.displacement[node][d];
+            }
+        });
+        value
+    }
+
+    /// `v_s + n (v_w − v_s)` at the nodes, with the nodal porosity: what (4) takes the divergence
+    /// of.
+    pub fn nodal_flux(&mut self) {
+        let nodes = &mut self.nodes;
+        for node in 0..nodes.len() {
+            let porosity = nodes.porosity[node];
+            for d in 0..D {
+                let solid = nodes.solid_velocity[node][d];
+                nodes.flux[node][d] = solid + porosity * (nodes.water_velocity[node][d] - solid);
+            }
+        }
+    }
+
+    /// Largest nodal velocity of either phase, m/s; infinite where one is not finite.
+    pub fn largest_velocity(&self) -> f64 {
+        let both = self.nodes.solid_velocity.iter().chain(&self.nodes.water_velocity);
+        both.flatten().fold(0.0, |largest: f64, velocity| {
+            if velocity.is_finite() { largest.max(velocity.abs()) } else { f64::INFINITY }
+        })
+    }
+
+    /// Rate of the volume that the mixture gains, a cell centre or a point's divergence, 1/s.
+    #[inline]
+    pub fn volume_rate(&self, porosity: f64, divergence: impl Fn(&[Vector<D>]) -> f64) -> f64 {
+        match self.material.continuity {
+            Continuity::Conservative => divergence(&self.nodes.flux),
+            Continuity::ConstantPorosityGradient => {
+                (1.0 - porosity) * divergence(&self.nodes.solid_velocity)
+                    + porosity * divergence(&self.nodes.water_velocity)
+            }
+        }
+    }
+}
+
+/// `∇₀v F⁻¹`.
+#[inline]
+pub(crate) fn pushed_forward<const D: usize>(
+    inverse_deformation: &Tensor<D>,
+    gradient: &Tensor<D>,
+) -> Tensor<D> {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| (0..D).map(|k| gradient[i][k] * inverse_deformation[k][j]).sum())
+    })
+}
+
+/// Rows of a basis at a place (in cells), for a domain of half-lengths (m), without nodes beyond held
+/// faces.
+#[inline]
+fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    grid: &Grid<D>,
+    support: &Support<D>,
+    place: &Vector<D>,
+    half_length: &Vector<D>,
+) -> [Row<W>; D] {
+    let (cell, per_cell) = (grid.cell_at(place), grid.inverse_cell_size());
+    std::array::from_fn(|d| {
+        let row = S::row(place[d], cell[d], half_length[d] * per_cell);
+        if S::PASSES_WALLS { support.folded(grid, d, row) } else { row }
+    })
+}
+
+impl Method {
+    /// Whether increments come back from the cells by a patch.
+    pub fn uses_patch(&self) -> bool {
+        self.pressure.is_by_cells() && self.recovery == Recovery::Patch
+    }
+
+    /// Whether the domains of the points follow the deformation.
+    pub fn domains_follow(&self) -> bool {
+        matches!(self.basis, Basis::Cpgimp | Basis::Cpdi)
+    }
+}

@@ -1,0 +1,6 @@
+//! TODO
+
+pub mod formula;
+pub mod observed;
+pub mod predicted;
+pub mod spectral_radius;

@@ -1,0 +1,152 @@
+//! The critical time step of a problem, predicted from its own operators.
+
+use crate::mpm::assembled::frozen::FrozenStep;
+use crate::mpm::body::{Body, CubicSpline, DomainEnds, Gimp, Hat, Problem, QuadraticSpline};
+use crate::mpm::critical_step::spectral_radius::GROWTH_TOLERANCE;
+use crate::mpm::critical_step::{formula, spectral_radius};
+use crate::mpm::explicit::ExplicitSettings;
+use crate::mpm::method::Basis;
+use crate::mpm::state::grid::Grid;
+
+/// Cells of the column on which the critical step of a run is computed.
+const FEW_CELLS: usize = 12;
+
+/// A predicted critical step, with what it was predicted from.
+#[derive(Clone, Debug)]
+pub struct Prediction<const D: usize> {
+    /// Largest stable step, s.
+    pub critical_step: f64,
+    frozen: FrozenStep<D>,
+    settings: ExplicitSettings,
+}
+
+impl<const D: usize> Prediction<D> {
+    /// Largest step, s, under which nothing grows by more than `growth` a step; above one dimension the
+    /// critical one.
+    pub fn critical_step_for(&self, growth: f64) -> f64 {
+        match &self.frozen {
+            FrozenStep::Column(column) => {
+                spectral_radius::critical_step(column, &self.settings, self.critical_step, growth)
+            }
+            FrozenStep::Plane(_) => self.critical_step,
+        }
+    }
+
+    /// Growth a step of what grows fastest under steps of a size, where the operator is small enough to
+    /// be known.
+    pub fn growth(&self, step: f64) -> Option<f64> {
+        match &self.frozen {
+            FrozenStep::Column(column) => Some(spectral_radius::spectral_radius(
+                &spectral_radius::step_operator(column, step, &self.settings),
+            )),
+            FrozenStep::Plane(_) => None,
+        }
+    }
+}
+
+/// Critical step, s, of the explicit integrator on a problem's initial configuration.
+///
+/// Computed on the problem's own operators; a long column loses its middle, which moves the limit
+/// by less than a percent, a wide layer is cut to six by six.
+pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
+    predict(problem, settings, FEW_CELLS).critical_step
+}
+
+/// The prediction on at most so many cells.
+pub fn predict<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+    most_cells: usize,
+) -> Prediction<D> {
+    let safe = formula::combined_limit(&problem.material, problem.grid.cell_size, settings.drag);
+    let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
+    let problem =
+        if is_narrow { without_middle(problem, most_cells) } else { corner(problem, most_cells / 2) };
+    let frozen = match problem.method.basis {
+        Basis::Hat => FrozenStep::new(&Body::<D, 2, Hat>::new(problem)),
+        Basis::Ugimp | Basis::Cpgimp => FrozenStep::new(&Body::<D, 3, Gimp>::new(problem)),
+        Basis::Cpdi => FrozenStep::new(&Body::<D, 3, DomainEnds>::new(problem)),
+        Basis::Bspline2 => FrozenStep::new(&Body::<D, 3, QuadraticSpline>::new(problem)),
+        Basis::Bspline3 => FrozenStep::new(&Body::<D, 4, CubicSpline>::new(problem)),
+    };
+    let critical_step = match &frozen {
+        FrozenStep::Column(column) => {
+            spectral_radius::critical_step(column, settings, safe, GROWTH_TOLERANCE)
+        }
+        FrozenStep::Plane(plane) => spectral_radius::critical_step_of_plane(plane, settings, safe),
+    };
+    Prediction { critical_step, frozen, settings: *settings }
+}
+
+/// The problem on so many cells of its lower corner, with the load on their top: the sides stay held,
+/// the top stays free.
+fn corner<const D: usize>(problem: &Problem<D>, most: usize) -> Problem<D> {
+    let mut cut = problem.clone();
+    let extent = most as f64 * problem.grid.cell_size;
+    let is_kept = |point: &usize| problem.points.position[*point].iter().all(|place| *place < extent);
+    let keep: Vec<usize> = (0..cut.points.len()).filter(is_kept).collect();
+    if keep.len() < cut.points.len() {
+        cut.points = cut.points.select(&keep);
+        let mut cells = problem.grid.cells;
+        for across in &mut cells[..D - 1] {
+            *across = (*across).min(most);
+        }
+        cut.grid = Grid::new(problem.grid.cell_size, cells);
+    }
+    cut
+}
+
+/// The problem with as many cells taken out of its middle as it has too many: base and surface, where
+/// it is special, stay as they are.
+fn without_middle<const D: usize>(problem: &Problem<D>, most_cells: usize) -> Problem<D> {
+    let up = D - 1;
+    let cell_size = problem.grid.cell_size;
+    let mut cut = problem.clone();
+    let first = problem.grid.cell_of(&[0.0; D])[up];
+    let rows: Vec<usize> =
+        cut.points.position.iter().map(|place| problem.grid.cell_of(place)[up] - first).collect();
+    let cells = rows.iter().max().map_or(0, |top| top + 1);
+    if cells <= most_cells {
+        return cut;
+    }
+    let (below, removed) = (most_cells / 2, cells - most_cells);
+    let keep: Vec<usize> =
+        (0..rows.len()).filter(|point| rows[*point] < below || rows[*point] >= below + removed).collect();
+    for point in keep.iter().filter(|point| rows[**point] >= below) {
+        let down = removed as f64 * cell_size;
+        cut.points.position[*point][up] -= down;
+        cut.points.initial_position[*point][up] -= down;
+    }
+    cut.points = cut.points.select(&keep);
+    let mut extent = problem.grid.cells;
+    extent[up] -= removed;
+    cut.grid = Grid::new(cell_size, extent);
+    cut
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mpm::explicit::Drag;
+    use crate::mpm::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::arrangement::Arrangement;
+    use crate::scene::column::{Column, column_problem};
+    use crate::soil::material::Material;
+
+    #[test]
+    fn a_column_without_its_middle_has_the_limit_of_the_whole() {
+        let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
+        for (name, filling) in [("GIMP", 1.0), ("GC-SRI-patch", 1.0), ("GIMP-SRI-patch", 0.1)] {
+            let points = Arrangement { filling, ..Arrangement::default() };
+            let column = Column { points, ..Column::default() };
+            let method = Method::named(name).expect("a known method");
+            let problem =
+                column_problem::<1>(SceneKind::Terzaghi, &column, &Material::default(), method, 30, 2)
+                    .expect("the seed column");
+            let whole = predict(&problem, &settings, 30).critical_step;
+            let cut = predict(&problem, &settings, FEW_CELLS).critical_step;
+            assert!((cut / whole - 1.0).abs() < 0.01, "{name} {filling}: {cut} for {whole}");
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! From points to nodes: masses, velocities and forces, each one pass over the points.
+//!
+//! Where points move, these passes are most of a step. Each takes a point's run of nodes as one
+//! slice, so that its bounds are checked once, and sums side by side what belongs to one node.
+
+use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::method::Configuration;
+use crate::mpm::state::grid::Tensor;
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+    /// Sums masses, volumes and drag of the points to the nodes.
+    pub fn map_masses(&mut self) {
+        self.map_points::<true, false>();
+    }
+
+    /// Maps the velocities of both phases from the points to the nodes, weighted with mass.
+    pub fn map_velocities(&mut self) {
+        self.map_points::<false, true>();
+    }
+
+    /// Both in one pass.
+    pub fn map_masses_and_velocities(&mut self) {
+        self.map_points::<true, true>();
+    }
+
+    #[inline]
+    fn map_points<const MASSES: bool, const VELOCITIES: bool>(&mut self) {
+        let (soil, nodes) = (&self.material, &mut self.nodes);
+        let (solid_fraction, unit_weight) = (1.0 - soil.porosity, soil.unit_weight_of_water());
+        // Slices of one length: the bounds of all are checked here and not at every point.
+        let count = self.points.len();
+        let (initial_volume, volume_ratio) =
+            (&self.points.initial_volume[..count], &self.points.volume_ratio[..count]);
+        let (solid_velocity, water_velocity) =
+            (&self.points.solid_velocity[..count], &self.points.water_velocity[..count]);
+        let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
+        if MASSES {
+            nodes.sums.masses.fill([0.0; 4]);
+        }
+        if VELOCITIES {
+            nodes.sums.momenta.fill([[0.0; D]; 2]);
+        }
+        let (nodal_masses, nodal_momenta) = (&mut nodes.sums.masses[..], &mut nodes.sums.momenta[..]);
+        for point in 0..count {
+            // Grains fill (1 − n) V = (1 − n_0) V_0, water n V.
+            let (initial, ratio) = (initial_volume[point], volume_ratio[point]);
+            let grain_volume = initial * solid_fraction;
+            let pore_volume = initial * (ratio - solid_fraction);
+            let drag =
+                if MASSES { pore_volume * unit_weight / soil.hydraulic_conductivity_at(ratio) } else { 0.0 };
+            let masses = [grain_volume, pore_volume, drag, 0.0];
+            let momenta = [
+                solid_velocity[point].map(|velocity| grain_volume * velocity),
+                water_velocity[point].map(|velocity| pore_volume * velocity),
+            ];
+            basis.visit_runs(&stride, point, |first, weights, _| {
+                if MASSES {
+                    for (node, weight) in nodal_masses[first..first + W].iter_mut().zip(weights) {
+                        for (sum, mass) in node.iter_mut().zip(&masses) {
+                            *sum += weight * mass;
+                        }
+                    }
+                }
+                if VELOCITIES {
+                    for (node, weight) in nodal_momenta[first..first + W].iter_mut().zip(weights) {
+                        for (sum, momentum) in node.iter_mut().zip(&momenta) {
+                            for d in 0..D {
+                                sum[d] += weight * momentum[d];
+                            }
+                        }
+                    }
+                }
+            });
+        }
+        if MASSES {
+            nodes.take_masses(soil);
+        }
+        if VELOCITIES {
+            nodes.take_velocities(soil);
+        }
+    }
+
+    /// Forces on the mixture and on the water from the points' stresses (weak form, drained
+    /// surface natural).
+    pub fn map_forces(&mut self) {
+        let (nodes, points) = (&mut self.nodes, &self.points);
+        for (forces, external) in nodes.sums.forces.iter_mut().zip(&nodes.external_force) {
+            *forces = [*external, [0.0; D]];
+        }
+        let nodal_forces = &mut nodes.sums.forces[..];
+        let count = points.len();
+        let (initial_volume, volume_ratio, stressed_share) =
+            (&points.initial_volume[..count], &points.volume_ratio[..count], &points.stressed_share[..count]);
+        let (effective_stress, pressure) = (&points.effective_stress[..count], &points.pressure[..count]);
+        let inverse_deformation = &points.inverse_deformation[..count];
+        let is_total = self.configuration == Configuration::Total;
+        let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
+        for point in 0..count {
+            let volume = initial_volume[point] * volume_ratio[point] * stressed_share[point];
+            let pressure = volume * pressure[point];
+            // What each unit of gradient gives to the mixture, −σ V, and to the water, p V.
+            let mut mixture = effective_stress[point].map(|row| row.map(|stress| -(volume * stress)));
+            let mut water = [[0.0; D]; D];
+            for d in 0..D {
+                mixture[d][d] += pressure;
+                water[d][d] = pressure;
+            }
+            let mut given = [mixture, water];
+            if is_total {
+                given = given.map(|stress| pulled_back(&inverse_deformation[point], &stress));
+            }
+            basis.visit_runs(&stride, point, |first, _, gradients| {
+                for (node, gradient) in nodal_forces[first..first + W].iter_mut().zip(gradients) {
+                    for (force, given) in node.iter_mut().zip(&given) {
+                        for d in 0..D {
+                            for e in 0..D {
+                                force[d] += given[d][e] * gradient[e];
+                            }
+                        }
+                    }
+                }
+            });
+        }
+        for (node, forces) in nodes.sums.forces.iter().enumerate() {
+            [nodes.mixture_force[node], nodes.water_force[node]] = *forces;
+        }
+    }
+}
+
+/// A stress that meets gradients on the initial configuration, `σ F⁻ᵀ`.
+#[inline]
+fn pulled_back<const D: usize>(inverse_deformation: &Tensor<D>, stress: &Tensor<D>) -> Tensor<D> {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| (0..D).map(|k| stress[i][k] * inverse_deformation[j][k]).sum())
+    })
+}

@@ -1,0 +1,484 @@
+//! The explicit integrator: the eight steps of Zheng et al. (2021), section 4.
+
+pub mod mapping;
+pub mod scheme;
+
+use crate::elementary;
+use crate::mpm::body::{Body, ShapeFunction, pushed_forward};
+use crate::mpm::explicit::scheme::Scheme;
+use crate::mpm::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
+use crate::mpm::operators::shape::SIXTH;
+use crate::mpm::operators::strain_gradient::StrainBlocks;
+use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::state::grid::{Tensor, Vector};
+use serde::{Deserialize, Serialize};
+
+/// Time level at which the drag between skeleton and water is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Drag {
+    /// Old velocities: bounds the step by the drag.
+    Explicit,
+    /// New velocities, a 2 × 2 solve a node: no bound from the drag.
+    Implicit,
+    /// The mean over the step: of second order in it, and no bound either.
+    Centred,
+}
+
+impl Drag {
+    /// Every choice, in the order of the documentation.
+    pub const ALL: [Self; 3] = [Self::Explicit, Self::Implicit, Self::Centred];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Explicit => "explicit",
+            Self::Implicit => "implicit",
+            Self::Centred => "centred",
+        }
+    }
+}
+
+/// Choices of the explicit integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ExplicitSettings {
+    /// Time levels of velocities and stresses.
+    #[serde(default, skip_serializing_if = "Scheme::is_paper")]
+    pub scheme: Scheme,
+    /// Time level of the drag.
+    pub drag: Drag,
+    /// Share of the acceleration update (FLIP) in the points' velocities; the rest is
+    /// interpolated from the nodes (PIC).
+    pub flip: f64,
+    /// Whether the stresses see velocities mapped back from the updated points (the paper's
+    /// step 5) instead of the nodal velocities of step 3.
+    pub mapping_back: bool,
+}
+
+impl Default for ExplicitSettings {
+    /// The paper's: forward Euler, explicit drag, pure FLIP, mapping back.
+    fn default() -> Self {
+        Self { scheme: Scheme::ForwardEuler, drag: Drag::Explicit, flip: 1.0, mapping_back: true }
+    }
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+    /// One explicit step of `dt` seconds, as the paper has it.
+    pub fn explicit_step(&mut self, dt: f64, settings: &ExplicitSettings) {
+        self.kick_and_drift(dt, dt, settings);
+    }
+
+    /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
+    pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
+        self.reset_grid(settings); // (1)
+        enter(Phase::Forces);
+        self.nodal_accelerations(kick, settings.drag); // (2)
+        enter(Phase::Motion);
+        self.nodal_velocities(kick, dt); // (3)
+        self.advance_points(kick, dt, settings.flip); // (4)
+        if settings.mapping_back {
+            enter(Phase::MapVelocities);
+            self.map_velocities(); // (5)
+        }
+        enter(Phase::Stresses);
+        self.update_effective_stress(dt); // (6)
+        enter(Phase::Recovery);
+        self.update_pressure(dt); // (7), and (8) is the next step
+        if self.remembers_in_cells() {
+            self.remember_in_cells();
+        }
+    }
+
+    /// (1) Operators, masses and velocities on the points' places. Where nothing moves, the
+    /// operators stand, and velocities mapped back by the last step are already there.
+    fn reset_grid(&mut self, settings: &ExplicitSettings) {
+        enter(Phase::BuildWeights);
+        self.follow_places();
+        if self.configuration.deforms() {
+            enter(Phase::MapVelocities);
+            self.map_masses_and_velocities();
+        } else if !settings.mapping_back {
+            enter(Phase::MapVelocities);
+            self.map_velocities();
+        }
+    }
+
+    /// (2) Accelerations of the water, equation (1), then of the skeleton, equation (2).
+    fn nodal_accelerations(&mut self, kick: f64, drag: Drag) {
+        self.map_forces();
+        let water_density = self.material.water_density;
+        let nodes = &mut self.nodes;
+        for node in 0..nodes.len() {
+            if !nodes.is_active(node) {
+                nodes.solid_acceleration[node] = [0.0; D];
+                nodes.water_acceleration[node] = [0.0; D];
+                continue;
+            }
+            let per_solid_mass = nodes.per_solid_mass[node];
+            let (water_inertia, drag_coefficient) = (water_density * nodes.volume[node], nodes.drag[node]);
+            let water_share = nodes.water_mass[node] * per_solid_mass;
+            // A share w of the drag at the new velocities adds w Δt D (a_w − a_s) with a_s from (2).
+            let decay = || kick * drag_coefficient * (1.0 + water_share) / water_inertia;
+            let implicit = drag.implicit_weight(decay) * kick * drag_coefficient;
+            for d in 0..D {
+                let (free, water_free) = (nodes.free[node][d], nodes.water_free[node][d]);
+                let per_inertia = 1.0 / (water_inertia + implicit * (1.0 + free * water_share));
+                let relative = nodes.water_velocity[node][d] - nodes.solid_velocity[node][d];
+                let mixture = free * nodes.mixture_force[node][d] * per_solid_mass;
+                let force = nodes.water_force[node][d] - drag_coefficient * relative + implicit * mixture;
+                let water = water_free * force * per_inertia;
+                nodes.water_acceleration[node][d] = water;
+                nodes.solid_acceleration[node][d] = mixture - free * water_share * water;
+            }
+        }
+    }
+
+    /// (3) Nodal velocities by forward Euler.
+    fn nodal_velocities(&mut self, kick: f64, dt: f64) {
+        let nodes = &mut self.nodes;
+        for node in 0..nodes.len() {
+            for d in 0..D {
+                nodes.solid_velocity[node][d] += kick * nodes.solid_acceleration[node][d];
+                nodes.water_velocity[node][d] += kick * nodes.water_acceleration[node][d];
+                nodes.displacement[node][d] += dt * nodes.solid_velocity[node][d];
+            }
+        }
+    }
+
+    /// (4) Velocities and places of the points.
+    fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
+        if flip < 1.0 {
+            self.advance_points_by::<true>(kick, dt, flip);
+        } else {
+            self.advance_points_by::<false>(kick, dt, flip);
+        }
+    }
+
+    /// The same; where nothing is interpolated from the nodes, the water's velocities are not asked for.
+    #[inline]
+    fn advance_points_by<const PIC: bool>(&mut self, kick: f64, dt: f64, flip: f64) {
+        let moving = self.configuration.moves_points();
+        let pic = 1.0 - flip;
+        let carried_by_ends =
+            (self.method.strain == StrainGradient::CmpmEnds).then(|| self.between_ends.blocks());
+        let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
+        let nodes = &self.nodes;
+        let (solid_field, solid_rates) = (&nodes.solid_velocity[..], &nodes.solid_acceleration[..]);
+        let (water_field, water_rates) = (&nodes.water_velocity[..], &nodes.water_acceleration[..]);
+        let points = &mut self.points;
+        let count = points.len();
+        let (solid_velocity, water_velocity) =
+            (&mut points.solid_velocity[..count], &mut points.water_velocity[..count]);
+        let (displacement, position) = (&mut points.displacement[..count], &mut points.position[..count]);
+        for point in 0..count {
+            let ([mut solid, mut solid_rate], [mut water, mut water_rate]) = ([[0.0; D]; 2], [[0.0; D]; 2]);
+            basis.visit_runs(&stride, point, |first, weights, _| {
+                let run = first..first + W;
+                add_weighted(&mut solid, &solid_field[run.clone()], weights);
+                add_weighted(&mut solid_rate, &solid_rates[run.clone()], weights);
+                add_weighted(&mut water_rate, &water_rates[run.clone()], weights);
+                if PIC {
+                    add_weighted(&mut water, &water_field[run], weights);
+                }
+            });
+            let carrying = carried_by_ends.map_or(solid, |ends| ends.value(&stride, point, solid_field));
+            for d in 0..D {
+                let (solid_velocity, water_velocity) =
+                    (&mut solid_velocity[point][d], &mut water_velocity[point][d]);
+                *solid_velocity += kick * solid_rate[d];
+                *water_velocity += kick * water_rate[d];
+                if PIC {
+                    *solid_velocity = flip * *solid_velocity + pic * solid[d];
+                    *water_velocity = flip * *water_velocity + pic * water[d];
+                }
+                displacement[point][d] += dt * carrying[d];
+                if moving {
+                    position[point][d] += dt * carrying[d];
+                }
+            }
+        }
+    }
+
+    /// (6) Effective stress by the method's strain gradient; at finite strain also volume and
+    /// domain.
+    fn update_effective_stress(&mut self, dt: f64) {
+        let (deforms, is_bbar) = (self.configuration.deforms(), self.method.strain.is_bbar());
+        if is_bbar {
+            self.recover_dilation_rates();
+        }
+        let (following, is_total) = (self.following(), self.configuration == Configuration::Total);
+        let blocks = StrainBlocks::of(self.method.strain, &self.basis, &self.composite, &self.between_ends);
+        let stride = *self.grid.node_stride();
+        let (field, recovered) = (&self.nodes.solid_velocity[..], &self.recovered.at_points[..]);
+        let (law, stiffness) = (self.material.law, self.stiffness);
+        let points = &mut self.points;
+        let count = points.len();
+        let (volume_ratio, half_length) =
+            (&mut points.volume_ratio[..count], &mut points.half_length[..count]);
+        let (inverse_deformation, effective_stress) =
+            (&mut points.inverse_deformation[..count], &mut points.effective_stress[..count]);
+        for point in 0..count {
+            let mut gradient = blocks.gradient(&stride, point, field);
+            if is_total {
+                gradient = pushed_forward(&inverse_deformation[point], &gradient);
+            }
+            let mut increment = gradient.map(|row| row.map(|rate| dt * rate));
+            let before = volume_ratio[point];
+            if deforms {
+                volume_ratio[point] *=
+                    following.deform(&mut half_length[point], &mut inverse_deformation[point], &increment);
+            }
+            let mut shared = 0.0;
+            if is_bbar {
+                // Of the kinematics only the volume goes the way of the water's.
+                let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
+                let dilation = dt * (recovered[point] - trace);
+                if deforms {
+                    volume_ratio[point] *= stretch_of(dilation);
+                }
+                for d in 0..D {
+                    increment[d][d] += dilation / D as f64;
+                }
+                shared = stiffness.shared_dilation_stress::<D>(dilation);
+            }
+            let mut stress = effective_stress[point];
+            if deforms && D > 1 {
+                stress = rotated(&stress, &increment);
+            }
+            let modulus = law.modulus_ratio(before, volume_ratio[point]);
+            let change = stiffness.stress(&increment);
+            for d in 0..D {
+                for e in 0..D {
+                    stress[d][e] += modulus * change[d][e];
+                }
+                stress[d][d] += modulus * shared;
+            }
+            effective_stress[point] = stress;
+        }
+    }
+
+    /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
+    #[inline]
+    pub(crate) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
+        let following = self.following();
+        let points = &mut self.points;
+        points.volume_ratio[point] *= following.deform(
+            &mut points.half_length[point],
+            &mut points.inverse_deformation[point],
+            increment,
+        );
+    }
+
+    #[inline]
+    fn following(&self) -> Following {
+        match self.configuration {
+            Configuration::Updated if self.method.domains_follow() => Following::Domain,
+            Configuration::Total => Following::InverseDeformation,
+            Configuration::Updated | Configuration::Frozen => Following::Nothing,
+        }
+    }
+
+    /// (7) Pressure increments where the method takes the divergence, recovered to the points.
+    fn update_pressure(&mut self, dt: f64) {
+        self.nodal_flux();
+        self.surface_flux += dt * self.surface.mean_of(&self.grid, &self.points, &self.nodes.flux);
+        match (self.method.pressure, self.method.recovery) {
+            (PressureIntegration::Points, Recovery::NullSpace) => {
+                for point in 0..self.points.len() {
+                    self.recovered.at_points[point] = dt * self.pressure_rate_at(point);
+                }
+                self.recover();
+                self.add_recovered_pressures();
+            }
+            (PressureIntegration::Points, _) => {
+                for point in 0..self.points.len() {
+                    self.points.pressure[point] += dt * self.pressure_rate_at(point);
+                }
+            }
+            (_, Recovery::Constant | Recovery::NullSpace) => {
+                self.pressure_increments_of_cells(dt);
+                for point in 0..self.points.len() {
+                    self.points.pressure[point] += self.cells.pressure_increment[self.cells.of_point[point]];
+                }
+            }
+            (_, Recovery::Nodal) => {
+                self.pressure_increments_of_cells(dt);
+                self.recover();
+                self.add_recovered_pressures();
+            }
+            (_, Recovery::Patch) => {
+                self.pressure_increments_of_cells(dt);
+                let increments = &self.cells.pressure_increment[..];
+                for (point, pressure) in self.points.pressure.iter_mut().enumerate() {
+                    *pressure += self.patch.value(&self.grid, point, increments);
+                }
+            }
+        }
+    }
+
+    /// Rate of a point's pressure by its own divergence, Pa/s.
+    #[inline]
+    fn pressure_rate_at(&self, point: usize) -> f64 {
+        let porosity = self.material.porosity_at(self.points.volume_ratio[point]);
+        let rate = self.volume_rate(porosity, |field| self.divergence_at_point(point, field));
+        -self.material.water_bulk_modulus / porosity * rate
+    }
+
+    fn add_recovered_pressures(&mut self) {
+        for (pressure, increment) in self.points.pressure.iter_mut().zip(&self.recovered.at_points) {
+            *pressure += increment;
+        }
+    }
+
+    fn pressure_increments_of_cells(&mut self, dt: f64) {
+        if self.method.pressure == PressureIntegration::Mean {
+            self.average_over_cells(|body, point| {
+                let porosity = body.cells.porosity[body.cells.of_point[point]];
+                let rate = body.volume_rate(porosity, |field| body.divergence_at_point(point, field));
+                -dt * body.material.water_bulk_modulus / porosity * rate
+            });
+        } else {
+            self.pressure_increments_at_centres(dt);
+        }
+    }
+
+    fn pressure_increments_at_centres(&mut self, dt: f64) {
+        for cell in 0..self.cells.pressure_increment.len() {
+            if self.cells.is_occupied(cell) {
+                let porosity = self.cells.porosity[cell];
+                let rate = self.volume_rate(porosity, |field| self.divergence_at_centre(cell, field));
+                self.cells.pressure_increment[cell] =
+                    -dt * self.material.water_bulk_modulus / porosity * rate;
+            }
+        }
+    }
+}
+
+/// What follows the deformation of a point beside its volume.
+#[derive(Clone, Copy)]
+enum Following {
+    Domain,
+    InverseDeformation,
+    Nothing,
+}
+
+impl Following {
+    /// Factor of the volume, exact in the logarithmic strain; what follows it has followed.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn deform<const D: usize>(
+        self,
+        half_length: &mut Vector<D>,
+        inverse_deformation: &mut Tensor<D>,
+        increment: &Tensor<D>,
+    ) -> f64 {
+        let stretch: Vector<D> = std::array::from_fn(|d| stretch_of(increment[d][d]));
+        match self {
+            Self::Domain => {
+                for d in 0..D {
+                    half_length[d] *= stretch[d];
+                }
+            }
+            Self::InverseDeformation => *inverse_deformation = relaxed(inverse_deformation, increment),
+            Self::Nothing => {}
+        }
+        stretch.iter().product()
+    }
+}
+
+/// Adds a run of nodal vectors with their weights.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn add_weighted<const D: usize>(value: &mut Vector<D>, nodes: &[Vector<D>], weights: &[f64]) {
+    for (node, weight) in nodes.iter().zip(weights) {
+        for d in 0..D {
+            value[d] += weight * node[d];
+        }
+    }
+}
+
+const PER_24: f64 = 1.0 / 24.0;
+
+/// `exp(ε)`: a step's strain is so small that four terms are exact to round-off.
+#[inline]
+fn stretch_of(strain: f64) -> f64 {
+    if strain.abs() < 1e-4 {
+        1.0 + strain * (1.0 + strain * (0.5 + strain * (SIXTH + strain * PER_24)))
+    } else {
+        elementary::exp(strain)
+    }
+}
+
+/// A stress turned with the material over a step of displacement gradient `A`: `Q σ Qᵀ` with the
+/// rotation `Q = (I − W/2)⁻¹(I + W/2)`, `W = skew A` (Hughes & Winget 1980). Together with the rate
+/// form it is Jaumann's stress rate, and exactly objective under a rigid rotation.
+#[inline]
+fn rotated<const D: usize>(stress: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
+    if D != 2 {
+        return *stress;
+    }
+    let half = 0.25 * (increment[1][0] - increment[0][1]);
+    let per = 1.0 / (1.0 + half * half);
+    let (cosine, sine) = ((1.0 - half * half) * per, 2.0 * half * per);
+    let turn: Tensor<D> = std::array::from_fn(|i| {
+        std::array::from_fn(|j| match (i, j) {
+            (0, 1) => -sine,
+            (1, 0) => sine,
+            _ => cosine,
+        })
+    });
+    let once: Tensor<D> =
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| turn[i][k] * stress[k][j]).sum()));
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| once[i][k] * turn[j][k]).sum()))
+}
+
+/// `F⁻¹ exp(−A)` for a step's strain `A`, to third order in it.
+#[inline]
+fn relaxed<const D: usize>(inverse: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
+    let times = |a: &Tensor<D>| -> Tensor<D> {
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| a[i][k] * increment[k][j]).sum()))
+    };
+    let once = times(inverse);
+    let twice = times(&once);
+    std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j] - once[i][j] + 0.5 * twice[i][j]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stretch_is_the_exponential() {
+        for strain in [-0.3_f64, -9e-5, -1e-7, 0.0, 3e-6, 9.9e-5, 0.2] {
+            assert!((stretch_of(strain) / strain.exp() - 1.0).abs() < 3e-16);
+        }
+    }
+
+    #[test]
+    fn a_stress_turns_with_the_material_and_keeps_its_invariants() {
+        // A quarter turn in a thousand steps takes the stress along x to one along y.
+        let angle = std::f64::consts::FRAC_PI_2 / 1000.0;
+        let mut stress = [[5.0, 1.0], [1.0, -2.0]];
+        // Q with tan(θ/2) = w/2 turns by θ.
+        let spin = 2.0 * (0.5 * angle).tan();
+        for _ in 0..1000 {
+            stress = rotated(&stress, &[[0.0, -spin], [spin, 0.0]]);
+        }
+        for (got, exact) in stress.iter().flatten().zip([-2.0, -1.0, -1.0, 5.0]) {
+            assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
+        }
+        let stretched = rotated(&stress, &[[0.1, 0.3], [0.3, -0.2]]);
+        assert_eq!(stretched, stress, "a strain without spin turns nothing");
+    }
+
+    #[test]
+    fn the_inverse_deformation_keeps_to_the_volume() {
+        let mut inverse = [[1.0, 0.0], [0.0, 1.0]];
+        let increment = [[1e-6, 3e-6], [-2e-6, -4e-6]];
+        for _ in 0..50_000 {
+            inverse = relaxed(&inverse, &increment);
+        }
+        let determinant: f64 = inverse[0][0] * inverse[1][1] - inverse[0][1] * inverse[1][0];
+        assert!((determinant.ln() - 50_000.0 * 3e-6).abs() < 1e-10, "det F⁻¹ = exp(−tr ε)");
+    }
+}

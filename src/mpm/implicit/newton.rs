@@ -1,0 +1,367 @@
+//! A Newton iteration a stage: for finite strain, and for bodies with inertia.
+
+use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::implicit::banded::{Banded, BandedLu};
+use crate::mpm::implicit::drive::Plan;
+use crate::mpm::implicit::linear::{SDIRK_GAMMA, SECOND_STAGE};
+use crate::mpm::implicit::march::{ERROR_SHARE, ErrorScales, March, StepFailure, Work};
+use crate::mpm::implicit::tangent::Pattern;
+use crate::mpm::implicit::trial::{Skeleton, StageStart, Trial};
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::lost_point;
+use crate::mpm::run::outcome::FailureKind;
+use crate::mpm::run::profile::{Phase, enter};
+
+/// Iterations of a stage.
+const MOST_ITERATIONS: usize = 16;
+/// Times that a step is halved before the run is given up.
+const MOST_HALVINGS: u32 = 10;
+/// Error that an iteration may leave, over the size of the problem's strains.
+const TOLERANCE: f64 = 1e-11;
+/// Ratio of an iteration's correction to the last one's beyond which the tangent is made anew.
+const SLOW: f64 = 0.1;
+
+/// Where the operators' rows begin: what the pattern of the tangent depends on.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Structure {
+    basis: Vec<usize>,
+    composite: Vec<usize>,
+    between_ends: Vec<usize>,
+    cells: Vec<usize>,
+    /// Splines that end at the surface lose a node without any point's row beginning elsewhere.
+    last_node: Option<usize>,
+    /// A domain that touches a face reaches the node beyond it without its row beginning elsewhere.
+    numbers: Vec<Option<usize>>,
+}
+
+impl Structure {
+    fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(trial: &Trial<D, W, S>) -> Self {
+        let body = &trial.body;
+        Self {
+            basis: body.basis.first.clone(),
+            composite: body.composite.first.clone(),
+            between_ends: body.between_ends.first.clone(),
+            cells: body.cells.of_point.clone(),
+            last_node: body.last_spline_node(),
+            numbers: trial.unknowns.displacement.as_flattened().to_vec(),
+        }
+    }
+
+    fn is_of<const D: usize, const W: usize, S: ShapeFunction<W>>(&self, trial: &Trial<D, W, S>) -> bool {
+        let body = &trial.body;
+        self.basis == body.basis.first
+            && self.composite == body.composite.first
+            && self.between_ends == body.between_ends.first
+            && self.cells == body.cells.of_point
+            && self.last_node == body.last_spline_node()
+            && self.numbers == trial.unknowns.displacement.as_flattened()
+    }
+}
+
+/// Stages of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stages {
+    /// Two, of SDIRK2.
+    Sdirk,
+    /// One, of backward Euler for what is implicit.
+    Single,
+}
+
+impl Stages {
+    /// Of each stage: what it lasts for and where it ends, in steps, and the share of its increment
+    /// in the start of the next one, or in the step.
+    fn of_step(self) -> &'static [(f64, f64, f64)] {
+        match self {
+            Self::Sdirk => &[(SDIRK_GAMMA, SDIRK_GAMMA, SECOND_STAGE), (SDIRK_GAMMA, 1.0, 1.0)],
+            Self::Single => &[(1.0, 1.0, 1.0)],
+        }
+    }
+}
+
+/// A body on its way through time.
+#[derive(Clone, Debug)]
+pub struct NewtonMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
+    trial: Trial<D, W, S>,
+    pattern: Pattern,
+    structure: Structure,
+    tangent: Banded,
+    lu: BandedLu,
+    /// Stage duration that the factors belong to, s.
+    factored: Option<f64>,
+    /// Ratio of successive corrections that the last stage ended with.
+    contraction: f64,
+    /// Error that a stage may leave in the scaled unknowns.
+    tolerance: f64,
+    error_scales: ErrorScales,
+    stages: Stages,
+    start: StageStart<D>,
+    /// Rate of the scaled unknowns at the end of the last step, 1/s.
+    rate: Vec<f64>,
+    state: Vec<f64>,
+    residual: Vec<f64>,
+    scratch: Vec<f64>,
+    initial_height: f64,
+    /// Time over which the load grows, s.
+    loading_time: f64,
+    /// What it grows to, Pa.
+    full_load: f64,
+    /// Time at the start of the step, s.
+    time: f64,
+    settlement_rate: f64,
+    work: Work,
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
+    /// A body at its start.
+    pub fn new(body: Body<D, W, S>, plan: &Plan<'_>) -> Self {
+        let full_load = body.surface.load;
+        let is_semi_implicit = plan.schedule.integrator == IntegratorKind::SemiImplicit;
+        let skeleton = if is_semi_implicit { Skeleton::Explicit } else { Skeleton::Implicit };
+        let trial = Trial::new(body, plan.schedule.formulation, skeleton);
+        let pattern = Pattern::of(&trial.body, &trial.unknowns);
+        let tangent = pattern.zeros();
+        let zero = vec![0.0; trial.unknowns.count];
+        Self {
+            structure: Structure::of(&trial),
+            lu: BandedLu::of_shape(&tangent),
+            tangent,
+            pattern,
+            factored: None,
+            contraction: SLOW,
+            tolerance: TOLERANCE * plan.pressure_scale / trial.scales.pressure,
+            error_scales: ErrorScales::of(&trial.scales, plan),
+            stages: if is_semi_implicit { Stages::Single } else { Stages::Sdirk },
+            start: StageStart::default(),
+            rate: zero.clone(),
+            state: zero.clone(),
+            residual: zero.clone(),
+            scratch: zero,
+            initial_height: plan.initial_height,
+            loading_time: plan.loading_time,
+            full_load,
+            time: 0.0,
+            settlement_rate: 0.0,
+            work: Work::default(),
+            trial,
+        }
+    }
+
+    /// A step, in halves where the iteration does not come to an end.
+    fn step_within(&mut self, dt: f64, halvings: u32, most_error: f64) -> Result<f64, StepFailure> {
+        match self.try_step(dt, most_error) {
+            Err(_) if halvings > 0 => {
+                self.work.rejected_steps += 1;
+                self.step_within(0.5 * dt, halvings - 1, f64::INFINITY)?;
+                self.step_within(0.5 * dt, halvings - 1, f64::INFINITY)
+            }
+            done => done,
+        }
+    }
+
+    fn try_step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure> {
+        let mut flux = 0.0;
+        let mut first = true;
+        for (duration, end, share) in self.stages.of_step() {
+            let stage = duration * dt;
+            if first {
+                self.start_step(stage);
+                first = false;
+            }
+            self.load_at(self.time + end * dt);
+            self.solve_stage()?;
+            let body = &self.trial.body;
+            flux += share * stage * body.surface.mean_of(&body.grid, &body.points, &body.nodes.flux);
+            if *share != 1.0 {
+                self.start_second_stage();
+            }
+        }
+        let error = self.error();
+        if error > most_error {
+            self.work.rejected_steps += 1;
+            return Ok(error);
+        }
+        let stage = self.start.duration;
+        for (rate, (end, start)) in self.rate.iter_mut().zip(self.state.iter().zip(&self.start.unknowns)) {
+            *rate = (end - start) / stage;
+        }
+        let body = &self.trial.body;
+        self.settlement_rate = -body.surface.mean_of(&body.grid, &body.points, &body.nodes.solid_velocity);
+        enter(Phase::BuildWeights);
+        self.trial.commit(&self.state);
+        self.time += dt;
+        self.trial.body.surface_flux += flux;
+        self.follow_structure();
+        Ok(error)
+    }
+
+    /// Estimated error of the step whose stages were solved last.
+    fn error(&self) -> f64 {
+        if self.stages == Stages::Single {
+            return 0.0;
+        }
+        self.error_scales.largest(&self.trial.unknowns, |unknown| {
+            let start = self.start.unknowns[unknown];
+            ERROR_SHARE * (start / SECOND_STAGE - (self.state[unknown] - start))
+        })
+    }
+
+    /// The load at a time, where it grows.
+    fn load_at(&mut self, time: f64) {
+        if self.loading_time > 0.0 {
+            self.trial.load(self.full_load * (time / self.loading_time).min(1.0));
+        }
+    }
+
+    /// The first stage starts where the last step ended, and is guessed to have its rates.
+    fn start_step(&mut self, stage: f64) {
+        self.start.duration = stage;
+        self.start.unknowns.clear();
+        self.start.unknowns.resize(self.state.len(), 0.0);
+        let [solid, water] = &self.trial.velocity;
+        self.start.solid_velocity.clone_from(solid);
+        self.start.water_velocity.clone_from(water);
+        for (state, rate) in self.state.iter_mut().zip(&self.rate) {
+            *state = stage * rate;
+        }
+    }
+
+    /// The second stage starts where the first one's rates lead, and is guessed to have the same.
+    fn start_second_stage(&mut self) {
+        let nodes = &self.trial.body.nodes;
+        for (start, now) in [
+            (&mut self.start.solid_velocity, &nodes.solid_velocity),
+            (&mut self.start.water_velocity, &nodes.water_velocity),
+        ] {
+            for (start, now) in start.iter_mut().flatten().zip(now.iter().flatten()) {
+                *start += SECOND_STAGE * (now - *start);
+            }
+        }
+        for (start, state) in self.start.unknowns.iter_mut().zip(&mut self.state) {
+            *start = SECOND_STAGE * *state;
+            *state += *start;
+        }
+    }
+
+    /// Newton's iteration, with the tangent of an earlier state as long as it contracts well.
+    fn solve_stage(&mut self) -> Result<(), StepFailure> {
+        let mut last = f64::INFINITY;
+        let mut renew = self.factored != Some(self.start.duration);
+        for _ in 0..MOST_ITERATIONS {
+            self.evaluate()?;
+            if renew {
+                self.renew_tangent()?;
+                self.contraction = SLOW;
+            }
+            enter(Phase::Solve);
+            self.scratch.copy_from_slice(&self.residual);
+            self.lu.solve(&mut self.scratch);
+            let mut size: f64 = 0.0;
+            for (state, correction) in self.state.iter_mut().zip(&self.scratch) {
+                *state -= correction;
+                size = size.max(correction.abs());
+            }
+            self.work.iterations += 1;
+            if last.is_finite() && last > 0.0 {
+                self.contraction = (size / last).max(1e-3);
+            }
+            if size * self.contraction <= self.tolerance * (1.0 - self.contraction) {
+                return Ok(());
+            }
+            renew = self.contraction > SLOW;
+            last = size;
+        }
+        Err(StepFailure {
+            kind: FailureKind::NotConverged,
+            reason: format!(
+                "{MOST_ITERATIONS} iterations of a stage of {:.3e} s left a correction of {last:.3e} times the cell",
+                self.start.duration
+            ),
+        })
+    }
+
+    /// The residual at the present iterate.
+    fn evaluate(&mut self) -> Result<(), StepFailure> {
+        enter(Phase::Balances);
+        let grains = 1.0 - self.trial.body.material.porosity;
+        self.trial.residual(&self.state, &self.start, &mut self.residual).map_err(|point| {
+            let ratio = self.trial.body.points.volume_ratio[point];
+            StepFailure {
+                kind: FailureKind::PoresClosed,
+                reason: format!("point {point} has J = {ratio:.4}, its grains alone fill {grains:.4}"),
+            }
+        })
+    }
+
+    fn renew_tangent(&mut self) -> Result<(), StepFailure> {
+        enter(Phase::Assembly);
+        let (trial, start) = (&mut self.trial, &self.start);
+        self.pattern.differentiate(
+            &mut self.state,
+            &self.residual,
+            &mut self.scratch,
+            &mut self.tangent,
+            // Pores that a difference closes are open at the iterate itself.
+            |state, residual| {
+                let _ = trial.residual(state, start, residual);
+            },
+        );
+        self.work.factorisations += 1;
+        self.factored = Some(start.duration);
+        enter(Phase::Factors);
+        self.lu.factor(&self.tangent).map_err(|singular| {
+            self.factored = None;
+            StepFailure {
+                kind: FailureKind::Singular,
+                reason: format!("the tangent has no pivot in row {}", singular.row),
+            }
+        })
+    }
+
+    /// Points that went on to other cells change which balances feel which unknowns.
+    fn follow_structure(&mut self) {
+        if self.structure.is_of(&self.trial) {
+            return;
+        }
+        self.structure = Structure::of(&self.trial);
+        self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
+        self.tangent = self.pattern.zeros();
+        self.lu = BandedLu::of_shape(&self.tangent);
+        self.factored = None;
+        let count = self.trial.unknowns.count;
+        if count != self.state.len() {
+            for vector in [&mut self.rate, &mut self.state, &mut self.residual, &mut self.scratch] {
+                vector.clear();
+                vector.resize(count, 0.0);
+            }
+        }
+    }
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> March<D, W, S> for NewtonMarch<D, W, S> {
+    fn step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure> {
+        // Smaller steps would hide that an explicit skeleton is beyond its limit.
+        let halvings = if self.stages == Stages::Single { 0 } else { MOST_HALVINGS };
+        self.step_within(dt, halvings, most_error)
+    }
+
+    fn body_now(&self) -> Body<D, W, S> {
+        self.trial.body_now()
+    }
+
+    fn settlement(&self) -> f64 {
+        self.trial.settlement(self.initial_height)
+    }
+
+    fn settlement_rate(&self) -> f64 {
+        self.settlement_rate
+    }
+
+    fn lost_point(&self) -> Option<StepFailure> {
+        let (kind, reason) = lost_point(&self.trial.body)?;
+        Some(StepFailure { kind, reason })
+    }
+
+    fn work(&self) -> Work {
+        self.work
+    }
+}

@@ -1,0 +1,157 @@
+//! The tangent of the residual, by differences of the residual itself.
+//!
+//! Unknowns that no balance feels together are moved together, in as many groups as the operators
+//! reach (Curtis, Powell & Reid 1974): about a dozen residuals in one dimension, whatever the
+//! number of cells. So the tangent is consistent with every law, configuration and continuity by
+//! construction: there is no second set of formulas that could disagree with the first.
+
+use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::implicit::banded::Banded;
+use crate::mpm::implicit::unknowns::Unknowns;
+use crate::mpm::method::PressureIntegration;
+
+/// Difference by which a scaled unknown is moved: the square root of the round-off leaves eight
+/// digits of a tangent whose unknowns are strains.
+const DIFFERENCE: f64 = 1e-7;
+
+/// Which balances feel which unknowns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pattern {
+    /// Rows that feel each unknown.
+    rows_of_column: Vec<Vec<usize>>,
+    /// Unknowns that are moved together.
+    groups: Vec<Vec<usize>>,
+    lower: usize,
+    upper: usize,
+}
+
+impl Pattern {
+    /// The pattern of a body on its present operators.
+    pub fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(
+        body: &Body<D, W, S>,
+        unknowns: &Unknowns<D>,
+    ) -> Self {
+        let columns_of_row = felt_unknowns(body, unknowns);
+        let mut rows_of_column = vec![Vec::new(); unknowns.count];
+        let (mut lower, mut upper) = (0, 0);
+        for (row, columns) in columns_of_row.iter().enumerate() {
+            for column in columns {
+                rows_of_column[*column].push(row);
+                lower = lower.max(row.saturating_sub(*column));
+                upper = upper.max(column.saturating_sub(row));
+            }
+        }
+        let groups = groups_of(&columns_of_row, &rows_of_column);
+        Self { rows_of_column, groups, lower, upper }
+    }
+
+    /// Zeros in the shape of the tangent.
+    pub fn zeros(&self) -> Banded {
+        Banded::zeros(self.rows_of_column.len(), self.lower, self.upper)
+    }
+
+    /// Residuals that a tangent takes.
+    pub fn group_count(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// Differences of `residual` at `state`, where it is `base`. `scratch` has the length of the
+    /// state; nothing is allocated.
+    pub fn differentiate(
+        &self,
+        state: &mut [f64],
+        base: &[f64],
+        scratch: &mut [f64],
+        tangent: &mut Banded,
+        mut residual: impl FnMut(&[f64], &mut [f64]),
+    ) {
+        tangent.clear();
+        for group in &self.groups {
+            for column in group {
+                state[*column] += DIFFERENCE;
+            }
+            residual(state, scratch);
+            for column in group {
+                state[*column] -= DIFFERENCE;
+                for row in &self.rows_of_column[*column] {
+                    tangent.add(*row, *column, (scratch[*row] - base[*row]) / DIFFERENCE);
+                }
+            }
+        }
+    }
+}
+
+/// Unknowns that the balance of each unknown's row feels.
+fn felt_unknowns<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    body: &Body<D, W, S>,
+    unknowns: &Unknowns<D>,
+) -> Vec<Vec<usize>> {
+    let stride = body.grid.node_stride();
+    let by_point: Vec<Vec<usize>> = (0..body.points.len())
+        .map(|point| {
+            let mut felt = Vec::new();
+            for entry in body.strain_row(point, &unknowns.rows) {
+                felt.extend(unknowns.displacement[entry.node].into_iter().flatten());
+            }
+            unknowns.visit_recovery(point, |site, _| felt.push(unknowns.pressure[site]));
+            felt
+        })
+        .collect();
+    // Forces and drag of a node: of all points whose weights reach it.
+    let mut by_node = vec![Vec::new(); body.nodes.len()];
+    for (point, felt) in by_point.iter().enumerate() {
+        body.basis.visit(stride, point, |node, _, _| by_node[node].extend_from_slice(felt));
+    }
+    for (node, felt) in by_node.iter_mut().enumerate() {
+        felt.extend(unknowns.displacement[node].into_iter().flatten());
+        felt.sort_unstable();
+        felt.dedup();
+    }
+    let mut rows = vec![Vec::new(); unknowns.count];
+    for (node, felt) in by_node.iter().enumerate() {
+        for row in unknowns.displacement[node].into_iter().flatten() {
+            rows[row].clone_from(felt);
+        }
+    }
+    // Porosity and deformation of a site: of its points.
+    let site_of_point = |point: usize| match unknowns.integration {
+        PressureIntegration::Points => Some(point),
+        PressureIntegration::Sri | PressureIntegration::Mean => unknowns.site_of(body.cells.of_point[point]),
+    };
+    for (point, felt) in by_point.iter().enumerate() {
+        if let Some(site) = site_of_point(point) {
+            rows[unknowns.pressure[site]].extend_from_slice(felt);
+        }
+    }
+    for site in 0..unknowns.sites.len() {
+        let row = &mut rows[unknowns.pressure[site]];
+        row.push(unknowns.pressure[site]);
+        unknowns.visit_divergence(site, |node, _| row.extend_from_slice(&by_node[node]));
+        row.sort_unstable();
+        row.dedup();
+    }
+    rows
+}
+
+/// Each unknown goes to the first group with none that shares a row with it.
+fn groups_of(columns_of_row: &[Vec<usize>], rows_of_column: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let mut group_of = vec![usize::MAX; rows_of_column.len()];
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    // Column that last took each group's place as a neighbour.
+    let mut taken_by = Vec::new();
+    for (column, rows) in rows_of_column.iter().enumerate() {
+        for neighbour in rows.iter().flat_map(|row| &columns_of_row[*row]) {
+            if let Some(taken) = taken_by.get_mut(group_of[*neighbour]) {
+                *taken = column;
+            }
+        }
+        let group = taken_by.iter().position(|taken| *taken != column).unwrap_or(taken_by.len());
+        if group == groups.len() {
+            groups.push(Vec::new());
+            taken_by.push(usize::MAX);
+        }
+        groups[group].push(column);
+        group_of[column] = group;
+    }
+    groups
+}

@@ -1,0 +1,21 @@
+//! The solver core: the v–w single-layer material point method for saturated soil.
+//!
+//! A method is four independent operators (`method`), each sparse between points, nodes and cell
+//! centres: weights (`shape`, `stencil`), strain gradient (`stencil`), pressure divergence
+//! (`cells`) and recovery (`recovery`). A `body` joins them with points and nodes; `explicit` is
+//! the step of Zheng et al. (2021); `assembled` is the same step as one banded map where nothing
+//! moves; `run` drives either from output to output; `implicit` takes steps of any size on the same
+//! operators.
+//!
+//! Nothing here knows of studies, references or reports.
+
+pub mod assembled;
+pub mod body;
+pub mod critical_step;
+pub mod explicit;
+pub mod implicit;
+pub mod method;
+pub mod operators;
+pub mod run;
+pub mod state;
+pub mod undrained_start;

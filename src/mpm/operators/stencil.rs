@@ -1,0 +1,225 @@
+//! Sparse operators between points and nodes: one small tensor-product block of nodes a point.
+
+use crate::mpm::operators::shape::Row;
+use crate::mpm::state::grid::{Grid, Vector, power};
+
+/// Weights and gradients of every point over a block of `W` nodes in each direction.
+///
+/// The block of a point is the tensor product of one row a direction, which is what is stored:
+/// `2 D W` numbers a point whatever the dimension.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stencils<const D: usize, const W: usize> {
+    /// Flat index of the lowest node of each point's block.
+    pub first: Vec<usize>,
+    /// Weights a direction.
+    pub weights: Vec<[[f64; W]; D]>,
+    /// Gradients a direction, 1/m.
+    pub gradients: Vec<[[f64; W]; D]>,
+}
+
+impl<const D: usize, const W: usize> Stencils<D, W> {
+    /// Room for `points` points, all rows zero.
+    pub fn with_points(points: usize) -> Self {
+        Self {
+            first: vec![0; points],
+            weights: vec![[[0.0; W]; D]; points],
+            gradients: vec![[[0.0; W]; D]; points],
+        }
+    }
+
+    /// Sets the block of a point from one row a direction.
+    #[inline]
+    pub fn set(&mut self, grid: &Grid<D>, point: usize, rows: &[Row<W>; D]) {
+        let per_metre = grid.inverse_cell_size();
+        let mut first = 0;
+        for direction in 0..D {
+            first += rows[direction].first * grid.node_stride()[direction];
+            self.weights[point][direction] = rows[direction].weights;
+            self.gradients[point][direction] = rows[direction].gradients.map(|g| g * per_metre);
+        }
+        self.first[point] = first;
+    }
+
+    /// Sets the block of a point of which only gradients are asked: one direction has no use for the
+    /// weights.
+    #[inline]
+    pub fn set_gradients(&mut self, grid: &Grid<D>, point: usize, rows: &[Row<W>; D]) {
+        if D > 1 {
+            self.set(grid, point, rows);
+            return;
+        }
+        self.gradients[point][0] = rows[0].gradients.map(|g| g * grid.inverse_cell_size());
+        self.first[point] = rows[0].first;
+    }
+
+    /// The blocks of all points, borrowed once for a loop over them.
+    #[inline]
+    pub fn blocks(&self) -> Blocks<'_, D, W> {
+        Blocks { first: &self.first, weights: &self.weights, gradients: &self.gradients }
+    }
+
+    /// Visits the nodes of a point's block with weight and gradient (1/m).
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn visit(
+        &self,
+        stride: &[usize; D],
+        point: usize,
+        mut node_visitor: impl FnMut(usize, f64, &Vector<D>),
+    ) {
+        self.blocks().visit_runs(stride, point, |first, weights, gradients| {
+            for k in 0..W {
+                node_visitor(first + k, weights[k], &gradients[k]);
+            }
+        });
+    }
+
+    /// Value of a nodal vector field at the point.
+    #[inline]
+    pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
+        self.blocks().value(stride, point, field)
+    }
+
+    /// Gradient of a nodal vector field at the point, `[component][direction]`.
+    #[inline]
+    pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> [[f64; D]; D] {
+        self.blocks().gradient(stride, point, field)
+    }
+
+    /// The nodes of a point's block with their gradients (1/m), where they are not zero: the
+    /// divergence at the point as a functional of a nodal field.
+    pub fn gradient_row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, Vector<D>)> {
+        let mut row = Vec::with_capacity(power(W, D));
+        self.visit(grid.node_stride(), point, |node, _, gradient| {
+            if *gradient != [0.0; D] {
+                row.push((node, *gradient));
+            }
+        });
+        row
+    }
+
+    /// Divergence of a nodal vector field at the point.
+    #[inline]
+    pub fn divergence(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> f64 {
+        let mut divergence = 0.0;
+        self.blocks().visit_runs(stride, point, |first, _, gradients| {
+            for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
+                for direction in 0..D {
+                    divergence += node[direction] * node_gradient[direction];
+                }
+            }
+        });
+        divergence
+    }
+}
+
+/// [`Stencils`] as slices: a loop that writes nodal fields reads their places once, and not anew after
+/// every store.
+#[derive(Clone, Copy, Debug)]
+pub struct Blocks<'a, const D: usize, const W: usize> {
+    first: &'a [usize],
+    weights: &'a [[[f64; W]; D]],
+    gradients: &'a [[[f64; W]; D]],
+}
+
+impl<const D: usize, const W: usize> Blocks<'_, D, W> {
+    /// Visits a point's block run by run: `W` neighbouring nodes along the first direction, with
+    /// the first of them, their weights and their gradients (1/m).
+    ///
+    /// A run is one slice of a nodal field, so that its bounds are checked once.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn visit_runs(
+        &self,
+        stride: &[usize; D],
+        point: usize,
+        mut run_visitor: impl FnMut(usize, &[f64; W], &[Vector<D>; W]),
+    ) {
+        let weights = &self.weights[point];
+        let gradients = &self.gradients[point];
+        for run in 0..power(W, D - 1) {
+            let mut rest = run;
+            let mut node = self.first[point];
+            // Shares of the other directions in the weight and in each component of the gradient.
+            let mut across = 1.0;
+            let mut across_gradient = [1.0; D];
+            for direction in 1..D {
+                let k = rest % W;
+                rest /= W;
+                node += k * stride[direction];
+                across *= weights[direction][k];
+                for component in 0..D {
+                    across_gradient[component] *=
+                        if component == direction { gradients[direction][k] } else { weights[direction][k] };
+                }
+            }
+            let run_weights = weights[0].map(|weight| across * weight);
+            let run_gradients: [Vector<D>; W] = std::array::from_fn(|k| {
+                std::array::from_fn(|component| {
+                    across_gradient[component] * if component == 0 { gradients[0][k] } else { weights[0][k] }
+                })
+            });
+            run_visitor(node, &run_weights, &run_gradients);
+        }
+    }
+
+    /// Sum of a nodal vector field with the weights: its value at the point.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
+        let mut value = [0.0; D];
+        self.visit_runs(stride, point, |first, weights, _| {
+            for (node, weight) in field[first..first + W].iter().zip(weights) {
+                for component in 0..D {
+                    value[component] += weight * node[component];
+                }
+            }
+        });
+        value
+    }
+
+    /// Gradient of a nodal vector field at the point, `[component][direction]`.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> [[f64; D]; D] {
+        let mut gradient = [[0.0; D]; D];
+        self.visit_runs(stride, point, |first, _, gradients| {
+            for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
+                for component in 0..D {
+                    for direction in 0..D {
+                        gradient[component][direction] += node[component] * node_gradient[direction];
+                    }
+                }
+            }
+        });
+        gradient
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mpm::operators::shape;
+
+    #[test]
+    fn a_block_in_two_dimensions_reproduces_a_linear_field_and_its_gradient() {
+        let grid = Grid::new(0.5, [6, 5]);
+        let position = [1.37, 0.81];
+        let mut stencils = Stencils::<2, 3>::with_points(1);
+        let rows = position.map(|x| shape::gimp(grid.in_cells(x), 0.2));
+        stencils.set(&grid, 0, &rows);
+        let field: Vec<Vector<2>> = (0..grid.node_count())
+            .map(|node| {
+                let [x, y] = grid.node_position(node);
+                [1.0 + 2.0 * x - y, 3.0 - x + 4.0 * y]
+            })
+            .collect();
+        let value = stencils.value(grid.node_stride(), 0, &field);
+        assert!((value[0] - (1.0 + 2.0 * 1.37 - 0.81)).abs() < 1e-13);
+        let gradient = stencils.gradient(grid.node_stride(), 0, &field);
+        for (got, exact) in gradient.iter().flatten().zip([2.0, -1.0, -1.0, 4.0]) {
+            assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
+        }
+        assert!((stencils.divergence(grid.node_stride(), 0, &field) - 6.0).abs() < 1e-12);
+    }
+}

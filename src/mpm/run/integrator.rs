@@ -1,0 +1,113 @@
+//! Time integrators by name.
+
+use crate::mpm::run::TimeStepRule;
+use serde::{Deserialize, Serialize};
+
+/// Share of the critical step where an explicit run names no rule.
+const DEFAULT_SHARE: f64 = 0.8;
+/// The same of a semi-implicit run: of first order in time, it needs a tenth of what it can stand.
+const SEMI_IMPLICIT_SHARE: f64 = 0.1;
+/// Growth of the steps where an implicit run names no rule: its error in time stays below a
+/// twentieth of that of ten cells in space.
+const DEFAULT_GROWTH: f64 = 0.05;
+
+/// Time integrator.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum IntegratorKind {
+    /// The eight steps of Zheng et al. (2021).
+    #[default]
+    Explicit,
+    /// Pressure and drag implicit, inertia kept, skeleton explicit: bounded by the skeleton's
+    /// waves and not by the water's.
+    SemiImplicit,
+    /// SDIRK2, L-stable.
+    Implicit,
+}
+
+impl IntegratorKind {
+    /// Every integrator.
+    pub const ALL: [Self; 3] = [Self::Explicit, Self::SemiImplicit, Self::Implicit];
+
+    /// Name in study files and at the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Explicit => "explicit",
+            Self::SemiImplicit => "semi-implicit",
+            Self::Implicit => "implicit",
+        }
+    }
+
+    /// Step rule where none is given.
+    pub fn default_rule(self) -> TimeStepRule {
+        match self {
+            Self::Explicit => TimeStepRule::Stable(DEFAULT_SHARE),
+            Self::SemiImplicit => TimeStepRule::Stable(SEMI_IMPLICIT_SHARE),
+            Self::Implicit => TimeStepRule::Growth(DEFAULT_GROWTH),
+        }
+    }
+
+    /// Formulation where none is given.
+    pub fn default_formulation(self) -> Formulation {
+        match self {
+            Self::Explicit | Self::SemiImplicit => Formulation::VW,
+            Self::Implicit => Formulation::QuasiStatic,
+        }
+    }
+
+    /// Why a formulation is none for this integrator, where it is not.
+    pub fn refuses_formulation(self, formulation: Formulation) -> Option<&'static str> {
+        match (self, formulation) {
+            (Self::Explicit | Self::SemiImplicit, Formulation::QuasiStatic) => {
+                Some("an explicit skeleton goes by its accelerations: they cannot be left out")
+            }
+            (Self::Explicit, Formulation::UP) => Some(
+                "in `u-p` the water has no inertia of its own, its pressure diffuses, and explicit steps would \
+                     shrink with the square of the cell: take `v-w`, or `u-p` with `semi-implicit` or `implicit`",
+            ),
+            _ => None,
+        }
+    }
+
+    /// Why a step rule is none for this integrator, where it is not.
+    pub fn refuses_rule(self, rule: TimeStepRule) -> Option<&'static str> {
+        match (self, rule) {
+            (Self::Explicit, TimeStepRule::Growth(_)) => {
+                Some("the explicit integrator cannot let its steps grow: its critical step bounds them")
+            }
+            (Self::Explicit | Self::SemiImplicit, TimeStepRule::Tolerance(_)) => {
+                Some("only the implicit integrator estimates its own error in time")
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Which accelerations the balances keep (theory, section 2: model only what a scene needs).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Formulation {
+    /// None: Biot's consolidation.
+    QuasiStatic,
+    /// That of the mixture; the water's relative to the skeleton is neglected, `a_w ≈ a_s`
+    /// (Zienkiewicz 1980).
+    #[serde(rename = "u-p")]
+    UP,
+    /// Both phases' own.
+    #[serde(rename = "v-w")]
+    VW,
+}
+
+impl Formulation {
+    /// Every formulation, the shortest first.
+    pub const ALL: [Self; 3] = [Self::QuasiStatic, Self::UP, Self::VW];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::QuasiStatic => "quasi-static",
+            Self::UP => "u-p",
+            Self::VW => "v-w",
+        }
+    }
+}

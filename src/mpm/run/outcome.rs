@@ -1,0 +1,144 @@
+//! What a run leaves behind: its end by name, counters, step sizes and snapshots.
+
+use crate::mpm::run::snapshot::Snapshot;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Why a run ended before its last output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FailureKind {
+    /// Velocities left their physical scale a thousandfold or are not finite, or a settlement or a
+    /// pressure is beyond what the scene can reach.
+    Unstable,
+    /// A point's pores closed: its volume ratio fell to that of the grains.
+    PoresClosed,
+    /// A point left the grid.
+    LeftGrid,
+    /// A system of equations, of an implicit step or of a static start, has no unique solution.
+    Singular,
+    /// The iterations of an implicit step did not come to an end.
+    NotConverged,
+    /// The run was stopped from outside.
+    Stopped,
+    /// The run took longer than its study allows.
+    TimedOut,
+}
+
+impl FailureKind {
+    /// Every failure.
+    pub const ALL: [Self; 7] = [
+        Self::Unstable,
+        Self::PoresClosed,
+        Self::LeftGrid,
+        Self::Singular,
+        Self::NotConverged,
+        Self::Stopped,
+        Self::TimedOut,
+    ];
+
+    /// Name in records and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Unstable => "unstable",
+            Self::PoresClosed => "pores-closed",
+            Self::LeftGrid => "left-grid",
+            Self::Singular => "singular",
+            Self::NotConverged => "not-converged",
+            Self::Stopped => "stopped",
+            Self::TimedOut => "timed-out",
+        }
+    }
+}
+
+/// The end of a run that did not reach its last output.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Failure {
+    /// Name of the failure.
+    pub kind: FailureKind,
+    /// Step at which it was seen.
+    pub step: u64,
+    /// Time at which it was seen, s.
+    pub time: f64,
+    /// Growth a step of the largest velocity when it was last finite.
+    #[serde(default)]
+    pub growth: Option<f64>,
+    /// A sentence with the numbers.
+    pub reason: String,
+}
+
+impl fmt::Display for Failure {
+    /// What happened, when, and why.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{} at step {}, t = {:.4e} s: {}", self.kind.name(), self.step, self.time, self.reason)
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RunStatus {
+    /// All outputs reached.
+    Ok,
+    /// Not all.
+    Failed(Failure),
+}
+
+/// Work done, in integers: the same on every machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counters {
+    /// Material points.
+    pub points: usize,
+    /// Grid nodes, ghosts included.
+    pub nodes: usize,
+    /// Time steps.
+    pub steps: u64,
+    /// Points times steps.
+    pub point_updates: u64,
+    /// Matrices factored by an implicit integrator.
+    #[serde(default)]
+    pub factorisations: u64,
+    /// Iterations of an implicit integrator's nonlinear solves; a linear problem needs none.
+    #[serde(default)]
+    pub iterations: u64,
+    /// Steps that an implicit integrator took back, for their iterations came to no end or their
+    /// error was too large, and took again in smaller ones.
+    #[serde(default)]
+    pub rejected_steps: u64,
+}
+
+/// Step sizes of a run, s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StepSizes {
+    /// Predicted critical step on the initial configuration.
+    pub predicted_critical: f64,
+    /// Step the rule asked for.
+    pub target: f64,
+    /// Largest step taken; outputs are hit exactly, so it is at most the target.
+    pub largest: f64,
+}
+
+/// Settlement at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HistoryPoint {
+    /// Time, s.
+    pub time: f64,
+    /// Settlement of the surface, m.
+    pub settlement: f64,
+}
+
+/// Everything a run leaves behind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// How it ended.
+    pub status: RunStatus,
+    /// State at the start.
+    pub start: Snapshot,
+    /// State at the output times that were reached.
+    pub snapshots: Vec<Snapshot>,
+    /// Settlement over time.
+    pub history: Vec<HistoryPoint>,
+    /// Work.
+    pub counters: Counters,
+    /// Step sizes.
+    pub step_sizes: StepSizes,
+}

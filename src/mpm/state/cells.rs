@@ -1,0 +1,270 @@
+//! Cell centres: occupancy, porosity and the divergence of selective reduced integration.
+
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid, Tensor, Vector};
+use crate::mpm::state::points::Points;
+
+/// Share of a cell that a domain must reach into it to count.
+const LEAST_REACH: f64 = 1e-6;
+
+/// What a cell knows of its points, flat index = cell.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cells<const D: usize> {
+    /// Cell of each point.
+    pub of_point: Vec<usize>,
+    /// Place of each point in cells, held inside the grid.
+    pub place: Vec<Vector<D>>,
+    /// Lowest node of each cell.
+    first_node: Vec<usize>,
+    /// Lowest node of the cell whose divergence each cell takes: its own, but for those beyond the end of
+    /// splines at a free surface, where the field goes on as a line.
+    divergence_node: Vec<usize>,
+    /// Points in each cell.
+    point_count: Vec<u32>,
+    /// Whether a point's domain reaches into each cell.
+    reached: Vec<bool>,
+    /// Whether each cell is occupied and has an empty neighbour.
+    at_edge: Vec<bool>,
+    /// Current volume of each cell's points, m^D.
+    volume: Vec<f64>,
+    /// Volume-weighted mean porosity of each occupied cell's points.
+    pub porosity: Vec<f64>,
+    /// Volume-weighted mean of the inverse deformation gradients of each occupied cell's points,
+    /// where weights stay on the initial configuration.
+    inverse_deformation: Vec<Tensor<D>>,
+    /// Increment of the pore pressure over the step, Pa.
+    pub pressure_increment: Vec<f64>,
+}
+
+impl<const D: usize> Cells<D> {
+    /// Room for the cells of a grid and for `points` points.
+    pub fn new(grid: &Grid<D>, points: usize) -> Self {
+        let count = grid.cell_count();
+        let mut first_node = vec![0; count];
+        for (cell, node) in first_node.iter_mut().enumerate() {
+            let mut rest = cell;
+            for direction in (0..D).rev() {
+                *node += rest / grid.cell_stride()[direction] * grid.node_stride()[direction];
+                rest %= grid.cell_stride()[direction];
+            }
+        }
+        Self {
+            of_point: vec![0; points],
+            place: vec![[0.0; D]; points],
+            divergence_node: first_node.clone(),
+            first_node,
+            point_count: vec![0; count],
+            reached: vec![false; count],
+            at_edge: vec![false; count],
+            volume: vec![0.0; count],
+            porosity: vec![0.0; count],
+            inverse_deformation: vec![[[0.0; D]; D]; count],
+            pressure_increment: vec![0.0; count],
+        }
+    }
+
+    /// Finds the cell of every point and sums volumes over each cell's points.
+    pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, initial_porosity: f64) {
+        self.point_count.fill(0);
+        self.pressure_increment.fill(0.0);
+        let found = self.of_point.iter_mut().zip(&mut self.place);
+        for (position, (of_point, place)) in points.position.iter().zip(found) {
+            *place = grid.held_in_cells(position);
+            *of_point = grid.flat_cell(&grid.cell_at(place));
+            self.point_count[*of_point] += 1;
+        }
+        self.sum_volumes(points, initial_porosity);
+    }
+
+    /// Sums volumes over each cell's points.
+    pub fn sum_volumes(&mut self, points: &Points<D>, initial_porosity: f64) {
+        self.volume.fill(0.0);
+        self.porosity.fill(0.0);
+        let state = points.initial_volume.iter().zip(&points.volume_ratio);
+        for (cell, (initial, ratio)) in self.of_point.iter().zip(state) {
+            self.volume[*cell] += initial * ratio;
+            // n V = (J − (1 − n_0)) V_0
+            self.porosity[*cell] += initial * (ratio - (1.0 - initial_porosity));
+        }
+        for cell in 0..self.porosity.len() {
+            if self.is_occupied(cell) {
+                self.porosity[cell] /= self.volume[cell];
+            }
+        }
+    }
+
+    /// Finds the cells that the points' domains reach into: a cell may have lost its last point and
+    /// still carry the edge of the material.
+    pub fn find_reached(&mut self, grid: &Grid<D>, points: &Points<D>) {
+        for cell in 0..self.point_count.len() {
+            self.reached[cell] = self.is_occupied(cell);
+            self.at_edge[cell] = self.is_occupied(cell)
+                && grid
+                    .cell_stride()
+                    .iter()
+                    .any(|stride| !(self.is_occupied(cell - stride) && self.is_occupied(cell + stride)));
+        }
+        let per_cell = grid.inverse_cell_size();
+        let found = self.of_point.iter().zip(&self.place);
+        for ((home, place), half_length) in found.zip(&points.half_length) {
+            if !self.at_edge[*home] {
+                continue;
+            }
+            let cell = grid.cell_at(place);
+            for direction in 0..D {
+                // No domain is wider than a cell, so its ends are in this one or the next.
+                let reach = half_length[direction] * per_cell - LEAST_REACH;
+                let inside = place[direction] - cell[direction] as f64;
+                let stride = grid.cell_stride()[direction];
+                if inside < reach && cell[direction] > GHOST_LAYERS {
+                    self.reached[home - stride] = true;
+                }
+                if inside + reach >= 1.0 && cell[direction] + 1 < grid.cells[direction] + GHOST_LAYERS {
+                    self.reached[home + stride] = true;
+                }
+            }
+        }
+    }
+
+    /// Whether a cell holds a point, or the edge of one's domain.
+    #[inline]
+    pub fn is_reached(&self, cell: usize) -> bool {
+        self.reached[cell]
+    }
+
+    /// Means of the inverse deformation gradients over each cell's points.
+    pub fn average_deformation(&mut self, points: &Points<D>) {
+        self.inverse_deformation.fill([[0.0; D]; D]);
+        for point in 0..points.len() {
+            let cell = self.of_point[point];
+            let share = points.volume(point) / self.volume[cell];
+            for i in 0..D {
+                for j in 0..D {
+                    self.inverse_deformation[cell][i][j] += share * points.inverse_deformation[point][i][j];
+                }
+            }
+        }
+    }
+
+    /// Whether a cell holds a point.
+    #[inline]
+    pub fn is_occupied(&self, cell: usize) -> bool {
+        self.point_count[cell] > 0
+    }
+
+    /// Current volume of a cell's points, m^D.
+    #[inline]
+    pub fn volume(&self, cell: usize) -> f64 {
+        self.volume[cell]
+    }
+
+    /// Lowest node of a cell.
+    #[inline]
+    pub fn first_node(&self, cell: usize) -> usize {
+        self.first_node[cell]
+    }
+
+    /// Occupied cells in index order.
+    pub fn occupied(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.point_count.len()).filter(|cell| self.is_occupied(*cell))
+    }
+
+    /// Lets cells above a last node take the divergence of the cell below it.
+    pub fn end_at(&mut self, grid: &Grid<D>, outermost: usize) {
+        let (cell_stride, node_stride) = (grid.cell_stride()[D - 1], grid.node_stride()[D - 1]);
+        for (cell, first_node) in self.first_node.iter().enumerate() {
+            let above = (cell / cell_stride + 1).saturating_sub(outermost);
+            self.divergence_node[cell] = first_node - above * node_stride;
+        }
+    }
+
+    /// Divergence of a nodal field at the centre of a cell, by the linear shape functions, 1/m of
+    /// the field.
+    #[inline]
+    pub fn centre_divergence(&self, grid: &Grid<D>, cell: usize, field: &[Vector<D>]) -> f64 {
+        let mut divergence = 0.0;
+        for (corner, node) in grid.corners(self.divergence_node[cell]).enumerate() {
+            for direction in 0..D {
+                divergence += side(corner, direction) * field[node][direction];
+            }
+        }
+        divergence * share_of_corner(grid)
+    }
+
+    /// Visits the nodes of that divergence with their coefficients, 1/m.
+    pub fn visit_centre_divergence(
+        &self,
+        grid: &Grid<D>,
+        cell: usize,
+        mut node_visitor: impl FnMut(usize, &Vector<D>),
+    ) {
+        for (corner, node) in grid.corners(self.divergence_node[cell]).enumerate() {
+            node_visitor(node, &std::array::from_fn(|d| side(corner, d) * share_of_corner(grid)));
+        }
+    }
+
+    /// The same on the deformed configuration, for a field on the initial one: its gradient there
+    /// times the cell's inverse deformation gradient.
+    #[inline]
+    pub fn deformed_centre_divergence(&self, grid: &Grid<D>, cell: usize, field: &[Vector<D>]) -> f64 {
+        let inverse = &self.inverse_deformation[cell];
+        let mut divergence = 0.0;
+        for (corner, node) in grid.corners(self.divergence_node[cell]).enumerate() {
+            for direction in 0..D {
+                for component in 0..D {
+                    divergence +=
+                        side(corner, direction) * field[node][component] * inverse[direction][component];
+                }
+            }
+        }
+        divergence * share_of_corner(grid)
+    }
+}
+
+/// The side of a cell, in a direction, that a corner lies on: −1 or 1.
+#[inline]
+fn side(corner: usize, direction: usize) -> f64 {
+    if corner >> direction & 1 == 1 { 1.0 } else { -1.0 }
+}
+
+/// Slope at the centre that a unit value at a corner makes, 1/m: each direction averages over the
+/// 2^(D−1) edges along it.
+#[inline]
+fn share_of_corner<const D: usize>(grid: &Grid<D>) -> f64 {
+    grid.inverse_cell_size() * 2.0 / (1_usize << D) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_divergence_of_a_linear_field_is_exact_at_the_centre() {
+        let grid = Grid::new(0.5, [3, 2]);
+        let mut cells = Cells::new(&grid, 0);
+        let field: Vec<Vector<2>> = (0..grid.node_count())
+            .map(|node| {
+                let [x, y] = grid.node_position(node);
+                [2.0 * x + 7.0 * y, 5.0 * x - 0.5 * y]
+            })
+            .collect();
+        let cell = grid.flat_cell(&grid.cell_of(&[0.7, 0.2]));
+        assert!((cells.centre_divergence(&grid, cell, &field) - 1.5).abs() < 1e-13);
+        // tr(∇v F⁻¹) with ∇v = [[2, 7], [5, −0.5]].
+        cells.inverse_deformation[cell] = [[0.5, 0.25], [0.125, 2.0]];
+        let expected = 2.0 * 0.5 + 7.0 * 0.125 + 5.0 * 0.25 - 0.5 * 2.0;
+        assert!((cells.deformed_centre_divergence(&grid, cell, &field) - expected).abs() < 1e-13);
+    }
+
+    #[test]
+    fn cells_know_their_points_and_porosity() {
+        let grid = Grid::new(0.5, [4]);
+        let mut points = Points::lattice(0.5, [2], 2);
+        points.volume_ratio[0] = 0.9;
+        let mut cells = Cells::new(&grid, points.len());
+        cells.locate(&grid, &points, 0.3);
+        let occupied: Vec<usize> = cells.occupied().collect();
+        assert_eq!(occupied, [2, 3], "two ghosts below, the other cells empty");
+        assert!((cells.porosity[3] - 0.3).abs() < 1e-15);
+        assert!((cells.porosity[2] - (0.2 + 0.3) / 1.9).abs() < 1e-15);
+    }
+}

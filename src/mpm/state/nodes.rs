@@ -1,0 +1,280 @@
+//! Nodal fields: lumped masses, forces, velocities and accelerations of both phases.
+
+use crate::mpm::operators::shape::Row;
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid, Vector};
+use crate::soil::material::Material;
+
+/// Nodes with less than this share of a full cell's mass carry nothing: a point on a cell face
+/// leaves ghosts of 1e-30 behind.
+const MASS_CUT_OFF: f64 = 1e-14;
+
+/// Nodal fields, structure of arrays; index = flat node.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Nodes<const D: usize> {
+    /// Mass of the grains, kg.
+    pub solid_mass: Vec<f64>,
+    /// Mass of the pore water `n ρ_w V`, kg.
+    pub water_mass: Vec<f64>,
+    /// One over the mass of the grains, zero where nothing is, 1/kg.
+    pub per_solid_mass: Vec<f64>,
+    /// One over the mass of the pore water, zero where nothing is, 1/kg.
+    pub per_water_mass: Vec<f64>,
+    /// Volume of the mixture, m^D.
+    pub volume: Vec<f64>,
+    /// Porosity `Σ w V n / Σ w V`.
+    pub porosity: Vec<f64>,
+    /// Drag `n γ_w V/k`, N s/m.
+    pub drag: Vec<f64>,
+    /// What the points give to each node, while it is summed.
+    pub sums: NodalSums<D>,
+    /// External force on the mixture, N.
+    pub external_force: Vec<Vector<D>>,
+    /// Internal and external force on the mixture, N.
+    pub mixture_force: Vec<Vector<D>>,
+    /// Force of the pressure gradient on the water, per volume of water times mixture volume, N.
+    pub water_force: Vec<Vector<D>>,
+    /// Velocity of the skeleton, m/s.
+    pub solid_velocity: Vec<Vector<D>>,
+    /// Velocity of the water, m/s.
+    pub water_velocity: Vec<Vector<D>>,
+    /// Acceleration of the skeleton, m/s².
+    pub solid_acceleration: Vec<Vector<D>>,
+    /// Acceleration of the water, m/s².
+    pub water_acceleration: Vec<Vector<D>>,
+    /// `v_s + n (v_w − v_s)` with the nodal porosity, m/s: its divergence drives the pressure.
+    pub flux: Vec<Vector<D>>,
+    /// Displacement of the skeleton where the grid is frozen, m.
+    pub displacement: Vec<Vector<D>>,
+    /// One where a component of the skeleton's velocity is free, zero where it is fixed or nothing
+    /// is there.
+    pub free: Vec<Vector<D>>,
+    /// The same for the water: it slides along a rough base.
+    pub water_free: Vec<Vector<D>>,
+    /// The skeleton's supports alone.
+    supports: Vec<Vector<D>>,
+    /// The water's supports alone.
+    water_supports: Vec<Vector<D>>,
+    mass_cut_off: f64,
+}
+
+/// What the points give to the nodes, while it is summed.
+///
+/// What a pass sums side by side lies side by side and in pairs: the next point's run may begin a node
+/// later and still finds the last one's sums whole, where it would wait for halves of two stores.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NodalSums<const D: usize> {
+    /// Volume of the grains and of the pores (m^D), drag (N s/m), and nothing.
+    pub masses: Vec<[f64; 4]>,
+    /// Volume times velocity of the grains and of the pores, m^D m/s.
+    pub momenta: Vec<[Vector<D>; 2]>,
+    /// Forces on the mixture and on the water, N.
+    pub forces: Vec<[Vector<D>; 2]>,
+}
+
+/// Faces of the grid whose normal velocity is zero for both phases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Support<const D: usize> {
+    /// Fixed at the lower face of a direction, and beyond it.
+    pub lower: [bool; D],
+    /// Fixed at the upper face of a direction, and beyond it.
+    pub upper: [bool; D],
+    /// Whether the skeleton sticks to the base: no displacement along it either.
+    pub rough_base: bool,
+    /// Last node below the free surface that has enough of the material to stand alone, where splines
+    /// reach beyond the surface: those above it follow its line.
+    pub outermost: Option<usize>,
+}
+
+impl<const D: usize> Support<D> {
+    /// An oedometer: rollers at the sides, fixed base, free top.
+    pub fn oedometer() -> Self {
+        let mut upper = [true; D];
+        upper[D - 1] = false;
+        Self { lower: [true; D], upper, rough_base: false, outermost: None }
+    }
+
+    /// Nothing held at all.
+    pub fn free() -> Self {
+        Self { lower: [false; D], upper: [false; D], rough_base: false, outermost: None }
+    }
+
+    /// A row along a direction without nodes beyond held faces, nor far beyond a free surface: those
+    /// have no freedom of their own.
+    #[inline]
+    #[must_use]
+    pub fn folded<const W: usize>(&self, grid: &Grid<D>, direction: usize, mut row: Row<W>) -> Row<W> {
+        let (lowest, highest) = (GHOST_LAYERS, GHOST_LAYERS + grid.cells[direction]);
+        if self.lower[direction] {
+            row.fold_at(lowest, |node| node < lowest);
+        }
+        if self.upper[direction] {
+            row.fold_at(highest, |node| node > highest);
+        }
+        if let Some(outermost) = self.outermost.filter(|_| direction == D - 1) {
+            row.straighten_beyond(outermost);
+        }
+        row
+    }
+
+    /// The same on a base that the skeleton sticks to.
+    #[must_use]
+    pub fn on_rough_base(self) -> Self {
+        Self { rough_base: true, ..self }
+    }
+}
+
+impl<const D: usize> Nodes<D> {
+    /// Zero fields on a grid, with the supports of its faces; `cell_mass` is the mass of a full
+    /// cell, kg.
+    pub fn new(grid: &Grid<D>, support: &Support<D>, cell_mass: f64) -> Self {
+        let count = grid.node_count();
+        let tolerance = 1e-6 * grid.cell_size;
+        let water_supports: Vec<Vector<D>> = (0..count)
+            .map(|node| {
+                let position = grid.node_position(node);
+                std::array::from_fn(|d| {
+                    let top = grid.cells[d] as f64 * grid.cell_size;
+                    let fixed = support.lower[d] && position[d] < tolerance
+                        || support.upper[d] && position[d] > top - tolerance;
+                    if fixed { 0.0 } else { 1.0 }
+                })
+            })
+            .collect();
+        let mut supports = water_supports.clone();
+        for node in (0..count).filter(|_| support.rough_base) {
+            if grid.node_position(node)[D - 1] < tolerance {
+                supports[node] = [0.0; D];
+            }
+        }
+        let (scalars, vectors) = (vec![0.0; count], vec![[0.0; D]; count]);
+        Self {
+            solid_mass: scalars.clone(),
+            water_mass: scalars.clone(),
+            per_solid_mass: scalars.clone(),
+            per_water_mass: scalars.clone(),
+            volume: scalars.clone(),
+            porosity: scalars.clone(),
+            drag: scalars,
+            sums: NodalSums {
+                masses: vec![[0.0; 4]; count],
+                momenta: vec![[[0.0; D]; 2]; count],
+                forces: vec![[[0.0; D]; 2]; count],
+            },
+            external_force: vectors.clone(),
+            mixture_force: vectors.clone(),
+            water_force: vectors.clone(),
+            solid_velocity: vectors.clone(),
+            water_velocity: vectors.clone(),
+            solid_acceleration: vectors.clone(),
+            water_acceleration: vectors.clone(),
+            flux: vectors.clone(),
+            displacement: vectors,
+            free: supports.clone(),
+            water_free: water_supports.clone(),
+            supports,
+            water_supports,
+            mass_cut_off: MASS_CUT_OFF * cell_mass,
+        }
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.solid_mass.len()
+    }
+
+    /// Whether there is no node at all.
+    pub fn is_empty(&self) -> bool {
+        self.solid_mass.is_empty()
+    }
+
+    /// Turns the points' [`sums`](Self::sums) into masses, volumes and drag of the soil.
+    pub fn take_masses(&mut self, soil: &Material) {
+        for (node, [grain_volume, pore_volume, drag, _]) in self.sums.masses.iter().enumerate() {
+            self.solid_mass[node] = soil.grain_density * grain_volume;
+            self.water_mass[node] = soil.water_density * pore_volume;
+            self.volume[node] = grain_volume + pore_volume;
+            self.porosity[node] = *pore_volume;
+            self.drag[node] = *drag;
+        }
+        self.finish_masses();
+    }
+
+    /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held or empty.
+    pub fn take_velocities(&mut self, soil: &Material) {
+        for node in 0..self.len() {
+            let [solid, water] = self.sums.momenta[node];
+            let per_grain_volume = soil.grain_density * self.per_solid_mass[node];
+            let per_pore_volume = soil.water_density * self.per_water_mass[node];
+            for d in 0..D {
+                self.solid_velocity[node][d] = solid[d] * (self.free[node][d] * per_grain_volume);
+                self.water_velocity[node][d] = water[d] * (self.water_free[node][d] * per_pore_volume);
+            }
+        }
+    }
+
+    /// Finishes what was summed: porosities, reciprocals, and which components are free. Nodes without mass
+    /// are silenced: their stale accelerations would otherwise reach the points.
+    pub fn finish_masses(&mut self) {
+        for node in 0..self.len() {
+            if self.is_active(node) {
+                self.porosity[node] /= self.volume[node];
+                self.per_solid_mass[node] = 1.0 / self.solid_mass[node];
+                self.per_water_mass[node] = 1.0 / self.water_mass[node];
+                self.free[node] = self.supports[node];
+                self.water_free[node] = self.water_supports[node];
+            } else {
+                self.porosity[node] = 0.0;
+                self.per_solid_mass[node] = 0.0;
+                self.per_water_mass[node] = 0.0;
+                self.free[node] = [0.0; D];
+                self.water_free[node] = [0.0; D];
+            }
+        }
+    }
+
+    /// Whether a node carries mass.
+    #[inline]
+    pub fn is_active(&self, node: usize) -> bool {
+        self.solid_mass[node] > self.mass_cut_off
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn supports_hold_the_base_and_the_sides_and_leave_the_top_free() {
+        let grid = Grid::new(0.1, [1, 10]);
+        let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
+        nodes.solid_mass.fill(1.0);
+        nodes.finish_masses();
+        let at = |x: usize, y: usize| nodes.free[grid.flat_node(&[x + 2, y + 2])];
+        assert_eq!(at(0, 0), [0.0, 0.0]);
+        assert_eq!(at(1, 5), [0.0, 1.0]);
+        assert_eq!(at(1, 10), [0.0, 1.0]);
+        assert_eq!(nodes.free[grid.flat_node(&[2, 1])], [0.0, 0.0], "below the base");
+    }
+
+    #[test]
+    fn a_rough_base_holds_the_skeleton_and_lets_the_water_slide() {
+        let grid = Grid::new(0.1, [3, 3]);
+        let mut nodes = Nodes::new(&grid, &Support::oedometer().on_rough_base(), 1.0);
+        nodes.solid_mass.fill(1.0);
+        nodes.finish_masses();
+        let base = grid.flat_node(&[3, 2]);
+        assert_eq!((nodes.free[base], nodes.water_free[base]), ([0.0, 0.0], [1.0, 0.0]));
+        let above = grid.flat_node(&[3, 3]);
+        assert_eq!(nodes.free[above], [1.0, 1.0]);
+    }
+
+    #[test]
+    fn a_node_with_a_ghost_of_mass_is_silent() {
+        let grid = Grid::new(0.1, [4]);
+        let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
+        nodes.solid_mass[4] = 1e-30;
+        nodes.solid_mass[5] = 1e-3;
+        nodes.finish_masses();
+        assert_eq!((nodes.free[4], nodes.free[5]), ([0.0], [1.0]));
+    }
+}

@@ -1,0 +1,184 @@
+//! The undrained start: the static equilibrium under the load before any water has moved.
+//!
+//! An elastic body whose volume costs the skeleton's and the water's stiffness (`λ_u = λ + Q`),
+//! found by the method's own operators. It is a pure test of volumetric locking, and the start from
+//! which an explicit run has no waves.
+
+use crate::mpm::assembled::stiffness::NodeBlocks;
+use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::implicit::banded::{Banded, BandedLu, Singular};
+use crate::mpm::method::Configuration;
+use crate::mpm::operators::volumetric::VolumetricRows;
+use crate::mpm::state::grid::{Tensor, Vector};
+
+/// Free components of the nodes, in the order of the unknowns.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct FreeComponents {
+    /// Node and component of each unknown.
+    places: Vec<(usize, usize)>,
+    /// Unknown of each component of each node, node by node.
+    number: Vec<Option<usize>>,
+}
+
+impl FreeComponents {
+    /// Numbers the components that are free.
+    fn of<const D: usize>(free: &[Vector<D>]) -> Self {
+        let mut components = Self { places: Vec::new(), number: vec![None; D * free.len()] };
+        for (node, free) in free.iter().enumerate() {
+            for d in (0..D).filter(|d| free[*d] > 0.0) {
+                components.number[D * node + d] = Some(components.places.len());
+                components.places.push((node, d));
+            }
+        }
+        components
+    }
+
+    /// The blocks between free components as a banded matrix.
+    fn banded<const D: usize>(&self, blocks: &NodeBlocks<D>) -> Banded {
+        let entries = || {
+            self.places.iter().enumerate().flat_map(move |(row, (node, d))| {
+                blocks.rows[*node].iter().flat_map(move |(column, block)| {
+                    (0..D).filter_map(move |e| Some((row, self.number[D * column + e]?, block[*d][e])))
+                })
+            })
+        };
+        let (mut lower, mut upper) = (0, 0);
+        for (row, column, _) in entries().filter(|entry| entry.2 != 0.0) {
+            lower = lower.max(row.saturating_sub(column));
+            upper = upper.max(column.saturating_sub(row));
+        }
+        let mut matrix = Banded::zeros(self.places.len(), lower, upper);
+        for (row, column, value) in entries().filter(|entry| entry.2 != 0.0) {
+            matrix.add(row, column, value);
+        }
+        matrix
+    }
+}
+
+/// A body's undrained stiffness, factorised.
+#[derive(Clone, Debug)]
+pub struct UndrainedSystem<const D: usize> {
+    unknowns: FreeComponents,
+    factors: BandedLu,
+    rows: VolumetricRows<D>,
+}
+
+impl<const D: usize> UndrainedSystem<D> {
+    /// Assembles and factorises the stiffness of a body's present operators.
+    ///
+    /// # Errors
+    /// When it is singular: a body that nothing holds.
+    pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Result<Self, Singular> {
+        let rows = body.volumetric_rows();
+        let mut stiffness = body.skeleton_stiffness(&rows);
+        stiffness.add(&body.pressure_stiffness(&rows));
+        let unknowns = FreeComponents::of(&body.nodes.free);
+        let matrix = unknowns.banded(&stiffness);
+        let mut factors = BandedLu::of_shape(&matrix);
+        factors.factor(&matrix)?;
+        Ok(Self { unknowns, factors, rows })
+    }
+
+    /// Displacements of the nodes under forces on them.
+    pub fn displacements(&self, forces: &[Vector<D>]) -> Vec<Vector<D>> {
+        let places = &self.unknowns.places;
+        let mut values: Vec<f64> = places.iter().map(|(node, d)| forces[*node][*d]).collect();
+        self.factors.solve(&mut values);
+        let mut displacements = vec![[0.0; D]; forces.len()];
+        for ((node, d), value) in places.iter().zip(values) {
+            displacements[*node][*d] = value;
+        }
+        displacements
+    }
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+    /// Brings the body into undrained equilibrium with its load.
+    ///
+    /// # Errors
+    /// When its stiffness is singular.
+    pub fn settle_undrained(&mut self) -> Result<(), Singular> {
+        let system = UndrainedSystem::of(self)?;
+        self.map_forces();
+        let displacements = system.displacements(&self.nodes.mixture_force);
+        self.displace_undrained(&system.rows, &displacements);
+        if self.configuration.moves_points() {
+            self.build_operators();
+        }
+        self.follow_points();
+        Ok(())
+    }
+
+    /// Displaces nodes and points by a nodal field, with the stresses and pressures that it makes
+    /// without flow.
+    pub fn displace_undrained(&mut self, rows: &VolumetricRows<D>, displacements: &[Vector<D>]) {
+        self.displace_points(rows, displacements, displacements, displacements);
+    }
+
+    /// Displaces nodes and points by a field, strains the skeleton by another and compresses the
+    /// water by a third, all nodal.
+    pub fn displace_points(
+        &mut self,
+        rows: &VolumetricRows<D>,
+        strained: &[Vector<D>],
+        flux: &[Vector<D>],
+        displacements: &[Vector<D>],
+    ) {
+        let mut pressures = rows.at_sites(flux);
+        for (value, coupling) in pressures.iter_mut().zip(&rows.coupling) {
+            *value *= -coupling;
+        }
+        self.change_points(rows, strained, &pressures, displacements);
+    }
+
+    /// Displaces nodes and points by a field, strains the skeleton by another and changes the
+    /// pressures by those of the sites, Pa.
+    pub fn change_points(
+        &mut self,
+        rows: &VolumetricRows<D>,
+        strained: &[Vector<D>],
+        site_pressures: &[f64],
+        displacements: &[Vector<D>],
+    ) {
+        let pressures = rows.at_points(site_pressures);
+        for point in 0..self.points.len() {
+            let (gradient, dilation) = self.gradient_of(point, rows, strained);
+            let mut stress = self.stiffness.stress(&gradient);
+            for d in 0..D {
+                stress[d][d] += self.stiffness.shared_dilation_stress::<D>(dilation);
+            }
+            let of_basis = self.basis.value(self.grid.node_stride(), point, displacements);
+            let moved = self.carrying(point, displacements, of_basis);
+            self.points.pressure[point] += pressures[point];
+            for d in 0..D {
+                self.points.displacement[point][d] += moved[d];
+                for e in 0..D {
+                    self.points.effective_stress[point][d][e] += stress[d][e];
+                }
+                if self.configuration == Configuration::Updated {
+                    self.points.position[point][d] += moved[d];
+                }
+            }
+            if self.configuration.deforms() {
+                self.deform(point, &gradient);
+            }
+        }
+        for (node, displacement) in displacements.iter().enumerate() {
+            for d in 0..D {
+                self.nodes.displacement[node][d] += displacement[d];
+            }
+        }
+    }
+
+    /// Gradient of a nodal field from which a point's effective stress takes its strain, and the
+    /// dilation that B-bar put into it.
+    fn gradient_of(&self, point: usize, rows: &VolumetricRows<D>, field: &[Vector<D>]) -> (Tensor<D>, f64) {
+        let (mut gradient, mut dilation) = ([[0.0; D]; D], 0.0);
+        for entry in self.strain_row(point, rows) {
+            let displacement = &field[entry.node];
+            entry.add_to(&mut gradient, displacement);
+            dilation += (0..D).map(|d| entry.dilation[d] * displacement[d]).sum::<f64>();
+        }
+        (gradient, dilation)
+    }
+}

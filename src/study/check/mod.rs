@@ -1,0 +1,269 @@
+//! From what was typed to what will run: every value judged, every complaint at its place.
+
+pub mod case;
+pub mod expectation;
+pub mod geometry;
+pub mod integrator;
+pub mod material;
+pub mod method;
+pub mod sweep;
+pub mod value;
+
+use crate::case::Case;
+use crate::case::tier::Tier;
+use crate::exact::reference::ReferenceKind;
+use crate::mpm::run::integrator::Formulation;
+use crate::record::Record;
+use crate::scene::SceneKind;
+use crate::scene::column::Column;
+use crate::study::case_expectation::CaseExpectation;
+use crate::study::check::sweep::Common;
+use crate::study::diagnostic::{Diagnostic, StudyError};
+use crate::study::expectation::Expectation;
+use crate::study::file::{OutputTable, StudyFile, StudySource};
+use crate::study::name::name_of;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::ops::Range;
+use toml::Spanned;
+
+/// Time factors where a study names none.
+const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
+/// Time factor before which nothing has moved and steps no longer advance the time.
+const LEAST_TIME_FACTOR: f64 = 1e-15;
+/// Longest wall time of a case, s, where a study names none.
+const DEFAULT_CASE_SECONDS: f64 = 3600.0;
+/// Cases that a study may have, counted as its sweeps multiply out: as many as a machine holds and a person
+/// can still mean.
+const MOST_CASES: usize = 1_000_000;
+/// More cells than a column is ever given on purpose.
+const MOST_CELLS: i64 = 100_000;
+/// More points a cell and direction than any scheme uses.
+const MOST_POINTS: i64 = 16;
+
+/// A case with the tier from which on it runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedCase {
+    /// What to run.
+    pub case: Case,
+    /// Smallest tier that includes it.
+    pub tier: Tier,
+}
+
+/// A study that can run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    /// File stem, the name of its results.
+    pub name: String,
+    /// Title.
+    pub title: String,
+    /// What question it answers.
+    pub summary: String,
+    /// Scene.
+    pub scene: SceneKind,
+    /// References its results are held against.
+    pub references: Vec<ReferenceKind>,
+    /// Cases in the order of the sweeps, each once.
+    pub planned: Vec<PlannedCase>,
+    /// What it expects of its results.
+    pub expectations: Vec<Expectation>,
+    /// What it expects of single cases.
+    pub case_expectations: Vec<CaseExpectation>,
+    /// Longest wall time of a case, s.
+    pub case_seconds: f64,
+    /// Times each case is run alone for its wall time; 0 where it is not timed.
+    pub timing_repeats: usize,
+    /// What is odd and runs all the same, as a person reads it.
+    pub warnings: Vec<String>,
+}
+
+impl Study {
+    /// Checks a study.
+    ///
+    /// # Errors
+    /// Every complaint with its place.
+    pub fn check(source: &StudySource) -> Result<Self, StudyError> {
+        Self::check_for(source, Purpose::Solving)
+    }
+
+    /// Checks a study for a purpose.
+    ///
+    /// # Errors
+    /// Every complaint with its place.
+    pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
+        let file = source.parse()?;
+        let mut checker =
+            Checker { source, diagnostics: Vec::new(), column_height: None, multiplied_out: 0, purpose };
+        let study = checker.study(&file);
+        match study {
+            Some(study) if checker.diagnostics.is_empty() => Ok(study),
+            _ => Err(source.error(checker.diagnostics)),
+        }
+    }
+
+    /// Whether an expectation says that a record is to end as it did.
+    pub fn foresees(&self, record: &Record) -> bool {
+        self.case_expectations.iter().any(|expectation| expectation.foresees(record))
+    }
+
+    /// The cases of a tier.
+    pub fn cases(&self, tier: Tier) -> Vec<&Case> {
+        self.planned.iter().filter(|planned| planned.tier <= tier).map(|planned| &planned.case).collect()
+    }
+}
+
+/// What a study is read for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Its cases are to be solved.
+    Solving,
+    /// Only its problem is wanted, for an exact solution: no grid has to fit it.
+    Theory,
+}
+
+/// Complaints as they come up; every method gives a usable value or none.
+struct Checker<'a> {
+    source: &'a StudySource,
+    diagnostics: Vec<Diagnostic>,
+    /// Height by which the levels of expectations are sized, once it is known.
+    column_height: Option<f64>,
+    /// Cases that the sweeps seen so far multiply out to.
+    multiplied_out: usize,
+    purpose: Purpose,
+}
+
+impl Checker<'_> {
+    fn complain(&mut self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
+        self.diagnostics.push(Diagnostic::at(span, message, help));
+    }
+
+    fn study(&mut self, file: &StudyFile) -> Option<Study> {
+        let scene = self.scene(&file.scene)?;
+        let column = Column { points: self.arrangement(&file.points), ..self.geometry(file, scene) };
+        self.column_height = Some(column.height);
+        let material = self.material(&file.material, scene);
+        self.porosity_at_the_end(file, scene, &column, &material);
+        let warnings = self.large_for_small_strain(file, scene, &column, &material).into_iter().collect();
+        let task = self.task(file)?;
+        let settings = self.settings(&file.integrator);
+        let typed = file.integrator.formulation.as_ref().and_then(|word| self.formulation(word));
+        let formulation = typed.or(scene.has_waves().then_some(Formulation::VW));
+        let common = Common { task, scene, column, soil: material, settings, formulation };
+        let time_factors = match &file.output.time_factors {
+            Some(list) => self.time_factors(list),
+            None => DEFAULT_TIME_FACTORS.to_vec(),
+        };
+        let references = self.references(&file.output, scene, &column);
+        if file.sweep.is_empty() {
+            let end = self.source.text.trim_end().len();
+            let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
+            self.complain(
+                last_line..end,
+                "the study ends here without a [[sweep]] block",
+                "add one with at least `method` and `cells`",
+            );
+        }
+        let mut planned: Vec<PlannedCase> = Vec::new();
+        let mut places: HashMap<String, usize> = HashMap::new();
+        for block in &file.sweep {
+            let table = block.get_ref();
+            let Some(sweep) = self.sweep(table, block.span(), &common) else { continue };
+            if self.purpose == Purpose::Solving {
+                self.cells_fill_the_width(table, &column);
+                self.memory_fits(table, sweep.combinations().map(|one| common.case_of(&one, &[])));
+            }
+            let time_factors = match &table.time_factors {
+                Some(list) => self.time_factors(list),
+                None => time_factors.clone(),
+            };
+            let tier = self.tier(table);
+            for one in sweep.combinations() {
+                let case = common.case_of(&one, &time_factors);
+                match places.entry(case.hash()) {
+                    Entry::Occupied(place) => {
+                        let other = &mut planned[*place.get()];
+                        other.tier = other.tier.min(tier);
+                    }
+                    Entry::Vacant(place) => {
+                        place.insert(planned.len());
+                        planned.push(PlannedCase { case, tier });
+                    }
+                }
+            }
+        }
+        let expectations =
+            file.expect.iter().filter_map(|entry| self.expectation(entry, scene, &references)).collect();
+        let case_expectations = self.case_expectations(file, scene, &references);
+        let case_seconds =
+            self.positive(file.case_seconds.as_ref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
+        let timing_repeats =
+            self.count(file.timing.repeats.as_ref(), "timing.repeats", 0..=1000).unwrap_or(0);
+        Some(Study {
+            name: name_of(&self.source.name).to_owned(),
+            title: file.title.get_ref().clone(),
+            summary: file.summary.clone().unwrap_or_default(),
+            scene,
+            references,
+            planned,
+            expectations,
+            case_expectations,
+            case_seconds,
+            timing_repeats,
+            warnings,
+        })
+    }
+
+    fn scene(&mut self, typed: &Spanned<String>) -> Option<SceneKind> {
+        let names = SceneKind::ALL.map(SceneKind::name);
+        let index = self.word(typed, "scene", &names)?;
+        Some(SceneKind::ALL[index])
+    }
+
+    fn time_factors(&mut self, list: &Spanned<Vec<Spanned<f64>>>) -> Vec<f64> {
+        if list.get_ref().is_empty() {
+            self.complain(list.span(), "no time factor", "name at least one, like [0.05, 0.1, 0.2]");
+        }
+        let mut factors = Vec::new();
+        for typed in list.get_ref() {
+            let factor = *typed.get_ref();
+            if factor == 0.0 || (LEAST_TIME_FACTOR..=100.0).contains(&factor) {
+                factors.push(factor + 0.0);
+                continue;
+            }
+            let help = if factor > 0.0 && factor < 1.0 {
+                format!(
+                    "nothing has moved by then and steps no longer advance the time: 0, or {LEAST_TIME_FACTOR:e} and later"
+                )
+            } else {
+                "T_v = c_v t/H² lies between 0 and 100; the column is consolidated at 2".to_owned()
+            };
+            let is_short = (1e-6..1e16).contains(&factor.abs());
+            let size = if is_short { factor.to_string() } else { format!("{factor:?}") };
+            self.complain(typed.span(), format!("a time factor of {size}"), help);
+        }
+        factors.sort_by(f64::total_cmp);
+        factors.dedup();
+        factors
+    }
+
+    fn references(&mut self, table: &OutputTable, scene: SceneKind, column: &Column) -> Vec<ReferenceKind> {
+        let own = scene.references_of(column);
+        let Some(list) = &table.references else { return own.to_vec() };
+        let names: Vec<&str> = scene.references().iter().map(|kind| kind.name()).collect();
+        let mut references = Vec::new();
+        for typed in list.get_ref() {
+            let Some(index) = self.word(typed, "reference", &names) else { continue };
+            let kind = scene.references()[index];
+            if own.contains(&kind) {
+                references.push(kind);
+            } else {
+                self.complain(
+                    typed.span(),
+                    format!("the load of `{kind}` acts at once, and this column's grows"),
+                    format!("hold it against \"{}\"", own[0]),
+                );
+            }
+        }
+        references
+    }
+}

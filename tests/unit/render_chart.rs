@@ -1,0 +1,178 @@
+//! What every figure owes its reader. The gallery is written to the temporary folder to be looked
+//! at.
+use super::*;
+use crate::render::chart::describe::{
+    Annotation, Axis, Band, Chart, Direction, Place, Rule, Series, Size, SlopeTriangle, Style,
+};
+use crate::render::chart::field::Colours;
+use crate::render::chart::gallery::{convergence, gallery, nothing, pressure_field};
+
+fn svg(chart: &Chart) -> String {
+    chart.svg().unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn every_kind_of_figure_is_drawn_and_always_the_same() {
+    let folder = std::env::temp_dir().join("oedometer-gallery");
+    std::fs::create_dir_all(&folder).unwrap_or_else(|e| panic!("{e}"));
+    for (name, chart) in gallery() {
+        let text = svg(&chart);
+        assert_eq!(text, svg(&chart), "{name}");
+        std::fs::write(folder.join(format!("{name}.svg")), text).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+#[test]
+fn figures_are_named_scalable_and_self_contained() {
+    for (name, chart) in gallery() {
+        let text = svg(&chart);
+        assert!(text.starts_with("<svg xmlns="), "{name}");
+        for wanted in ["viewBox=\"0 0 ", "role=\"img\"", "aria-label=\"", "<title>", "<desc>"] {
+            assert!(text.contains(wanted), "{name}: {wanted}");
+        }
+        for unwanted in ["href", "url(", "<script", "NaN", "inf", " id=\""] {
+            assert!(!text.contains(unwanted), "{name}: {unwanted}");
+        }
+        assert_eq!(text.matches("<g").count(), text.matches("</g>").count(), "{name}");
+        assert_eq!(text.matches("<text").count(), text.matches("</text>").count(), "{name}");
+        assert_eq!(text.matches("<tspan").count(), text.matches("</tspan>").count(), "{name}");
+    }
+}
+
+#[test]
+fn what_is_not_drawn_is_counted() {
+    let text = svg(&convergence());
+    assert!(
+        text.contains("2 values not drawn: 1 not finite (MPM); 1 not positive on a logarithmic axis (MPM)."),
+        "{text}"
+    );
+    let text = svg(&nothing());
+    assert!(text.contains(">no data</text>"), "{text}");
+    assert!(text.contains("GIMP (no data)"), "{text}");
+    assert!(svg(&pressure_field()).contains("1 cell without a value is grey."));
+}
+
+#[test]
+fn points_outside_fixed_axes_are_counted_and_lines_cut() {
+    let series = Series::new("a", vec![(0.0, 0.0), (1.0, 1e300), (0.5, 1e9)]);
+    let chart = Chart::new("t", Axis::linear("x"), Axis::linear("y").between(0.0, 1.0)).with(series);
+    let text = svg(&chart);
+    assert!(text.contains("1 beyond 10^±150 (a); 1 outside the axes (a)"), "{text}");
+}
+
+#[test]
+fn hostile_descriptions_still_make_a_figure() {
+    let mut chart = convergence();
+    chart.title = "a < b & \"c\" \u{0} \u{e000}".into();
+    chart.size = Size { width: f64::NAN, plot_height: -5.0, equal_units: true };
+    chart.x.ticks = Some(vec![f64::NAN, -1.0, 0.05]);
+    chart.triangles.push(SlopeTriangle { slope: f64::NAN, place: Place::At(0.1, 0.1) });
+    chart.triangles.push(SlopeTriangle { slope: 0.0, place: Place::At(-0.1, f64::NAN) });
+    chart.rules.push(Rule { axis: Direction::X, at: -1.0, label: "x".into() });
+    chart.annotations.push(Annotation { at: (f64::NAN, 1.0), text: "?".into() });
+    chart.series[0].ringed = vec![999];
+    chart.series[0].bars = vec![(f64::NAN, 0.0); 9];
+    chart.series.push(Series::new("one", vec![(0.1, 0.1)]).tag("only"));
+    chart.series.push(Series::new("", Vec::new()).tag("none"));
+    chart.bands.push(Band { name: String::new(), points: vec![(f64::NAN, 0.0, -1.0)], colour: 99 });
+    let text = svg(&chart);
+    assert!(text.contains("a &lt; b &amp; &quot;c&quot;"), "{text}");
+    let mut field = pressure_field();
+    for values in [Vec::new(), vec![f64::NAN; 24 * 24], vec![1.0; 24 * 24]] {
+        field.field.as_mut().unwrap_or_else(|| panic!("no field")).values = values;
+        assert!(svg(&field).ends_with("</svg>\n"));
+    }
+}
+
+/// The value of an attribute of the element that `tag` opens.
+fn attribute(tag: &str, name: &str) -> Option<String> {
+    let (_, after) = tag.split_once(&format!(" {name}=\""))?;
+    Some(after.split_once('"')?.0.to_owned())
+}
+
+fn number(tag: &str, name: &str) -> f64 {
+    attribute(tag, name).and_then(|v| v.parse().ok()).unwrap_or_else(|| panic!("{name} in {tag}"))
+}
+
+fn without_tags(text: &str) -> String {
+    let mut out = String::new();
+    let mut inside = false;
+    for c in text.chars() {
+        match c {
+            '<' => inside = true,
+            '>' => inside = false,
+            c if !inside => out.push(c),
+            _ => {}
+        }
+    }
+    out
+}
+
+#[test]
+fn no_text_is_clipped() {
+    for (name, chart) in gallery() {
+        let text = svg(&chart);
+        let (wide, high) = (10.0 * number(&text, "width"), 10.0 * number(&text, "height"));
+        let mut seen = 0;
+        for line in text.lines().filter(|l| l.contains("<text ")) {
+            let (tag, words) = line.split_once('>').unwrap_or_else(|| panic!("{line}"));
+            let length = number(tag, "font-size") * crate::render::script::width(&without_tags(words));
+            let share = match attribute(tag, "text-anchor").as_deref() {
+                Some("middle") => 0.5,
+                Some("end") => 1.0,
+                _ => 0.0,
+            };
+            let (x, y) = (number(tag, "x"), number(tag, "y"));
+            if tag.contains("rotate(270") {
+                assert!(y - length / 2.0 > 0.0 && y + length / 2.0 < high, "{name}: {line}");
+            } else {
+                // The estimate of a bold title is tight, and the widths are upper bounds.
+                assert!(x - share * length > -10.0, "{name}: {line}");
+                assert!(x + (1.0 - share) * length < wide + 10.0, "{name}: {line}");
+                assert!(y > 0.0 && y < high, "{name}: {line}");
+            }
+            seen += 1;
+        }
+        assert!(seen > 5, "{name}: {seen}");
+    }
+}
+
+#[test]
+fn theory_lies_above_other_lines_and_beneath_markers() {
+    let chart = Chart::new("t", Axis::linear("x"), Axis::linear("y"))
+        .with(Series::theory("exact", vec![(0.0, 0.0), (1.0, 1.0)]))
+        .with(Series::new("a", vec![(0.0, 0.1), (1.0, 0.9)]));
+    let text = svg(&chart);
+    let line = |colour: &str| text.find(&format!("<polyline fill=\"none\" stroke=\"{colour}\"")).unwrap_or(0);
+    let marker = text.find("<circle").unwrap_or(0);
+    assert!(0 < line("#0072B2") && line("#0072B2") < line("#1A1A1A") && line("#1A1A1A") < marker, "{text}");
+}
+
+#[test]
+fn depth_runs_downwards() {
+    let rows = |axis: Axis| {
+        let points = vec![(0.0, 0.0), (1.0, 1.0)];
+        let series = Series::new("a", points).style(Style::Markers);
+        let text = svg(&Chart::new("t", Axis::linear("x"), axis).with(series));
+        let discs = text.lines().filter(|l| l.starts_with("<circle") && l.contains("#0072B2"));
+        discs.map(|l| number(l, "cy")).collect::<Vec<_>>()
+    };
+    let (up, down) = (rows(Axis::linear("y")), rows(Axis::linear("depth").inverted()));
+    assert!(up[0] > up[1], "{up:?}");
+    assert!(down[0] < down[1], "{down:?}");
+}
+
+#[test]
+fn the_first_row_of_a_field_is_the_lowest() {
+    let mut chart = pressure_field();
+    if let Some(field) = &mut chart.field {
+        (field.x_edges, field.y_edges) = (vec![0.0, 1.0], vec![0.0, 1.0, 2.0]);
+        (field.values, field.colours) = (vec![0.0, 1.0], Colours::Sequential);
+    }
+    let text = svg(&chart);
+    let cell = |colour: &str| {
+        let line = text.lines().find(|l| l.starts_with("<rect") && l.contains(colour));
+        number(line.unwrap_or_else(|| panic!("{colour}")), "y")
+    };
+    assert!(cell("#440154") > cell("#FDE725"));
+}

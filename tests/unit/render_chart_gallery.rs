@@ -1,0 +1,241 @@
+//! Figures of every kind from made-up data.
+use super::*;
+use crate::render::chart::describe::{
+    Annotation, Axis, Band, Chart, Direction, Place, Range, Rule, Scale, Series, Size, SlopeTriangle, Style,
+};
+use crate::render::chart::field::{Colours, Field};
+use std::f64::consts::PI;
+
+/// Terzaghi's series, good enough for a picture.
+fn pressure(z: f64, t: f64) -> f64 {
+    (0..200)
+        .map(|j| {
+            let m = (f64::from(j) + 0.5) * PI;
+            2.0 / m * (m * z).sin() * (-m * m * t).exp()
+        })
+        .sum()
+}
+
+fn consolidation(t: f64) -> f64 {
+    1.0 - (0..200)
+        .map(|j| {
+            let m = (f64::from(j) + 0.5) * PI;
+            2.0 / (m * m) * (-m * m * t).exp()
+        })
+        .sum::<f64>()
+}
+
+fn steps(n: u32) -> impl Iterator<Item = f64> {
+    (0..=n).map(move |i| f64::from(i) / f64::from(n))
+}
+
+const METHODS: [&str; 5] = ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "TL-GC-SRI-patch"];
+
+pub(crate) fn convergence() -> Chart {
+    let h = [0.2, 0.1, 0.05, 0.025, 0.0125];
+    let mut chart = Chart::new(
+        "Terzaghi: error of the pore pressure under mesh refinement",
+        Axis::log10("cell size h/H (–)").with_ticks(h.to_vec()),
+        Axis::log10("relative L_2 error of p at the points (–)"),
+    );
+    chart.subtitle = Some("T_v = 0.1, 2 points a cell, held against Terzaghi with compressible water".into());
+    for (i, name) in METHODS.into_iter().enumerate() {
+        let (c, p) = [(0.9, 0.9), (0.62, 1.0), (0.4, 1.0), (0.5, 1.9), (0.36, 2.0)][i];
+        let mut points: Vec<(f64, f64)> = h.iter().map(|&h: &f64| (h, c * h.powf(p) + 1e-6)).collect();
+        if i == 0 {
+            points[3].1 = f64::NAN;
+            points[4].1 = 0.0;
+        }
+        chart.series.push(Series::new(name, points));
+    }
+    chart.triangles = [(1.0, METHODS[2]), (2.0, METHODS[4])]
+        .map(|(slope, name)| SlopeTriangle { slope, place: Place::Beside(name.into()) })
+        .to_vec();
+    chart.rules.push(Rule { axis: Direction::Y, at: 1.4e-4, label: "water storage: 1.4·10⁻⁴".into() });
+    chart
+}
+
+fn isochrones() -> Chart {
+    let mut chart = Chart::new(
+        "Isochrones of excess pore pressure",
+        Axis::linear("p/q (–)").between(0.0, 1.1),
+        Axis::linear("depth ζ = 1 − Y/H (–)").inverted(),
+    );
+    for t in [0.02, 0.05, 0.1, 0.2, 0.5] {
+        let theory = steps(80).map(|z| (pressure(z, t), z)).collect();
+        chart.series.push(Series::theory("Terzaghi, compressible water", theory).tag(format!("T_v = {t}")));
+        for (slot, name) in ["GIMP-SRI", "GC-SRI-patch"].into_iter().enumerate() {
+            let off = [0.03, 0.0][slot];
+            let points = (0..10).map(|i| (f64::from(i) + 0.5) / 10.0);
+            let points = points.map(|z| (pressure(z, t) + off * (20.0 * z).sin(), z)).collect();
+            chart.series.push(Series::new(name, points).style(Style::Markers));
+        }
+    }
+    chart.size.plot_height = 420.0;
+    chart
+}
+
+fn degree() -> Chart {
+    let mut chart = Chart::new(
+        "Degree of consolidation",
+        Axis::log10("time factor T_v (–)"),
+        Axis::linear("degree of consolidation U (–)").inverted(),
+    );
+    let times: Vec<f64> = (0..=80).map(|i| 10f64.powf(-3.0 + f64::from(i) / 20.0 * 0.85)).collect();
+    chart.series.push(Series::theory("Terzaghi", times.iter().map(|&t| (t, consolidation(t))).collect()));
+    chart.series.push(Series::theory(
+        "Terzaghi, doubly drained",
+        times.iter().map(|&t| (t, consolidation(4.0 * t))).collect(),
+    ));
+    for name in ["GIMP-SRI", "GC-SRI-patch"] {
+        let points = times.iter().step_by(10).map(|&t| (t, consolidation(t) * 0.98)).collect();
+        chart.series.push(Series::new(name, points).style(Style::Markers));
+    }
+    chart.bands.push(Band {
+        name: "±5 %".into(),
+        points: times.iter().map(|&t| (t, 0.95 * consolidation(t), 1.05 * consolidation(t))).collect(),
+        colour: 6,
+    });
+    chart
+}
+
+fn work_precision() -> Chart {
+    let mut chart = Chart::new(
+        "Work and precision",
+        Axis::log10("wall time, median of 5 (s)"),
+        Axis::log10("relative L_2 error of p at T_v = 0.2 (–)"),
+    );
+    let mut front = Vec::new();
+    for (i, name) in ["explicit", "semi-implicit", "implicit (SDIRK2)"].into_iter().enumerate() {
+        let cost = [3.0, 0.05, 0.0004][i];
+        let points: Vec<(f64, f64)> =
+            (0..6).map(|k| (cost * 5f64.powi(k), 4e-2 * 0.26f64.powi(k) * (1.0 + 0.3 * i as f64))).collect();
+        let mut series = Series::new(name, points.clone());
+        series.bars = points.iter().map(|p| (p.1 * 0.8, p.1 * 1.25)).collect();
+        if i == 2 {
+            series.ringed = (0..6).collect();
+            front = points;
+        }
+        chart.series.push(series);
+    }
+    chart.series.push(Series::theory("", front).style(Style::Stairs).slot(6));
+    chart.ring = Some("on the Pareto front".into());
+    chart
+}
+
+pub(crate) fn pressure_field() -> Chart {
+    let edges: Vec<f64> = steps(24).collect();
+    let mut chart =
+        Chart::new("Pore pressure, full integration", Axis::linear("x/L (–)"), Axis::linear("y/H (–)"));
+    let mut values = Vec::new();
+    for r in 0..24 {
+        for c in 0..24 {
+            let (x, y) = ((f64::from(c) + 0.5) / 24.0, (f64::from(r) + 0.5) / 24.0);
+            let checker = if (r + c) % 2 == 0 { 0.3 } else { -0.3 };
+            values.push((PI * x).cos() * (1.0 - y) + checker * y);
+        }
+    }
+    values[30] = f64::NAN;
+    chart.field = Some(Field {
+        label: "p/q (–)".into(),
+        x_edges: edges.clone(),
+        y_edges: edges,
+        values,
+        colours: Colours::Diverging(0.0),
+        scale: Scale::Linear,
+        range: Range::Auto,
+    });
+    chart.size = Size { width: 480.0, plot_height: 340.0, equal_units: true };
+    chart
+}
+
+fn stability_map() -> Chart {
+    let mut chart = Chart::new(
+        "Critical step of GC-SRI-patch, explicit",
+        Axis::log10("hydraulic conductivity k (m/s)"),
+        Axis::log10("K_w/E (–)"),
+    );
+    let x_edges: Vec<f64> = (0..=20).map(|i| 10f64.powf(-12.0 + f64::from(i) / 2.0)).collect();
+    let y_edges: Vec<f64> = (0..=15).map(|i| 10f64.powf(1.0 + f64::from(i) / 3.0)).collect();
+    let mut values = Vec::new();
+    for y in &y_edges[1..] {
+        for x in &x_edges[1..] {
+            values.push((2e-4 / y.sqrt()).min(x * 1e2));
+        }
+    }
+    chart.field = Some(Field {
+        label: "critical Δt (s)".into(),
+        x_edges,
+        y_edges,
+        values,
+        colours: Colours::Sequential,
+        scale: Scale::Log10,
+        range: Range::Auto,
+    });
+    let edge =
+        (0..=10).map(|i| (3e-8 * 10f64.powf(-0.25 * f64::from(i)), 10f64.powf(1.0 + 0.5 * f64::from(i))));
+    chart.series.push(Series::theory("drag and wave limits equal (predicted)", edge.clone().collect()));
+    chart.series.push(Series::new("observed", edge.step_by(2).collect()).style(Style::Markers).slot(8));
+    chart
+}
+
+pub(crate) fn nothing() -> Chart {
+    let series = Series::new("GIMP", vec![(f64::NAN, 1.0), (1.0, -1.0), (f64::INFINITY, 2.0)]);
+    Chart::new("Nothing to see", Axis::log10("h (m)"), Axis::log10("error (–)")).with(series)
+}
+
+/// More than a figure should hold, with long words everywhere.
+fn crowd() -> Chart {
+    let mut chart = Chart::new(
+        "Everything at once: fourteen methods with long names, over sixteen decades of error, so that a title needs two lines and the legend all of its room",
+        Axis::log10("time step over the predicted limit of the explicit scheme, Δt/Δt_crit (–)"),
+        Axis::log10("relative L_∞ error of the effective vertical stress σ'_yy at the cell centres (–)"),
+    );
+    for i in 0..14_u8 {
+        let name = format!("TL-{}-patch-with-long-name-{i}", METHODS[usize::from(i % 5)]);
+        let p = 1.0 + 0.25 * f64::from(i);
+        let points =
+            (0..6).map(|k| 2f64.powi(-2 * k)).map(|h| (h, 10f64.powi(2 - i32::from(i) / 3) * h.powf(p)));
+        chart.series.push(Series::new(name, points.collect()));
+    }
+    for (i, slope) in [(3, 1.0), (6, 2.5), (12, 4.0)] {
+        let place = Place::Beside(chart.series[i].name.clone());
+        chart.triangles.push(SlopeTriangle { slope, place });
+    }
+    chart.rules.push(Rule { axis: Direction::X, at: 0.5, label: "half the limit".into() });
+    chart.annotations.push(Annotation { at: (1e-2, 1e-6), text: "round-off".into() });
+    chart.notes.push("A note of the caller's own.".into());
+    chart
+}
+
+/// A slender body with units of the same length, and a note at its top.
+fn column() -> Chart {
+    let y_edges: Vec<f64> = steps(20).collect();
+    let values = (0..20).map(|i| pressure(1.0 - (f64::from(i) + 0.5) / 20.0, 0.1) * 2e5).collect();
+    let mut chart = Chart::new("Pressure in the column", Axis::linear("x (m)"), Axis::linear("y (m)"));
+    chart.field = Some(Field {
+        label: "p (Pa)".into(),
+        x_edges: vec![0.0, 0.1],
+        y_edges,
+        values,
+        colours: Colours::Sequential,
+        scale: Scale::Linear,
+        range: Range::Fixed(0.0, 2e5),
+    });
+    chart.size = Size { width: 320.0, plot_height: 360.0, equal_units: true };
+    chart
+}
+
+pub(in crate::render) fn gallery() -> Vec<(&'static str, Chart)> {
+    vec![
+        ("crowd", crowd()),
+        ("column", column()),
+        ("convergence", convergence()),
+        ("isochrones", isochrones()),
+        ("degree", degree()),
+        ("work-precision", work_precision()),
+        ("pressure-field", pressure_field()),
+        ("stability-map", stability_map()),
+        ("nothing", nothing()),
+    ]
+}

@@ -1,0 +1,155 @@
+use super::*;
+use crate::render::chart::describe::{Axis, Series};
+use crate::render::table::{Cell, Column};
+
+fn chart() -> Chart {
+    Chart::new("Error <of> p", Axis::log10("h (m)"), Axis::log10("error (–)"))
+        .with(Series::new("GIMP", vec![(0.1, 1e-2), (0.05, 5e-3)]))
+}
+
+fn page() -> Page {
+    let mut table = Table::new("Orders", vec![Column::text("method"), Column::number("order")]);
+    table.rows.push(vec![Cell::Code("GIMP".into()), Cell::Order(1.0)]);
+    let hostile = "<script>alert(1)</script> & \"quotes\"";
+    Page {
+        title: format!("Report {hostile}"),
+        lead: "First **line**.\n\nSecond, T_v = 0.1.".into(),
+        sections: vec![
+            Section {
+                heading: format!("Mesh {hostile}"),
+                id: "mesh".into(),
+                mood: Some(Mood::Pass),
+                blocks: vec![
+                    Block::Paragraph(format!("`{hostile}` {hostile}")),
+                    Block::Heading("Tables".into()),
+                    Block::Table(table),
+                    Block::Figure(Figure::new("mesh", chart(), "Errors of *p*.")),
+                    Block::Callout(Mood::Fail, format!("Not so. {hostile}")),
+                ],
+            },
+            Section {
+                heading: "Time".into(),
+                id: "time".into(),
+                mood: None,
+                blocks: vec![
+                    Block::List(vec!["one".into(), "two `x`".into()]),
+                    Block::Details {
+                        summary: format!("More {hostile}"),
+                        blocks: vec![
+                            Block::Code("a < b\n```\nc".into()),
+                            Block::Figures(vec![
+                                Figure::new("left", chart(), ""),
+                                Figure::new("right", chart(), "Right."),
+                            ]),
+                        ],
+                    },
+                    Block::Callout(Mood::Note, "One.\n\nTwo.".into()),
+                ],
+            },
+            Section { heading: "End".into(), id: "end".into(), mood: Some(Mood::Fail), blocks: vec![] },
+        ],
+        footer: "Made by `oedometer`.".into(),
+    }
+}
+
+fn written<T>(result: Result<T, RenderError>) -> T {
+    result.unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn as_markdown() {
+    insta::assert_snapshot!(written(render_markdown(&page())));
+}
+
+#[test]
+fn html_is_self_contained_and_escaped() {
+    let html = written(render_html(&page()));
+    assert_eq!(html, written(render_html(&page())));
+    assert!(html.starts_with("<!DOCTYPE html>\n"));
+    for unwanted in ["<script", "src=", "@import", "url(", "<link"] {
+        assert!(!html.contains(unwanted), "{unwanted}");
+    }
+    let outside = html.lines().filter(|l| l.contains("http"));
+    for line in outside {
+        assert!(line.contains("xmlns=\"http://www.w3.org/2000/svg\""), "{line}");
+    }
+    assert_eq!(html.matches("&lt;script&gt;").count(), 8, "{html}");
+    for wanted in
+        ["<title>Report &lt;script", "<section id=\"mesh\">", "href=\"#time\"", "Figure 3.", "T<sub>v</sub>"]
+    {
+        assert!(html.contains(wanted), "{wanted}");
+    }
+}
+
+#[test]
+fn elements_are_closed() {
+    let html = written(render_html(&page()));
+    for name in
+        ["section", "div", "figure", "table", "details", "aside", "ul", "pre", "p", "svg", "nav", "main"]
+    {
+        let opened = html.matches(&format!("<{name}>")).count() + html.matches(&format!("<{name} ")).count();
+        assert_eq!(opened, html.matches(&format!("</{name}>")).count(), "{name}");
+    }
+}
+
+#[test]
+fn figures_are_the_same_in_both_pages() {
+    let page = page();
+    let listed = written(figures(&page));
+    let names: Vec<&str> = listed.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["mesh.svg", "left.svg", "right.svg"]);
+    let (html, markdown) = (written(render_html(&page)), written(render_markdown(&page)));
+    for (name, svg) in &listed {
+        assert!(markdown.contains(&format!("(figures/{name})")), "{name}");
+        assert!(html.contains(svg.as_str()), "{name}");
+    }
+}
+
+#[test]
+fn a_figure_is_never_shown_larger_than_it_is() {
+    let mut page = page();
+    let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"216\" height=\"9\"></svg>";
+    let picture = Picture::Svg(svg.into());
+    let figure = Figure { name: "slim".into(), picture, caption: String::new() };
+    page.sections[2].blocks.push(Block::Figure(figure));
+    let html = written(render_html(&page));
+    assert!(html.contains("style=\"--own: 216px\""), "{html}");
+    assert_eq!(html.matches("style=\"--own: 760px\"").count(), 3);
+}
+
+#[test]
+fn names_must_be_safe_and_differ() {
+    for bad in ["", "../x", ".hidden", "A", "a b", "a/b", "ä"] {
+        let mut page = page();
+        page.sections[0].id = bad.into();
+        assert!(matches!(render_html(&page), Err(RenderError::Name { .. })), "{bad}");
+        let mut page = self::page();
+        page.sections[2].blocks.push(Block::Figure(Figure::new(bad, chart(), "")));
+        assert!(matches!(figures(&page), Err(RenderError::Name { .. })), "{bad}");
+    }
+    let mut page = page();
+    page.sections[1].id = "mesh".into();
+    assert!(matches!(render_markdown(&page), Err(RenderError::Duplicate { .. })));
+    let mut page = self::page();
+    page.sections[2].blocks.push(Block::Figure(Figure::new("left", chart(), "")));
+    assert!(matches!(figures(&page), Err(RenderError::Duplicate { .. })));
+}
+
+#[test]
+fn a_ragged_table_anywhere_is_refused() {
+    let mut page = page();
+    let mut table = Table::new("t", vec![Column::text("a")]);
+    table.rows.push(Vec::new());
+    page.sections[2]
+        .blocks
+        .push(Block::Details { summary: String::new(), blocks: vec![Block::Table(table)] });
+    assert!(matches!(render_html(&page), Err(RenderError::Ragged { .. })));
+    assert!(matches!(render_markdown(&page), Err(RenderError::Ragged { .. })));
+}
+
+#[test]
+fn slugs_are_usable_names() {
+    assert_eq!(slug("GC-SRI-patch, T_v = 0.1"), "gc-sri-patch-t_v-0.1");
+    assert_eq!(slug("../Été!"), "t");
+    assert_eq!(slug("—"), "");
+}
