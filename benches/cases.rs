@@ -3,17 +3,10 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use oedometer::campaign::run_case;
-use oedometer::case::Case;
-use oedometer::mpm::explicit::{Drag, ExplicitSettings};
-use oedometer::mpm::method::{Configuration, Method};
-use oedometer::mpm::run::integrator::IntegratorKind;
-use oedometer::mpm::run::outcome::Counters;
-use oedometer::mpm::run::{Kernel, TimeStepRule};
-use oedometer::record::Record;
-use oedometer::scene::SceneKind;
-use oedometer::scene::column::Column;
-use oedometer::soil::material::Material;
+use oedometer::{
+    Case, Column, Configuration, Counters, Drag, ExplicitSettings, IntegratorKind, Kernel, Material, Method,
+    Record, SceneKind, TimeStepRule, run_case,
+};
 
 /// Cells of the table of linear cost.
 const MESHES: [usize; 5] = [40, 80, 160, 320, 640];
@@ -109,7 +102,7 @@ fn implicit_case(method: &str, scene: SceneKind, cells: usize) -> Case {
 fn case(method: &str, cells: usize, configuration: Configuration) -> Case {
     let method = Method::named(method).expect("a known method");
     Case {
-        task: oedometer::case::Task::Solve,
+        task: oedometer::Task::Solve,
         scene: SceneKind::Terzaghi,
         column: Column::default(),
         material: Material::default(),

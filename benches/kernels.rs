@@ -10,23 +10,12 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use oedometer::exact::consolidation;
-use oedometer::mpm::assembled::column::AssembledColumn;
-use oedometer::mpm::assembled::plane::AssembledPlane;
-use oedometer::mpm::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
-use oedometer::mpm::critical_step::predicted::predicted_critical_step;
-use oedometer::mpm::explicit::ExplicitSettings;
-use oedometer::mpm::implicit::drive::Plan;
-use oedometer::mpm::implicit::linear::LinearMarch;
-use oedometer::mpm::implicit::march::March;
-use oedometer::mpm::implicit::steps::StepLimit;
-use oedometer::mpm::method::{Basis, Configuration, Method};
-use oedometer::mpm::run::integrator::IntegratorKind;
-use oedometer::mpm::run::outcome::StepSizes;
-use oedometer::mpm::run::physical_bounds::PhysicalBounds;
-use oedometer::mpm::run::{Kernel as StepKernel, Schedule, TimeStepRule};
-use oedometer::scene::SceneKind;
-use oedometer::scene::column::{Column, column_problem};
-use oedometer::soil::material::Material;
+use oedometer::{
+    AssembledColumn, AssembledPlane, Basis, Body, Column, Configuration, DomainEnds, ExplicitSettings, Gimp,
+    Hat, IntegratorKind, Kernel as StepKernel, LinearMarch, March, Material, Method, PhysicalBounds, Plan,
+    Problem, SceneKind, Schedule, ShapeFunction, StepLimit, StepSizes, TimeStepRule, column_problem,
+    predicted_critical_step,
+};
 use std::time::Instant;
 
 const METHODS: [&str; 5] = ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"];

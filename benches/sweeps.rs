@@ -6,11 +6,7 @@
 //! what counts.
 #![allow(clippy::print_stdout, reason = "a benchmark prints what it measured")]
 
-use oedometer::campaign::{RunOptions, Selected, run_studies};
-use oedometer::case::tier::Tier;
-use oedometer::record::store::RecordStore;
-use oedometer::study::check::Study;
-use oedometer::study::file::StudySource;
+use oedometer::{RecordStore, RunOptions, Selected, Study, StudySource, Tier, run_studies};
 use std::fmt::Write;
 use std::time::Instant;
 use tempfile::TempDir;

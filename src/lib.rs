@@ -1,22 +1,95 @@
-//! `oedometer` verifies coupled material point solvers: its own, and other people's.
+//! `oedometer` verifies coupled material point solvers: its own, and external ones.
+//!
+//! # The map
+//!
+//! A folder imports only folders of the lines above its own; `tests/unit/architecture.rs` holds the table.
+//!
+//! | folder | what it is |
+//! | :-- | :-- |
+//! | `elementary`, `wording` | elementary functions with the same bits everywhere; numbers in sentences |
+//! | `soil/` | material, stress–strain laws, continuity |
+//! | [`exact`] | series solutions with bounds on their own errors |
+//! | `convergence/` | numbers only: series, orders, fits, classes, uncertainty |
+//! | `mpm/` | the material point method: state, operators, explicit, assembled and implicit steps, runs |
+//! | `scene/` | physical problems: geometry, load, start, references that hold |
+//! | `case/` | a case as plain data: its inputs, hash, label; quantities, samples, norms |
+//! | `record/` | what is kept of a case, and its store on disk |
+//! | `measure/` | from an outcome to its record: errors, balances, oscillation, checks |
+//! | `study/` | study files: keys, sweeps, expectations, every complaint at its place |
+//! | `campaign/` | runs the cases of a study: parallel, resumable, by shards |
+//! | `golden/` | accepted values, their tolerances, and what changed |
+//! | `import/` | external results: mapping files and tables |
+//! | `judge/` | verdicts on studies, scores of external results, comparisons of methods |
+//! | `render/` | tables, charts, pages; sees records and verdicts, and never a solver |
+//! | `cli/` | one file per subcommand |
 // Tests and benches may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-pub mod campaign;
-pub mod case;
-pub mod cli;
-pub mod convergence;
-pub mod elementary;
+mod campaign;
+mod case;
+mod cli;
+mod convergence;
+mod elementary;
 pub mod exact;
-pub mod golden;
-pub mod import;
-pub mod judge;
-pub mod measure;
-pub mod mpm;
-pub mod record;
-pub mod render;
-pub mod scene;
-pub mod schema;
-pub mod soil;
-pub mod study;
-pub mod wording;
+mod golden;
+mod import;
+mod judge;
+mod measure;
+mod mpm;
+mod record;
+mod render;
+mod scene;
+mod schema;
+mod soil;
+mod study;
+mod wording;
+
+// What a study is, and how it is run and judged.
+pub use campaign::{RunOptions, Selected, run_case, run_studies, run_study};
+pub use case::quantity::{Quantity, Sample};
+pub use case::tier::Tier;
+pub use case::{Case, Task};
+pub use cli::main;
+pub use golden::compare::compare;
+pub use golden::tolerance::spread_by_group;
+pub use golden::{GoldenFile, values_of};
+pub use judge::soundness;
+pub use judge::study_check::{CheckEnd, StudyCheck};
+pub use measure::record_checks::{balance_checks, start_checks};
+pub use record::origins::Origins;
+pub use record::provenance::Provenance;
+pub use record::store::RecordStore;
+pub use record::{ErrorRow, Record, Status, WallSample};
+pub use render::page::{Block, Page, figures, render_html, render_markdown};
+pub use render::report::{StudyResults, page_of};
+pub use render::table::Table;
+pub use render::{junit, measures, verdicts};
+pub use study::check::Study;
+pub use study::file::StudySource;
+pub use study::perturbed::LastDigit;
+
+// What a problem is, and how it is solved.
+pub use mpm::explicit::{Drag, ExplicitSettings};
+pub use mpm::method::{Basis, Configuration, Method};
+pub use mpm::run::integrator::IntegratorKind;
+pub use mpm::run::outcome::{Counters, Failure, FailureKind, StepSizes};
+pub use mpm::run::{Kernel, Schedule, TimeStepRule};
+pub use scene::SceneKind;
+pub use scene::column::{Column, column_problem};
+pub use soil::material::{Continuity, Material};
+
+// What the benches time one by one.
+#[doc(hidden)]
+pub use mpm::assembled::{column::AssembledColumn, plane::AssembledPlane};
+#[doc(hidden)]
+pub use mpm::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
+#[doc(hidden)]
+pub use mpm::critical_step::predicted::predicted_critical_step;
+#[doc(hidden)]
+pub use mpm::implicit::{drive::Plan, linear::LinearMarch, march::March, steps::StepLimit};
+#[doc(hidden)]
+pub use mpm::run::physical_bounds::PhysicalBounds;
+
+#[cfg(test)]
+#[path = "../tests/unit/mod.rs"]
+mod tests;

@@ -1,13 +1,9 @@
 //! A step allocates nothing, whatever the method, the configuration and the kernel.
 
-use oedometer::mpm::assembled::column::AssembledColumn;
-use oedometer::mpm::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
-use oedometer::mpm::critical_step::predicted::predicted_critical_step;
-use oedometer::mpm::explicit::{Drag, ExplicitSettings};
-use oedometer::mpm::method::{Basis, Configuration, Method};
-use oedometer::scene::SceneKind;
-use oedometer::scene::column::{Column, column_problem};
-use oedometer::soil::material::{Continuity, Material};
+use oedometer::{
+    AssembledColumn, Basis, Body, Column, Configuration, Continuity, DomainEnds, Drag, ExplicitSettings,
+    Gimp, Hat, Material, Method, Problem, SceneKind, ShapeFunction, column_problem, predicted_critical_step,
+};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
 

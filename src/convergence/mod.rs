@@ -1,4 +1,5 @@
-//! TODO
+//! Convergence in numbers only: series of errors, observed orders, fits, classes and uncertainty. Knows no
+//! solver, no study and no record.
 
 pub mod class;
 pub mod fit;

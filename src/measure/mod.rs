@@ -1,4 +1,4 @@
-//! TODO
+//! From the outcome of a run to its record: errors against references, balances, oscillation, checks.
 
 pub mod case_record;
 pub mod error_contributions;

@@ -10,10 +10,11 @@ use crate::mpm::operators::strain_gradient::ENDS_WIDTH;
 use crate::mpm::operators::surface_load::{LoadShape, LoadedSurface, visit_block};
 use crate::mpm::state::cell_memory::CellMemory;
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{Grid, Tensor, Vector};
+use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::{Nodes, Support};
 use crate::mpm::state::points::Points;
 use crate::soil::material::{Continuity, Material, Stiffness};
+use crate::soil::tensor::{Tensor, Vector};
 
 /// A basis as the compiler sees it: rows of `W` nodes a direction.
 pub trait ShapeFunction<const W: usize>: Clone {

@@ -9,7 +9,7 @@ use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::implicit::banded::{Banded, BandedLu, Singular};
 use crate::mpm::method::Configuration;
 use crate::mpm::operators::volumetric::VolumetricRows;
-use crate::mpm::state::grid::{Tensor, Vector};
+use crate::soil::tensor::{Tensor, Vector};
 
 /// Free components of the nodes, in the order of the unknowns.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -8,12 +8,13 @@ use crate::exact::single_mode::SingleMode;
 use crate::mpm::body::Problem;
 use crate::mpm::method::Method;
 use crate::mpm::operators::surface_load::LoadShape;
-use crate::mpm::state::grid::{Grid, Tensor};
+use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::Support;
 use crate::mpm::state::points::Points;
 use crate::scene::SceneKind;
 use crate::scene::arrangement::Arrangement;
 use crate::soil::material::Material;
+use crate::soil::tensor::Tensor;
 use serde::{Deserialize, Serialize};
 
 /// Cells above the column, so that a surface that rises stays on the grid.

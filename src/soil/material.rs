@@ -1,7 +1,7 @@
 //! Saturated soil: its parameters, the stiffness of the skeleton and the drag of the water.
 
 use crate::elementary;
-use crate::mpm::state::grid::Tensor;
+use crate::soil::tensor::Tensor;
 use serde::{Deserialize, Serialize};
 
 /// Stress–strain law of the skeleton and the conductivity that goes with it.

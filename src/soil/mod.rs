@@ -1,3 +1,5 @@
-//! TODO
+//! Saturated soil: its parameters, its stress–strain laws and the continuity of its water. Written once, for
+//! the solver and for everything that describes a case.
 
 pub mod material;
+pub mod tensor;

@@ -211,12 +211,15 @@ class Studies:
 def target_of(tree, name):
     """The target that holds a test, as cargo names it: None for the library's own."""
     pattern = re.compile(rf"\bfn {re.escape(name)}\b")
-    for path in sorted((tree / "tests").glob("*.rs")):
+    own = [(path.stem, path) for path in (tree / "tests").glob("*.rs")]
+    own += [("cli", path) for path in (tree / "tests/cli").glob("*.rs")]
+    for target, path in sorted(own):
         if pattern.search(path.read_text()):
-            return path.stem
-    for path in sorted((tree / "src").rglob("*.rs")):
-        if pattern.search(path.read_text()):
-            return None
+            return target
+    for folder in ("src", "tests/unit"):
+        for path in sorted((tree / folder).rglob("*.rs")):
+            if pattern.search(path.read_text()):
+                return None
     raise SystemExit(f"no test is called `{name}`")
 
 

@@ -1,5 +1,4 @@
 //! Figures of every kind from made-up data.
-use super::*;
 use crate::render::chart::describe::{
     Annotation, Axis, Band, Chart, Direction, Place, Range, Rule, Scale, Series, Size, SlopeTriangle, Style,
 };

@@ -1,4 +1,4 @@
-//! TODO
+//! Fits of an error over refinement: a power, two powers, a floor, a limit, terms of opposite sign.
 
 pub mod approach_to_limit;
 pub mod bending_order;

@@ -1,4 +1,4 @@
-//! TODO
+//! The step of a body whose weights are frozen, as sparse maps between grid arrays.
 
 pub mod column;
 pub mod frozen;

@@ -10,7 +10,7 @@ use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::mpm::run::profile::{Phase, enter};
-use crate::mpm::state::grid::{Tensor, Vector};
+use crate::soil::tensor::{Tensor, Vector};
 
 /// Both phases at a node: skeleton, water.
 type Phases<const D: usize> = [Vector<D>; 2];

@@ -2,7 +2,7 @@
 
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::operators::volumetric::VolumetricRows;
-use crate::mpm::state::grid::{Tensor, Vector};
+use crate::soil::tensor::{Tensor, Vector};
 
 /// A sparse matrix of `D × D` blocks between nodes.
 #[derive(Clone, Debug, Default, PartialEq)]

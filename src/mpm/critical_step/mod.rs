@@ -1,4 +1,4 @@
-//! TODO
+//! The critical time step: by formula, predicted from the step operator, observed by runs.
 
 pub mod formula;
 pub mod observed;

@@ -5,7 +5,7 @@
 
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::method::Configuration;
-use crate::mpm::state::grid::Tensor;
+use crate::soil::tensor::Tensor;
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Sums masses, volumes and drag of the points to the nodes.

@@ -10,7 +10,7 @@ use crate::mpm::method::{Configuration, PressureIntegration, Recovery, StrainGra
 use crate::mpm::operators::shape::SIXTH;
 use crate::mpm::operators::strain_gradient::StrainBlocks;
 use crate::mpm::run::profile::{Phase, enter};
-use crate::mpm::state::grid::{Tensor, Vector};
+use crate::soil::tensor::{Tensor, Vector};
 use serde::{Deserialize, Serialize};
 
 /// Time level at which the drag between skeleton and water is taken.

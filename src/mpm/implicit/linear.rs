@@ -15,7 +15,7 @@ use crate::mpm::implicit::drive::Plan;
 use crate::mpm::implicit::march::{ERROR_SHARE, ErrorScales, March, StepFailure, Work};
 use crate::mpm::run::outcome::FailureKind;
 use crate::mpm::run::profile::{Phase, enter};
-use crate::mpm::state::grid::Vector;
+use crate::soil::tensor::Vector;
 
 /// `γ = 1 − 1/√2`: both stages have the same matrix and the method is L-stable.
 pub const SDIRK_GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;

@@ -1,6 +1,6 @@
 //! Small tensors of finite deformation.
 
-use crate::mpm::state::grid::Tensor;
+use crate::soil::tensor::Tensor;
 
 /// The unit tensor.
 pub fn identity<const D: usize>() -> Tensor<D> {

@@ -8,8 +8,8 @@ use crate::mpm::implicit::tensor::{identity, inverse, strain_between};
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::{Configuration, Memory, PressureIntegration};
 use crate::mpm::run::integrator::Formulation;
-use crate::mpm::state::grid::{Tensor, Vector};
 use crate::mpm::state::points::Points;
+use crate::soil::tensor::{Tensor, Vector};
 
 /// Where a stage starts: the unknowns' share that is known before it is solved.
 #[derive(Clone, Debug, Default, PartialEq)]

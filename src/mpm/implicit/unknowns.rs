@@ -4,7 +4,7 @@
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::method::PressureIntegration;
 use crate::mpm::operators::volumetric::VolumetricRows;
-use crate::mpm::state::grid::Vector;
+use crate::soil::tensor::Vector;
 
 /// Numbering of the unknowns. Neighbours in space are neighbours in number, along the longest
 /// direction of the grid: that keeps the band of the matrices narrow.

@@ -1,4 +1,5 @@
-//! TODO
+//! The operators of a method, each sparse between points, nodes and cell centres: weights, strain gradient,
+//! divergence, recovery, surface load.
 
 pub mod recovery;
 pub mod shape;

@@ -1,7 +1,8 @@
 //! Sparse operators between points and nodes: one small tensor-product block of nodes a point.
 
 use crate::mpm::operators::shape::Row;
-use crate::mpm::state::grid::{Grid, Vector, power};
+use crate::mpm::state::grid::{Grid, power};
+use crate::soil::tensor::Vector;
 
 /// Weights and gradients of every point over a block of `W` nodes in each direction.
 ///

@@ -7,7 +7,8 @@ use crate::mpm::operators::shape;
 use crate::mpm::operators::shape::Row;
 use crate::mpm::operators::stencil::{Blocks, Stencils};
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{Grid, Tensor, Vector};
+use crate::mpm::state::grid::Grid;
+use crate::soil::tensor::{Tensor, Vector};
 
 /// Nodes a direction between the ends of a domain: four at either end, at most one cell apart.
 pub const ENDS_WIDTH: usize = 5;

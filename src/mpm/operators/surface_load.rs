@@ -4,9 +4,10 @@ use crate::elementary;
 use crate::mpm::method::Basis;
 use crate::mpm::operators::shape;
 use crate::mpm::operators::shape::Row;
-use crate::mpm::state::grid::{Grid, Vector, power};
+use crate::mpm::state::grid::{Grid, power};
 use crate::mpm::state::nodes::{Nodes, Support};
 use crate::mpm::state::points::Points;
+use crate::soil::tensor::Vector;
 
 /// How a load varies along the surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -7,7 +7,7 @@
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::method::{PressureIntegration, Recovery};
 use crate::mpm::operators::recovery::{filtered_rows, nodal_row};
-use crate::mpm::state::grid::Vector;
+use crate::soil::tensor::Vector;
 
 /// A linear functional of a nodal vector field: one vector of coefficients a node.
 pub type VectorRow<const D: usize> = Vec<(usize, Vector<D>)>;

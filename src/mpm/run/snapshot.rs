@@ -1,8 +1,8 @@
 //! The state of a body at one time, sampled at points, cell centres and nodes.
 
 use crate::mpm::body::{Body, ShapeFunction};
-use crate::mpm::state::grid::Vector;
 use crate::mpm::state::points::Points;
+use crate::soil::tensor::Vector;
 use serde::{Deserialize, Serialize};
 
 /// Fields at one kind of places. Stresses and displacements are the vertical ones; in two

@@ -11,8 +11,9 @@
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::method::Memory;
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{Grid, Vector};
+use crate::mpm::state::grid::Grid;
 use crate::mpm::state::points::Points;
+use crate::soil::tensor::Vector;
 
 /// Places of the points in their cells, and room for one field at a time; flat index = cell.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,7 +1,8 @@
 //! Cell centres: occupancy, porosity and the divergence of selective reduced integration.
 
-use crate::mpm::state::grid::{GHOST_LAYERS, Grid, Tensor, Vector};
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid};
 use crate::mpm::state::points::Points;
+use crate::soil::tensor::{Tensor, Vector};
 
 /// Share of a cell that a domain must reach into it to count.
 const LEAST_REACH: f64 = 1e-6;

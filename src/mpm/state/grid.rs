@@ -4,11 +4,7 @@
 //! direction is vertical; a column is `D = 1`, plane strain `D = 2` with `x` first.
 
 use crate::mpm::operators::shape::whole;
-
-/// A vector with one component a direction.
-pub type Vector<const D: usize> = [f64; D];
-/// A second-order tensor, row by row.
-pub type Tensor<const D: usize> = [[f64; D]; D];
+use crate::soil::tensor::Vector;
 
 /// Layers of nodes beyond the grid on every side.
 pub const GHOST_LAYERS: usize = 2;

@@ -1,4 +1,4 @@
-//! TODO
+//! What a body is made of: grid, points, nodes, cells, and what cells remember.
 
 pub mod cell_memory;
 pub mod cells;

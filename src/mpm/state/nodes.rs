@@ -1,8 +1,9 @@
 //! Nodal fields: lumped masses, forces, velocities and accelerations of both phases.
 
 use crate::mpm::operators::shape::Row;
-use crate::mpm::state::grid::{GHOST_LAYERS, Grid, Vector};
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid};
 use crate::soil::material::Material;
+use crate::soil::tensor::Vector;
 
 /// Nodes with less than this share of a full cell's mass carry nothing: a point on a cell face
 /// leaves ghosts of 1e-30 behind.

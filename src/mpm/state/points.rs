@@ -1,6 +1,6 @@
 //! The material points: one layer that carries skeleton and water, moving with the skeleton.
 
-use crate::mpm::state::grid::{Tensor, Vector};
+use crate::soil::tensor::{Tensor, Vector};
 
 /// State of the material points, structure of arrays; index = point.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -9,9 +9,10 @@ use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::method::{Method, PressureIntegration, Recovery};
 use crate::mpm::operators::shape;
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{Grid, Tensor, Vector};
+use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::Nodes;
 use crate::mpm::state::points::Points;
+use crate::soil::tensor::{Tensor, Vector};
 
 /// Values between sites and points.
 #[derive(Clone, Debug, Default, PartialEq)]

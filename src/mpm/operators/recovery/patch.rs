@@ -6,7 +6,8 @@
 
 use crate::mpm::operators::shape::SIXTH;
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{Grid, Vector, power};
+use crate::mpm::state::grid::{Grid, power};
+use crate::soil::tensor::Vector;
 
 /// Cells along one direction of a patch.
 const BLOCK: usize = 3;

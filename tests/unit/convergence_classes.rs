@@ -1,9 +1,9 @@
 //! Every series of errors gets its class, and nonsense never passes as asymptotic.
 
-use oedometer::convergence::class::classify::classify;
-use oedometer::convergence::class::{Class, Classification, Context};
-use oedometer::convergence::limiter::{Limiter, LimiterKind};
-use oedometer::convergence::series::{ErrorSeries, Level};
+use crate::convergence::class::classify::classify;
+use crate::convergence::class::{Class, Classification, Context};
+use crate::convergence::limiter::{Limiter, LimiterKind};
+use crate::convergence::series::{ErrorSeries, Level};
 use proptest::prelude::*;
 
 const SIZES: [f64; 6] = [1.0 / 5.0, 1.0 / 10.0, 1.0 / 20.0, 1.0 / 40.0, 1.0 / 80.0, 1.0 / 160.0];

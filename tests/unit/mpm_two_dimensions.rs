@@ -1,17 +1,17 @@
 //! The paper's grid, 0.1 m × 1.0 m and one cell wide, against its column: one problem, two
 //! dimensions, one result.
 
-use oedometer::exact::cosine_layer::Base;
-use oedometer::mpm::body::Problem;
-use oedometer::mpm::explicit::{Drag, ExplicitSettings};
-use oedometer::mpm::method::{Basis, Method};
-use oedometer::mpm::run::integrator::IntegratorKind;
-use oedometer::mpm::run::outcome::{Outcome, RunStatus};
-use oedometer::mpm::run::snapshot::Snapshot;
-use oedometer::mpm::run::{Kernel, Schedule, TimeStepRule, run};
-use oedometer::scene::SceneKind;
-use oedometer::scene::column::{Column, column_problem};
-use oedometer::soil::material::Material;
+use crate::exact::cosine_layer::Base;
+use crate::mpm::body::Problem;
+use crate::mpm::explicit::{Drag, ExplicitSettings};
+use crate::mpm::method::{Basis, Method};
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::outcome::{Outcome, RunStatus};
+use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};
+use crate::scene::SceneKind;
+use crate::scene::column::{Column, column_problem};
+use crate::soil::material::Material;
 
 const CELLS: usize = 10;
 const PER_CELL: usize = 2;

@@ -1,11 +1,11 @@
 //! Where the time goes, and which formulations an integrator takes: whole cases of every integrator.
 
-use oedometer::campaign::run_case;
-use oedometer::mpm::run::Kernel;
-use oedometer::mpm::run::profile::{Phase, PhaseTime, profiled};
-use oedometer::record::Record;
-use oedometer::study::check::Study;
-use oedometer::study::file::StudySource;
+use crate::campaign::run_case;
+use crate::mpm::run::Kernel;
+use crate::mpm::run::profile::{Phase, PhaseTime, profiled};
+use crate::record::Record;
+use crate::study::check::Study;
+use crate::study::file::StudySource;
 
 fn study_of(scene: &str, sweep: &str) -> Study {
     let text = format!(

@@ -1,16 +1,8 @@
 //! `check`, `accept` and `report` through the program: exit codes, what is named and what is not,
 //! what is written and what is left alone.
 
-mod program;
-
-use oedometer::campaign::{RunOptions, run_study};
-use oedometer::case::tier::Tier;
-use oedometer::golden::GoldenFile;
-use oedometer::record::Record;
-use oedometer::record::provenance::Provenance;
-use oedometer::study::check::Study;
-use oedometer::study::file::StudySource;
-use program::{Told, assert_words, call_with, folder_with};
+use crate::program::{Told, assert_words, call_with, folder_with};
+use oedometer::{GoldenFile, Provenance, Record, RunOptions, Study, StudySource, Tier, run_study};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -465,7 +457,7 @@ fn the_faults_of_the_judge_are_in_the_sources_and_have_a_test() {
     let list: toml::Table = toml::from_str(&read("tests/mutations/judge-faults-output.toml")).expect("TOML");
     let faults = list["fault"].as_array().expect("faults");
     assert!(faults.len() >= 8);
-    let tests = read("tests/cli_check.rs");
+    let tests = read("tests/cli/check.rs");
     for fault in faults {
         let word = |key: &str| fault[key].as_str().expect(key);
         let source = read(word("file"));

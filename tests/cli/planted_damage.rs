@@ -1,8 +1,6 @@
 //! Faults around a run: killed, out of space, two at once, damaged records, a clock that jumps.
 //! Nothing finished is lost, and nothing wrong is taken for a result.
 
-mod program;
-
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::fs;
@@ -32,11 +30,11 @@ fn program() -> Command {
 }
 
 fn folder_with_study() -> TempDir {
-    program::folder_with(STUDY)
+    crate::program::folder_with(STUDY)
 }
 
 fn run_in(folder: &Path, arguments: &[&str]) -> (i32, String) {
-    let told = program::call(folder, arguments);
+    let told = crate::program::call(folder, arguments);
     (told.code, told.err)
 }
 
@@ -245,8 +243,8 @@ proptest! {
 
     #[test]
     fn a_mangled_study_is_taken_or_refused_with_a_place_and_never_panics(text in mangled()) {
-        let source = oedometer::study::file::StudySource { name: "mangled.toml".to_owned(), text };
-        if let Err(error) = oedometer::study::check::Study::check(&source) {
+        let source = oedometer::StudySource { name: "mangled.toml".to_owned(), text };
+        if let Err(error) = oedometer::Study::check(&source) {
             let told = error.to_string();
             prop_assert!(told.contains("mangled.toml") || told.contains("error"), "{told}");
             prop_assert!(told.len() > 20, "a sentence: {told}");
@@ -255,18 +253,18 @@ proptest! {
 
     #[test]
     fn any_text_is_refused_with_words(text in "\\PC{0,200}") {
-        let source = oedometer::study::file::StudySource { name: "any.toml".to_owned(), text };
-        let refused = oedometer::study::check::Study::check(&source);
+        let source = oedometer::StudySource { name: "any.toml".to_owned(), text };
+        let refused = oedometer::Study::check(&source);
         prop_assert!(refused.is_err_and(|error| error.to_string().len() > 20));
     }
 }
 
 #[test]
 fn any_damage_to_a_record_leaves_it_whole_or_unread() {
-    use oedometer::record::store::RecordStore;
+    use oedometer::RecordStore;
     let (folder, file, sound) = one_record();
     let text = String::from_utf8(sound.clone()).expect("words");
-    let mut record: oedometer::record::Record = serde_json::from_str(&text).expect("a record");
+    let mut record: oedometer::Record = serde_json::from_str(&text).expect("a record");
     record.digest.clear();
     let store = RecordStore::new(&folder.path().join("out"), "short");
     let mut seed = 7_u64;
@@ -287,7 +285,7 @@ fn any_damage_to_a_record_leaves_it_whole_or_unread() {
 }
 
 /// What was read is the record to the last number, or the damage went unseen.
-fn assert_same(read: &oedometer::record::Record, record: &oedometer::record::Record, at: usize) {
+fn assert_same(read: &oedometer::Record, record: &oedometer::Record, at: usize) {
     let mut read = read.clone();
     read.wall.clone_from(&record.wall);
     assert!(read == *record, "a flipped bit at byte {at} was taken for a result");

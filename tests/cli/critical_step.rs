@@ -1,14 +1,12 @@
 //! `stability` through the door: predicted and observed critical steps agree, for every method, and
 //! have the values that an independent implementation measured (numerics, section 2).
 
-mod program;
-
 use std::path::Path;
 
 /// Rows of the CSV: predicted, observed, `h/c`, share, status.
 fn stability(arguments: &[&str]) -> (i32, Vec<Vec<String>>) {
     let command = ["stability", "terzaghi", "--format", "csv", "--time-factor", "1e-3"];
-    let told = program::call(Path::new("."), &[&command, arguments].concat());
+    let told = crate::program::call(Path::new("."), &[&command, arguments].concat());
     let rows = told.out.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect();
     (told.code, rows)
 }

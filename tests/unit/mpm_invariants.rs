@@ -1,14 +1,14 @@
 //! What holds of the solver whatever the numbers: scaling of units, linearity, balances, and the
 //! equalities between methods that theory demands on the regular lattice.
 
-use oedometer::mpm::explicit::{Drag, ExplicitSettings};
-use oedometer::mpm::method::{Configuration, Method};
-use oedometer::mpm::run::outcome::{Outcome, RunStatus};
-use oedometer::mpm::run::snapshot::Snapshot;
-use oedometer::mpm::run::{Kernel, Schedule, TimeStepRule, run};
-use oedometer::scene::SceneKind;
-use oedometer::scene::column::{Column, column_problem};
-use oedometer::soil::material::Material;
+use crate::mpm::explicit::{Drag, ExplicitSettings};
+use crate::mpm::method::{Configuration, Method};
+use crate::mpm::run::outcome::{Outcome, RunStatus};
+use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};
+use crate::scene::SceneKind;
+use crate::scene::column::{Column, column_problem};
+use crate::soil::material::Material;
 use proptest::prelude::*;
 
 /// A run in dimensionless words, small enough for many of them.
@@ -60,9 +60,9 @@ impl Setup {
         .expect("a possible column");
         let seconds = self.column.height * self.column.height / self.soil.coefficient_of_consolidation();
         let schedule = Schedule {
-            integrator: oedometer::mpm::run::integrator::IntegratorKind::Explicit,
+            integrator: crate::mpm::run::integrator::IntegratorKind::Explicit,
             critical_step: None,
-            formulation: oedometer::mpm::run::integrator::Formulation::VW,
+            formulation: crate::mpm::run::integrator::Formulation::VW,
             outputs: self.time_factors.iter().map(|factor| factor * seconds).collect(),
             history: Vec::new(),
             rule: self.rule,

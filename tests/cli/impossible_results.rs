@@ -1,22 +1,11 @@
 //! What no result may be, and no run may do: beyond what its scene can reach, out of balance, held
 //! against a theory that leaves out what rules, or without an end.
 
-mod program;
-
-use oedometer::campaign::{RunOptions, run_case, run_study};
-use oedometer::case::quantity::{Quantity, Sample};
-use oedometer::case::tier::Tier;
-use oedometer::judge::soundness;
-use oedometer::measure::record_checks::{balance_checks, start_checks};
-use oedometer::mpm::run::Kernel;
-use oedometer::mpm::run::outcome::FailureKind;
-use oedometer::record::{Record, Status};
-use oedometer::render::measures;
-use oedometer::render::page::render_markdown;
-use oedometer::render::report::{StudyResults, page_of};
-use oedometer::study::check::Study;
-use oedometer::study::file::StudySource;
-use program::call;
+use crate::program::call;
+use oedometer::{
+    FailureKind, Kernel, Quantity, Record, RunOptions, Sample, Status, Study, StudyResults, StudySource,
+    Tier, balance_checks, measures, page_of, render_markdown, run_case, run_study, soundness, start_checks,
+};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -182,9 +171,8 @@ fn no_error_is_held_against_a_theory_that_leaves_out_what_rules() {
         of("terzaghi", "explicit", 1e-3),
     ] {
         assert!(holds.references.iter().all(|reference| reference.does_not_hold.is_none()));
-        let pressure = |row: &&oedometer::record::ErrorRow| {
-            row.quantity == Quantity::Pressure && row.sample == Sample::Points
-        };
+        let pressure =
+            |row: &&oedometer::ErrorRow| row.quantity == Quantity::Pressure && row.sample == Sample::Points;
         assert!(holds.errors.iter().any(|row| pressure(&row)));
     }
 }

@@ -1,20 +1,12 @@
 //! What is kept and taken together: names of studies, origins of records, sweeps that are too large, a disk
 //! that is full, a reference that refuses; and the list of faults that these tests are held against.
 
-mod program;
-
-use oedometer::campaign::{RunOptions, Selected, run_studies, run_study};
-use oedometer::case::tier::Tier;
+use crate::program::{Told, call, folder_with};
 use oedometer::exact::reference::ReferenceKind;
-use oedometer::golden::GoldenFile;
-use oedometer::judge::study_check::{CheckEnd, StudyCheck};
-use oedometer::mpm::run::outcome::{Failure, FailureKind};
-use oedometer::record::origins::Origins;
-use oedometer::record::store::RecordStore;
-use oedometer::record::{Record, Status};
-use oedometer::study::check::Study;
-use oedometer::study::file::StudySource;
-use program::{Told, call, folder_with};
+use oedometer::{
+    CheckEnd, Failure, FailureKind, GoldenFile, Origins, Record, RecordStore, RunOptions, Selected, Status,
+    Study, StudyCheck, StudySource, Tier, run_studies, run_study,
+};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
@@ -82,7 +74,7 @@ fn change_records(results: &Path, change: impl Fn(usize, &mut Record)) {
     }
 }
 
-fn provenance_of(results: &Path) -> Vec<oedometer::record::provenance::Provenance> {
+fn provenance_of(results: &Path) -> Vec<oedometer::Provenance> {
     let store = RecordStore::new(results, "short");
     study().cases(Tier::Full).into_iter().filter_map(|case| store.origin(case)).collect()
 }

@@ -4,19 +4,19 @@
 //! case; pairs of values that a study may ask for and none does are listed in a snapshot, so that the list
 //! changes knowingly. What cannot go together is told by the checker itself.
 
-use oedometer::case::tier::Tier;
-use oedometer::case::{Case, Task};
-use oedometer::exact::cosine_layer::Base;
-use oedometer::mpm::explicit::Drag;
-use oedometer::mpm::explicit::scheme::Scheme;
-use oedometer::mpm::method::{Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient};
-use oedometer::mpm::run::TimeStepRule;
-use oedometer::mpm::run::integrator::{Formulation, IntegratorKind};
-use oedometer::scene::SceneKind;
-use oedometer::soil::material::{Continuity, Law, Material};
-use oedometer::study::check::Study;
-use oedometer::study::file::StudySource;
-use oedometer::study::shipped::shipped_studies;
+use crate::case::tier::Tier;
+use crate::case::{Case, Task};
+use crate::exact::cosine_layer::Base;
+use crate::mpm::explicit::Drag;
+use crate::mpm::explicit::scheme::Scheme;
+use crate::mpm::method::{Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient};
+use crate::mpm::run::TimeStepRule;
+use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::scene::SceneKind;
+use crate::soil::material::{Continuity, Law, Material};
+use crate::study::check::Study;
+use crate::study::file::StudySource;
+use crate::study::shipped::shipped_studies;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 

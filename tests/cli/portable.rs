@@ -1,8 +1,6 @@
 //! The same values on every machine: none may hang on the platform's elementary functions.
 
-mod program;
-
-use program::{Told, call_with};
+use crate::program::{Told, call_with};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
@@ -38,7 +36,7 @@ fn perturbed_library(folder: &Path) -> Option<PathBuf> {
     if !cfg!(target_os = "linux") {
         return None;
     }
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/program/perturbed_libm.c");
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli/perturbed_libm.c");
     let library = folder.join("perturbed_libm.so");
     let compiled = Command::new("cc")
         .args(["-O1", "-fno-builtin", "-shared", "-fPIC", "-o"])

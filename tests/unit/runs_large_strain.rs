@@ -1,13 +1,13 @@
 //! The scene `xie-leo` through the public door: what it refuses, where it starts, what it solves.
 
-use oedometer::campaign::run_case;
-use oedometer::case::quantity::{Quantity, Sample};
-use oedometer::exact::reference::ReferenceKind;
-use oedometer::mpm::run::Kernel;
-use oedometer::record::{Record, Status};
-use oedometer::soil::material::{Continuity, Law};
-use oedometer::study::check::Study;
-use oedometer::study::file::StudySource;
+use crate::campaign::run_case;
+use crate::case::quantity::{Quantity, Sample};
+use crate::exact::reference::ReferenceKind;
+use crate::mpm::run::Kernel;
+use crate::record::{Record, Status};
+use crate::soil::material::{Continuity, Law};
+use crate::study::check::Study;
+use crate::study::file::StudySource;
 
 fn study(lines: &str, sweep: &str) -> Result<Study, String> {
     let text = format!(
@@ -75,7 +75,7 @@ fn a_growing_load_finds_the_soil_at_rest_and_has_its_own_reference() {
         assert_eq!(record.status, Status::Ok);
         let at_rest = &record.snapshots[0];
         assert!(at_rest.points.pressure.iter().chain(&at_rest.points.effective_stress).all(|p| *p == 0.0));
-        let norm = oedometer::case::norm::Norm::L2;
+        let norm = crate::case::norm::Norm::L2;
         for (time_factor, most) in [(0.03, 0.08), (0.05, 0.06)] {
             let error = record.error(Quantity::Pressure, Sample::Points, norm, "large-strain", time_factor);
             let error = error.expect("an error").value;
@@ -113,7 +113,7 @@ fn every_model_comes_near_its_own_reference_and_keeps_its_water() {
             );
             let record = record(LOADED, &sweep);
             assert_eq!(record.status, Status::Ok);
-            let norm = oedometer::case::norm::Norm::L2;
+            let norm = crate::case::norm::Norm::L2;
             let error = record.error(Quantity::Pressure, Sample::Points, norm, "large-strain", 0.05);
             let error = error.expect("an error").value;
             assert!(error < 0.045, "{law:?} {continuity:?} {error}");
@@ -145,7 +145,7 @@ fn splines_end_at_the_surface_wherever_it_is() {
             assert_eq!(record.status, Status::Ok, "{}", case.label());
             let settled = record.snapshots[0].settlement;
             assert!(settled > 0.07, "past the middle of the cell: {settled}");
-            let norm = oedometer::case::norm::Norm::L2;
+            let norm = crate::case::norm::Norm::L2;
             let error = record.error(Quantity::Pressure, Sample::Points, norm, "large-strain", 0.2);
             let error = error.expect("an error").value;
             assert!(error < 0.02, "{}: {error}", case.label());

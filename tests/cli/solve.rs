@@ -1,9 +1,7 @@
 //! The contract of `solve` and `exact`: columns, names, digits, exit codes, and the accuracy that
 //! the paper's method is known for.
 
-mod program;
-
-use program::call;
+use crate::program::call;
 use serde_json::Value;
 use std::path::Path;
 

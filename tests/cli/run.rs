@@ -1,9 +1,7 @@
 //! `run` and `plan`: records and tidy CSV, resuming, shards, exit codes; the same bytes whatever
 //! the number of jobs.
 
-mod program;
-
-use program::{Told, call, folder_with};
+use crate::program::{Told, call, folder_with};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -6,9 +6,7 @@
 //! A wall time at the end of a line is the machine's own.
 #![cfg(unix)]
 
-mod program;
-
-use program::{Told, call};
+use crate::program::{Told, call};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;

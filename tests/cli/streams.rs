@@ -2,8 +2,6 @@
 //! under standard output is one with a sentence, and under standard error it stops nothing.
 #![cfg(target_os = "linux")]
 
-mod program;
-
 use std::fs::{self, File, OpenOptions};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -69,7 +67,7 @@ const CALLS: &[&[&str]] = &[
 ];
 
 fn place() -> TempDir {
-    let folder = program::folder_with(STUDY);
+    let folder = crate::program::folder_with(STUDY);
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/other-solver");
     for name in ["column-10.csv", "mapping.toml"] {
         fs::copy(example.join(name), folder.path().join(name)).expect("a copy");
@@ -91,7 +89,7 @@ fn full() -> Stdio {
 
 fn call(folder: &Path, arguments: &[&str], out: Stdio, err: Stdio) -> Output {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin("oedometer"));
-    for name in program::OF_A_CI {
+    for name in crate::program::OF_A_CI {
         command.env_remove(name);
     }
     let child = command.current_dir(folder).args(arguments).stdin(Stdio::null()).stdout(out).stderr(err);

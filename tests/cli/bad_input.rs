@@ -1,9 +1,7 @@
 //! Bad input ends with exit code 2 and a sentence that says where and what would be right; nothing
 //! goes to standard output and nothing panics.
 
-mod program;
-
-use program::{Told, assert_snapshot, call};
+use crate::program::{Told, assert_snapshot, call};
 use std::path::Path;
 use tempfile::TempDir;
 

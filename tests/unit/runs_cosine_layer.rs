@@ -1,13 +1,13 @@
 //! The undrained start of the cosine-loaded layer against the figures of an independent
 //! implementation: where volumetric locking shows.
 
-use oedometer::campaign::run_case;
-use oedometer::case::norm::Norm;
-use oedometer::case::quantity::{Quantity, Sample};
-use oedometer::mpm::run::Kernel;
-use oedometer::record::Record;
-use oedometer::study::check::Study;
-use oedometer::study::file::StudySource;
+use crate::campaign::run_case;
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::mpm::run::Kernel;
+use crate::record::Record;
+use crate::study::check::Study;
+use crate::study::file::StudySource;
 
 /// The undrained start by a method on `cells` × `cells` square cells.
 fn start(method: &str, cells: usize, stiffness_ratio: f64, more: &str) -> Record {

@@ -1,9 +1,9 @@
 //! Expectations are judged in full, and nothing passes by absence or nonsense.
 
-use oedometer::convergence::class::{Class, Context};
-use oedometer::convergence::series::{ErrorSeries, Level};
-use oedometer::convergence::series_expectation::{Band, ErrorBound, Expectation, FloorBand, KnownFailure};
-use oedometer::judge::verdict::{Beside, Outcome, Verdict, judge};
+use crate::convergence::class::{Class, Context};
+use crate::convergence::series::{ErrorSeries, Level};
+use crate::convergence::series_expectation::{Band, ErrorBound, Expectation, FloorBand, KnownFailure};
+use crate::judge::verdict::{Beside, Outcome, Verdict, judge};
 
 fn series(error: impl Fn(f64) -> f64) -> ErrorSeries {
     let sizes = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0].map(|cells| 1.0 / cells);

@@ -1,11 +1,8 @@
 //! `score`, `explain`, `merge`, `spread`, `schema`, `completions` and `run --case` through the
 //! program, and the list of faults that `check` is held against.
 
-mod program;
-
-use oedometer::record::Record;
-use oedometer::record::store::RecordStore;
-use program::{assert_snapshot, assert_words, call, folder_with};
+use crate::program::{assert_snapshot, assert_words, call, folder_with};
+use oedometer::{Record, RecordStore};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
@@ -222,11 +219,7 @@ fn one_case_can_be_explained_and_run_again() {
 
 #[test]
 fn an_explanation_says_what_changed_against_the_golden_values() {
-    use oedometer::campaign::{RunOptions, run_study};
-    use oedometer::case::tier::Tier;
-    use oedometer::golden::GoldenFile;
-    use oedometer::study::check::Study;
-    use oedometer::study::file::StudySource;
+    use oedometer::{GoldenFile, RunOptions, Study, StudySource, Tier, run_study};
     let folder = place();
     let source = StudySource { name: "short.toml".to_owned(), text: STUDY.to_owned() };
     let study = Study::check(&source).expect("sound");
@@ -274,14 +267,10 @@ fn threads_make_no_spread_and_last_digits_and_kernels_a_little() {
 /// were derived from last digits alone.
 #[test]
 fn tolerances_from_last_digits_hold_for_another_kernel() {
-    use oedometer::campaign::run_case;
-    use oedometer::case::tier::Tier;
-    use oedometer::golden::tolerance::spread_by_group;
-    use oedometer::golden::{GoldenFile, compare, values_of};
-    use oedometer::mpm::run::Kernel;
-    use oedometer::study::check::Study;
-    use oedometer::study::file::StudySource;
-    use oedometer::study::perturbed::LastDigit;
+    use oedometer::{
+        GoldenFile, Kernel, LastDigit, Study, StudySource, Tier, compare, run_case, spread_by_group,
+        values_of,
+    };
     let source = StudySource { name: "short.toml".to_owned(), text: STUDY.to_owned() };
     let study = Study::check(&source).expect("sound");
     let records_by = |study: &Study, kernel: Kernel| -> Vec<Record> {

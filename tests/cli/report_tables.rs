@@ -3,21 +3,12 @@
 //! Snapshots hold the wording and the layout; what the numbers must be is for expectations and
 //! golden values to judge.
 
-mod program;
-
-use oedometer::campaign::{RunOptions, run_study};
-use oedometer::case::tier::Tier;
-use oedometer::golden::{GoldenFile, values_of};
-use oedometer::judge::study_check::StudyCheck;
-use oedometer::record::provenance::Provenance;
-use oedometer::record::{Record, WallSample};
-use oedometer::render::page::{Block, Page, figures, render_html, render_markdown};
-use oedometer::render::report::{StudyResults, page_of};
-use oedometer::render::table::Table;
-use oedometer::render::{junit, measures, verdicts};
-use oedometer::study::check::Study;
-use oedometer::study::file::StudySource;
-use program::assert_snapshot;
+use crate::program::assert_snapshot;
+use oedometer::{
+    Block, GoldenFile, Page, Provenance, Record, RunOptions, Study, StudyCheck, StudyResults, StudySource,
+    Table, Tier, WallSample, figures, junit, measures, page_of, render_html, render_markdown, run_study,
+    values_of, verdicts,
+};
 
 const STUDY: &str = r#"
 title = "A small study"

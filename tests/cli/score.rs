@@ -1,9 +1,7 @@
 //! `score` through the program: layers, times of several meshes, results that are not whole, and
 //! mistakes that their numbers show.
 
-mod program;
-
-use program::{Told, call};
+use crate::program::{Told, call};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;

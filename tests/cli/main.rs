@@ -1,0 +1,17 @@
+//! Whole runs through the program, as its users call it.
+
+mod bad_input;
+mod check;
+mod critical_step;
+mod impossible_results;
+mod planted_damage;
+mod portable;
+mod program;
+mod readme;
+mod report_tables;
+mod run;
+mod score;
+mod solve;
+mod store;
+mod streams;
+mod tools;
