@@ -12,7 +12,8 @@ use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::scene::SceneKind;
 use crate::scene::arrangement::Arrangement;
 use crate::scene::column::Column;
-use crate::soil::material::{Continuity, Material};
+use crate::soil::continuity::Continuity;
+use crate::soil::material::Material;
 use serde::{Deserialize, Serialize};
 
 /// State and operators of a point, bytes.
@@ -241,7 +242,7 @@ mod tests {
     use super::*;
     use crate::exact::cosine_layer::Base;
     use crate::mpm::explicit::scheme::Scheme;
-    use crate::soil::material::Law;
+    use crate::soil::law::Law;
 
     fn seed() -> Case {
         Case {

@@ -252,7 +252,7 @@ fn parameters_of(
         return Err(Ended::usage("the assignments leave no column"));
     };
     let soil = &planned.case.material;
-    Ok((column_parameters(&planned.case.column, soil), SceneKind::reference_for(kind, soil)))
+    Ok((column_parameters(&planned.case.column, soil), kind.of_soil(soil)))
 }
 
 /// Time factors at which degrees of consolidation are reached.

@@ -35,7 +35,7 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
     prepared.push(LONG_AFTER);
     let references: Vec<Reference> = references
         .iter()
-        .map(|kind| Reference::new(SceneKind::reference_for(*kind, &case.material), &parameters, &prepared))
+        .map(|kind| Reference::new(kind.of_soil(&case.material), &parameters, &prepared))
         .collect::<Result<_, _>>()?;
     let mut errors = Vec::new();
     for (time_factor, snapshot) in case.time_factors.iter().zip(&outcome.snapshots) {

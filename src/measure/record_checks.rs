@@ -5,7 +5,7 @@ use crate::mpm::method::Basis;
 use crate::record::{Balance, Record};
 use crate::scene::SceneKind;
 use crate::scene::arrangement::Arrangement;
-use crate::soil::material::Continuity;
+use crate::soil::continuity::Continuity;
 use crate::wording::typed;
 
 /// The check that is told in numbers of points.

@@ -268,7 +268,7 @@ fn start_standing_wave<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::soil::material::Law;
+    use crate::soil::law::Law;
 
     #[test]
     fn the_undrained_start_is_in_equilibrium_whatever_the_law() {

@@ -6,12 +6,13 @@ pub mod arrangement;
 pub mod column;
 pub mod problem;
 
-use crate::exact::large_strain;
-use crate::exact::large_strain::law::{LargeStrainModel, SoilLaw, Water};
+use crate::exact::large_strain::law::LargeStrainModel;
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::method::Configuration;
 use crate::scene::column::Column;
-use crate::soil::material::{Continuity, Law, Material};
+use crate::soil::continuity::Continuity;
+use crate::soil::law::Law;
+use crate::soil::material::Material;
 use serde::{Deserialize, Serialize};
 
 /// A physical problem by name.
@@ -37,12 +38,8 @@ pub enum SceneKind {
     StandingWave,
 }
 
-/// The large-strain reference of the default law; see [`SceneKind::reference_for`].
-const LARGE_STRAIN: ReferenceKind = ReferenceKind::LargeStrain(LargeStrainModel {
-    law: SoilLaw::LogLinear,
-    continuity: large_strain::Continuity::Conservative,
-    water: Water::Compressible,
-});
+/// The large-strain reference of the default law; [`ReferenceKind::of_soil`] takes that of a soil.
+const LARGE_STRAIN: ReferenceKind = ReferenceKind::LargeStrain(LargeStrainModel::XIE_LEO);
 
 impl SceneKind {
     /// Every scene.
@@ -105,29 +102,6 @@ impl SceneKind {
         match self {
             Self::XieLeo if column.loading_time > 0.0 => &[LARGE_STRAIN],
             _ => self.references(),
-        }
-    }
-
-    /// A reference as it holds for a soil: the large-strain one takes the soil's own law and
-    /// continuity, and is of the equations that the solver solves.
-    pub fn reference_for(kind: ReferenceKind, soil: &Material) -> ReferenceKind {
-        match kind {
-            ReferenceKind::LargeStrain(model) => ReferenceKind::LargeStrain(LargeStrainModel {
-                law: match soil.law {
-                    Law::Linear => SoilLaw::Linear,
-                    Law::LogLinear => SoilLaw::LogLinear,
-                    Law::PorosityDependent => SoilLaw::PorosityDependent,
-                    Law::Engineering => SoilLaw::Engineering,
-                },
-                continuity: match soil.continuity {
-                    Continuity::Conservative => large_strain::Continuity::Conservative,
-                    Continuity::ConstantPorosityGradient => {
-                        large_strain::Continuity::ConstantPorosityGradient
-                    }
-                },
-                ..model
-            }),
-            other => other,
         }
     }
 

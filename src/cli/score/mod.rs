@@ -84,11 +84,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let held = Held {
         case,
         mapping: &mapping_of(arguments.mapping.as_deref(), case)?,
-        references: &study
-            .references
-            .iter()
-            .map(|kind| SceneKind::reference_for(*kind, &case.material))
-            .collect::<Vec<_>>(),
+        references: &study.references.iter().map(|kind| kind.of_soil(&case.material)).collect::<Vec<_>>(),
         requested: &requested,
         tolerance,
     };
