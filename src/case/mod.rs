@@ -8,7 +8,8 @@ use crate::elementary;
 use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::method::Method;
 use crate::mpm::run::TimeStepRule;
-use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::mpm::run::integrator::Formulation;
+pub use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::SceneKind;
 use crate::scene::arrangement::Arrangement;
 use crate::scene::column::Column;
@@ -89,6 +90,18 @@ impl Case {
         blake3::hash(canonical.as_bytes()).to_hex()[..HASH_DIGITS].to_owned()
     }
 
+    /// Whether it is integrated explicitly.
+    pub fn is_explicit(&self) -> bool {
+        self.integrator == IntegratorKind::Explicit
+    }
+
+    /// Whether water and skeleton are as compressible as the seed's: not a step towards incompressibility.
+    pub fn has_usual_compressibility(&self) -> bool {
+        let seed = Material::default();
+        self.material.water_bulk_modulus == seed.water_bulk_modulus
+            && self.material.poissons_ratio == seed.poissons_ratio
+    }
+
     /// Cell size, m.
     pub fn cell_size(&self) -> f64 {
         self.column.points.cell_size(self.column.height, self.cells)
@@ -119,7 +132,7 @@ impl Case {
         // Unknowns of one row of cells across the layer; a node couples to four rows above and below.
         let row = short * (dimensions + sites);
         let band = 12.0 * row;
-        let solves = self.integrator != IntegratorKind::Explicit || self.scene.is_plane();
+        let solves = !self.is_explicit() || self.scene.is_plane();
         let solver = if solves { 16.0 * long * row * band } else { 0.0 };
         solver + BYTES_A_POINT * short * long * points_a_cell
     }

@@ -154,6 +154,11 @@ impl SceneKind {
         self == Self::CosineLayer
     }
 
+    /// Whether its strains are large: degree of consolidation, not time, measures its progress.
+    pub fn is_large_strain(self) -> bool {
+        self == Self::XieLeo
+    }
+
     /// Whether waves run in it.
     pub fn has_waves(self) -> bool {
         matches!(self, Self::DynamicColumn | Self::DynamicSingleMode | Self::StandingWave)
