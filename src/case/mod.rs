@@ -132,7 +132,7 @@ impl Case {
         // Unknowns of one row of cells across the layer; a node couples to four rows above and below.
         let row = short * (dimensions + sites);
         let band = 12.0 * row;
-        let solves = !self.is_explicit() || self.scene.is_plane();
+        let solves = !self.is_explicit() || self.scene.start_is_solved();
         let solver = if solves { 16.0 * long * row * band } else { 0.0 };
         solver + BYTES_A_POINT * short * long * points_a_cell
     }
@@ -161,7 +161,7 @@ impl Case {
         if self.settings.mapping_back != defaults.mapping_back {
             parts.push("no mapping back".to_owned());
         }
-        if self.column.dimensions == 2 && !self.scene.is_plane() {
+        if self.column.dimensions == 2 && !self.scene.needs_two_dimensions() {
             parts.push("two dimensions".to_owned());
         }
         if self.material.law != self.scene.default_law() {
@@ -172,11 +172,11 @@ impl Case {
         }
         parts.extend(self.arrangement());
         let seed = Material::default();
-        if self.scene.is_plane() && self.material.water_bulk_modulus != seed.water_bulk_modulus {
+        if self.scene.shows_locking() && self.material.water_bulk_modulus != seed.water_bulk_modulus {
             parts
                 .push(format!("K_w/E {:e}", self.material.water_bulk_modulus / self.material.youngs_modulus));
         }
-        if self.scene.is_plane() && self.material.poissons_ratio != seed.poissons_ratio {
+        if self.scene.shows_locking() && self.material.poissons_ratio != seed.poissons_ratio {
             parts.push(format!("ν {}", self.material.poissons_ratio));
         }
         if self.task == Task::Stability {
@@ -298,7 +298,7 @@ mod tests {
             |case| case.task = Task::Stability,
             |case| case.scene = SceneKind::XieLeo,
             |case| case.column.height = 2.0,
-            |case| case.column.width = 2.0,
+            |case| case.column.horizontal_extent = 2.0,
             |case| case.column.load = 2.0,
             |case| case.column.dimensions = 2,
             |case| case.column.base = Some(Base::ALL[0]),

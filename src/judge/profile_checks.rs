@@ -47,7 +47,7 @@ impl Path<'_> {
             demand.at.is_some_and(|at| (size - at.size).abs() <= 1e-9 * at.size)
         };
         let record = self.records.iter().find(named).or(self.records.last())?;
-        if record.case.scene.is_plane() {
+        if record.case.scene.has_plane_fields() {
             let is_measured = (measure.quantity, measure.sample) == (Quantity::Pressure, Sample::Points);
             let field = PlaneField::of(record, measure.time_factor).ok()?;
             return field.filter(|_| is_measured).map(|field| field.oscillation_index());

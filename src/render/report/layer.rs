@@ -17,7 +17,7 @@ const SHOWN_CELLS: usize = 8;
 
 /// Fields and ranking of a study of a layer; nothing for a column's.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
-    if !results.study.scene.is_plane() {
+    if !results.study.scene.has_plane_fields() {
         return Ok(Vec::new());
     }
     let mut blocks = Vec::new();

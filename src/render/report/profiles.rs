@@ -22,7 +22,7 @@ const SHOWN_POINTS: [usize; 2] = [2, 4];
 /// but one method.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     let shown = shown_records(results.records);
-    if shown.len() < 2 || results.study.scene.is_plane() {
+    if shown.len() < 2 || results.study.scene.has_plane_fields() {
         return Ok(Vec::new());
     }
     let mut blocks = vec![Block::Heading("Profiles on ten cells".to_owned())];
