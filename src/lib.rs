@@ -112,7 +112,9 @@ pub use mpm::run::outcome::{Counters, Failure, FailureKind, StepSizes};
 pub use mpm::run::{Kernel, Schedule, TimeStepRule};
 pub use scene::SceneKind;
 pub use scene::column::{Column, column_problem};
-pub use soil::material::{Continuity, Material};
+pub use soil::continuity::Continuity;
+pub use soil::law::Law;
+pub use soil::material::Material;
 
 // What the benches time one by one.
 #[doc(hidden)]

@@ -5,7 +5,8 @@ use crate::mpm::explicit::scheme::Scheme;
 use crate::mpm::method::Method;
 use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
-use crate::soil::material::{Continuity, Law};
+use crate::soil::continuity::Continuity;
+use crate::soil::law::Law;
 
 /// One block of a study, checked.
 #[derive(Clone, Debug, PartialEq)]

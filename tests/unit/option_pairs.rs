@@ -13,7 +13,9 @@ use crate::mpm::method::{Basis, Configuration, Memory, PressureIntegration, Reco
 use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::scene::SceneKind;
-use crate::soil::material::{Continuity, Law, Material};
+use crate::soil::continuity::Continuity;
+use crate::soil::law::Law;
+use crate::soil::material::Material;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 use crate::study::shipped::shipped_studies;

@@ -8,7 +8,7 @@ pub(crate) mod march;
 pub(crate) mod radau;
 pub(crate) mod similarity;
 
-pub use crate::exact::large_strain::law::{Continuity, LargeStrainModel, SoilLaw, Water};
+pub use crate::exact::large_strain::law::{LargeStrainModel, Water};
 
 use crate::exact::error::{ExactError, checked_depth, checked_time_factor};
 use crate::exact::large_strain::law::Diffusion;

@@ -19,7 +19,7 @@ const LARGEST_SMALL_STRAIN: f64 = 1e-2;
 impl Checker<'_> {
     /// The column's or the layer's table, whichever the scene is about; the other is refused.
     pub(crate) fn geometry(&mut self, file: &StudyFile, scene: SceneKind) -> Column {
-        if scene.is_plane() {
+        if scene.needs_two_dimensions() {
             if let Some(span) = file.column.typed() {
                 let name = scene.name();
                 self.complain(
@@ -46,7 +46,12 @@ impl Checker<'_> {
         let base = table.base.as_ref().and_then(|word| self.word(word, "base", &Base::ALL.map(Base::name)));
         Column {
             height: self.positive(table.height.as_ref(), "layer.height", "m", seed.height),
-            width: self.positive(table.length.as_ref(), "layer.length", "m", seed.width),
+            horizontal_extent: self.positive(
+                table.length.as_ref(),
+                "layer.length",
+                "m",
+                seed.horizontal_extent,
+            ),
             load: self.positive(table.load.as_ref(), "layer.load", "Pa", seed.load),
             base: base.map_or(seed.base, |index| Some(Base::ALL[index])),
             ..seed
@@ -68,7 +73,12 @@ impl Checker<'_> {
                 .unwrap_or(seed.dimensions),
             base: None,
             height: self.positive(table.height.as_ref(), "column.height", "m", seed.height),
-            width: self.positive(table.width.as_ref(), "column.width", "m", seed.width),
+            horizontal_extent: self.positive(
+                table.width.as_ref(),
+                "column.width",
+                "m",
+                seed.horizontal_extent,
+            ),
             load: self.positive(table.load.as_ref(), "column.load", "Pa", seed.load),
             loading_time: self.not_negative(table.loading_time.as_ref(), "column.loading_time", "s"),
             points: Arrangement::default(),
@@ -84,7 +94,7 @@ impl Checker<'_> {
         column: &Column,
         soil: &Material,
     ) {
-        if scene != SceneKind::XieLeo || !self.diagnostics.is_empty() {
+        if !scene.is_large_strain() || !self.diagnostics.is_empty() {
             return;
         }
         let parameters = column_parameters(column, soil);
@@ -110,7 +120,7 @@ impl Checker<'_> {
         soil: &Material,
     ) -> Option<String> {
         let strain = column.load / soil.oedometric_modulus();
-        if !scene.is_small_strain() || strain <= LARGEST_SMALL_STRAIN {
+        if scene.is_large_strain() || strain <= LARGEST_SMALL_STRAIN {
             return None;
         }
         let typed = file.column.load.as_ref().or(file.material.youngs_modulus.as_ref()).map(Spanned::span);

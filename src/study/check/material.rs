@@ -1,7 +1,9 @@
 //! Checks of what the soil is made of: the table `[material]`.
 
 use crate::scene::SceneKind;
-use crate::soil::material::{Continuity, Law, Material};
+use crate::soil::continuity::Continuity;
+use crate::soil::law::Law;
+use crate::soil::material::Material;
 use crate::study::check::Checker;
 use crate::study::file::MaterialTable;
 use toml::Spanned;
