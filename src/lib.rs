@@ -124,9 +124,12 @@ pub use mpm::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
 #[doc(hidden)]
 pub use mpm::critical_step::predicted::predicted_critical_step;
 #[doc(hidden)]
-pub use mpm::implicit::{drive::Plan, linear::LinearMarch, march::March, steps::StepLimit};
+pub use mpm::implicit::linear::LinearStepper;
 #[doc(hidden)]
-pub use mpm::run::physical_bounds::PhysicalBounds;
+pub use mpm::run::{
+    plan::Plan,
+    stepper::{EqualSteps, Stepper},
+};
 
 #[cfg(test)]
 #[path = "../tests/unit/mod.rs"]

@@ -1,18 +1,10 @@
-//! Step sizes of the implicit integrators: few distinct ones, so that factors can be kept.
+//! How large steps may be: few distinct sizes, so that factors can be kept.
 
 use crate::elementary;
+use crate::mpm::run::stepper::EqualSteps;
 
 /// Step sizes grow by this factor from one level to the next.
 const LEVEL_RATIO: f64 = std::f64::consts::SQRT_2;
-
-/// Steps of one size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment {
-    /// How many.
-    pub count: u64,
-    /// Size, s.
-    pub dt: f64,
-}
 
 /// How large a step may be at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,10 +32,10 @@ pub enum StepLimit {
 impl StepLimit {
     /// The steps to take next from `time` towards `output`: of one size, which is at most the
     /// limit wherever it is taken, and that end at `output` or where larger ones may begin.
-    pub fn segment(&self, time: f64, output: f64) -> Segment {
+    pub fn row(&self, time: f64, output: f64) -> EqualSteps {
         let (size, end) = match *self {
             Self::Constant(size) => (size, output),
-            // Of a size that the march goes on from by itself.
+            // Of a size that the driver goes on from by itself.
             Self::Tolerance { first, .. } => (first, output),
             Self::Growing { first, growth, most } => {
                 let allowed = (growth * time).max(first).min(most);
@@ -57,7 +49,7 @@ impl StepLimit {
             }
         };
         let count = steps_for(end - time, size);
-        Segment { count, dt: (end - time) / count as f64 }
+        EqualSteps::first(time, (end - time) / count as f64, count)
     }
 
     /// Steps from the start to `end`, without the outputs in between.
@@ -67,9 +59,9 @@ impl StepLimit {
         }
         let (mut time, mut steps) = (0.0, 0_u64);
         while end - time > 1e-9 * end {
-            let segment = self.segment(time, end);
-            let next = time + segment.count as f64 * segment.dt;
-            steps = steps.saturating_add(segment.count);
+            let row = self.row(time, end);
+            let next = row.end();
+            steps = steps.saturating_add(row.count);
             // Times at the edge of the numbers: what no longer advances is endless.
             let advances = next > time;
             if !advances {
@@ -107,12 +99,12 @@ mod tests {
             let (mut time, mut sizes, mut steps) = (0.0, 0, 0);
             for output in outputs {
                 while output - time > 1e-9 * output {
-                    let segment = limit.segment(time, output);
+                    let row = limit.row(time, output);
                     // Levels are powers, so a last step may exceed the limit by less than one.
-                    prop_assert!(segment.dt <= (growth * time).max(first) * (1.0 + 1e-9));
-                    time += segment.count as f64 * segment.dt;
+                    prop_assert!(row.dt <= (growth * time).max(first) * (1.0 + 1e-9));
+                    time += row.count as f64 * row.dt;
                     sizes += 1;
-                    steps += segment.count;
+                    steps += row.count;
                 }
                 prop_assert!((time / output - 1.0).abs() < 1e-9);
             }
@@ -126,8 +118,8 @@ mod tests {
 
     #[test]
     fn constant_steps_fill_the_way() {
-        assert_eq!(StepLimit::Constant(0.3).segment(0.1, 1.0), Segment { count: 3, dt: 0.3 });
-        assert_eq!(StepLimit::Constant(0.4).segment(0.0, 1.0).count, 3);
+        assert_eq!(StepLimit::Constant(0.3).row(0.1, 1.0), EqualSteps::first(0.1, 0.3, 3));
+        assert_eq!(StepLimit::Constant(0.4).row(0.0, 1.0).count, 3);
         assert_eq!(StepLimit::Constant(0.25).expected_steps(1.0), 4);
     }
 }
