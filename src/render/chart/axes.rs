@@ -3,6 +3,8 @@ use crate::render::chart::canvas::{Canvas, Hold, Rgb, Type};
 use crate::render::chart::clip::Frame;
 use crate::render::chart::layout::{Edge, LABEL, Layout, NOTE, SMALL, TITLE};
 use crate::render::chart::palette::{FRAME, MAJOR, MINOR, QUIET, TEXT};
+use crate::render::chart::ticks::Tick;
+use crate::render::script::width;
 
 const PLAIN: Type = Type { size: SMALL, ink: TEXT, bold: false, hold: Hold::Start, upright: false };
 const LINE: f64 = 1.3;
@@ -11,19 +13,16 @@ const LINE: f64 = 1.3;
 pub(crate) fn draw_grid(canvas: &mut Canvas, layout: &Layout) {
     let plot = layout.plot;
     for (major, ink) in [(false, MINOR), (true, MAJOR)] {
-        canvas.group(&[], |b| {
-            for t in layout.x.ticks.iter().filter(|t| t.label.is_some() == major) {
-                if let Ok(x) = layout.x.ruler.px(t.value) {
-                    b.line(&[(x, plot.top), (x, plot.bottom)], ink, 1.0)?;
-                }
-            }
-            for t in layout.y.ticks.iter().filter(|t| t.label.is_some() == major) {
-                if let Ok(y) = layout.y.ruler.px(t.value) {
-                    b.line(&[(plot.left, y), (plot.right, y)], ink, 1.0)?;
-                }
-            }
-            Ok(())
-        });
+        let lines_of = |edge: &Edge| -> Vec<f64> {
+            let lines = edge.ticks.iter().filter(|tick| tick.label.is_some() == major);
+            lines.filter_map(|tick| edge.ruler.px(tick.value).ok()).collect()
+        };
+        for x in lines_of(&layout.x) {
+            canvas.line(&[(x, plot.top), (x, plot.bottom)], ink, 1.0);
+        }
+        for y in lines_of(&layout.y) {
+            canvas.line(&[(plot.left, y), (plot.right, y)], ink, 1.0);
+        }
     }
 }
 
@@ -31,92 +30,82 @@ pub(crate) fn draw_grid(canvas: &mut Canvas, layout: &Layout) {
 pub(crate) fn draw_axes(canvas: &mut Canvas, layout: &Layout) {
     let plot = layout.plot;
     outline(canvas, &plot);
-    canvas.group(&[], |b| {
-        for t in &layout.x.ticks {
-            let Ok(x) = layout.x.ruler.px(t.value) else {
-                continue;
-            };
-            let length = if t.label.is_some() { 5.0 } else { 3.0 };
-            b.line(&[(x, plot.bottom), (x, plot.bottom + length)], FRAME, 1.0)?;
-            if let Some(label) = &t.label {
-                b.text(label, (x, plot.bottom + 18.0), Type { hold: Hold::Middle, ..PLAIN })?;
-            }
+    draw_ticks(canvas, layout);
+    for (i, words) in layout.x.words.iter().enumerate() {
+        let at = (f64::midpoint(plot.left, plot.right), plot.bottom + 36.0 + i as f64 * LABEL * LINE);
+        canvas.text(words, at, Type { size: LABEL, hold: Hold::Middle, ..PLAIN });
+    }
+    upright(canvas, &layout.y, layout.left + 11.0, &plot);
+    let mut y = layout.left + TITLE * 0.85;
+    for line in &layout.title {
+        canvas.text(line, (layout.left, y), Type { size: TITLE, bold: true, ..PLAIN });
+        y += TITLE * LINE;
+    }
+    y -= TITLE - SMALL;
+    for line in &layout.subtitle {
+        canvas.text(line, (layout.left, y), Type { ink: QUIET, ..PLAIN });
+        y += SMALL * LINE;
+    }
+    for (i, line) in layout.notes.iter().enumerate() {
+        let at = (layout.left, layout.notes_top + NOTE + i as f64 * NOTE * LINE);
+        canvas.text(line, at, Type { size: NOTE, ink: QUIET, ..PLAIN });
+    }
+}
+
+/// The ticks of both axes with their labels.
+fn draw_ticks(canvas: &mut Canvas, layout: &Layout) {
+    let plot = layout.plot;
+    let length = |tick: &Tick| if tick.label.is_some() { 5.0 } else { 3.0 };
+    for tick in &layout.x.ticks {
+        let Ok(x) = layout.x.ruler.px(tick.value) else { continue };
+        canvas.line(&[(x, plot.bottom), (x, plot.bottom + length(tick))], FRAME, 1.0);
+        if let Some(label) = &tick.label {
+            canvas.text(label, (x, plot.bottom + 18.0), Type { hold: Hold::Middle, ..PLAIN });
         }
-        for (i, words) in layout.x.words.iter().enumerate() {
-            let at = (f64::midpoint(plot.left, plot.right), plot.bottom + 36.0 + i as f64 * LABEL * LINE);
-            b.text(words, at, Type { size: LABEL, hold: Hold::Middle, ..PLAIN })?;
+    }
+    for tick in &layout.y.ticks {
+        let Ok(y) = layout.y.ruler.px(tick.value) else { continue };
+        canvas.line(&[(plot.left - length(tick), y), (plot.left, y)], FRAME, 1.0);
+        if let Some(label) = &tick.label {
+            canvas.text(label, (plot.left - 8.0, y + 4.2), Type { hold: Hold::End, ..PLAIN });
         }
-        for t in &layout.y.ticks {
-            let Ok(y) = layout.y.ruler.px(t.value) else {
-                continue;
-            };
-            let length = if t.label.is_some() { 5.0 } else { 3.0 };
-            b.line(&[(plot.left - length, y), (plot.left, y)], FRAME, 1.0)?;
-            if let Some(label) = &t.label {
-                b.text(label, (plot.left - 8.0, y + 4.2), Type { hold: Hold::End, ..PLAIN })?;
-            }
-        }
-        upright(b, &layout.y, layout.left + 11.0, &plot)?;
-        let mut y = layout.left + TITLE * 0.85;
-        for line in &layout.title {
-            b.text(line, (layout.left, y), Type { size: TITLE, bold: true, ..PLAIN })?;
-            y += TITLE * LINE;
-        }
-        y -= TITLE - SMALL;
-        for line in &layout.subtitle {
-            b.text(line, (layout.left, y), Type { ink: QUIET, ..PLAIN })?;
-            y += SMALL * LINE;
-        }
-        for (i, line) in layout.notes.iter().enumerate() {
-            let at = (layout.left, layout.notes_top + NOTE + i as f64 * NOTE * LINE);
-            b.text(line, at, Type { size: NOTE, ink: QUIET, ..PLAIN })?;
-        }
-        Ok(())
-    });
+    }
 }
 
 /// The colour bar of a field, in as many steps as it has colours.
 pub(crate) fn draw_bar(canvas: &mut Canvas, layout: &Layout, colour: impl Fn(f64) -> Rgb) {
     let Some(bar) = &layout.bar else { return };
     let frame = bar.frame;
-    canvas.group(&[("shape-rendering", "crispEdges")], |b| {
+    canvas.group(&[("shape-rendering", "crispEdges")], |canvas| {
         let steps = 120;
         for i in 0..steps {
             let (low, high) = (f64::from(i) / f64::from(steps), f64::from(i + 1) / f64::from(steps));
             let y = |share: f64| frame.bottom - share * frame.height();
-            b.rect((frame.left, y(high)), (frame.right, y(low)), colour(f64::midpoint(low, high)))?;
+            canvas.rect((frame.left, y(high)), (frame.right, y(low)), colour(f64::midpoint(low, high)));
         }
-        Ok(())
     });
     outline(canvas, &frame);
-    canvas.group(&[], |b| {
-        let mut reach = 0.0_f64;
-        for t in &bar.edge.ticks {
-            let (Ok(y), Some(label)) = (bar.edge.ruler.px(t.value), &t.label) else {
-                continue;
-            };
-            b.line(&[(frame.right, y), (frame.right + 4.0, y)], FRAME, 1.0)?;
-            b.text(label, (frame.right + 8.0, y + 4.2), PLAIN)?;
-            reach = reach.max(crate::render::script::width(label) * SMALL);
-        }
-        upright(b, &bar.edge, frame.right + 8.0 + reach + 14.0, &frame)
-    });
+    let mut reach = 0.0_f64;
+    for tick in &bar.edge.ticks {
+        let (Ok(y), Some(label)) = (bar.edge.ruler.px(tick.value), &tick.label) else { continue };
+        canvas.line(&[(frame.right, y), (frame.right + 4.0, y)], FRAME, 1.0);
+        canvas.text(label, (frame.right + 8.0, y + 4.2), PLAIN);
+        reach = reach.max(width(label) * SMALL);
+    }
+    upright(canvas, &bar.edge, frame.right + 8.0 + reach + 14.0, &frame);
 }
 
-fn upright(
-    b: &crate::render::chart::canvas::Brush<'_, '_>,
-    edge: &Edge,
-    x: f64,
-    frame: &Frame,
-) -> Result<(), String> {
+/// Words beside an upright axis.
+fn upright(canvas: &mut Canvas, edge: &Edge, x: f64, frame: &Frame) {
     let look = Type { size: LABEL, hold: Hold::Middle, upright: true, ..PLAIN };
-    edge.words.iter().enumerate().try_for_each(|(i, words)| {
-        b.text(words, (x + i as f64 * LABEL * LINE, f64::midpoint(frame.top, frame.bottom)), look)
-    })
+    for (i, words) in edge.words.iter().enumerate() {
+        let at = (x + i as f64 * LABEL * LINE, f64::midpoint(frame.top, frame.bottom));
+        canvas.text(words, at, look);
+    }
 }
 
 fn outline(canvas: &mut Canvas, f: &Frame) {
     let corners =
         [(f.left, f.top), (f.right, f.top), (f.right, f.bottom), (f.left, f.bottom), (f.left, f.top)];
-    canvas.group(&[], |b| b.line(&corners, FRAME, 1.0));
+    canvas.line(&corners, FRAME, 1.0);
 }

@@ -19,7 +19,7 @@ impl Chart {
                 .collect();
             let outline: Vec<Px> = ends.iter().map(|e| e.0).chain(ends.iter().rev().map(|e| e.1)).collect();
             if outline.len() > 2 {
-                canvas.group(&[], |b| b.polygon(&outline, Ink(colour(band.colour), 0.22)));
+                canvas.polygon(&outline, Ink(colour(band.colour), 0.22));
             }
         }
     }
@@ -35,7 +35,7 @@ impl Chart {
             edges.iter().map(|&e| ruler.px(e).ok().map(|p| p.clamp(low, high))).collect()
         };
         let (xs, ys) = (px(&layout.x.ruler, &field.x_edges), px(&layout.y.ruler, &field.y_edges));
-        canvas.group(&[("shape-rendering", "crispEdges")], |b| {
+        canvas.group(&[("shape-rendering", "crispEdges")], |canvas| {
             for row in 0..rows {
                 let mut column = 0;
                 while column < columns {
@@ -48,11 +48,10 @@ impl Chart {
                     if let (Some(x0), Some(x1), Some(y0), Some(y1)) =
                         (xs[start], xs[column], ys[row], ys[row + 1])
                     {
-                        b.rect((x0.min(x1), y0.min(y1)), (x0.max(x1), y0.max(y1)), ink)?;
+                        canvas.rect((x0.min(x1), y0.min(y1)), (x0.max(x1), y0.max(y1)), ink);
                     }
                 }
             }
-            Ok(())
         });
     }
 }

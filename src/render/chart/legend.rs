@@ -1,6 +1,6 @@
 //! The legend: what it says, and how much room it needs.
 use crate::elementary;
-use crate::render::chart::canvas::{Canvas, Hold, Px, Rgb, Type};
+use crate::render::chart::canvas::{Canvas, Hold, Ink, Px, Rgb, Type};
 use crate::render::chart::describe::{Chart, Style};
 use crate::render::chart::palette::{DARK, QUIET, TEXT, colour, dash, marker};
 use crate::render::script::{width, wrap};
@@ -156,32 +156,30 @@ fn draw_entry(canvas: &mut Canvas, sample: Sample, lines: &[String], at: Px) {
                 stroke(canvas, &[ends.to_vec()], look);
             }
             if let Some(slot) = look.marker {
-                canvas.group(&[], |b| marker(b, centre, slot, 4.0, look.colour));
+                marker(canvas, centre, slot, 4.0, look.colour);
             }
         }
-        Sample::Band(colour) => canvas.group(&[], |b| {
-            let ink = crate::render::chart::canvas::Ink(colour, 0.22);
-            b.rect((at.0 + 2.0, middle - 6.0), (at.0 + SAMPLE - 2.0, middle + 6.0), ink)
-        }),
-        Sample::Ring => canvas.group(&[], |b| b.ring(centre, 7.0, DARK, 1.3)),
+        Sample::Band(colour) => {
+            let corners = [(at.0 + 2.0, middle - 6.0), (at.0 + SAMPLE - 2.0, middle + 6.0)];
+            canvas.rect(corners[0], corners[1], Ink(colour, 0.22));
+        }
+        Sample::Ring => canvas.ring(centre, 7.0, DARK, 1.3),
     }
     let look = Type { size: FONT, ink: TEXT, bold: false, hold: Hold::Start, upright: false };
-    let quiet = Type { ink: QUIET, ..look };
-    canvas.group(&[], |b| {
-        for (i, line) in lines.iter().enumerate() {
-            let look = if line.ends_with("(no data)") { quiet } else { look };
-            b.text(line, (at.0 + SAMPLE + GAP, middle + 4.2 + 14.0 * i as f64), look)?;
-        }
-        Ok(())
-    });
+    for (i, line) in lines.iter().enumerate() {
+        let ink = if line.ends_with("(no data)") { QUIET } else { TEXT };
+        canvas.text(line, (at.0 + SAMPLE + GAP, middle + 4.2 + 14.0 * i as f64), Type { ink, ..look });
+    }
 }
 
 /// Draws lines in the look of a series.
 pub(crate) fn stroke(canvas: &mut Canvas, pieces: &[Vec<Px>], look: Look) {
     let mut attributes = vec![("stroke-linejoin", "round")];
     attributes.extend(look.dash.map(|d| ("stroke-dasharray", d)));
-    canvas.group(&attributes, |b| {
-        pieces.iter().try_for_each(|piece| b.line(&thinned(piece), look.colour, f64::from(look.width) / 10.0))
+    canvas.group(&attributes, |canvas| {
+        for piece in pieces {
+            canvas.line(&thinned(piece), look.colour, f64::from(look.width) / 10.0);
+        }
     });
 }
 

@@ -61,9 +61,9 @@ pub(crate) fn draw_triangles(
 }
 
 fn draw_triangle(canvas: &mut Canvas, t: &Triangle, label: &str) {
-    canvas.group(&[("stroke-linejoin", "round")], |b| {
-        b.polygon(&t.corners, Ink(QUIET, 0.10))?;
-        b.line(&[t.corners[0], t.corners[1], t.corners[2], t.corners[0]], QUIET, 1.1)
+    canvas.group(&[("stroke-linejoin", "round")], |canvas| {
+        canvas.polygon(&t.corners, Ink(QUIET, 0.10));
+        canvas.line(&[t.corners[0], t.corners[1], t.corners[2], t.corners[0]], QUIET, 1.1);
     });
     write(canvas, label, t.rise, DARK);
     write(canvas, "1", t.run, DARK);

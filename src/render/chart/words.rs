@@ -1,11 +1,11 @@
 //! What is written and drawn inside the plot beside the data: tags at curves, rules,
 //! annotations.
-use crate::render::chart::canvas::{Canvas, Hold, Px, Rgb, Type};
+use crate::render::chart::canvas::{Canvas, Hold, Ink, Px, Rgb, Type};
 use crate::render::chart::clip::Frame;
 use crate::render::chart::describe::{Chart, Direction};
 use crate::render::chart::layout::Layout;
 use crate::render::chart::legend::Look;
-use crate::render::chart::palette::{DARK, QUIET};
+use crate::render::chart::palette::{DARK, QUIET, WHITE};
 use crate::render::chart::space::{Offer, Space, around, trail};
 use crate::render::script::width;
 
@@ -15,15 +15,7 @@ const HALO: [(&str, &str); 4] =
 
 pub(crate) fn write(canvas: &mut Canvas, text: &str, centre: Px, ink: Rgb) {
     let look = Type { size: FONT, ink, bold: false, hold: Hold::Middle, upright: false };
-    canvas.group(&HALO, |b| b.text(text, (centre.0, centre.1 + 0.36 * FONT), look));
-}
-
-/// Blanks what is beneath, but for a trace.
-fn blank(canvas: &mut Canvas, room: Frame) {
-    let (corner, opposite) = ((room.left, room.top), (room.right, room.bottom));
-    canvas.group(&[], |b| {
-        b.rect(corner, opposite, crate::render::chart::canvas::Ink(crate::render::chart::palette::WHITE, 0.9))
-    });
+    canvas.group(&HALO, |canvas| canvas.text(text, (centre.0, centre.1 + 0.36 * FONT), look));
 }
 
 fn half(text: &str) -> (f64, f64) {
@@ -45,7 +37,9 @@ fn write_best(
     if let Some(i) = space.best(&rooms, owner) {
         space.take(rooms[i].room);
         if owner.is_some() {
-            blank(canvas, rooms[i].room);
+            // Blanks what is beneath, but for a trace.
+            let Frame { left, top, right, bottom } = rooms[i].room;
+            canvas.rect((left, top), (right, bottom), Ink(WHITE, 0.9));
         }
         write(canvas, text, offers[i].0, ink);
     }
@@ -89,7 +83,7 @@ pub(crate) fn draw_rules(canvas: &mut Canvas, space: &mut Space, chart: &Chart, 
         };
         let ends =
             if upright { [(px, plot.top), (px, plot.bottom)] } else { [(plot.left, px), (plot.right, px)] };
-        canvas.group(&[("stroke-dasharray", "50 30")], |b| b.line(&ends, QUIET, 1.0));
+        canvas.group(&[("stroke-dasharray", "50 30")], |canvas| canvas.line(&ends, QUIET, 1.0));
         if rule.label.is_empty() {
             continue;
         }
