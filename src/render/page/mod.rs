@@ -134,7 +134,8 @@ pub fn figures(page: &Page) -> Result<Vec<(String, String)>, RenderError> {
     all_figures(page).into_iter().map(|figure| Ok((format!("{}.svg", figure.name), figure.svg()?))).collect()
 }
 
-fn all_figures(page: &Page) -> Vec<&Figure> {
+/// Every figure of a page, in order.
+pub(crate) fn all_figures(page: &Page) -> Vec<&Figure> {
     fn collect<'a>(blocks: &'a [Block], out: &mut Vec<&'a Figure>) {
         for block in blocks {
             match block {

@@ -4,6 +4,7 @@ pub mod appendix;
 pub mod checks;
 pub mod convergence;
 pub mod findings;
+pub mod front_page;
 pub mod labels;
 pub mod layer;
 pub mod precision;
@@ -47,6 +48,11 @@ impl<'a> StudyResults<'a> {
     /// Whether an expectation of the study is about a reference.
     fn asks_for(&self, reference: &str) -> bool {
         self.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
+    }
+
+    /// What runs the study again.
+    fn run_command(&self) -> String {
+        format!("oedometer run studies/{}.toml", self.study.name)
     }
 
     /// Whether every expectation is met, by records that are sound.

@@ -45,8 +45,7 @@ pub fn of_study(results: &StudyResults<'_>) -> Result<Section, ExactError> {
             blocks: vec![Block::Table(judgements_table("Expectations", &all))],
         });
     }
-    let command = format!("oedometer run studies/{}.toml", study.name);
-    blocks.push(Block::Paragraph(format!("Run it again: `{command}`.")));
+    blocks.push(Block::Paragraph(format!("Run it again: `{}`.", results.run_command())));
     Ok(Section {
         heading: study.title.clone(),
         id: study.name.clone(),
