@@ -3,8 +3,8 @@
 //! The library's coordinates are whole numbers, so everything is drawn ten times larger and shown
 //! through the view box.
 use crate::render::chart::svg_backend::SvgBackend;
-use crate::render::error::RenderError;
 use crate::render::escape::plain_html;
+use crate::render::render_error::RenderError;
 use plotters::coord::Shift;
 use plotters::element::{Drawable, PointCollection};
 use plotters::prelude::{Circle, DrawingArea, IntoFont, PathElement, Polygon, RGBAColor, Rectangle, Text};

@@ -1,17 +1,17 @@
 //! Puts a figure together, from the back to the front.
 use crate::elementary;
-use crate::render::chart::axes::{draw_axes, draw_bar, draw_grid};
 use crate::render::chart::canvas::{Canvas, Hold, Px, Type};
-use crate::render::chart::clip::{Frame, pieces};
 use crate::render::chart::describe::{Chart, Scale, Series, Style};
-use crate::render::chart::layout::{Layout, Side, lay_out};
-use crate::render::chart::legend::{Legend, Look, looks, stroke};
-use crate::render::chart::missing::place;
+use crate::render::chart::layout::clip::{PixelFrame, pieces};
+use crate::render::chart::layout::missing::place;
+use crate::render::chart::layout::space::Space;
+use crate::render::chart::layout::{ChartLayout, LegendSide, lay_out};
 use crate::render::chart::palette::{DARK, QUIET, WHITE, marker};
-use crate::render::chart::space::Space;
-use crate::render::chart::triangle::draw_triangles;
-use crate::render::chart::words::{draw_annotations, draw_rules, draw_tag};
-use crate::render::error::RenderError;
+use crate::render::chart::parts::axes::{draw_axes, draw_bar, draw_grid};
+use crate::render::chart::parts::legend::{Legend, Look, looks, stroke};
+use crate::render::chart::parts::triangle::draw_triangles;
+use crate::render::chart::parts::words::{draw_annotations, draw_rules, draw_tag};
+use crate::render::render_error::RenderError;
 
 /// Radius of markers. Later ones are smaller, so that points that coincide are seen to be several,
 /// above all where no line tells of it.
@@ -44,9 +44,9 @@ impl Chart {
         draw_axes(&mut canvas, &layout);
         self.draw_front(&mut canvas, &layout, &looks, &places);
         match layout.side {
-            Side::None => {}
-            Side::Right => legend.draw_column(&mut canvas, layout.legend),
-            Side::Below => {
+            LegendSide::None => {}
+            LegendSide::Right => legend.draw_column(&mut canvas, layout.legend),
+            LegendSide::Below => {
                 legend.draw_rows(&mut canvas, layout.legend, layout.width - layout.plot.left - layout.left);
             }
         }
@@ -54,7 +54,13 @@ impl Chart {
     }
 
     /// Field, grid, bands and lines.
-    fn draw_data(&self, canvas: &mut Canvas, layout: &Layout, looks: &[Look], places: &[Vec<Option<Px>>]) {
+    fn draw_data(
+        &self,
+        canvas: &mut Canvas,
+        layout: &ChartLayout,
+        looks: &[Look],
+        places: &[Vec<Option<Px>>],
+    ) {
         if let Some(field) = self.field.as_ref().filter(|f| f.shape().is_some()) {
             let span = field.span();
             self.draw_cells(canvas, layout);
@@ -88,7 +94,13 @@ impl Chart {
     }
 
     /// Everything above the frame: bars, markers, rings, words.
-    fn draw_front(&self, canvas: &mut Canvas, layout: &Layout, looks: &[Look], places: &[Vec<Option<Px>>]) {
+    fn draw_front(
+        &self,
+        canvas: &mut Canvas,
+        layout: &ChartLayout,
+        looks: &[Look],
+        places: &[Vec<Option<Px>>],
+    ) {
         let inside = layout.plot.grown(0.5);
         let mut space = Space::within(layout.plot.grown(-2.0));
         let mut kinds: Vec<Look> = Vec::new();
@@ -147,7 +159,7 @@ impl Chart {
 }
 
 /// The visible pieces of the line of a series.
-fn lines(series: &Series, places: &[Option<Px>], plot: &Frame) -> Vec<Vec<Px>> {
+fn lines(series: &Series, places: &[Option<Px>], plot: &PixelFrame) -> Vec<Vec<Px>> {
     if series.style != Style::Stairs {
         return pieces(places, plot);
     }
@@ -162,7 +174,7 @@ fn lines(series: &Series, places: &[Option<Px>], plot: &Frame) -> Vec<Vec<Px>> {
     pieces(&steps, plot)
 }
 
-fn draw_bars(canvas: &mut Canvas, series: &Series, look: Look, layout: &Layout) {
+fn draw_bars(canvas: &mut Canvas, series: &Series, look: Look, layout: &ChartLayout) {
     for (&(at, _), &(low, high)) in series.points.iter().zip(&series.bars) {
         let (Ok(x), Ok(low), Ok(high)) =
             (layout.x.ruler.px(at), layout.y.ruler.px(low), layout.y.ruler.px(high))

@@ -1,7 +1,7 @@
 //! SVG as a backend of the plotting library: its shapes as elements, its text with subscripts and
 //! superscripts, and groups with attributes of their own, which the library does not know.
 use crate::render::escape::plain_html;
-use crate::render::script::{Level, runs};
+use crate::render::script::{ScriptLevel, runs};
 use plotters_backend::text_anchor::HPos;
 use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind, FontStyle,
@@ -14,7 +14,7 @@ const SUBSCRIPT: [&str; 2] = ["0.28em", "-0.202em"];
 /// The same of a superscript.
 const SUPERSCRIPT: [&str; 2] = ["-0.5em", "0.36em"];
 
-type Written = Result<(), DrawingErrorKind<fmt::Error>>;
+type SvgWritten = Result<(), DrawingErrorKind<fmt::Error>>;
 
 /// The elements of a document in the making.
 pub(crate) struct SvgBackend {
@@ -95,15 +95,15 @@ impl DrawingBackend for SvgBackend {
         self.size
     }
 
-    fn ensure_prepared(&mut self) -> Written {
+    fn ensure_prepared(&mut self) -> SvgWritten {
         Ok(())
     }
 
-    fn present(&mut self) -> Written {
+    fn present(&mut self) -> SvgWritten {
         Ok(())
     }
 
-    fn draw_pixel(&mut self, (x, y): BackendCoord, colour: BackendColor) -> Written {
+    fn draw_pixel(&mut self, (x, y): BackendCoord, colour: BackendColor) -> SvgWritten {
         self.draw_rect((x, y), (x + 1, y + 1), &colour, true)
     }
 
@@ -113,7 +113,7 @@ impl DrawingBackend for SvgBackend {
         (right, bottom): BackendCoord,
         style: &S,
         is_area: bool,
-    ) -> Written {
+    ) -> SvgWritten {
         self.elements.push_str("<rect");
         for (name, value) in [("x", left), ("y", top), ("width", right - left), ("height", bottom - top)] {
             self.attribute(name, value);
@@ -128,7 +128,7 @@ impl DrawingBackend for SvgBackend {
         &mut self,
         path: I,
         style: &S,
-    ) -> Written {
+    ) -> SvgWritten {
         self.elements.push_str("<polyline");
         self.opacity(style.color());
         self.paint(style, false);
@@ -141,7 +141,7 @@ impl DrawingBackend for SvgBackend {
         &mut self,
         path: I,
         style: &S,
-    ) -> Written {
+    ) -> SvgWritten {
         self.elements.push_str("<polygon");
         self.opacity(style.color());
         self.paint(style, true);
@@ -156,7 +156,7 @@ impl DrawingBackend for SvgBackend {
         radius: u32,
         style: &S,
         is_area: bool,
-    ) -> Written {
+    ) -> SvgWritten {
         let _ = write!(self.elements, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"");
         self.opacity(style.color());
         self.paint(style, is_area);
@@ -165,7 +165,7 @@ impl DrawingBackend for SvgBackend {
     }
 
     /// Text whose base line runs through the place, whatever vertical anchor the style names.
-    fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, (x, y): BackendCoord) -> Written {
+    fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, (x, y): BackendCoord) -> SvgWritten {
         let _ = write!(self.elements, "<text x=\"{x}\" y=\"{y}\"");
         match style.anchor().h_pos {
             HPos::Left => {}
@@ -200,12 +200,12 @@ fn with_scripts(text: &str) -> String {
     for run in runs(text) {
         let words = plain_html(&edges_kept(&run.text));
         let [shift, back] = match run.level {
-            Level::Base => {
+            ScriptLevel::Base => {
                 out += &way_back.take().map_or_else(|| words.clone(), |back| climb(back, &words));
                 continue;
             }
-            Level::Sub => SUBSCRIPT,
-            Level::Super => SUPERSCRIPT,
+            ScriptLevel::Sub => SUBSCRIPT,
+            ScriptLevel::Super => SUPERSCRIPT,
         };
         // A script right after another: climb back with a space of no width.
         out += &way_back.map_or_else(String::new, |back| climb(back, "\u{200b}"));

@@ -2,7 +2,7 @@
 
 use crate::render::page::{Block, Figure, Page, Section, all_figures};
 use crate::render::report::{StudyResults, appendix, findings};
-use crate::render::table::{Cell, Column, Mood, Table};
+use crate::render::table::{Cell, Mood, Table, TableColumn};
 
 /// What the front page shows a figure of: its name there, and what the names of the report's figures
 /// have in them. The first figure of each kind is shown.
@@ -57,6 +57,6 @@ fn studies_table(results: &[StudyResults<'_>]) -> Table {
             Cell::Code(one.run_command()),
         ]
     });
-    let columns = ["study", "runs", "expectations met", "run it again"].map(Column::text);
+    let columns = ["study", "runs", "expectations met", "run it again"].map(TableColumn::text);
     Table { rows: rows.collect(), ..Table::new("", columns.to_vec()) }
 }
