@@ -242,7 +242,8 @@ fn plane_cost(name: &str, cells: usize) -> PlaneCost {
     let mut body = Body::<2, 3, Gimp>::new(problem);
     let mut plane = AssembledStep::new(&body);
     plane.set_step(dt, &settings);
-    let coefficients = vec![1.0_f64; plane.bytes_a_step() / size_of::<f64>()];
+    let [bytes, products] = plane.bytes_and_products().expect("sparse rows");
+    let coefficients = vec![1.0_f64; bytes / size_of::<f64>()];
     let points = body.points.len() as f64;
     let mut least = [f64::INFINITY; 3];
     for _ in 0..PLANE_ROUNDS {
@@ -255,8 +256,8 @@ fn plane_cost(name: &str, cells: usize) -> PlaneCost {
     }
     PlaneCost {
         nanoseconds: least.map(|seconds| 1e9 * seconds / (PLANE_STEPS as f64 * points)),
-        bytes: plane.bytes_a_step() as f64 / points,
-        products: plane.products_a_step() as f64 / points,
+        bytes: bytes as f64 / points,
+        products: products as f64 / points,
     }
 }
 
