@@ -5,7 +5,7 @@ use crate::soil::tensor::Tensor;
 use serde::{Deserialize, Serialize};
 
 /// Stress–strain law of the skeleton and the conductivity that goes with it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Law {
     /// Constant modulus and conductivity.
@@ -57,7 +57,7 @@ impl Law {
 }
 
 /// Continuity equation of the mixture (theory: (4) and (4')).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Continuity {
     /// `dp/dt = −(K_w/n)[∇·v_s + ∇·(n(v_w − v_s))]`: conserves water.
@@ -80,7 +80,7 @@ impl Continuity {
 }
 
 /// Parameters of the saturated soil in its initial state, SI.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Material {
     /// Stress–strain law.
     pub law: Law,

@@ -38,7 +38,7 @@ const STEP_RENEWAL: u64 = 32;
 const LARGEST_SHARE: f64 = 0.8;
 
 /// How the time step is chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum TimeStepRule {
     /// Share of the predicted critical step.
