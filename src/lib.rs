@@ -22,6 +22,42 @@
 //! | `judge/` | verdicts on studies, scores of external results, comparisons of methods |
 //! | `render/` | tables, charts, pages; sees records and verdicts, and never a solver |
 //! | `cli/` | one file per subcommand |
+//! # A study from Rust
+//!
+//! What `oedometer check` does with a file, on a text: run its cases, judge what it expects.
+//!
+//! ```
+//! use oedometer::{GoldenError, RunOptions, Study, StudyCheck, StudySource, Tier, run_study};
+//!
+//! let text = r#"
+//! title = "How fast the error falls with the mesh"
+//! scene = "terzaghi"
+//! output = { time_factors = [0.1] }
+//!
+//! [[sweep]]
+//! method = ["GC-SRI-patch"]
+//! integrator = ["implicit"]
+//! cells = [10, 20, 40]
+//! time_step = [{ growth = 0.005 }]
+//!
+//! [[expect]]
+//! method = "GC-SRI-patch"
+//! integrator = "implicit"
+//! quantity = "pressure"
+//! time_factor = 0.1
+//! order = { value = 2.0, minus = 0.2, plus = 0.2 }
+//! "#;
+//! let source = StudySource { name: "first.toml".to_owned(), text: text.to_owned() };
+//! let study = Study::check(&source).expect("a sound study");
+//! let report = run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {});
+//!
+//! let golden = Err(GoldenError::Missing("golden/first.csv".into()));
+//! let check = StudyCheck::new(&study, &report.records, Tier::Full, golden);
+//! let verdict = &check.judgements[0].verdict;
+//! assert!(verdict.pass, "{}", verdict.reason);
+//! let order = verdict.classification.order.expect("a converging series has an order");
+//! assert!((order - 2.0).abs() < 0.2);
+//! ```
 // Tests and benches may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -52,7 +88,7 @@ pub use case::{Case, Task};
 pub use cli::main;
 pub use golden::compare::compare;
 pub use golden::tolerance::spread_by_group;
-pub use golden::{GoldenFile, values_of};
+pub use golden::{GoldenError, GoldenFile, values_of};
 pub use judge::soundness;
 pub use judge::study_check::{CheckEnd, StudyCheck};
 pub use measure::record_checks::{balance_checks, start_checks};
@@ -76,11 +112,13 @@ pub use mpm::run::outcome::{Counters, Failure, FailureKind, StepSizes};
 pub use mpm::run::{Kernel, Schedule, TimeStepRule};
 pub use scene::SceneKind;
 pub use scene::column::{Column, column_problem};
-pub use soil::material::{Continuity, Material};
+pub use soil::continuity::Continuity;
+pub use soil::law::Law;
+pub use soil::material::Material;
 
 // What the benches time one by one.
 #[doc(hidden)]
-pub use mpm::assembled::{column::AssembledColumn, plane::AssembledPlane};
+pub use mpm::assembled::step::AssembledStep;
 #[doc(hidden)]
 pub use mpm::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
 #[doc(hidden)]

@@ -10,7 +10,8 @@ use crate::mpm::explicit::scheme::Scheme;
 use crate::mpm::method::Method;
 use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
-use crate::soil::material::{Continuity, Law};
+use crate::soil::continuity::Continuity;
+use crate::soil::law::Law;
 use std::fmt;
 
 /// More cells than a column is ever given on purpose.
@@ -235,9 +236,9 @@ keys! {
         case.column.points.jitter = case.column.points.jitter.abs();
     }; "Largest shift of a row of points up or down, in spacings of the points"
     filling in &["sweep", "points"], FILLING, "", column.points.filling; "Share of the top cell that is filled"
-    length in &["layer"], POSITIVE, "m", column.width; "Length"
+    length in &["layer"], POSITIVE, "m", column.horizontal_extent; "Length"
     height in &["column", "layer"], POSITIVE, "m", column.height; "Initial height H"
-    width in &["column"], POSITIVE, "m", column.width; "Width, where there are two dimensions"
+    width in &["column"], POSITIVE, "m", column.horizontal_extent; "Width, where there are two dimensions"
     base in &["layer"], word::<Base>(), "", column.base; "How the layer rests on its base"
     load in &["column", "layer"], POSITIVE, "Pa", column.load; "Load q on the surface"
     dimensions in &["column"], Kind::Count(2), "", column.dimensions; "Directions that are solved"

@@ -9,11 +9,13 @@ use crate::elementary;
 use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery, StrainGradient};
 use crate::mpm::run::TimeStepRule;
-use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::mpm::run::integrator::Formulation;
+pub use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::SceneKind;
 use crate::scene::arrangement::Arrangement;
 use crate::scene::column::Column;
-use crate::soil::material::{Continuity, Material};
+use crate::soil::continuity::Continuity;
+use crate::soil::material::Material;
 use serde::{Deserialize, Serialize};
 
 /// State and operators of a point, bytes.
@@ -88,7 +90,7 @@ impl Case {
         Self {
             task,
             scene,
-            column: if scene.is_plane() { Column::layer() } else { Column::default() },
+            column: if scene.needs_two_dimensions() { Column::layer() } else { Column::default() },
             material: Material { law: scene.default_law(), ..Material::default() },
             method: Method {
                 basis: Basis::Hat,
@@ -113,6 +115,18 @@ impl Case {
         // Serialising plain numbers and words cannot fail; were it to, an empty text still hashes.
         let canonical = serde_json::to_string(self).unwrap_or_default();
         blake3::hash(canonical.as_bytes()).to_hex()[..HASH_DIGITS].to_owned()
+    }
+
+    /// Whether it is integrated explicitly.
+    pub fn is_explicit(&self) -> bool {
+        self.integrator == IntegratorKind::Explicit
+    }
+
+    /// Whether water and skeleton are as compressible as the seed's: not a step towards incompressibility.
+    pub fn has_usual_compressibility(&self) -> bool {
+        let seed = Material::default();
+        self.material.water_bulk_modulus == seed.water_bulk_modulus
+            && self.material.poissons_ratio == seed.poissons_ratio
     }
 
     /// Cell size, m.
@@ -145,7 +159,7 @@ impl Case {
         // Unknowns of one row of cells across the layer; a node couples to four rows above and below.
         let row = short * (dimensions + sites);
         let band = 12.0 * row;
-        let solves = self.integrator != IntegratorKind::Explicit || self.scene.is_plane();
+        let solves = !self.is_explicit() || self.scene.start_is_solved();
         let solver = if solves { 16.0 * long * row * band } else { 0.0 };
         solver + BYTES_A_POINT * short * long * points_a_cell
     }
@@ -174,7 +188,7 @@ impl Case {
         if self.settings.mapping_back != defaults.mapping_back {
             parts.push("no mapping back".to_owned());
         }
-        if self.column.dimensions == 2 && !self.scene.is_plane() {
+        if self.column.dimensions == 2 && !self.scene.needs_two_dimensions() {
             parts.push("two dimensions".to_owned());
         }
         if self.material.law != self.scene.default_law() {
@@ -185,11 +199,11 @@ impl Case {
         }
         parts.extend(self.arrangement());
         let seed = Material::default();
-        if self.scene.is_plane() && self.material.water_bulk_modulus != seed.water_bulk_modulus {
+        if self.scene.shows_locking() && self.material.water_bulk_modulus != seed.water_bulk_modulus {
             parts
                 .push(format!("K_w/E {:e}", self.material.water_bulk_modulus / self.material.youngs_modulus));
         }
-        if self.scene.is_plane() && self.material.poissons_ratio != seed.poissons_ratio {
+        if self.scene.shows_locking() && self.material.poissons_ratio != seed.poissons_ratio {
             parts.push(format!("ν {}", self.material.poissons_ratio));
         }
         if self.task == Task::Stability {
@@ -268,7 +282,7 @@ mod tests {
     use super::*;
     use crate::exact::cosine_layer::Base;
     use crate::mpm::explicit::scheme::Scheme;
-    use crate::soil::material::Law;
+    use crate::soil::law::Law;
 
     fn seed() -> Case {
         Case {
@@ -311,7 +325,7 @@ mod tests {
             |case| case.task = Task::Stability,
             |case| case.scene = SceneKind::XieLeo,
             |case| case.column.height = 2.0,
-            |case| case.column.width = 2.0,
+            |case| case.column.horizontal_extent = 2.0,
             |case| case.column.load = 2.0,
             |case| case.column.dimensions = 2,
             |case| case.column.base = Some(Base::ALL[0]),

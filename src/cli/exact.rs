@@ -235,13 +235,7 @@ fn parameters_of(
     kind: ReferenceKind,
     assignments: &[String],
 ) -> anyhow::Result<(ColumnParameters, ReferenceKind)> {
-    let scene = match kind {
-        ReferenceKind::XieLeo | ReferenceKind::LargeStrain(_) => SceneKind::XieLeo,
-        ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible => SceneKind::CosineLayer,
-        // The one whose load may grow.
-        ReferenceKind::DynamicColumn => SceneKind::DynamicColumn,
-        _ => SceneKind::Terzaghi,
-    };
+    let scene = SceneKind::of_solution(kind);
     let mut lines = StudyLines::default();
     lines.give("title", "\"exact\"", "`exact`")?;
     lines.give("scene", &overrides::quoted(scene.name()), "the solution's name")?;
@@ -252,7 +246,7 @@ fn parameters_of(
         return Err(Ended::usage("the assignments leave no column"));
     };
     let soil = &planned.case.material;
-    Ok((column_parameters(&planned.case.column, soil), SceneKind::reference_for(kind, soil)))
+    Ok((column_parameters(&planned.case.column, soil), kind.of_soil(soil)))
 }
 
 /// Time factors at which degrees of consolidation are reached.

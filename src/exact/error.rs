@@ -64,9 +64,6 @@ pub enum ExactError {
         /// Initial porosity `n_0`.
         porosity: f64,
     },
-    /// A name that is no soil law, continuity or water model.
-    #[error("there is no model named `{0}`")]
-    UnknownModel(String),
     /// A quantity of either sign that is not finite.
     #[error("the {quantity} must be finite, got {value}")]
     NotFinite {

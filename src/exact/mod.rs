@@ -4,15 +4,26 @@
 //! displacement upward. Depth is the Lagrangian `ζ = 1 − Y/H` below the drained surface, time the
 //! factor `T_v = c_v t/H²` with the *drained* coefficient of consolidation.
 //!
-//! [`reference::Reference`] is the one door for the rest of the crate.
+//! [`reference::Reference`] is the one door for the rest of the crate:
+//!
+//! ```
+//! use oedometer::exact::{ColumnParameters, Reference, ReferenceKind};
+//!
+//! let column = ColumnParameters::default();
+//! let terzaghi = Reference::new(ReferenceKind::TerzaghiIncompressible, &column, &[0.1])?;
+//! let at_the_base = terzaghi.fields(0.1, 1.0)?.pressure / column.load;
+//! // Terzaghi & Peck's chart; 50 digits in tests/reference/consolidation.csv.
+//! assert!((at_the_base - 0.949_3).abs() < 1e-4);
+//! # Ok::<(), oedometer::exact::ExactError>(())
+//! ```
 
 pub mod consolidation;
 pub mod cosine_layer;
 pub mod dynamic_column;
-pub mod error;
+pub(crate) mod error;
 pub mod large_strain;
-pub mod parameters;
-pub mod quadrature;
+pub(crate) mod parameters;
+pub(crate) mod quadrature;
 pub mod reference;
 pub mod single_mode;
 pub mod terzaghi;

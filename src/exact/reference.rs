@@ -7,11 +7,12 @@ use crate::exact::cosine_layer::{CosineLayer, LayerState};
 use crate::exact::dynamic_column::{DynamicColumn, Start};
 use crate::exact::error::ExactError;
 use crate::exact::large_strain::LargeStrain;
-use crate::exact::large_strain::law::{Continuity, LargeStrainModel, SoilLaw, Water};
+use crate::exact::large_strain::law::{LargeStrainModel, Water};
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::single_mode::SingleMode;
 use crate::exact::terzaghi::Terzaghi;
 use crate::exact::xie_leo::XieLeo;
+use crate::soil::material::Material;
 
 /// Which exact solution a run is held against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -49,11 +50,7 @@ impl ReferenceKind {
         Self::DynamicColumn,
         Self::DynamicSingleMode,
         Self::StandingWave,
-        Self::LargeStrain(LargeStrainModel {
-            law: SoilLaw::LogLinear,
-            continuity: Continuity::Conservative,
-            water: Water::Compressible,
-        }),
+        Self::LargeStrain(LargeStrainModel::XIE_LEO),
         Self::CosineLayer,
         Self::CosineLayerIncompressible,
     ];
@@ -71,6 +68,17 @@ impl ReferenceKind {
             Self::LargeStrain(_) => "large-strain",
             Self::CosineLayer => "cosine-layer",
             Self::CosineLayerIncompressible => "cosine-layer-incompressible",
+        }
+    }
+
+    /// The reference as it holds for a soil: large strain takes the soil's own law and continuity, and is of
+    /// the equations that the solver solves.
+    #[must_use]
+    pub fn of_soil(self, soil: &Material) -> Self {
+        let Material { law, continuity, .. } = *soil;
+        match self {
+            Self::LargeStrain(model) => Self::LargeStrain(LargeStrainModel { law, continuity, ..model }),
+            other => other,
         }
     }
 }

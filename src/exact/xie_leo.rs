@@ -2,9 +2,8 @@
 
 use crate::elementary;
 use crate::exact::consolidation::{consolidated_below, isochrone};
-use crate::exact::error::{ExactError, checked_time_factor, positive};
+use crate::exact::error::{ExactError, positive};
 use crate::exact::parameters::ColumnParameters;
-use crate::exact::quadrature::integrate;
 use crate::exact::reference::{Accuracy, FieldValues};
 
 /// Xie & Leo (2004): consolidation at large strain of a soil with constant
@@ -88,16 +87,6 @@ impl XieLeo {
         Ok(1.0 - self.final_strain() * (1.0 - isochrone))
     }
 
-    /// Void ratio `e = J (1 + e_0) − 1` at a relative depth.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
-    pub fn void_ratio(&self, time_factor: f64, zeta: f64) -> Result<f64, ExactError> {
-        let ratio = self.volume_ratio(time_factor, zeta)?;
-        let porosity = self.parameters.porosity;
-        Ok((ratio - (1.0 - porosity)) / (1.0 - porosity))
-    }
-
     /// Excess pore pressure at a relative depth, Pa.
     fn pressure(&self, time_factor: f64, zeta: f64) -> Result<f64, ExactError> {
         let (time_factor, zeta) = self.equivalent(time_factor, zeta);
@@ -137,24 +126,6 @@ impl XieLeo {
     pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
         let (time_factor, _) = self.equivalent(time_factor, 0.0);
         Ok(consolidated_below(0.0, time_factor)?.value)
-    }
-
-    /// Degree of consolidation by pressure, `1 − ∫ p dζ / q`; it lags behind the settlement.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn degree_by_pressure(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let (time_factor, _) = self.equivalent(checked_time_factor(time_factor)?, 0.0);
-        let dissipated = |zeta: f64| {
-            isochrone(zeta, time_factor).map_or(f64::NAN, |isochrone| {
-                // 1 − p/q in its own right: deep and early it is a small difference of ones.
-                let lost = self.final_strain() * (1.0 - isochrone.value);
-                -elementary::ln_1p(-lost) / self.strain
-            })
-        };
-        // Twelve diffusion lengths below the surface W is 1 to round-off.
-        let front = (12.0 * time_factor.sqrt()).min(1.0);
-        Ok(integrate(dissipated, 0.0, front, 16))
     }
 
     /// Settlement of the surface, downward positive, m.

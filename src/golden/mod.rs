@@ -1,13 +1,35 @@
 //! Golden values: what a study gave when somebody last looked and said why it is right.
 //!
-//! A golden file carries values, the tolerance with its basis, the reason and the provenance. A
-//! comparison reports what moved, what is missing and what is new; better than the golden beyond
+//! A comparison reports what moved, what is missing and what is new; better than the golden beyond
 //! the tolerance is stale, not wrong.
+//!
+//! # The file
+//!
+//! `golden/STUDY.csv` has a header, whose lines begin with `#` and which is TOML behind that, and a table:
+//!
+//! ```text
+//! # schema = 2
+//! # study = "terzaghi-mesh"
+//! # reason = "why these values were taken"
+//! # relative_tolerance = 1e-12
+//! # …
+//! # [provenance]
+//! # …
+//! case,T_v,point updates,pressure points l2 terzaghi,…,steps,…,spread of pressure,…
+//! MPM implicit cells=4 points=2,,800,,…,100,…,,…
+//! MPM implicit cells=4 points=2,0.1,,0.0213,…,,…,1e-15,…
+//! ```
+//!
+//! A row per case and time factor, by label and then by time; counters stand in a row without a time. Columns
+//! are in the order of their names; a cell is empty where nothing was measured. A number is the shortest
+//! decimal that reads back as the same `f64`. `spread of X` is the largest change by round-off of all values
+//! of the row whose first word is `X`. `git diff --word-diff-regex='[^,]+' golden/` shows which numbers changed.
 
 pub mod bounds;
 pub mod case_changes;
 pub mod compare;
 pub mod difference_groups;
+mod file_text;
 pub mod references;
 pub mod tolerance;
 
@@ -23,7 +45,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Version of the file's layout.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 /// Allowed relative change where no spread was measured.
 const RELATIVE_TOLERANCE: f64 = 1e-8;
 /// Allowed absolute change of an error where no spread was measured.
@@ -48,16 +70,17 @@ pub struct GoldenFile {
     pub absolute_tolerance: f64,
     /// Where the tolerances come from.
     pub basis: String,
-    /// What made the values.
-    pub provenance: Provenance,
     /// Wall time of all cases together when the values were taken, s: it warns and never fails.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
+    /// What made the values.
+    pub provenance: Provenance,
     /// Largest change by round-off that was measured, by case, quantity and time: a tolerance is ten
     /// times as wide.
-    #[serde(default)]
+    #[serde(skip)]
     pub spread: BTreeMap<String, f64>,
     /// Signed errors and work counters by case and measure.
+    #[serde(skip)]
     pub values: BTreeMap<String, f64>,
 }
 
@@ -83,7 +106,15 @@ pub enum GoldenError {
         /// What is out of bounds.
         reason: String,
     },
-    /// The file cannot be written.
+    /// The values have no text.
+    #[error("the golden file {path} cannot be written: {reason}")]
+    Unwritable {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// The file system refuses.
     #[error(transparent)]
     Store(#[from] StoreError),
 }
@@ -118,7 +149,7 @@ impl GoldenFile {
 
     /// Path of a study's golden file in a folder.
     pub fn path(folder: &Path, study: &str) -> PathBuf {
-        folder.join(format!("{study}.json"))
+        folder.join(format!("{study}.csv"))
     }
 
     /// Reads a study's golden file.
@@ -127,21 +158,17 @@ impl GoldenFile {
     /// When it is missing, unreadable or out of bounds.
     pub fn read(folder: &Path, study: &str) -> Result<Self, GoldenError> {
         let path = Self::path(folder, study);
-        let unreadable = |path: PathBuf, reason: String| GoldenError::Unreadable { path, reason };
+        let unreadable = |reason: String| GoldenError::Unreadable { path: path.clone(), reason };
         let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Err(GoldenError::Missing(path));
             }
-            Err(error) => return Err(unreadable(path, error.to_string())),
+            Err(error) => return Err(unreadable(error.to_string())),
         };
-        let file: Self =
-            serde_json::from_str(&text).map_err(|error| unreadable(path.clone(), error.to_string()))?;
+        let file = Self::from_text(&text).map_err(unreadable)?;
         if file.schema != SCHEMA || file.study != study {
-            return Err(unreadable(
-                path,
-                format!("it is of study `{}` and layout {}", file.study, file.schema),
-            ));
+            return Err(unreadable(format!("it is of study `{}` and layout {}", file.study, file.schema)));
         }
         match file.out_of_bounds() {
             Some(reason) => Err(GoldenError::OutOfBounds { path, reason }),
@@ -158,9 +185,8 @@ impl GoldenFile {
         if let Some(reason) = self.out_of_bounds() {
             return Err(GoldenError::OutOfBounds { path, reason });
         }
-        let text = serde_json::to_string_pretty(self)
-            .map_err(|source| StoreError::Json { path: path.clone(), source })?;
-        write_whole(&path, (text + "\n").as_bytes())?;
+        let text = self.to_text().map_err(|reason| GoldenError::Unwritable { path: path.clone(), reason })?;
+        write_whole(&path, text.as_bytes())?;
         Ok(path)
     }
 }

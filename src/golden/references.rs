@@ -156,7 +156,6 @@ fn note_drainages(
         for time_factor in TIME_FACTORS {
             note("settlement/H", time_factor, solution.settlement(time_factor)? / parameters.height);
             note("degree", time_factor, solution.degree_of_consolidation(time_factor)?);
-            note("degree by pressure", time_factor, solution.degree_by_pressure(time_factor)?);
             let bound = solution.accuracy(time_factor)?.tail_bound;
             note("power of the tail bound", time_factor, elementary::log10(bound.max(LEAST_BOUND)));
             for zeta in DEPTHS {
@@ -165,7 +164,6 @@ fn note_drainages(
                 let displacement = fields.displacement / parameters.height;
                 note(&format!("u/H ζ={zeta}"), time_factor, displacement);
                 note(&format!("J ζ={zeta}"), time_factor, solution.volume_ratio(time_factor, zeta)?);
-                note(&format!("e ζ={zeta}"), time_factor, solution.void_ratio(time_factor, zeta)?);
             }
         }
     }

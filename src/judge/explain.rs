@@ -15,7 +15,6 @@ use crate::measure::case_record::exact_samples;
 use crate::measure::error_contributions::contributions;
 use crate::mpm::run::snapshot::Samples;
 use crate::record::{ErrorRow, Record};
-use crate::scene::SceneKind;
 use crate::scene::column::column_parameters;
 use crate::study::expectation::Axis;
 
@@ -144,7 +143,7 @@ fn place_of(record: &Record, row: &ErrorRow) -> Result<Option<Place>, ExactError
         Sample::Surface => return Ok(None),
     };
     let Ok(kind) = row.reference.parse::<ReferenceKind>() else { return Ok(None) };
-    let kind = SceneKind::reference_for(kind, &case.material);
+    let kind = kind.of_soil(&case.material);
     let parameters = column_parameters(&case.column, &case.material);
     let reference = Reference::new(kind, &parameters, &[row.time_factor])?;
     let exact = exact_samples(case, &reference, row.time_factor, samples)?;

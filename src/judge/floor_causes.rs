@@ -12,7 +12,6 @@ use crate::mpm::explicit::scheme::Scheme;
 use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::record::Record;
-use crate::scene::SceneKind;
 use crate::scene::column::column_parameters;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 
@@ -84,7 +83,7 @@ fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
     let difference = case.scene.model_difference(kind, &case.material)?;
     let parameters = column_parameters(&case.column, &case.material);
     let times = [measure.time_factor];
-    let own = SceneKind::reference_for(case.scene.references()[0], &case.material);
+    let own = case.scene.references()[0].of_soil(&case.material);
     let own = Reference::new(own, &parameters, &times).ok()?;
     let other = Reference::new(kind, &parameters, &times).ok()?;
     let magnitude = if measure.quantity == Quantity::Settlement {

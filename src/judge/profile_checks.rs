@@ -4,14 +4,13 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::series_expectation::Expectation as Demand;
 use crate::convergence::uncertainty::ValueSeries;
-use crate::exact::reference::Reference;
+use crate::exact::reference::{Reference, ReferenceKind};
 use crate::judge::paths::{Path, level_size};
 use crate::judge::verdict::Beside;
 use crate::measure::case_record::exact_samples;
 use crate::measure::oscillation::oscillation;
 use crate::measure::plane_field::PlaneField;
 use crate::record::Record;
-use crate::scene::SceneKind;
 use crate::scene::column::column_parameters;
 use crate::study::expectation::Measure;
 
@@ -48,7 +47,7 @@ impl Path<'_> {
             demand.at.is_some_and(|at| (size - at.size).abs() <= 1e-9 * at.size)
         };
         let record = self.records.iter().find(named).or(self.records.last())?;
-        if record.case.scene.is_plane() {
+        if record.case.scene.has_plane_fields() {
             let is_measured = (measure.quantity, measure.sample) == (Quantity::Pressure, Sample::Points);
             let field = PlaneField::of(record, measure.time_factor).ok()?;
             return field.filter(|_| is_measured).map(|field| field.oscillation_index());
@@ -62,7 +61,7 @@ impl Path<'_> {
             Sample::Nodes => (&snapshot.nodes, 1.0),
             Sample::Surface => return None,
         };
-        let kind = SceneKind::reference_for(measure.reference.parse().ok()?, &case.material);
+        let kind = measure.reference.parse::<ReferenceKind>().ok()?.of_soil(&case.material);
         let parameters = column_parameters(&case.column, &case.material);
         let reference = Reference::new(kind, &parameters, &[measure.time_factor]).ok()?;
         let exact = exact_samples(case, &reference, measure.time_factor, samples).ok()?;

@@ -148,12 +148,12 @@ fn next_levels(records: &[Record], reference: &str) -> Vec<NextLevel> {
             .collect();
         let last = *path.records.last()?.case.time_factors.last()?;
         let class_of = |path: &Path<'_>| path.summary(&pressure(reference, last)).classification;
-        let next = predict_next(&levels, &class_of(&path), REFINEMENT).ok()?;
+        let next = predict_next(&levels, &class_of(&path), REFINEMENT)?;
         let (finest, coarser) = levels.split_last()?;
         let known = path.records.len() - 1;
         let coarser_path = Path { axis: path.axis, records: path.records[..known].to_vec() };
         let ratio = coarser.last()?.size / finest.size;
-        let finest_predicted = predict_next(coarser, &class_of(&coarser_path), ratio).ok();
+        let finest_predicted = predict_next(coarser, &class_of(&coarser_path), ratio);
         Some(NextLevel { label: path.label(), finest: finest.point, next, finest_predicted })
     };
     paths(records, Axis::Cells)

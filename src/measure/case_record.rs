@@ -17,7 +17,6 @@ use crate::record::provenance::Provenance;
 use crate::record::{
     Balance, ErrorRow, Groups, HistoryRow, Record, ReferenceUse, SCHEMA, StartChecks, Status,
 };
-use crate::scene::SceneKind;
 use crate::scene::column::column_parameters;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -35,7 +34,7 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
     prepared.push(LONG_AFTER);
     let references: Vec<Reference> = references
         .iter()
-        .map(|kind| Reference::new(SceneKind::reference_for(*kind, &case.material), &parameters, &prepared))
+        .map(|kind| Reference::new(kind.of_soil(&case.material), &parameters, &prepared))
         .collect::<Result<_, _>>()?;
     let mut errors = Vec::new();
     for (time_factor, snapshot) in case.time_factors.iter().zip(&outcome.snapshots) {
@@ -344,31 +343,14 @@ fn groups(case: &Case, step_over_limit: f64) -> Groups {
 fn start_checks(case: &Case, references: &[Reference], start: &Snapshot) -> Result<StartChecks, ExactError> {
     let soil = &case.material;
     let load = case.column.load;
-    let mut pressure_error: f64 = 0.0;
-    let mean_pressure = start.points.pressure.iter().sum::<f64>() / start.points.pressure.len() as f64;
-    for (pressure, height) in start.points.pressure.iter().zip(&start.points.initial_height) {
-        let expected = match case.scene {
-            // Written out here, and not taken from the solver or the reference: this is the check.
-            SceneKind::Terzaghi => {
-                load / (1.0 + soil.porosity * soil.oedometric_modulus() / soil.water_bulk_modulus)
-            }
-            // The solver's own equilibrium, and what it measures; only its mean is known: a cosine
-            // has none.
-            SceneKind::CosineLayer => *pressure - mean_pressure,
-            // At rest, without stress.
-            SceneKind::DynamicColumn => 0.0,
-            _ => match references.first() {
-                Some(own) => own.fields(0.0, 1.0 - height / case.column.height)?.pressure,
-                None => *pressure,
-            },
-        };
-        pressure_error = pressure_error.max((pressure - expected).abs() / load);
-    }
+    let found = (&*start.points.initial_height, &*start.points.pressure);
+    let expected = case.scene.expected_start_pressures(&case.column, soil, references.first(), found)?;
+    let off = found.1.iter().zip(&expected).map(|(pressure, expected)| (pressure - expected).abs() / load);
     Ok(StartChecks {
         points: start.points.pressure.len(),
         points_expected: case.expected_points(),
         volume_error: start.totals.volume / case.column.volume() - 1.0,
-        undrained_pressure_error: pressure_error,
+        undrained_pressure_error: off.fold(0.0, f64::max),
         unbalanced_force: start.totals.unbalanced_force / load,
     })
 }
@@ -390,7 +372,7 @@ fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) -> B
         water_imbalance: excess / pressed_out,
         internal_force_imbalance: now.totals.internal_force_imbalance,
         // Above one dimension the vertical stress alone is in no balance with the load: the nodes are.
-        equilibrium_residual: if case.scene.is_plane() {
+        equilibrium_residual: if case.scene.needs_two_dimensions() {
             now.totals.unbalanced_force / (load * case.cell_size())
         } else {
             (squares / now.points.pressure.len() as f64).sqrt()

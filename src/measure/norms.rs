@@ -93,14 +93,6 @@ pub fn relative_error(
     finite(finite(mean_norm(norm, &difference, volumes))? / size)
 }
 
-/// Relative error of one number, `|x − x̂| / |x̂|`.
-///
-/// # Errors
-/// [`UndefinedNorm`] when either number is not finite or the exact one is zero.
-pub fn relative_error_of_number(computed: f64, exact: f64) -> Result<f64, UndefinedNorm> {
-    relative_error(Norm::Relative, &[computed], &[exact], &[1.0])
-}
-
 fn differences(computed: &[f64], exact: &[f64]) -> Vec<f64> {
     computed.iter().zip(exact).map(|(computed, exact)| computed - exact).collect()
 }

@@ -5,7 +5,6 @@ use crate::exact::reference::Reference;
 use crate::measure::case_record::exact_samples;
 use crate::measure::oscillation::total_variation;
 use crate::record::Record;
-use crate::scene::SceneKind;
 use crate::scene::column::column_parameters;
 
 /// Pressures over the load at the points, row after row from the base, each from `x = 0` on.
@@ -38,7 +37,7 @@ impl PlaneField {
             return Ok(None);
         };
         let parameters = column_parameters(&case.column, &case.material);
-        let own = SceneKind::reference_for(case.scene.references()[0], &case.material);
+        let own = case.scene.references()[0].of_soil(&case.material);
         let reference = Reference::new(own, &parameters, &[time_factor])?;
         let exact = exact_samples(case, &reference, time_factor, &snapshot.points)?;
         let columns = across * case.points_per_cell;

@@ -3,9 +3,8 @@
 
 use crate::mpm::method::Basis;
 use crate::record::{Balance, Record};
-use crate::scene::SceneKind;
 use crate::scene::arrangement::Arrangement;
-use crate::soil::material::Continuity;
+use crate::soil::continuity::Continuity;
 use crate::wording::typed;
 
 /// The check that is told in numbers of points.
@@ -55,7 +54,8 @@ pub fn start_checks(record: &Record) -> Vec<RecordCheck> {
     // follow points err in them from the start, and points integrate no spline exactly: of those a layer
     // alone, whose start is an equilibrium of its own operators, is judged.
     let rests = !case.scene.has_waves() && column.loading_time == 0.0 && column.points.is_regular();
-    let is_exact = case.scene.is_plane() || !matches!(case.method.basis, Basis::Bspline2 | Basis::Bspline3);
+    let is_exact =
+        case.scene.start_is_solved() || !matches!(case.method.basis, Basis::Bspline2 | Basis::Bspline3);
     let is_judged = rests && is_exact && !deforms(record);
     vec![
         RecordCheck::of(POINTS_MISSING, missing, 0.0),
@@ -102,7 +102,7 @@ fn volume_bound(record: &Record) -> f64 {
 fn pressure_bound(record: &Record) -> f64 {
     let (case, soil) = (&record.case, &record.case.material);
     let stiffness = soil.coupling_modulus() / soil.oedometric_modulus();
-    ROUND_OFF + if case.scene.is_plane() { 100.0 * f64::EPSILON * stiffness } else { 0.0 }
+    ROUND_OFF + if case.scene.start_is_solved() { 100.0 * f64::EPSILON * stiffness } else { 0.0 }
 }
 
 /// Whether the weights follow the points, or their deformation.
@@ -118,8 +118,8 @@ fn water_bound(record: &Record) -> Option<f64> {
     if case.material.continuity == Continuity::ConstantPorosityGradient || is_jittered {
         return None;
     }
-    if case.scene == SceneKind::CosineLayer && !deforms(record) {
-        // One half of the layer takes in what the other gives: both sides of the balance vanish.
+    if case.scene.presses_out_no_water() && !deforms(record) {
+        // Both sides of the balance vanish.
         return Some(ROUND_OFF);
     }
     let discretisation = if deforms(record) { WATER_MOVING } else { WATER_AT_REST };

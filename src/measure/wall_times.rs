@@ -63,18 +63,6 @@ pub struct PairedRatio {
     pub interval: Option<(f64, f64)>,
 }
 
-/// What a paired ratio says, beyond the noise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Timing {
-    /// The first variant is faster.
-    Faster,
-    /// No difference can be told.
-    Same,
-    /// The first variant is slower.
-    Slower,
-}
-
 /// Median of samples; the mean of the middle two for an even number.
 ///
 /// # Errors
@@ -125,16 +113,6 @@ pub fn noise_floor(against_itself: &PairedRatio) -> f64 {
     let ratios = against_itself.ratios;
     let (low, high) = against_itself.interval.unwrap_or((ratios.minimum, ratios.maximum));
     (1.0 - low).abs().max((high - 1.0).abs())
-}
-
-/// Whether a ratio differs from 1 by more than the noise, and with its whole interval. Without
-/// an interval nothing is told.
-pub fn compare(ratio: &PairedRatio, noise_floor: f64) -> Timing {
-    match ratio.interval {
-        Some((low, _)) if low > 1.0 && ratio.ratios.median > 1.0 + noise_floor => Timing::Slower,
-        Some((_, high)) if high < 1.0 && ratio.ratios.median < 1.0 / (1.0 + noise_floor) => Timing::Faster,
-        _ => Timing::Same,
-    }
 }
 
 /// Rank `k` such that the `k`-th smallest and `k`-th largest of `count` samples enclose the median
@@ -209,17 +187,15 @@ mod tests {
         };
         let noise = noise_floor(&ratio(1.0));
         assert!(noise > 0.0 && noise < 0.03, "{noise}");
-        assert_eq!(compare(&ratio(1.0), noise), Timing::Same);
-        assert_eq!(compare(&ratio(1.1), noise), Timing::Slower);
-        assert_eq!(compare(&ratio(0.9), noise), Timing::Faster);
-        assert_eq!(compare(&ratio(1.1), 0.2), Timing::Same);
-        assert_eq!(compare(&ratio(0.9), 0.2), Timing::Same);
+        // The ratios of other codes stand out of it, with their whole interval.
+        let (low, high) = (ratio(1.1).interval.unwrap().0, ratio(0.9).interval.unwrap().1);
+        assert!(low > 1.0 + noise && high < 1.0 / (1.0 + noise), "{low} {high}");
         let (mut first, second) = rounds(1.0);
         first.iter_mut().step_by(2).for_each(|time| *time *= 1.5);
         let torn = paired_ratio(&first, &second).unwrap();
-        assert!(torn.ratios.median > 1.1 && compare(&torn, 0.05) == Timing::Same, "{torn:?}");
+        assert!(torn.ratios.median > 1.1 && torn.interval.unwrap().0 < 1.0, "{torn:?}");
         let few = paired_ratio(&[2.0; 3], &[1.0; 3]).unwrap();
-        assert_eq!((few.interval, compare(&few, 0.0)), (None, Timing::Same));
+        assert_eq!(few.interval, None);
         assert_eq!(noise_floor(&few), 1.0);
     }
 

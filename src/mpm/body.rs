@@ -13,7 +13,9 @@ use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::{Nodes, Support};
 use crate::mpm::state::points::Points;
-use crate::soil::material::{Continuity, Material, Stiffness};
+use crate::soil::continuity::Continuity;
+use crate::soil::law::Stiffness;
+use crate::soil::material::Material;
 use crate::soil::tensor::{Tensor, Vector};
 
 /// A basis as the compiler sees it: rows of `W` nodes a direction.

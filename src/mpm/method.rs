@@ -256,6 +256,11 @@ const TOTAL_PREFIX: &str = "TL-";
 const CELLS_SUFFIX: &str = "-cells";
 
 impl Method {
+    /// Whether every point takes the pressure of its cell's centre: reduced integration without recovery.
+    pub fn has_constant_recovery(&self) -> bool {
+        self.pressure == PressureIntegration::Sri && self.recovery == Recovery::Constant
+    }
+
     /// The method of a name, bare, with the prefix `u` for fixed domains, with the prefix `TL-` for
     /// weights on the initial configuration, or with the suffix `-cells` for cells that remember.
     pub fn named(name: &str) -> Option<Self> {

@@ -1,7 +1,6 @@
 //! The table of where the time of a case went.
 
-use crate::mpm::run::profile::PhaseTime;
-use crate::record::Record;
+use crate::record::{PhaseTime, Record};
 use crate::render::table::{Cell, Column, Table};
 
 /// One row a phase, in the order of a run, with its share and what it costs a point and step.

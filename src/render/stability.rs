@@ -1,7 +1,6 @@
 //! Tables of predicted and observed critical steps.
 
-use crate::mpm::critical_step::observed::Probe;
-use crate::record::Record;
+use crate::record::{Probe, Record};
 use crate::render::table::{Cell, Column, Mood, Table};
 
 /// One row a case: predicted and observed step, and what the runs beside the limit did.

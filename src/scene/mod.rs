@@ -1,48 +1,49 @@
 //! A scene is a physical problem: geometry, load, start, the physics it needs and the references
 //! that hold for it. It knows the exact solutions and the solver, and makes a problem for one from
-//! the other.
+//! the other. Each scene is one file; what they have in common is asked here.
 
 pub mod arrangement;
 pub mod column;
+mod cosine_layer;
+mod definition;
+mod dynamic_column;
+mod dynamic_single_mode;
 pub mod problem;
+mod single_mode;
+mod standing_wave;
+mod terzaghi;
+mod xie_leo;
 
-use crate::exact::large_strain;
-use crate::exact::large_strain::law::{LargeStrainModel, SoilLaw, Water};
-use crate::exact::reference::ReferenceKind;
+use crate::exact::error::ExactError;
+use crate::exact::reference::{Reference, ReferenceKind};
 use crate::mpm::method::Configuration;
 use crate::scene::column::Column;
-use crate::soil::material::{Continuity, Law, Material};
+use crate::scene::definition::{
+    SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
+};
+use crate::soil::law::Law;
+use crate::soil::material::Material;
 use serde::{Deserialize, Serialize};
 
 /// A physical problem by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SceneKind {
-    /// A column loaded at once and drained at its top, at small strain, from the undrained
-    /// equilibrium.
+    /// A column loaded at once and drained at its top, at small strain.
     Terzaghi,
-    /// The slowest mode of an unloaded column: smooth in space and time.
+    /// The slowest mode of an unloaded column.
     SingleMode,
-    /// A column loaded at once and drained at its top, at large strain, from the undrained
-    /// equilibrium.
+    /// A column loaded and drained at its top, at large strain.
     XieLeo,
-    /// A plane layer loaded at once by a cosine and drained at its top, at small strain, from the
-    /// undrained equilibrium.
+    /// A plane layer loaded at once by a cosine and drained at its top.
     CosineLayer,
     /// A column at rest, loaded at once or over a time, with all its waves.
     DynamicColumn,
-    /// The slowest mode of an unloaded column, with the inertia that it has.
+    /// The slowest mode of an unloaded column, with its inertia.
     DynamicSingleMode,
-    /// An undrained wave that stands in an unloaded column: smooth, and nothing but inertia.
+    /// An undrained wave that stands in an unloaded column.
     StandingWave,
 }
-
-/// The large-strain reference of the default law; see [`SceneKind::reference_for`].
-const LARGE_STRAIN: ReferenceKind = ReferenceKind::LargeStrain(LargeStrainModel {
-    law: SoilLaw::LogLinear,
-    continuity: large_strain::Continuity::Conservative,
-    water: Water::Compressible,
-});
 
 impl SceneKind {
     /// Every scene.
@@ -56,17 +57,22 @@ impl SceneKind {
         Self::StandingWave,
     ];
 
+    /// The scene's own file.
+    fn definition(self) -> &'static SceneDefinition {
+        match self {
+            Self::Terzaghi => &terzaghi::TERZAGHI,
+            Self::SingleMode => &single_mode::SINGLE_MODE,
+            Self::XieLeo => &xie_leo::XIE_LEO,
+            Self::CosineLayer => &cosine_layer::COSINE_LAYER,
+            Self::DynamicColumn => &dynamic_column::DYNAMIC_COLUMN,
+            Self::DynamicSingleMode => &dynamic_single_mode::DYNAMIC_SINGLE_MODE,
+            Self::StandingWave => &standing_wave::STANDING_WAVE,
+        }
+    }
+
     /// Name in study files and at the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Terzaghi => "terzaghi",
-            Self::SingleMode => "single-mode",
-            Self::XieLeo => "xie-leo",
-            Self::CosineLayer => "cosine-layer",
-            Self::DynamicColumn => "dynamic-column",
-            Self::DynamicSingleMode => "dynamic-single-mode",
-            Self::StandingWave => "standing-wave",
-        }
+        self.definition().name
     }
 
     /// The scene of a name.
@@ -76,141 +82,147 @@ impl SceneKind {
 
     /// One line on what it is.
     pub fn summary(self) -> &'static str {
-        match self {
-            Self::Terzaghi => "column under a sudden load, drained at its top, small strain",
-            Self::SingleMode => "slowest consolidation mode, no load: smooth, for formal orders",
-            Self::XieLeo => "column under a sudden load, drained at its top, large strain",
-            Self::CosineLayer => "plane layer under a cosine load, drained at its top: where locking shows",
-            Self::DynamicColumn => "column at rest under a sudden or growing load: waves and consolidation",
-            Self::DynamicSingleMode => "slowest consolidation mode with its inertia, no load: smooth",
-            Self::StandingWave => "undrained standing wave, no load: smooth, for the order in the step",
-        }
+        self.definition().summary
     }
 
     /// References that hold for the scene, the one whose equations the solver solves first.
     pub fn references(self) -> &'static [ReferenceKind] {
-        match self {
-            Self::Terzaghi => &[ReferenceKind::Terzaghi, ReferenceKind::TerzaghiIncompressible],
-            Self::SingleMode => &[ReferenceKind::SingleMode],
-            Self::XieLeo => &[LARGE_STRAIN, ReferenceKind::XieLeo],
-            Self::CosineLayer => &[ReferenceKind::CosineLayer, ReferenceKind::CosineLayerIncompressible],
-            Self::DynamicColumn => &[ReferenceKind::DynamicColumn, ReferenceKind::Terzaghi],
-            Self::DynamicSingleMode => &[ReferenceKind::DynamicSingleMode, ReferenceKind::SingleMode],
-            Self::StandingWave => &[ReferenceKind::StandingWave],
-        }
+        self.definition().references
     }
 
-    /// Those that hold for a column: Xie & Leo's load acts at once.
+    /// Those that hold for a column, whose load may grow.
     pub fn references_of(self, column: &Column) -> &'static [ReferenceKind] {
-        match self {
-            Self::XieLeo if column.loading_time > 0.0 => &[LARGE_STRAIN],
+        match self.definition().load {
+            SceneLoad::SuddenOrGrowing(references) if column.loading_time > 0.0 => references,
             _ => self.references(),
-        }
-    }
-
-    /// A reference as it holds for a soil: the large-strain one takes the soil's own law and
-    /// continuity, and is of the equations that the solver solves.
-    pub fn reference_for(kind: ReferenceKind, soil: &Material) -> ReferenceKind {
-        match kind {
-            ReferenceKind::LargeStrain(model) => ReferenceKind::LargeStrain(LargeStrainModel {
-                law: match soil.law {
-                    Law::Linear => SoilLaw::Linear,
-                    Law::LogLinear => SoilLaw::LogLinear,
-                    Law::PorosityDependent => SoilLaw::PorosityDependent,
-                    Law::Engineering => SoilLaw::Engineering,
-                },
-                continuity: match soil.continuity {
-                    Continuity::Conservative => large_strain::Continuity::Conservative,
-                    Continuity::ConstantPorosityGradient => {
-                        large_strain::Continuity::ConstantPorosityGradient
-                    }
-                },
-                ..model
-            }),
-            other => other,
-        }
-    }
-
-    /// Law of the soil where a study names none.
-    pub fn default_law(self) -> Law {
-        match self {
-            Self::XieLeo => Law::LogLinear,
-            _ => Law::Linear,
-        }
-    }
-
-    /// Why the scene cannot take a law, where it cannot.
-    pub fn refuses_law(self, law: Law) -> Option<&'static str> {
-        match self {
-            Self::XieLeo => (law == Law::Linear).then_some(
-                "the law `linear` is of small strain: its conductivity ignores that the pores close",
-            ),
-            _ => (law != Law::Linear).then_some(
-                "this scene is of small strain, where every law is linear: the one named would be ignored",
-            ),
-        }
-    }
-
-    /// Whether the scene's theory holds at small strain only.
-    pub fn is_small_strain(self) -> bool {
-        self != Self::XieLeo
-    }
-
-    /// Why the scene cannot take a configuration, where it cannot.
-    pub fn refuses_configuration(self, configuration: Configuration) -> Option<&'static str> {
-        (self == Self::XieLeo && configuration == Configuration::Frozen)
-            .then_some("nothing moves in a `frozen` configuration, and this scene is about large strain")
-    }
-
-    /// Configuration of the weights where the method leaves it open: small strain moves nothing.
-    pub fn configuration(self) -> Configuration {
-        match self {
-            Self::XieLeo => Configuration::Updated,
-            _ => Configuration::Frozen,
-        }
-    }
-
-    /// Whether its load may take time to come on.
-    pub fn takes_loading_time(self) -> bool {
-        matches!(self, Self::XieLeo | Self::DynamicColumn)
-    }
-
-    /// Whether the problem is one of two dimensions only.
-    pub fn is_plane(self) -> bool {
-        self == Self::CosineLayer
-    }
-
-    /// Whether waves run in it.
-    pub fn has_waves(self) -> bool {
-        matches!(self, Self::DynamicColumn | Self::DynamicSingleMode | Self::StandingWave)
-    }
-
-    /// Whether a load acts, so that `σ' − p = −q` at rest.
-    pub fn is_loaded(self) -> bool {
-        match self {
-            Self::Terzaghi | Self::XieLeo | Self::DynamicColumn | Self::CosineLayer => true,
-            Self::SingleMode | Self::DynamicSingleMode | Self::StandingWave => false,
         }
     }
 
     /// Why a reference is not the scene's own, where it is a second one.
     pub fn model_difference(self, reference: ReferenceKind, soil: &Material) -> Option<&'static str> {
-        match (self, reference) {
-            (Self::Terzaghi, ReferenceKind::TerzaghiIncompressible)
-            | (Self::CosineLayer, ReferenceKind::CosineLayerIncompressible) => Some("the water's storage"),
-            (Self::DynamicColumn, ReferenceKind::Terzaghi)
-            | (Self::DynamicSingleMode, ReferenceKind::SingleMode) => Some("the inertia"),
-            (Self::XieLeo, ReferenceKind::XieLeo) => {
-                Some(match (soil.continuity, soil.law == Law::PorosityDependent) {
-                    (Continuity::Conservative, false) => "the water's storage",
-                    (Continuity::Conservative, true) => "the modulus in the rate form",
-                    (Continuity::ConstantPorosityGradient, false) => "the dropped porosity gradient",
-                    (Continuity::ConstantPorosityGradient, true) => {
-                        "the dropped porosity gradient and the modulus in the rate form"
-                    }
-                })
+        (self.definition().model_difference)(reference, soil)
+    }
+
+    /// Law of the soil where a study names none.
+    pub fn default_law(self) -> Law {
+        if self.is_large_strain() { Law::LogLinear } else { Law::Linear }
+    }
+
+    /// Why the scene cannot take a law, where it cannot.
+    pub fn refuses_law(self, law: Law) -> Option<&'static str> {
+        match (self.is_large_strain(), law == Law::Linear) {
+            (true, true) => {
+                Some("the law `linear` is of small strain: its conductivity ignores that the pores close")
             }
+            (false, false) => Some(
+                "this scene is of small strain, where every law is linear: the one named would be ignored",
+            ),
             _ => None,
+        }
+    }
+
+    /// Whether its strains are large: degree of consolidation, not time, measures its progress.
+    pub fn is_large_strain(self) -> bool {
+        self.definition().strain == SceneStrain::Large
+    }
+
+    /// Why the scene cannot take a configuration, where it cannot.
+    pub fn refuses_configuration(self, configuration: Configuration) -> Option<&'static str> {
+        (self.is_large_strain() && configuration == Configuration::Frozen)
+            .then_some("nothing moves in a `frozen` configuration, and this scene is about large strain")
+    }
+
+    /// Configuration of the weights where the method leaves it open: small strain moves nothing.
+    pub fn configuration(self) -> Configuration {
+        if self.is_large_strain() { Configuration::Updated } else { Configuration::Frozen }
+    }
+
+    /// Whether its load may take time to come on.
+    pub fn takes_loading_time(self) -> bool {
+        matches!(self.definition().load, SceneLoad::SuddenOrGrowing(_))
+    }
+
+    /// Whether a load acts, so that `σ' − p = −q` at rest.
+    pub fn is_loaded(self) -> bool {
+        self.definition().load != SceneLoad::None
+    }
+
+    /// Whether the mean of its load is zero: what one half of the body takes in, the other gives.
+    pub fn presses_out_no_water(self) -> bool {
+        self.definition().load == SceneLoad::Cosine
+    }
+
+    /// Whether waves run in it.
+    pub fn has_waves(self) -> bool {
+        self.definition().has_waves
+    }
+
+    /// Whether it cannot be solved in one dimension: a study has its geometry in the table `[layer]`.
+    pub fn needs_two_dimensions(self) -> bool {
+        self.definition().body == SceneBody::Layer
+    }
+
+    /// Whether its exact fields vary along the body too, so that there is no profile over the depth.
+    pub fn has_plane_fields(self) -> bool {
+        self.needs_two_dimensions()
+    }
+
+    /// Whether it is about locking, so that runs are told apart by the stiffness of water and soil.
+    pub fn shows_locking(self) -> bool {
+        self.needs_two_dimensions()
+    }
+
+    /// Whether the solver finds its start, an undrained equilibrium of its own operators.
+    pub fn start_is_solved(self) -> bool {
+        matches!(self.definition().start, SceneStart::Solved)
+    }
+
+    /// The pore pressures, Pa, that points at heights, m, should start with; `found` are those they have.
+    ///
+    /// # Errors
+    /// When the scene's own reference, the first of its references, refuses a depth.
+    pub fn expected_start_pressures(
+        self,
+        column: &Column,
+        soil: &Material,
+        own: Option<&Reference>,
+        (heights, found): (&[f64], &[f64]),
+    ) -> Result<Vec<f64>, ExactError> {
+        match (&self.definition().start_pressure, own) {
+            (StartPressure::Uniform(pressure), _) => Ok(vec![pressure(column, soil); found.len()]),
+            (StartPressure::ZeroMean, _) => {
+                let mean = found.iter().sum::<f64>() / found.len() as f64;
+                Ok(found.iter().map(|pressure| pressure - mean).collect())
+            }
+            (StartPressure::OfReference, None) => Ok(found.to_vec()),
+            (StartPressure::OfReference, Some(own)) => {
+                let at = |height: &f64| Ok(own.fields(0.0, 1.0 - height / column.height)?.pressure);
+                heights.iter().map(at).collect()
+            }
+        }
+    }
+
+    /// The scene in whose words the parameters of a solution are given at the command line.
+    pub fn of_solution(kind: ReferenceKind) -> Self {
+        match kind {
+            ReferenceKind::XieLeo | ReferenceKind::LargeStrain(_) => Self::XieLeo,
+            ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible => Self::CosineLayer,
+            // The one whose load may grow.
+            ReferenceKind::DynamicColumn => Self::DynamicColumn,
+            _ => Self::Terzaghi,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_has_one_name_in_files_and_at_the_command_line() {
+        for scene in SceneKind::ALL {
+            let written = serde_json::to_value(scene).expect("a name");
+            assert_eq!((written.as_str(), SceneKind::named(scene.name())), (Some(scene.name()), Some(scene)));
         }
     }
 }

@@ -161,7 +161,7 @@ fn missing_extra_and_renamed_values_and_a_missing_file_are_no_pass() {
     assert_eq!((told.code, differing(&told).len()), (5, 2), "{}", told.out);
     let spoilt = Place::with(STUDY);
     fs::create_dir(spoilt.path().join("golden")).expect("a folder");
-    fs::write(spoilt.path().join("golden/short.json"), "{ \"schema\": 1 ").expect("a file");
+    fs::write(spoilt.path().join("golden/short.csv"), "# schema = 2\n# study ").expect("a file");
     let told = spoilt.check(&[]);
     assert_eq!(told.code, 5);
     assert!(told.words().contains("cannot be read"), "{}", told.out);
@@ -170,12 +170,13 @@ fn missing_extra_and_renamed_values_and_a_missing_file_are_no_pass() {
 #[test]
 fn a_golden_file_that_allows_anything_is_refused_with_a_sentence() {
     let place = Place::golden(STUDY, |_| {});
-    let path = place.path().join("golden/short.json");
+    let path = place.path().join("golden/short.csv");
     let sound = fs::read_to_string(&path).expect("a golden file");
     for (from, to, told) in [
-        ("\"relative_tolerance\": 1e-8", "\"relative_tolerance\": 1e9", "`relative_tolerance` is 1e9"),
-        ("\"absolute_tolerance\": 1e-12", "\"absolute_tolerance\": -1.0", "`absolute_tolerance` is -1e0"),
-        ("\"reason\": \"for a test\"", "\"reason\": \" \"", "its `reason` is empty"),
+        ("relative_tolerance = 1e-8", "relative_tolerance = 1e9", "`relative_tolerance` is 1e9"),
+        ("absolute_tolerance = 1e-12", "absolute_tolerance = -1.0", "`absolute_tolerance` is -1e0"),
+        ("reason = \"for a test\"", "reason = \" \"", "its `reason` is empty"),
+        ("cells=6 points=2", "cells=3 points=2", "is given twice for this case and time factor"),
     ] {
         assert!(sound.contains(from), "{sound}");
         fs::write(&path, sound.replace(from, to)).expect("written");

@@ -224,7 +224,7 @@ fn a_case_that_takes_too_long_ends_with_a_name_and_is_tried_again() {
 
 /// A study with a piece cut out, doubled or overwritten.
 fn mangled() -> impl Strategy<Value = String> {
-    let whole = include_str!("../studies/hard-strain.toml");
+    let whole = include_str!("../../studies/hard-strain.toml");
     (
         0..whole.len(),
         0..60_usize,

@@ -30,52 +30,6 @@ fn the_front_has_what_nothing_beats() {
 }
 
 #[test]
-fn the_gate_tells_a_loss_from_a_trade() {
-    let golden = point(100.0, 1e-3);
-    let change = |cost, error| against_golden(&point(cost, error), &golden, 0.01, 0.05);
-    assert_eq!(change(100.5, 1.04e-3), ParetoChange::Same);
-    assert_eq!(change(102.0, 1e-3), ParetoChange::Dominated);
-    assert_eq!(change(100.0, 1.1e-3), ParetoChange::Dominated);
-    assert_eq!(change(110.0, 1.1e-3), ParetoChange::Dominated);
-    assert_eq!(change(50.0, 1.1e-3), ParetoChange::Traded);
-    assert_eq!(change(50.0, 1e-3), ParetoChange::Better);
-    for bad in [f64::NAN, f64::INFINITY, -1.0] {
-        assert_eq!(change(bad, 1e-3), ParetoChange::NotComparable);
-        assert_eq!(change(100.0, bad), ParetoChange::NotComparable);
-    }
-    let tolerance = against_golden(&golden, &golden, f64::NAN, 0.0);
-    assert!(tolerance == ParetoChange::NotComparable && !tolerance.passes());
-    assert!(change(50.0, 1.1e-3).passes() && !change(102.0, 1e-3).passes());
-}
-
-#[test]
-fn the_cheapest_way_to_a_tolerance_is_found() {
-    let second = levels(|h| 1.0 / h / h, |h| h * h);
-    let first = levels(|h| 0.1 / h / h, |h| h);
-    // h² = 5e-4 at cost 2000; cost goes as 1/h².
-    let found = cost_to_tolerance(&second, 5e-4).unwrap();
-    assert!((found.cost - 2000.0).abs() < 1e-6 && found.basis == CostBasis::Interpolated);
-    assert_eq!(cost_to_tolerance(&second, 0.1).unwrap().basis, CostBasis::AtMost);
-    let never = cost_to_tolerance(&first, 1e-3);
-    assert_eq!(never, Err(NoCost::NotReached { error: 0.0125 }));
-    let both = [first, second];
-    // At 0.15 the first-order method needs 0.1/0.15² = 4.4, the other 25 at most.
-    assert_eq!(cheapest(&both, 0.15).unwrap().0, 0);
-    assert_eq!(cheapest(&both, 1e-3).unwrap().0, 1);
-    assert_eq!(cheapest(&both, 1e-9), None);
-    assert_eq!(cost_to_tolerance(&both[0], f64::NAN), Err(NoCost::BadTolerance));
-    assert_eq!(cost_to_tolerance(&[], 1.0), Err(NoCost::NotUsable));
-}
-
-#[test]
-fn a_lucky_dip_does_not_count() {
-    let mut dip = levels(|h| 1.0 / h / h, |h| h * h);
-    dip[1].point.error = 1e-6;
-    let found = cost_to_tolerance(&dip, 5e-4).unwrap();
-    assert!((found.cost - 2000.0).abs() < 1e-6, "{found:?}");
-}
-
-#[test]
 fn the_next_level_is_predicted_with_and_without_a_floor() {
     let series = |error: fn(f64) -> f64| {
         let levels = levels(|h| 3.0 / h.powi(3), error);

@@ -17,7 +17,9 @@ use crate::mpm::state::nodes::Support;
 use crate::mpm::state::points::Points;
 use crate::scene::SceneKind;
 use crate::scene::column::{Column, column_problem};
-use crate::soil::material::{Continuity, Law, Material};
+use crate::soil::continuity::Continuity;
+use crate::soil::law::Law;
+use crate::soil::material::Material;
 
 const METHODS: [&str; 5] = ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"];
 

@@ -13,7 +13,9 @@ use crate::mpm::method::{Basis, Configuration, Memory, PressureIntegration, Reco
 use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::scene::SceneKind;
-use crate::soil::material::{Continuity, Law, Material};
+use crate::soil::continuity::Continuity;
+use crate::soil::law::Law;
+use crate::soil::material::Material;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 use crate::study::shipped::shipped_studies;
@@ -296,7 +298,7 @@ fn the_pairs_of_options_that_no_case_has_are_known() {
         counts[1],
         counts[2]
     );
-    insta::with_settings!({ snapshot_path => "../golden/snapshots", prepend_module_to_snapshot => false }, {
+    insta::with_settings!({ snapshot_path => "../../golden/snapshots", prepend_module_to_snapshot => false }, {
         insta::assert_snapshot!("option_pairs", told);
     });
 }

@@ -1,6 +1,6 @@
 //! What every figure owes its reader. The gallery is written to the temporary folder to be looked
 //! at.
-use super::*;
+
 use crate::render::chart::describe::{
     Annotation, Axis, Band, Chart, Direction, Place, Rule, Series, Size, SlopeTriangle, Style,
 };

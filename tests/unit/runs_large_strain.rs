@@ -5,7 +5,8 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::run::Kernel;
 use crate::record::{Record, Status};
-use crate::soil::material::{Continuity, Law};
+use crate::soil::continuity::Continuity;
+use crate::soil::law::Law;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 

@@ -66,7 +66,7 @@ pub struct Arguments {
 /// Scores and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.show_mapping {
-        let is_plane = SceneKind::named(&arguments.scene).is_some_and(SceneKind::is_plane);
+        let is_plane = SceneKind::named(&arguments.scene).is_some_and(SceneKind::has_plane_fields);
         print_data(if is_plane { PLANE_CONVENTION } else { CONVENTION })?;
         return Ok(Exit::Pass);
     }
@@ -84,11 +84,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let held = Held {
         case,
         mapping: &mapping_of(arguments.mapping.as_deref(), case)?,
-        references: &study
-            .references
-            .iter()
-            .map(|kind| SceneKind::reference_for(*kind, &case.material))
-            .collect::<Vec<_>>(),
+        references: &study.references.iter().map(|kind| kind.of_soil(&case.material)).collect::<Vec<_>>(),
         requested: &requested,
         tolerance,
     };
@@ -114,7 +110,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 
 /// The declared meaning of the columns.
 fn mapping_of(path: Option<&Path>, case: &Case) -> anyhow::Result<Mapping> {
-    let is_plane = case.scene.is_plane();
+    let is_plane = case.scene.has_plane_fields();
     let Some(path) = path else {
         let along = if is_plane {
             ", x is the initial distance from the crest of the load in m, u_x is in m and positive away from it"

@@ -146,7 +146,7 @@ impl Read {
         let column = &held.case.column;
         let frame = Frame {
             height: column.height,
-            length: held.case.scene.is_plane().then_some(column.width),
+            length: held.case.scene.has_plane_fields().then_some(column.horizontal_extent),
             seconds_per_time_factor: held.case.seconds_per_time_factor(),
         };
         let states = states_of(&files, held.mapping, frame)?;
@@ -167,8 +167,8 @@ impl Read {
             let column = &held.case.column;
             let of_scene = match held.mapping.whole_volume {
                 Some(volume) => vec![volume],
-                None if held.case.scene.is_plane() => vec![column.volume()],
-                None => vec![column.height, column.height * column.width],
+                None if held.case.scene.has_plane_fields() => vec![column.volume()],
+                None => vec![column.height, column.height * column.horizontal_extent],
             };
             let whole = Whole {
                 parameters,
@@ -189,7 +189,7 @@ impl Read {
     /// What a reader might look for in vain.
     fn note_absences(&mut self, held: &Held) {
         let has = |quantity: Quantity| self.score.errors.iter().any(|row| row.quantity == quantity);
-        let is_plane = held.case.scene.is_plane();
+        let is_plane = held.case.scene.has_plane_fields();
         if has(Quantity::Displacement) && !has(Quantity::Settlement) {
             let place =
                 if is_plane { "on the surface under the crest of the load" } else { "on the surface" };

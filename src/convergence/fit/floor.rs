@@ -47,7 +47,7 @@ impl FloorFit {
     }
 }
 
-/// Fits order, constant and floor; four levels at least.
+/// Fits order, constant and floor with relative residuals; four levels at least.
 ///
 /// # Errors
 /// [`Undefined`]; [`Undefined::NotDetermined`] when the errors do not fall enough to show an
@@ -59,41 +59,22 @@ pub fn fit_floor(series: &ErrorSeries) -> Result<FloorFit, Undefined> {
     if fit.high <= least * 1.001 || fit.high >= most * 0.999 {
         return Err(Undefined::NotDetermined);
     }
-    from_terms(&points, &fit, 3)
-}
-
-/// Fits constant and floor for a given order; three levels at least.
-///
-/// # Errors
-/// [`Undefined`], as for [`fit_floor`].
-pub fn fit_floor_of_order(series: &ErrorSeries, order: f64) -> Result<FloorFit, Undefined> {
-    let points = series.points()?;
-    if !order.is_finite() || order <= 0.0 {
-        return Err(Undefined::NotDetermined);
-    }
-    let fit = fit_two_terms(&points, Exponent::Fixed(0.0), Exponent::Fixed(order))?;
-    from_terms(&points, &fit, 2)
-}
-
-fn from_terms(points: &[(f64, f64)], fit: &TwoTerms, parameters: usize) -> Result<FloorFit, Undefined> {
-    let finest = points.last().map_or(f64::NAN, |point| point.0);
     if fit.high_coefficient <= 0.0 {
         return Err(Undefined::NotDetermined);
     }
+    let finest = points.last().map_or(f64::NAN, |point| point.0);
     let mut fit = FloorFit {
         order: fit.high,
         coefficient: fit.high_coefficient,
         floor: fit.low_coefficient,
-        significant: is_significant(points, fit, parameters)?,
+        significant: is_significant(&points, &fit)?,
         residual: fit.residual,
         crossover: fit.crossover(),
         order_holds: None,
     };
     if fit.share(finest) < NO_FLOOR {
-        let straight = slope_of(points)?;
-        if parameters == 3 {
-            (fit.order, fit.coefficient) = (straight.order, straight.coefficient);
-        }
+        let straight = slope_of(&points)?;
+        (fit.order, fit.coefficient) = (straight.order, straight.coefficient);
         (fit.floor, fit.significant, fit.crossover) = (0.0, false, None);
     }
     let holding = || points.iter().map(|point| point.0).filter(|size| fit.share(*size) <= 0.5);
@@ -103,24 +84,19 @@ fn from_terms(points: &[(f64, f64)], fit: &TwoTerms, parameters: usize) -> Resul
 }
 
 /// F-test of one more parameter: does the floor explain more than a straight line does?
-fn is_significant(points: &[(f64, f64)], fit: &TwoTerms, parameters: usize) -> Result<bool, Undefined> {
+fn is_significant(points: &[(f64, f64)], fit: &TwoTerms) -> Result<bool, Undefined> {
+    /// Order, constant and floor.
+    const PARAMETERS: usize = 3;
     let count = points.len() as f64;
-    let freedom = count - parameters as f64;
-    let straight = if parameters == 3 {
-        // The straight fit on logarithms is the floor fit with the floor left out.
-        let line = slope_of(points)?;
-        let off = |(h, e): &(f64, f64)| {
-            elementary::powi(line.coefficient * elementary::powf(*h, line.order) / e - 1.0, 2)
-        };
-        points.iter().map(off).sum::<f64>()
-    } else {
-        let only = |(h, e): &(f64, f64)| elementary::powf(*h, fit.high) / e;
-        let (sum, square) = points.iter().map(only).fold((0.0, 0.0), |(s, q), x| (s + x, q + x * x));
-        points.iter().map(|point| elementary::powi(sum / square * only(point) - 1.0, 2)).sum::<f64>()
+    // The straight fit on logarithms is the floor fit with the floor left out.
+    let line = slope_of(points)?;
+    let off = |(h, e): &(f64, f64)| {
+        elementary::powi(line.coefficient * elementary::powf(*h, line.order) / e - 1.0, 2)
     };
+    let straight = points.iter().map(off).sum::<f64>();
     let with_floor = (fit.residual * fit.residual * count).max(count * elementary::powi(f64::EPSILON, 2));
-    let ratio = (straight - with_floor) / (with_floor / freedom);
-    let quantile = quantile_975(points.len().saturating_sub(parameters)).ok_or(Undefined::NotDetermined)?;
+    let ratio = (straight - with_floor) / (with_floor / (count - PARAMETERS as f64));
+    let quantile = quantile_975(points.len().saturating_sub(PARAMETERS)).ok_or(Undefined::NotDetermined)?;
     Ok(ratio.is_finite() && ratio > quantile * quantile)
 }
 
@@ -142,8 +118,6 @@ mod tests {
         assert!((fit.crossover.unwrap() - 2e-4_f64.sqrt()).abs() < 1e-9);
         // h² is above 2e-4 down to 1/40, where it is 6e-4; at 1/80 it is 1.6e-4.
         assert_eq!(fit.order_holds, Some((0.2, 0.025)));
-        let known = fit_floor_of_order(&series(|h| h * h + 2e-4), 2.0).unwrap();
-        assert!((known.floor / 2e-4 - 1.0).abs() < 1e-12 && known.significant);
     }
 
     #[test]
@@ -165,7 +139,6 @@ mod tests {
         assert_eq!(fit_floor(&cliff), Err(Undefined::NotDetermined));
         let short = ErrorSeries::new(series(|h| h).levels()[..3].to_vec());
         assert_eq!(fit_floor(&short), Err(Undefined::TooFewLevels { levels: 3, needed: 4 }));
-        assert!(fit_floor_of_order(&short, f64::NAN).is_err());
     }
 
     proptest! {

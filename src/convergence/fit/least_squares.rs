@@ -22,37 +22,6 @@ pub(crate) fn solve(columns: &[Vec<f64>], target: &[f64], weights: &[f64]) -> Op
     Some((coefficients.iter().copied().collect(), square))
 }
 
-/// As [`solve`], with no coefficient negative: the best of all subsets of the columns, which for
-/// the four columns there are at most is exact and cheap.
-pub(crate) fn solve_nonnegative(
-    columns: &[Vec<f64>],
-    target: &[f64],
-    weights: &[f64],
-) -> Option<(Vec<f64>, f64)> {
-    // Mostly none wants to be negative, and then the whole set is the best.
-    let mut best = solve(columns, target, weights)
-        .filter(|(found, _)| found.iter().all(|coefficient| *coefficient >= 0.0));
-    if best.is_some() {
-        return best;
-    }
-    for subset in 1..1_u32 << columns.len() {
-        let members: Vec<_> = (0..columns.len()).filter(|j| subset >> j & 1 == 1).collect();
-        let chosen: Vec<_> = members.iter().map(|j| columns[*j].clone()).collect();
-        let Some((found, square)) = solve(&chosen, target, weights) else {
-            continue;
-        };
-        let better = best.as_ref().is_none_or(|(_, least)| square < *least);
-        if better && found.iter().all(|coefficient| *coefficient >= 0.0) {
-            let mut coefficients = vec![0.0; columns.len()];
-            for (j, coefficient) in members.into_iter().zip(found) {
-                coefficients[j] = coefficient;
-            }
-            best = Some((coefficients, square));
-        }
-    }
-    best
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,13 +34,5 @@ mod tests {
         let twice = [columns[0].clone(), columns[0].clone()];
         assert_eq!(solve(&twice, &[1.0; 4], &[1.0; 4]), None);
         assert_eq!(solve(&columns, &[f64::NAN; 4], &[1.0; 4]), None);
-    }
-
-    #[test]
-    fn a_negative_coefficient_gives_way() {
-        let columns = [vec![1.0; 3], vec![1.0, 2.0, 3.0]];
-        let (found, _) = solve_nonnegative(&columns, &[3.0, 2.0, 1.0], &[1.0; 3]).unwrap();
-        assert!((found[0] - 2.0).abs() < 1e-12 && found[1] == 0.0);
-        assert_eq!(solve_nonnegative(&columns, &[-1.0; 3], &[1.0; 3]), None);
     }
 }

@@ -4,7 +4,5 @@ pub mod approach_to_limit;
 pub mod bending_order;
 pub mod cancelling_terms;
 pub mod floor;
-pub mod joint;
 pub mod least_squares;
-pub mod pattern_search;
 pub mod two_terms;

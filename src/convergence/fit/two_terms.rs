@@ -35,16 +35,6 @@ pub enum Exponent {
     Between(f64, f64),
 }
 
-impl Exponent {
-    /// The ends of the range searched; equal for a given exponent.
-    pub fn range(self) -> (f64, f64) {
-        match self {
-            Self::Fixed(exponent) => (exponent, exponent),
-            Self::Between(from, to) => (from, to),
-        }
-    }
-}
-
 impl TwoTerms {
     /// Share of the lower-order term in the fitted error at a size, from 0 to 1.
     pub fn low_share(&self, size: f64) -> f64 {

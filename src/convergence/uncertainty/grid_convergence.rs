@@ -14,7 +14,7 @@ use crate::elementary;
 /// where no formal order is known (Roache 1998; Celik et al. 2008).
 pub const SAFETY_OBSERVED: f64 = 1.25;
 
-/// Safety factor for two grids, and for an observed order off the formal one.
+/// Safety factor for an observed order off the formal one.
 pub const SAFETY_ASSUMED: f64 = 3.0;
 
 /// Largest order looked for.
@@ -115,20 +115,6 @@ pub fn three_grids(grids: [(f64, f64); 3], formal_order: Option<f64>) -> Result<
         found.estimate = Some(estimate([f1, f2, f3], r21, r32, order, formal_order));
     }
     Ok(found)
-}
-
-/// Index of the finer of two grids, `3 |φ1 − φ2| / (r^p − 1)`, for an assumed order (Roache 1998),
-/// in the unit of the value.
-///
-/// # Errors
-/// [`Undefined`] for bad or equal sizes, values or an order that are no numbers.
-pub fn two_grids(grids: [(f64, f64); 2], assumed_order: f64) -> Result<f64, Undefined> {
-    check(&grids, Some(assumed_order))?;
-    let ratio = grids[0].0.max(grids[1].0) / grids[0].0.min(grids[1].0);
-    if ratio <= 1.0 + 1e-9 {
-        return Err(Undefined::SameSize { size: grids[0].0 });
-    }
-    Ok(SAFETY_ASSUMED * (grids[0].1 - grids[1].1).abs() / power_less_one(ratio, assumed_order))
 }
 
 fn estimate(values: [f64; 3], r21: f64, r32: f64, order: f64, formal_order: Option<f64>) -> GridConvergence {

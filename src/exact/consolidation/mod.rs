@@ -12,10 +12,10 @@
 //! `T`, the sums over mirror images for small `T`; at [`SWITCH`] both need four terms for all of
 //! `f64`'s digits.
 
-pub mod elapsed;
-pub mod images;
-pub mod inverse;
-pub mod series;
+pub(crate) mod elapsed;
+pub(crate) mod images;
+pub(crate) mod inverse;
+pub(crate) mod series;
 
 pub use crate::exact::consolidation::inverse::time_factor_for_degree;
 pub use crate::exact::consolidation::series::eigenvalue;

@@ -1,7 +1,7 @@
 //! A layer under a cosine load: Biot's consolidation in two dimensions.
 
-pub mod elastic;
-pub mod talbot;
+pub(crate) mod elastic;
+pub(crate) mod talbot;
 
 use core::f64::consts::PI;
 

@@ -1,10 +1,10 @@
 //! The column with inertia of both phases, exact.
 
-pub mod growing;
-pub mod modes;
-pub mod quartic;
-pub mod steady;
-pub mod summation;
+pub(crate) mod growing;
+pub(crate) mod modes;
+pub(crate) mod quartic;
+pub(crate) mod steady;
+pub(crate) mod summation;
 
 use std::borrow::Cow;
 

@@ -1,14 +1,14 @@
 //! Large-strain consolidation for any soil law, by a spectral method to round-off.
 
-pub mod chebyshev;
-pub mod grid;
-pub mod law;
-pub mod loading;
-pub mod march;
-pub mod radau;
-pub mod similarity;
+pub(crate) mod chebyshev;
+pub(crate) mod grid;
+pub(crate) mod law;
+pub(crate) mod loading;
+pub(crate) mod march;
+pub(crate) mod radau;
+pub(crate) mod similarity;
 
-pub use crate::exact::large_strain::law::{Continuity, LargeStrainModel, SoilLaw, Water};
+pub use crate::exact::large_strain::law::{LargeStrainModel, Water};
 
 use crate::exact::error::{ExactError, checked_depth, checked_time_factor};
 use crate::exact::large_strain::law::Diffusion;

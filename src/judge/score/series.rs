@@ -3,8 +3,7 @@
 use crate::case::norm::Norm;
 use crate::convergence::class::classify::classify;
 use crate::convergence::class::{Classification, Context};
-use crate::convergence::orders::{FinestOrder, finest_order};
-use crate::convergence::series::{ErrorSeries, Level, Undefined};
+use crate::convergence::series::{ErrorSeries, Level};
 use crate::judge::score::Score;
 use crate::judge::score::times::TimeGroups;
 use crate::record::ErrorRow;
@@ -22,8 +21,6 @@ pub struct ScoredSeries {
     pub time_difference: f64,
     /// Cell sizes, m, and errors.
     pub series: ErrorSeries,
-    /// Order on the finest window.
-    pub finest: Result<FinestOrder, Undefined>,
     /// Class with its reason.
     pub classification: Classification,
 }
@@ -89,7 +86,6 @@ fn one_series(
     Some(ScoredSeries {
         measure: ErrorRow { time_factor, ..(*first).clone() },
         time_difference: differences.filter(|difference| difference.is_finite()).fold(0.0, f64::max),
-        finest: finest_order(&series),
         classification: classify(&series, &context),
         series,
     })

@@ -14,7 +14,7 @@ use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::implicit::banded::Banded;
 use crate::mpm::implicit::sparse::{SparseRows, accumulate};
 use crate::mpm::implicit::unknowns::Unknowns;
-use crate::soil::material::Continuity;
+use crate::soil::continuity::Continuity;
 
 /// Scales that make the unknowns and the equations pure numbers of like size.
 #[derive(Clone, Copy, Debug, PartialEq)]

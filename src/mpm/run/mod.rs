@@ -7,7 +7,7 @@ pub mod profile;
 pub mod snapshot;
 
 use crate::elementary;
-use crate::mpm::assembled::frozen::FrozenStep;
+use crate::mpm::assembled::step::AssembledStep;
 use crate::mpm::body::{Body, CubicSpline, DomainEnds, Gimp, Hat, Problem, QuadraticSpline, ShapeFunction};
 use crate::mpm::critical_step::formula;
 use crate::mpm::critical_step::predicted::predicted_critical_step;
@@ -154,7 +154,7 @@ fn implicit_sizes<const D: usize>(problem: &Problem<D>, schedule: &Schedule) -> 
 
 struct Run<'a, const D: usize, const W: usize, S: ShapeFunction<W>> {
     body: Body<D, W, S>,
-    frozen: Option<FrozenStep<D>>,
+    frozen: Option<AssembledStep<D>>,
     schedule: &'a Schedule,
     start: Points<D>,
     initial_height: f64,
@@ -199,7 +199,7 @@ impl<'a, const D: usize, const W: usize, S: ShapeFunction<W>> Run<'a, D, W, S> {
         let mut body = discretise(problem);
         let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
         let is_assembled = body.configuration == Configuration::Frozen && schedule.kernel == Kernel::Fastest;
-        let frozen = is_assembled.then(|| FrozenStep::new(&body));
+        let frozen = is_assembled.then(|| AssembledStep::new(&body));
         let mut run = Self {
             start: body.points.clone(),
             initial_height,

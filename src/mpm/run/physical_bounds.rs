@@ -93,7 +93,7 @@ mod tests {
 
     fn bounds_of(scene: SceneKind, column: &Column, soil: &Material) -> PhysicalBounds {
         let method = Method::named("GC-SRI-patch").expect("the paper's method");
-        if scene.is_plane() {
+        if scene.needs_two_dimensions() {
             PhysicalBounds::of(&column_problem::<2>(scene, column, soil, method, 4, 2).expect("a layer"))
         } else {
             PhysicalBounds::of(&column_problem::<1>(scene, column, soil, method, 4, 2).expect("a column"))

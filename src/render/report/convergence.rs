@@ -15,7 +15,7 @@ use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 
 /// Quantities of one figure, side by side; a layer's settlement says less than its displacements.
 fn panels(results: &StudyResults<'_>) -> [(Quantity, Sample); 4] {
-    let of_the_body = if results.study.scene.is_plane() {
+    let of_the_body = if results.study.scene.has_plane_fields() {
         (Quantity::Displacement, Sample::Nodes)
     } else {
         (Quantity::Settlement, Sample::Surface)

@@ -50,7 +50,7 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
         let mut all = paths(one.records, Axis::Cells);
         all.retain(|path| path.records.len() >= WINDOW);
         // A layer's other soils have their place in its own section.
-        all.retain(|path| !one.study.scene.is_plane() || path.records[0].case.variant().is_empty());
+        all.retain(|path| !one.study.scene.shows_locking() || path.records[0].case.variant().is_empty());
         let labels = labels::path_labels(&all);
         for (path, label) in all.iter().zip(&labels.each) {
             let times = &path.records[0].case.time_factors;

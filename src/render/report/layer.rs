@@ -11,14 +11,13 @@ use crate::render::number;
 use crate::render::page::{Block, Figure, slug};
 use crate::render::report::{StudyResults, stiffness};
 use crate::render::table::{Cell, Column, Mood, Table};
-use crate::soil::material::Material;
 
 /// Cells over the height of the runs whose fields are drawn.
 const SHOWN_CELLS: usize = 8;
 
 /// Fields and ranking of a study of a layer; nothing for a column's.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
-    if !results.study.scene.is_plane() {
+    if !results.study.scene.has_plane_fields() {
         return Ok(Vec::new());
     }
     let mut blocks = Vec::new();
@@ -53,14 +52,12 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
 
 /// The first sound run of each method on the shown mesh, in the undisturbed soil.
 fn shown_records(records: &[Record]) -> Vec<&Record> {
-    let seed = Material::default();
     let mut shown: Vec<&Record> = Vec::new();
     for record in records {
         let case = &record.case;
         if case.cells == SHOWN_CELLS
             && record.status == Status::Ok
-            && case.material.water_bulk_modulus == seed.water_bulk_modulus
-            && case.material.poissons_ratio == seed.poissons_ratio
+            && case.has_usual_compressibility()
             && shown.iter().all(|other| other.case.method != case.method)
         {
             shown.push(record);

@@ -1,10 +1,10 @@
 //! Error against wall time over every integrator: the front, the first way to a tolerance, one more
 //! level, and other programs.
 
+use crate::case::IntegratorKind;
 use crate::judge::peers;
 use crate::judge::peers::Comparison;
 use crate::judge::work_precision::{NextLevel, TimedRun, WorkPrecision};
-use crate::mpm::run::integrator::IntegratorKind;
 use crate::render::chart::describe::{Axis as ChartAxis, Chart, Series, Style};
 use crate::render::page::{Block, Figure, slug};
 use crate::render::report::StudyResults;

@@ -7,12 +7,10 @@ use crate::measure::theory_curves::{
     computed_consolidation, computed_isochrone, constant_recovery_error, theory_consolidation, theory_degree,
     theory_isochrone,
 };
-use crate::mpm::method::{PressureIntegration, Recovery};
 use crate::record::{Record, Status};
 use crate::render::chart::describe::{Axis as ChartAxis, Chart, Series, Size, Style};
 use crate::render::page::{Block, Figure, slug};
 use crate::render::report::StudyResults;
-use crate::scene::SceneKind;
 
 /// Cells of the runs whose profiles are drawn: the paper's column.
 const SHOWN_CELLS: usize = 10;
@@ -24,7 +22,7 @@ const SHOWN_POINTS: [usize; 2] = [2, 4];
 /// but one method.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     let shown = shown_records(results.records);
-    if shown.len() < 2 || results.study.scene.is_plane() {
+    if shown.len() < 2 || results.study.scene.has_plane_fields() {
         return Ok(Vec::new());
     }
     let mut blocks = vec![Block::Heading("Profiles on ten cells".to_owned())];
@@ -67,7 +65,7 @@ fn isochrone_name(
     record: &Record,
     time_factor: f64,
 ) -> Result<String, ExactError> {
-    if results.study.scene != SceneKind::XieLeo {
+    if !results.study.scene.is_large_strain() {
         return Ok(format!("T_v = {time_factor}"));
     }
     let degree = theory_degree(&record.case, results.study.references[0], time_factor)?;
@@ -138,10 +136,7 @@ fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Figure
 /// Why a constant in each cell is of first order at the points and of second at the centres, with
 /// the numbers.
 fn sampling_note(shown: &[&Record]) -> Option<String> {
-    let record = shown.iter().find(|record| {
-        record.case.method.pressure == PressureIntegration::Sri
-            && record.case.method.recovery == Recovery::Constant
-    })?;
+    let record = shown.iter().find(|record| record.case.method.has_constant_recovery())?;
     let own = record.references.first()?.name.as_str();
     let time_factor = *record.case.time_factors.iter().rfind(|factor| **factor <= 0.2)?;
     let error =

@@ -2,7 +2,6 @@
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::first_norm;
-use crate::mpm::run::integrator::IntegratorKind;
 use crate::record::{Record, Status};
 use crate::render::number;
 use crate::render::page::{Block, Section};
@@ -78,7 +77,7 @@ fn is_hard(results: &StudyResults<'_>) -> bool {
 /// Method, with the integrator where it is not the explicit one.
 fn runner_of(record: &Record) -> String {
     let case = &record.case;
-    if case.integrator == IntegratorKind::Explicit {
+    if case.is_explicit() {
         case.method.to_string()
     } else {
         format!("{}, {}", case.method, case.integrator.name())

@@ -5,7 +5,6 @@ use crate::case::keys::{Key, Value};
 use crate::elementary;
 use crate::exact::error::ExactError;
 use crate::exact::xie_leo::XieLeo;
-use crate::scene::SceneKind;
 use crate::scene::column::column_parameters;
 use crate::study::check::Checker;
 use crate::study::diagnostic::Diagnostic;
@@ -19,7 +18,7 @@ impl Checker<'_> {
     /// The values of the column's or the layer's table, whichever the scene is about; the other is refused.
     pub(crate) fn geometry(&mut self, file: &StudyFile, seed: &Case) -> Vec<(&'static Key, Value)> {
         let (scene, name) = (seed.scene, seed.scene.name());
-        if scene.is_plane() {
+        if scene.needs_two_dimensions() {
             if let Some(span) =
                 file.column.inputs.iter().map(|(_, typed)| typed.span()).min_by_key(|s| s.start)
             {
@@ -53,7 +52,7 @@ impl Checker<'_> {
     /// solutions say so before anything runs.
     pub(crate) fn porosity_at_the_end(&mut self, file: &StudyFile, base: &Case) {
         let Case { scene, column, material: soil, .. } = base;
-        if *scene != SceneKind::XieLeo || !self.diagnostics.is_empty() {
+        if !scene.is_large_strain() || !self.diagnostics.is_empty() {
             return;
         }
         let parameters = column_parameters(column, soil);
@@ -74,7 +73,7 @@ impl Checker<'_> {
     pub(crate) fn large_for_small_strain(&self, file: &StudyFile, base: &Case) -> Option<String> {
         let Case { scene, column, material: soil, .. } = base;
         let strain = column.load / soil.oedometric_modulus();
-        if !scene.is_small_strain() || strain <= LARGEST_SMALL_STRAIN {
+        if scene.is_large_strain() || strain <= LARGEST_SMALL_STRAIN {
             return None;
         }
         let typed = file.column.typed("load").or(file.material.typed("youngs_modulus")).map(Spanned::span);

@@ -124,7 +124,7 @@ impl Checker<'_> {
                     "it lies between 0, the surface, and 1, the base, both excluded",
                 );
             }
-            if !is_value || !is_field || scene.is_plane() {
+            if !is_value || !is_field || scene.has_plane_fields() {
                 self.complain(
                     probe.span(),
                     "a probe is for a field of a column that is held against no reference",
@@ -146,7 +146,11 @@ impl Checker<'_> {
             self.complain(
                 entry.span(),
                 format!("without a reference the {} is no single number", quantity.name()),
-                if scene.is_plane() { "ask for the settlement" } else { "add a depth, like `probe = 0.5`" },
+                if scene.has_plane_fields() {
+                    "ask for the settlement"
+                } else {
+                    "add a depth, like `probe = 0.5`"
+                },
             );
         }
         for (key, place) in [
@@ -169,7 +173,7 @@ impl Checker<'_> {
         sample: Sample,
     ) {
         let is_measured = (quantity, sample) == (Quantity::Pressure, Sample::Points);
-        if let Some(typed) = table.oscillation.as_ref().filter(|_| scene.is_plane() && !is_measured) {
+        if let Some(typed) = table.oscillation.as_ref().filter(|_| scene.has_plane_fields() && !is_measured) {
             self.complain(
                 typed.span(),
                 format!("the scene `{}` measures the wiggle of the pressure at the points", scene.name()),

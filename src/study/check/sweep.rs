@@ -152,7 +152,7 @@ impl Checker<'_> {
             let size = column.height / cells as f64;
             self.complain(
                 typed.span(),
-                format!("square cells of {size} m do not fill a width of {} m", column.width),
+                format!("square cells of {size} m do not fill a width of {} m", column.horizontal_extent),
                 format!("a width of {size} m is one cell wide, or take a number of cells that divides it"),
             );
         }

@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::case::keys::{Choice, Key, Kind, Range, Value};
 use crate::scene::SceneKind;
-use crate::soil::material::Law;
+use crate::soil::law::Law;
 use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
 use crate::study::inputs::{Named, One, TypedInput};

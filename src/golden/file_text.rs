@@ -1,0 +1,208 @@
+//! The text of a golden file: a header and a table. The format is told in [`crate::golden`].
+
+use crate::golden::GoldenFile;
+use crate::golden::case_changes::parts;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What stands before every line of the header.
+const HEADER_MARK: char = '#';
+/// The columns that say which case and time factor a row is of.
+const LABELS: [&str; 2] = ["case", "T_v"];
+/// What stands before the quantity of a column of spreads.
+const SPREAD_MARK: &str = "spread of ";
+
+/// Where a value stands: its row by case and time factor, its column by measure.
+struct TablePlace<'a> {
+    row: (&'a str, &'a str),
+    measure: &'a str,
+}
+
+impl<'a> TablePlace<'a> {
+    /// The place of a name `case | measure T_v=time`; counters have no time.
+    fn of(name: &'a str) -> Self {
+        let (case, measure) = parts(name);
+        let (measure, time_factor) = measure.rsplit_once(" T_v=").unwrap_or((measure, ""));
+        Self { row: (case, time_factor), measure }
+    }
+
+    fn name(&self) -> String {
+        let (case, time_factor) = self.row;
+        let measure = if self.measure.is_empty() { String::new() } else { format!(" | {}", self.measure) };
+        let time = if time_factor.is_empty() { String::new() } else { format!(" T_v={time_factor}") };
+        format!("{case}{measure}{time}")
+    }
+}
+
+/// The shortest decimal that reads back as the same number.
+fn decimal(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// A line of the header; tolerances as 1e-12, which TOML's writer spells with eleven zeros.
+fn header_line(line: &str) -> String {
+    let tolerance =
+        line.split_once("_tolerance = ").and_then(|(kind, value)| Some((kind, value.parse().ok()?)));
+    let line =
+        tolerance.map_or(line.to_owned(), |(kind, value)| format!("{kind}_tolerance = {}", decimal(value)));
+    format!("{HEADER_MARK} {line}").trim_end().to_owned() + "\n"
+}
+
+impl GoldenFile {
+    /// The file as text: the header, then rows by case and time factor, columns by name.
+    ///
+    /// # Errors
+    /// What refuses to be written, as a sentence.
+    pub fn to_text(&self) -> Result<String, String> {
+        let values = self.values.iter().map(|(name, value)| (name, false, *value));
+        let spreads = self.spread.iter().map(|(group, spread)| (group, true, *spread));
+        let mut columns = BTreeSet::new();
+        let mut rows: BTreeMap<(&str, &str), BTreeMap<(bool, &str), f64>> = BTreeMap::new();
+        for (name, is_spread, value) in values.chain(spreads) {
+            let place = TablePlace::of(name);
+            let column = (is_spread, place.measure);
+            columns.insert(column);
+            rows.entry(place.row).or_default().insert(column, value);
+        }
+        let header = toml::to_string(self).map_err(|error| error.to_string())?;
+        let mut text: String = header.lines().map(header_line).collect();
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let titles = columns.iter().map(|(is_spread, measure)| {
+            if *is_spread { format!("{SPREAD_MARK}{measure}") } else { (*measure).to_owned() }
+        });
+        let mut records = vec![LABELS.map(str::to_owned).into_iter().chain(titles).collect::<Vec<_>>()];
+        for ((case, time_factor), row) in &rows {
+            let cells = columns.iter().map(|column| row.get(column).copied().map_or(String::new(), decimal));
+            records.push(
+                [case, time_factor].map(|label| (*label).to_owned()).into_iter().chain(cells).collect(),
+            );
+        }
+        for record in &records {
+            writer.write_record(record).map_err(|error| error.to_string())?;
+        }
+        let table = writer.into_inner().map_err(|error| error.to_string())?;
+        text.push_str(&String::from_utf8(table).map_err(|error| error.to_string())?);
+        Ok(text)
+    }
+
+    /// Reads what [`Self::to_text`] wrote.
+    ///
+    /// # Errors
+    /// What is wrong and in which line, as a sentence.
+    pub fn from_text(text: &str) -> Result<Self, String> {
+        if !text.ends_with('\n') {
+            return Err(format!("line {}: the file ends within it", text.lines().count().max(1)));
+        }
+        let header = text.lines().take_while(|line| line.starts_with(HEADER_MARK));
+        let header: Vec<&str> =
+            header.map(|line| line[1..].strip_prefix(' ').unwrap_or(&line[1..])).collect();
+        let header = header.join("\n");
+        let mut golden: Self = toml::from_str(&header).map_err(|error| {
+            let before = error.span().map_or("", |span| header.get(..span.start).unwrap_or_default());
+            format!("line {}: {}", before.matches('\n').count() + 1, error.message())
+        })?;
+        let mut reader =
+            csv::ReaderBuilder::new().comment(Some(HEADER_MARK as u8)).from_reader(text.as_bytes());
+        let titles = reader.headers().map_err(|error| error.to_string())?.clone();
+        if !titles.iter().take(LABELS.len()).eq(LABELS) {
+            return Err(format!("its table does not begin with the columns `{}`", LABELS.join("`, `")));
+        }
+        for record in reader.records() {
+            let record = record.map_err(|error| error.to_string())?;
+            golden.take_row(&titles, &record).map_err(|reason| {
+                format!("line {}: {reason}", record.position().map_or(0, csv::Position::line))
+            })?;
+        }
+        Ok(golden)
+    }
+
+    /// Takes the values and spreads of a row of the table.
+    fn take_row(&mut self, titles: &csv::StringRecord, record: &csv::StringRecord) -> Result<(), String> {
+        let row = (&record[0], &record[1]);
+        let cells = titles.iter().zip(record).skip(LABELS.len());
+        for (title, cell) in cells.filter(|(_, cell)| !cell.is_empty()) {
+            let value = cell.parse().map_err(|_| format!("`{cell}` under `{title}` is no number"))?;
+            let (kept, measure) = match title.strip_prefix(SPREAD_MARK) {
+                Some(measure) => (&mut self.spread, measure),
+                None => (&mut self.values, title),
+            };
+            let name = TablePlace { row, measure }.name();
+            if kept.insert(name, value).is_some() {
+                return Err(format!("`{title}` is given twice for this case and time factor"));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every kind of name and number there is.
+    fn golden() -> GoldenFile {
+        let values = [
+            ("MPM cells=4 (u-p, implicit drag) | steps", 46824.0),
+            ("MPM cells=4 (u-p, implicit drag) | observed critical step", -1.0),
+            ("MPM cells=4 (u-p, implicit drag) | pressure points l2 terzaghi T_v=0.05", 0.1 + 0.2),
+            ("MPM cells=4 (u-p, implicit drag) | pressure points l2 terzaghi T_v=0.0000001", 5e-324),
+            ("MPM cells=4 (u-p, implicit drag) | water balance T_v=0.05", -0.0),
+            ("MPM cells=8 | settlement surface relative terzaghi T_v=1", 1.797e308),
+            ("cosine-layer rough | σ'_xx x=0.3 y=0.5 T_v=0", 1e-5),
+            ("a name of its own", 3.0),
+        ];
+        let spread = [
+            ("MPM cells=4 (u-p, implicit drag) | water balance", 3.843_225_542_918_48e-15),
+            ("MPM cells=4 (u-p, implicit drag) | pressure T_v=0.05", 1e-16),
+        ];
+        let owned = |pairs: &[(&str, f64)]| {
+            pairs.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect::<BTreeMap<_, _>>()
+        };
+        let reason = "two lines,\nand \"quoted\" # so".to_owned();
+        GoldenFile { reason, values: owned(&values), spread: owned(&spread), ..GoldenFile::of("s", &[], "-") }
+    }
+
+    #[test]
+    fn a_golden_file_reads_back_to_the_bit_with_a_row_per_case_and_time() {
+        let text = golden().to_text().expect("written");
+        let read = GoldenFile::from_text(&text).expect("read");
+        assert_eq!(read, golden());
+        let bits = |file: &GoldenFile| file.values.values().map(|value| value.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&read), bits(&golden()), "signs of zero too");
+        let table: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
+        assert_eq!(
+            table[0],
+            "case,T_v,,observed critical step,pressure points l2 terzaghi,\
+             settlement surface relative terzaghi,steps,water balance,σ'_xx x=0.3 y=0.5,\
+             spread of pressure,spread of water balance"
+        );
+        let case = "\"MPM cells=4 (u-p, implicit drag)\"";
+        assert_eq!(table[1], format!("{case},,,-1,,,46824,,,,3.84322554291848e-15"));
+        assert_eq!(table[3], format!("{case},0.05,,,0.30000000000000004,,,-0,,1e-16,"));
+        assert_eq!(table.len(), 7);
+    }
+
+    #[test]
+    fn what_is_broken_is_told_with_its_line() {
+        let text = golden().to_text().expect("written");
+        let line_of = |part: &str| 1 + text.lines().position(|line| line.contains(part)).expect("a line");
+        let refused = |from: &str, to: &str| {
+            assert!(text.contains(from), "{text}");
+            GoldenFile::from_text(&text.replacen(from, to, 1)).expect_err("refused")
+        };
+        let told = refused("46824", "many");
+        assert_eq!(told, format!("line {}: `many` under `steps` is no number", line_of("46824")));
+        let told = refused(",0.05,", ",0.0000001,");
+        let twice = "`pressure points l2 terzaghi` is given twice for this case and time factor";
+        assert_eq!(told, format!("line {}: {twice}", line_of(",0.05,")));
+        let told = refused("1.797e308,", "1.797e308,,");
+        assert!(told.contains(&format!("line: {}", line_of("1.797e308"))), "{told}");
+        let told = refused("absolute_tolerance = ", "absolute_tolerance = x");
+        assert!(told.starts_with(&format!("line {}: ", line_of("absolute_tolerance"))), "{told}");
+        let told = refused("# study = ", "# steady = ");
+        assert!(told.starts_with("line ") && told.contains("steady"), "{told}");
+        assert!(refused("case,T_v", "cases,T_v").contains("`case`, `T_v`"));
+        let cut = GoldenFile::from_text(&text[..text.len() - 2]).expect_err("refused");
+        assert_eq!(cut, format!("line {}: the file ends within it", text.lines().count()));
+    }
+}
