@@ -1,12 +1,13 @@
 //! A case: everything that decides a run, as plain data with an identity.
 
+pub mod keys;
 pub mod norm;
 pub mod quantity;
 pub mod tier;
 
 use crate::elementary;
 use crate::mpm::explicit::{Drag, ExplicitSettings};
-use crate::mpm::method::Method;
+use crate::mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery, StrainGradient};
 use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::Formulation;
 pub use crate::mpm::run::integrator::IntegratorKind;
@@ -24,7 +25,7 @@ const BYTES_A_POINT: f64 = 500.0;
 const HASH_DIGITS: usize = 16;
 
 /// What is done with a case.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Task {
     /// It is solved, and held against the references of its scene.
@@ -53,7 +54,7 @@ impl Task {
 }
 
 /// All inputs of one run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Case {
     /// What is done with it.
     #[serde(default, skip_serializing_if = "Task::is_solve")]
@@ -83,6 +84,32 @@ pub struct Case {
 }
 
 impl Case {
+    /// The seed values of a scene on one cell, by the plain method: what a study does not name.
+    pub fn seed(task: Task, scene: SceneKind) -> Self {
+        let integrator = IntegratorKind::Explicit;
+        Self {
+            task,
+            scene,
+            column: if scene.needs_two_dimensions() { Column::layer() } else { Column::default() },
+            material: Material { law: scene.default_law(), ..Material::default() },
+            method: Method {
+                basis: Basis::Hat,
+                strain: StrainGradient::Standard,
+                pressure: PressureIntegration::Points,
+                recovery: Recovery::Constant,
+                memory: Memory::Points,
+                configuration: None,
+            },
+            integrator,
+            formulation: integrator.default_formulation(),
+            settings: ExplicitSettings::default(),
+            cells: 1,
+            points_per_cell: 2,
+            time_step: integrator.default_rule(),
+            time_factors: Vec::new(),
+        }
+    }
+
     /// Identity over the meaning: equal for equal inputs, whatever file or path they came from.
     pub fn hash(&self) -> String {
         // Serialising plain numbers and words cannot fail; were it to, an empty text still hashes.

@@ -6,7 +6,9 @@ use std::str::FromStr;
 use thiserror::Error;
 
 /// How the error of a field is turned into one number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "lowercase")]
 pub enum Norm {
     /// Mean of the absolute error over the volume.

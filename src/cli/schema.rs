@@ -15,6 +15,6 @@ pub struct Arguments {
 
 /// Prints the schema.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    print_data(&json_of(&schema_of(arguments.document)?)?)?;
+    print_data(&json_of(&schema_of(arguments.document))?)?;
     Ok(Exit::Pass)
 }

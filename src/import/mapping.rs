@@ -64,25 +64,25 @@ y = 0.0
 "#;
 
 /// What the columns of a file mean.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mapping {
     /// Kind of the places: a name for tables.
     #[serde(default = "points")]
     pub sample: Sample,
-    /// What the volumes of all places add up to, in the unit of their column; where it is left out
-    /// and the sum is no volume of the scene, they are mere weights.
+    /// What the volumes of all samples add up to, in the unit of their column. Where it is left out and the sum is
+    /// no volume of the scene, they are mere weights.
     #[serde(default)]
     pub whole_volume: Option<f64>,
-    /// Names of the columns.
+    /// Names of the columns, as the header spells them.
     pub columns: Columns,
     /// Units of the columns.
     pub units: Units,
-    /// Directions that count as positive.
+    /// Directions that count as positive; of x and y with the end from which they count.
     pub sign: Signs,
-    /// Whose places the coordinates are.
+    /// Whether places are initial or present ones, of x as of y.
     pub position: Position,
-    /// Where the scene begins in the file's coordinates.
+    /// What the file writes at the end from which x and y count, in its unit of length.
     #[serde(default)]
     pub origin: Origin,
     /// Where the time stands, where it is no column.
@@ -101,7 +101,7 @@ fn points() -> Sample {
 }
 
 /// Names of columns as the header spells them.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Columns {
     /// Time.
@@ -123,7 +123,7 @@ pub struct Columns {
 }
 
 /// Units of columns.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Units {
     /// Unit of the time.
@@ -137,7 +137,7 @@ pub struct Units {
 }
 
 /// Directions that count as positive.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Signs {
     /// `right` from the scene's `x = 0` (the crest of a layer's load), or `left` from its other end;
@@ -156,7 +156,7 @@ pub struct Signs {
 }
 
 /// Whose places the coordinates are.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Position {
     /// Initial places, or present ones; of `x` as of `y`.
@@ -165,7 +165,7 @@ pub struct Position {
 
 /// Where the scene begins in the file's coordinates and their unit: what the file writes at the end
 /// from which `sign` counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Origin {
     /// At the crest of a layer's load, or at its other end.
@@ -175,7 +175,7 @@ pub struct Origin {
 }
 
 /// Times that stand beside the rows.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Time {
     /// Time of each file that holds one step, by its file name.
@@ -184,7 +184,7 @@ pub struct Time {
 }
 
 /// Layout of a file.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Layout {
     /// What parts the columns.

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 /// A unit of time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum TimeUnit {
     /// Second.
@@ -21,7 +21,7 @@ pub enum TimeUnit {
 }
 
 /// A unit of length.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 pub enum LengthUnit {
     /// Metre.
     #[serde(rename = "m")]
@@ -35,7 +35,7 @@ pub enum LengthUnit {
 }
 
 /// A unit of stress.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 pub enum StressUnit {
     /// Pascal.
     #[serde(rename = "Pa")]
@@ -49,7 +49,7 @@ pub enum StressUnit {
 }
 
 /// A vertical direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Direction {
     /// Against gravity.
@@ -59,7 +59,7 @@ pub enum Direction {
 }
 
 /// A horizontal direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Side {
     /// Away from the scene's `x = 0`: the crest of a layer's load.
@@ -69,7 +69,7 @@ pub enum Side {
 }
 
 /// Which stress counts as positive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum StressSign {
     /// Soil mechanics.
@@ -79,7 +79,7 @@ pub enum StressSign {
 }
 
 /// A configuration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Configuration {
     /// Places before the load came.

@@ -10,7 +10,8 @@ use crate::wording::typed;
 impl CaseExpectation {
     /// One judgement a case that it selects; where it selects none, one that fails.
     pub fn judge(&self, records: &[Record]) -> Vec<Judgement> {
-        let selected: Vec<&Record> = records.iter().filter(|record| self.selection.fits(record)).collect();
+        let selected: Vec<&Record> =
+            records.iter().filter(|record| self.selection.fits(&record.case)).collect();
         if selected.is_empty() {
             let check = check("cases", false, None, "no case is selected".to_owned());
             return vec![self.judgement("any case".to_owned(), vec![check])];

@@ -17,7 +17,7 @@ use crate::mpm::run::snapshot::{Samples, Snapshot};
 use crate::record::Record;
 use crate::soil::material::Material;
 use crate::study::check::Study;
-use crate::study::expectation::{Axis, Expectation, Measure, NEXT_FINER, NO_REFERENCE};
+use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE, SeriesExpectation};
 use std::collections::HashMap;
 
 /// Errors up to this are round-off of a long run.
@@ -294,17 +294,18 @@ pub fn judge_study(study: &Study, records: &[Record], tier: Tier) -> Vec<Judgeme
 }
 
 /// One judgement a path that the expectation selects; where it selects none, one that fails.
-fn judge_expectation(expectation: &Expectation, records: &[Record]) -> Vec<Judgement> {
+fn judge_expectation(expectation: &SeriesExpectation, records: &[Record]) -> Vec<Judgement> {
     let measure = &expectation.measure;
     let what = measure.to_string();
     let all = paths(records, expectation.axis);
     let selected: Vec<_> = all
         .iter()
-        .filter(|path| selects(expectation, &path.records[0].case))
+        .filter(|path| expectation.selection.fits_along(expectation.axis.name(), &path.records[0].case))
         .filter(|path| !path.series(measure).levels().is_empty())
         .collect();
     if selected.is_empty() {
-        let method = expectation.method.map_or("any method".to_owned(), |method| method.to_string());
+        let method =
+            expectation.selection.method().map_or("any method".to_owned(), |method| method.to_string());
         let nothing = ErrorSeries::new(Vec::new());
         let verdict = judge(&strict(&expectation.demand), &nothing, &Context::default(), &Beside::default());
         let subject = format!("{method}: {what}");
@@ -328,25 +329,6 @@ fn judge_expectation(expectation: &Expectation, records: &[Record]) -> Vec<Judge
 /// A demand without its pardon: nothing was measured, and that is no known failure.
 fn strict(demand: &Demand) -> Demand {
     Demand { xfail: None, ..demand.clone() }
-}
-
-fn selects(expectation: &Expectation, case: &Case) -> bool {
-    fn fits<T: PartialEq + Copy>(asked: Option<T>, has: T) -> bool {
-        asked.is_none_or(|asked| asked == has)
-    }
-    fits(expectation.method, case.method)
-        && fits(expectation.integrator, case.integrator)
-        && (expectation.axis == Axis::Cells || fits(expectation.cells, case.cells))
-        && (expectation.axis == Axis::PointsPerCell
-            || fits(expectation.points_per_cell, case.points_per_cell))
-        && fits(expectation.law, case.material.law)
-        && fits(expectation.continuity, case.material.continuity)
-        && (expectation.axis == Axis::WaterBulkModulus
-            || fits(expectation.water_bulk_modulus, case.material.water_bulk_modulus))
-        && fits(expectation.poissons_ratio, case.material.poissons_ratio)
-        && fits(expectation.scheme, case.settings.scheme)
-        && fits(expectation.drag, case.settings.drag)
-        && fits(expectation.mapping_back, case.settings.mapping_back)
 }
 
 /// The norm in which a quantity is reported first.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Weights between points and nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Basis {
     /// Piecewise linear hat functions: the original MPM.
@@ -29,7 +29,7 @@ impl Basis {
 }
 
 /// Gradient from which the effective stress takes its strain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum StrainGradient {
     /// The gradient of the basis.
@@ -76,7 +76,7 @@ impl StrainGradient {
 }
 
 /// Where the divergence that drives the pore pressure is taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum PressureIntegration {
     /// At the points: full integration.
@@ -109,7 +109,7 @@ impl PressureIntegration {
 }
 
 /// How pressure increments come back from the cell centres to the points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Recovery {
     /// Each point takes its cell's increment.
@@ -149,7 +149,7 @@ impl Recovery {
 }
 
 /// What remembers stress, pressure and volume while points move through the mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Memory {
     /// Each point, all that ever happened to it.
@@ -171,7 +171,7 @@ impl Memory {
 }
 
 /// Configuration on which weights are built.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Configuration {
     /// Points move and weights follow them.
@@ -210,7 +210,7 @@ impl Configuration {
 }
 
 /// The four operators of a method; `configuration` is left to the scene where it is `None`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Method {
     /// Weights between points and nodes.
     pub basis: Basis,

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 pub const SCHEMA: u32 = 2;
 
 /// How a case ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// Every output reached.
@@ -48,7 +48,7 @@ impl Status {
 }
 
 /// One wall time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct WallSample {
     /// Seconds of wall time.
     pub seconds: f64,
@@ -57,7 +57,7 @@ pub struct WallSample {
 }
 
 /// Dimensionless groups that say which theory can hold.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Groups {
     /// `n E_oed/K_w`: share of the water's storage.
     pub storage: f64,
@@ -70,7 +70,7 @@ pub struct Groups {
 }
 
 /// What the start must be, and is.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct StartChecks {
     /// Points there are.
     pub points: usize,
@@ -86,7 +86,7 @@ pub struct StartChecks {
 }
 
 /// Balances at one output.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Balance {
     /// Time factor.
     pub time_factor: f64,
@@ -105,7 +105,7 @@ pub struct Balance {
 }
 
 /// One measured error.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ErrorRow {
     /// Time factor.
     pub time_factor: f64,
@@ -144,7 +144,7 @@ impl ErrorRow {
 pub type ReferenceName = String;
 
 /// Settlement over time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct HistoryRow {
     /// Time factor.
     pub time_factor: f64,
@@ -153,7 +153,7 @@ pub struct HistoryRow {
 }
 
 /// How far a reference itself can be trusted.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ReferenceUse {
     /// Name.
     pub name: ReferenceName,
@@ -167,7 +167,7 @@ pub struct ReferenceUse {
 }
 
 /// Everything known of one case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Record {
     /// Version of this layout.
     pub schema: u32,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// sources must be the same, for they decide the values. Compiler, target, build profile and whether a commit has
 /// the tree may differ, for elementary functions come from one source and the values are the same to the bit;
 /// what differs is said.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Provenance {
     /// Version of `oedometer`.
     pub version: String,

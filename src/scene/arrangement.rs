@@ -5,7 +5,7 @@ use crate::mpm::state::points::Points;
 use serde::{Deserialize, Serialize};
 
 /// Departure of the points from the regular lattice, the same for every point of a row.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Arrangement {
     /// Shift of all points upward, in spacings of the points: −0.5 puts them on cell faces.
     pub offset: f64,

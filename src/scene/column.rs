@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 const HEADROOM: usize = 1;
 
 /// Geometry and load of a column, or of a layer.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Column {
     /// Initial height `H`, m.
     pub height: f64,

@@ -26,7 +26,7 @@ use crate::soil::material::Material;
 use serde::{Deserialize, Serialize};
 
 /// A physical problem by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SceneKind {
     /// A column loaded at once and drained at its top, at small strain.

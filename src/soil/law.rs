@@ -6,7 +6,9 @@ use crate::soil::tensor::Tensor;
 use serde::{Deserialize, Serialize};
 
 /// Stress–strain law of the skeleton and the conductivity that goes with it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Law {
     /// Constant modulus and conductivity.

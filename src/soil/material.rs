@@ -6,7 +6,7 @@ use crate::soil::law::{Law, Stiffness};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of the saturated soil in its initial state, SI.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Material {
     /// Stress–strain law.
     pub law: Law,

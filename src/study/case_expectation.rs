@@ -2,29 +2,8 @@
 //! error or a drift may be. Hard cases are judged by this, not by series.
 
 use crate::case::tier::Tier;
-use crate::mpm::explicit::Drag;
-use crate::mpm::explicit::scheme::Scheme;
-use crate::mpm::method::Method;
-use crate::mpm::run::integrator::IntegratorKind;
 use crate::record::Record;
-use crate::study::expectation::Measure;
-
-/// Which cases of a study an expectation is about; what is not named fits every case.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Selection {
-    /// Method.
-    pub method: Option<Method>,
-    /// Integrator.
-    pub integrator: Option<IntegratorKind>,
-    /// Cells over the height.
-    pub cells: Option<usize>,
-    /// Points a cell.
-    pub points_per_cell: Option<usize>,
-    /// Time level of the drag.
-    pub drag: Option<Drag>,
-    /// Scheme of the explicit step.
-    pub scheme: Option<Scheme>,
-}
+use crate::study::expectation::{Measure, Selection};
 
 /// Bounds on one error of a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,26 +44,10 @@ pub struct CaseExpectation {
     pub line: usize,
 }
 
-impl Selection {
-    /// Whether a record is of a case that it names.
-    pub fn fits(&self, record: &Record) -> bool {
-        fn fit<T: PartialEq>(asked: Option<&T>, has: &T) -> bool {
-            asked.is_none_or(|asked| asked == has)
-        }
-        let case = &record.case;
-        fit(self.method.as_ref(), &case.method)
-            && fit(self.integrator.as_ref(), &case.integrator)
-            && fit(self.cells.as_ref(), &case.cells)
-            && fit(self.points_per_cell.as_ref(), &case.points_per_cell)
-            && fit(self.drag.as_ref(), &case.settings.drag)
-            && fit(self.scheme.as_ref(), &case.settings.scheme)
-    }
-}
-
 impl CaseExpectation {
     /// Whether it says how a record is to end.
     pub fn foresees(&self, record: &Record) -> bool {
-        self.selection.fits(record)
+        self.selection.fits(&record.case)
             && self.demand.status.as_ref().is_some_and(|status| *status == record.status.name())
     }
 }

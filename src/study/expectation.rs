@@ -1,16 +1,13 @@
 //! What a study expects of its own results: which series, and what of it.
 
+use crate::case::Case;
+use crate::case::keys::{Key, Value};
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
 use crate::convergence::series_expectation::Expectation as Demand;
 use crate::exact::reference::ReferenceKind;
-use crate::mpm::explicit::Drag;
-use crate::mpm::explicit::scheme::Scheme;
 use crate::mpm::method::Method;
-use crate::mpm::run::integrator::IntegratorKind;
-use crate::soil::continuity::Continuity;
-use crate::soil::law::Law;
 use crate::wording::typed;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -88,31 +85,34 @@ impl fmt::Display for Measure {
     }
 }
 
-/// One expectation.
+/// Which cases an expectation is about, by the values of their inputs; what is not named fits every case.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Selection(pub Vec<(&'static Key, Value)>);
+
+impl Selection {
+    /// Whether it names a case.
+    pub fn fits(&self, case: &Case) -> bool {
+        self.fits_along("", case)
+    }
+
+    /// Whether it names a case of a series along a key, whose own values do not count.
+    pub fn fits_along(&self, axis: &str, case: &Case) -> bool {
+        self.0.iter().all(|(key, value)| key.name == axis || key.get(case) == *value)
+    }
+
+    /// The method, where one is named.
+    pub fn method(&self) -> Option<Method> {
+        self.0
+            .iter()
+            .find_map(|(_, value)| if let Value::Method(method) = value { Some(*method) } else { None })
+    }
+}
+
+/// An expectation of a series of cases.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Expectation {
-    /// Method, where one is named.
-    pub method: Option<Method>,
-    /// Integrator, where it is named.
-    pub integrator: Option<IntegratorKind>,
-    /// Cells, where the axis is another.
-    pub cells: Option<usize>,
-    /// Points a cell, where they are named.
-    pub points_per_cell: Option<usize>,
-    /// Law of the soil, where it is named.
-    pub law: Option<Law>,
-    /// Continuity of the water, where it is named.
-    pub continuity: Option<Continuity>,
-    /// Bulk modulus of the water, Pa, where it is named.
-    pub water_bulk_modulus: Option<f64>,
-    /// Poisson's ratio, where it is named.
-    pub poissons_ratio: Option<f64>,
-    /// Scheme of the explicit step, where it is named.
-    pub scheme: Option<Scheme>,
-    /// Drag, where it is named.
-    pub drag: Option<Drag>,
-    /// Mapping back, where it is named.
-    pub mapping_back: Option<bool>,
+pub struct SeriesExpectation {
+    /// Which cases.
+    pub selection: Selection,
     /// Which error.
     pub measure: Measure,
     /// Reference, typed; none where a series is held against itself or against nothing.

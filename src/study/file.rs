@@ -1,16 +1,27 @@
 //! A study as it was typed: every value with its place in the text, nothing judged yet.
 
+use crate::case::Task;
+use crate::case::keys::{Key, choices};
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::case::tier::Tier;
+use crate::convergence::class::Class;
+use crate::exact::reference::ReferenceKind;
+use crate::mpm::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
+use crate::scene::SceneKind;
 use crate::study::diagnostic::{Diagnostic, StudyError, nearest};
+use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
+use crate::study::inputs::{InputTable, List, Named, One, OwnKeys, Placed};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, MapAccess, Visitor};
-use std::fmt;
-use toml::Spanned;
+
+choices!(Axis, Class, Configuration, Norm, PressureIntegration, Quantity, Recovery, Sample, SceneKind);
+choices!(StrainGradient, Task, Tier);
 
 /// A typed value with its place.
-type Typed<T> = Option<Spanned<T>>;
+type Typed<T> = Option<Placed<T>>;
 /// A typed list with the places of its values.
-type TypedList<T> = Option<Spanned<Vec<Spanned<T>>>>;
+type TypedList<T> = Option<Placed<Vec<Placed<T>>>>;
 
 /// Text of a study with a name for messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,283 +32,303 @@ pub struct StudySource {
     pub text: String,
 }
 
-/// The whole file.
-#[derive(Debug, Deserialize)]
+/// A study file.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StudyFile {
-    pub title: Spanned<String>,
+    /// What the study is about, in one line.
+    pub title: Placed<String>,
+    /// The question that it answers.
     pub summary: Option<String>,
-    pub scene: Spanned<String>,
+    /// Physical problem.
+    pub scene: Placed<Named<SceneKind>>,
+    /// Geometry and load of a column.
     #[serde(default)]
-    pub column: ColumnTable,
-    pub layer: Option<Spanned<LayerTable>>,
+    pub column: InputTable<One, ColumnKeys>,
+    /// Geometry and load of a layer.
+    pub layer: Typed<InputTable<One, LayerKeys>>,
+    /// Where the points lie in their cells.
     #[serde(default)]
-    pub points: PointsTable,
-    pub task: Typed<String>,
+    pub points: InputTable<One, PointsKeys>,
+    /// What is done with the cases.
+    pub task: Typed<Named<Task>>,
+    /// Longest wall time of a case, s.
     pub case_seconds: Typed<f64>,
+    /// What the soil is made of.
     #[serde(default)]
-    pub material: MaterialTable,
+    pub material: InputTable<One, MaterialKeys>,
+    /// Choices of the integrators that a sweep may vary.
     #[serde(default)]
-    pub integrator: IntegratorTable,
+    pub integrator: InputTable<One, IntegratorKeys>,
+    /// When results are kept, and what they are held against.
     #[serde(default)]
     pub output: OutputTable,
+    /// Blocks of cases: the product of the lists, or a path.
     #[serde(default)]
-    pub sweep: Vec<Spanned<SweepTable>>,
+    pub sweep: Vec<Placed<SweepTable>>,
+    /// What must be found; judged by `check`.
     #[serde(default)]
-    pub expect: Vec<Spanned<ExpectTable>>,
+    pub expect: Vec<Placed<ExpectTable>>,
+    /// What single cases must do; judged by `check`.
     #[serde(default)]
-    pub expect_case: Vec<Spanned<ExpectCaseTable>>,
+    pub expect_case: Vec<Placed<ExpectCaseTable>>,
+    /// How the cases are timed.
     #[serde(default)]
     pub timing: TimingTable,
 }
 
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ColumnTable {
-    pub height: Typed<f64>,
-    pub width: Typed<f64>,
-    pub load: Typed<f64>,
-    pub dimensions: Typed<i64>,
-    pub loading_time: Typed<f64>,
+/// Tables that hold inputs of a case and nothing else.
+macro_rules! tables_of_inputs {
+    ($($keys:ident: $table:literal),+ $(,)?) => { $(
+        #[derive(Debug, Default, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        #[doc = "Inputs of a case."]
+        pub struct $keys {}
+        impl OwnKeys for $keys {
+            const TABLE: &'static str = $table;
+        }
+    )+ };
 }
 
-/// Where the points lie in their cells.
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PointsTable {
-    pub offset: Typed<f64>,
-    pub jitter: Typed<f64>,
-    pub filling: Typed<f64>,
-}
+tables_of_inputs!(
+    ColumnKeys: "column",
+    LayerKeys: "layer",
+    PointsKeys: "points",
+    MaterialKeys: "material",
+    IntegratorKeys: "integrator",
+);
 
-impl ColumnTable {
-    /// Place of the first key that was typed.
-    pub fn typed(&self) -> Option<std::ops::Range<usize>> {
-        let numbers = [&self.height, &self.width, &self.load, &self.loading_time];
-        let numbers = numbers.into_iter().flatten().map(Spanned::span);
-        numbers.chain(self.dimensions.as_ref().map(Spanned::span)).min_by_key(|span| span.start)
-    }
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LayerTable {
-    pub length: Typed<f64>,
-    pub height: Typed<f64>,
-    pub base: Typed<String>,
-    pub load: Typed<f64>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MaterialTable {
-    pub law: Typed<String>,
-    pub youngs_modulus: Typed<f64>,
-    pub poissons_ratio: Typed<f64>,
-    pub porosity: Typed<f64>,
-    pub grain_density: Typed<f64>,
-    pub water_density: Typed<f64>,
-    pub water_bulk_modulus: Typed<f64>,
-    pub hydraulic_conductivity: Typed<f64>,
-    pub gravity: Typed<f64>,
-    pub continuity: Typed<String>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct IntegratorTable {
-    pub formulation: Typed<String>,
-    pub scheme: Typed<String>,
-    pub drag: Typed<String>,
-    pub flip: Typed<f64>,
-    pub mapping_back: Typed<bool>,
-}
-
-#[derive(Debug, Default, Deserialize)]
+/// When results are kept, and what they are held against.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputTable {
+    /// Outputs `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factors: TypedList<f64>,
+    /// Exact solutions to hold the result against.
+    #[serde(default)]
+    #[schemars(schema_with = "references")]
     pub references: TypedList<String>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+/// How the cases are timed.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimingTable {
+    /// Runs of each case alone for its wall time.
     pub repeats: Typed<i64>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+/// One block of cases: lists of inputs, and the keys of the block.
+pub type SweepTable = InputTable<List, SweepKeys>;
+
+/// Keys of a sweep beside inputs.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SweepTable {
-    pub method: TypedList<MethodEntry>,
-    pub integrator: TypedList<String>,
-    pub formulation: TypedList<String>,
-    pub cells: TypedList<i64>,
-    pub points_per_cell: TypedList<i64>,
-    pub time_step: TypedList<TimeStepTable>,
-    pub scheme: TypedList<String>,
-    pub drag: TypedList<String>,
-    pub flip: TypedList<f64>,
-    pub mapping_back: TypedList<bool>,
+pub struct SweepKeys {
+    /// Outputs `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factors: TypedList<f64>,
-    pub law: TypedList<String>,
-    pub continuity: TypedList<String>,
-    pub porosity: TypedList<f64>,
-    pub hydraulic_conductivity: TypedList<f64>,
-    pub water_bulk_modulus: TypedList<f64>,
-    pub poissons_ratio: TypedList<f64>,
-    pub offset: TypedList<f64>,
+    /// Axes that step together instead of being multiplied out.
+    #[serde(default)]
+    #[schemars(schema_with = "axes")]
     pub path: TypedList<String>,
-    pub tier: Typed<String>,
+    /// Smallest tier that has it.
+    pub tier: Typed<Named<Tier>>,
 }
 
-#[derive(Clone, Debug, Default, Deserialize)]
+/// A rule of the time step: exactly one of its keys.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeStepTable {
+    /// Share of the predicted critical step.
     pub stable: Typed<f64>,
+    /// Share of a cell that the fastest wave crosses in a step.
     pub courant: Typed<f64>,
+    /// Step, s.
     pub seconds: Typed<f64>,
+    /// Step over the time that has passed.
     pub growth: Typed<f64>,
+    /// Bound on the estimated error in time, relative to the load and to the settlement it makes.
     pub tolerance: Typed<f64>,
 }
 
-/// A method by name or by its choices.
-#[derive(Clone, Debug)]
-pub enum MethodEntry {
-    Name(String),
-    Choices(Box<MethodTable>),
-}
-
-#[derive(Clone, Debug, Deserialize)]
+/// A method, choice by choice.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MethodTable {
+    /// Weights between points and nodes.
     pub basis: Typed<String>,
-    pub strain: Typed<String>,
-    pub pressure: Typed<String>,
-    pub recovery: Typed<String>,
+    /// Gradient from which the effective stress takes its strain.
+    pub strain: Typed<Named<StrainGradient>>,
+    /// How the pore pressure is integrated.
+    pub pressure: Typed<Named<PressureIntegration>>,
+    /// How the pressure of a cell becomes a field again.
+    pub recovery: Typed<Named<Recovery>>,
+    /// Where the pressure is remembered.
     pub memory: Typed<String>,
-    pub configuration: Typed<String>,
+    /// Configuration on which the operators live.
+    pub configuration: Typed<Named<Configuration>>,
 }
 
-#[derive(Debug, Deserialize)]
+/// What must be found of the series of the cases that its inputs name.
+pub type ExpectTable = InputTable<One, ExpectKeys>;
+
+/// Keys of an expectation of series beside inputs.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ExpectTable {
-    pub method: Typed<MethodEntry>,
-    pub integrator: Typed<String>,
-    pub quantity: Typed<String>,
-    pub norm: Typed<String>,
-    pub sample: Typed<String>,
+pub struct ExpectKeys {
+    /// What is measured.
+    pub quantity: Typed<Named<Quantity>>,
+    /// How the error becomes one number.
+    pub norm: Typed<Named<Norm>>,
+    /// Where it is measured.
+    pub sample: Typed<Named<Sample>>,
+    /// `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factor: Typed<f64>,
+    /// Exact solution to hold the result against.
+    #[serde(default)]
+    #[schemars(schema_with = "reference")]
     pub reference: Typed<String>,
-    pub axis: Typed<String>,
-    pub cells: Typed<i64>,
-    pub points_per_cell: Typed<i64>,
-    pub law: Typed<String>,
-    pub continuity: Typed<String>,
-    pub water_bulk_modulus: Typed<f64>,
-    pub poissons_ratio: Typed<f64>,
-    pub scheme: Typed<String>,
-    pub drag: Typed<String>,
-    pub mapping_back: Typed<bool>,
+    /// What is refined along the series.
+    pub axis: Typed<Named<Axis>>,
+    /// Two-sided band about the order on the finest three levels.
     pub order: Typed<OrderTable>,
+    /// Bounds on the error at a named level.
     pub at: Typed<LevelTable>,
+    /// Bound on the spread of the errors from a named level on: the largest over the smallest, minus one.
     pub spread: Typed<LevelTable>,
-    pub class: Typed<String>,
-    pub floor: Typed<FloorTable>,
+    /// Class of the series.
+    pub class: Typed<Named<Class>>,
+    /// Bounds on the floor under the errors.
+    pub floor: Typed<RangeTable>,
+    /// Bound on the wiggle of the profile.
     pub oscillation: Typed<BelowTable>,
+    /// Bound on the numerical uncertainty of a value without a reference, over that value.
     pub uncertainty: Typed<BelowTable>,
+    /// Depth of the one place of a field without a reference, from 0 (surface) to 1 (base).
     pub probe: Typed<f64>,
+    /// Marks a known failure, which must then fail.
     pub xfail: Typed<XfailTable>,
-    pub tier: Typed<String>,
+    /// Smallest tier that has it.
+    pub tier: Typed<Named<Tier>>,
 }
 
-/// What single cases must do.
-#[derive(Debug, Deserialize)]
+/// What the single cases that its inputs name must do.
+pub type ExpectCaseTable = InputTable<One, ExpectCaseKeys>;
+
+/// Keys of an expectation of cases beside inputs.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ExpectCaseTable {
-    pub method: Typed<MethodEntry>,
-    pub integrator: Typed<String>,
-    pub cells: Typed<i64>,
-    pub points_per_cell: Typed<i64>,
-    pub drag: Typed<String>,
-    pub scheme: Typed<String>,
+pub struct ExpectCaseKeys {
+    /// How the case must end: `ok`, or the name of a failure.
     pub status: Typed<String>,
+    /// Largest relative difference of the observed from the predicted critical step.
     pub critical_step_within: Typed<f64>,
+    /// Largest relative drift of the mass of solids at any output.
     pub solid_drift_below: Typed<f64>,
+    /// Largest imbalance of the water at any output, over what the load presses out.
     pub water_drift_below: Typed<f64>,
+    /// Bounds on one error.
     pub error: Typed<RangeTable>,
-    pub quantity: Typed<String>,
-    pub norm: Typed<String>,
-    pub sample: Typed<String>,
+    /// What is measured.
+    pub quantity: Typed<Named<Quantity>>,
+    /// How the error becomes one number.
+    pub norm: Typed<Named<Norm>>,
+    /// Where it is measured.
+    pub sample: Typed<Named<Sample>>,
+    /// `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factor: Typed<f64>,
+    /// Exact solution to hold the result against.
+    #[serde(default)]
+    #[schemars(schema_with = "reference")]
     pub reference: Typed<String>,
-    pub tier: Typed<String>,
+    /// Smallest tier that has it.
+    pub tier: Typed<Named<Tier>>,
 }
 
-#[derive(Debug, Deserialize)]
+impl OwnKeys for SweepKeys {
+    const TABLE: &'static str = "sweep";
+}
+impl OwnKeys for ExpectKeys {
+    const TABLE: &'static str = "sweep";
+}
+impl OwnKeys for ExpectCaseKeys {
+    const TABLE: &'static str = "sweep";
+}
+
+/// Two bounds.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RangeTable {
-    pub below: Typed<f64>,
+    /// Lower bound.
     pub above: Typed<f64>,
+    /// Upper bound.
+    pub below: Typed<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+/// A band about an order.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OrderTable {
-    pub value: Spanned<f64>,
+    /// The order.
+    pub value: Placed<f64>,
+    /// How far below it may lie.
     pub minus: Typed<f64>,
+    /// How far above it may lie.
     pub plus: Typed<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+/// Bounds at a level, which is named in the words of its axis.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LevelTable {
+    /// Cells over the height.
     pub cells: Typed<i64>,
+    /// Material points per cell and direction.
     pub points_per_cell: Typed<i64>,
+    /// Step, s.
     pub seconds: Typed<f64>,
+    /// Bulk modulus of the water, Pa.
     pub water_bulk_modulus: Typed<f64>,
+    /// Upper bound.
     pub below: Typed<f64>,
+    /// Lower bound.
     pub above: Typed<f64>,
 }
 
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FloorTable {
-    pub above: Typed<f64>,
-    pub below: Typed<f64>,
-}
-
-#[derive(Debug, Deserialize)]
+/// An upper bound.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BelowTable {
-    pub below: Spanned<f64>,
+    /// Upper bound.
+    pub below: Placed<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+/// A known failure.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct XfailTable {
+    /// Whether an unexpected pass is a failure.
     pub strict: Typed<bool>,
-    pub reason: Spanned<String>,
+    /// Why.
+    pub reason: Placed<String>,
 }
 
-impl<'de> Deserialize<'de> for MethodEntry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Entry;
-        impl<'de> Visitor<'de> for Entry {
-            type Value = MethodEntry;
-            fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-                out.write_str("the name of a method or a table of its choices")
-            }
-            fn visit_str<E>(self, name: &str) -> Result<MethodEntry, E> {
-                Ok(MethodEntry::Name(name.to_owned()))
-            }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<MethodEntry, A::Error> {
-                MethodTable::deserialize(MapAccessDeserializer::new(map))
-                    .map(|table| MethodEntry::Choices(Box::new(table)))
-            }
-        }
-        deserializer.deserialize_any(Entry)
-    }
+fn names_of_references() -> Vec<&'static str> {
+    ReferenceKind::ALL.iter().map(|kind| kind.name()).collect()
+}
+
+fn reference(_: &mut SchemaGenerator) -> Schema {
+    let names = [names_of_references(), vec![NEXT_FINER, NO_REFERENCE]].concat();
+    json_schema!({ "enum": names })
+}
+
+fn references(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "array", "items": { "enum": names_of_references() } })
+}
+
+fn axes(_: &mut SchemaGenerator) -> Schema {
+    let names: Vec<&str> = Key::of("sweep").map(|key| key.name).collect();
+    json_schema!({ "type": "array", "items": { "enum": names } })
 }
 
 impl StudySource {

@@ -5,6 +5,7 @@ pub mod check;
 pub mod diagnostic;
 pub mod expectation;
 pub mod file;
+pub mod inputs;
 pub mod name;
 pub mod perturbed;
 pub mod shipped;

@@ -1,21 +1,24 @@
 use super::*;
 use crate::campaign::{RunOptions, run_study};
+use crate::case::tier::Tier;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 use crate::study::shipped::shipped_studies;
 
 /// The first way in which a value breaks a schema made of the few words used here.
 fn breach(schema: &Value, value: &Value, at: &str) -> Option<String> {
-    if let Some(choices) = schema.get("anyOf").and_then(Value::as_array) {
+    if let Some(choices) = schema.get("anyOf").or(schema.get("oneOf")).and_then(Value::as_array) {
         let breaches: Vec<String> =
             choices.iter().map(|choice| breach(choice, value, at)).collect::<Option<_>>()?;
         return Some(breaches.join(" and "));
     }
+    if let Some(word) = schema.get("const") {
+        return (word != value).then(|| format!("{at}: {value} is not {word}"));
+    }
     if let Some(words) = schema.get("enum").and_then(Value::as_array) {
         return (!words.contains(value)).then(|| format!("{at}: {value} is none of {words:?}"));
     }
-    let fits = match schema.get("type").and_then(Value::as_str) {
-        None => true,
+    let is = |kind: &Value| match kind.as_str() {
         Some("boolean") => value.is_boolean(),
         Some("integer") => value.is_i64() || value.is_u64(),
         Some("number") => value.is_number(),
@@ -23,7 +26,12 @@ fn breach(schema: &Value, value: &Value, at: &str) -> Option<String> {
         Some("null") => value.is_null(),
         Some("array") => value.is_array(),
         Some("object") => value.is_object(),
-        Some(other) => panic!("no type {other}"),
+        other => panic!("no type {other:?}"),
+    };
+    let fits = match schema.get("type") {
+        None => true,
+        Some(Value::Array(kinds)) => kinds.iter().any(is),
+        Some(kind) => is(kind),
     };
     if !fits {
         return Some(format!("{at}: {value} is no {}", schema["type"]));
@@ -50,7 +58,7 @@ fn study_value(text: &str) -> Value {
 
 #[test]
 fn every_shipped_study_keeps_to_the_schema() {
-    let schema = schema_of(Document::Study).expect("a schema");
+    let schema = schema_of(Document::Study);
     for source in shipped_studies() {
         assert_eq!(breach(&schema, &study_value(&source.text), &source.name), None);
     }
@@ -58,7 +66,7 @@ fn every_shipped_study_keeps_to_the_schema() {
 
 #[test]
 fn what_the_program_refuses_the_schema_refuses() {
-    let schema = schema_of(Document::Study).expect("a schema");
+    let schema = schema_of(Document::Study);
     let sound = "title = \"t\"\nscene = \"terzaghi\"\n[[sweep]]\nmethod = [\"GIMP\"]\ncells = [5]\n";
     assert_eq!(breach(&schema, &study_value(sound), ""), None);
     for (from, to) in [
@@ -79,7 +87,7 @@ fn what_the_program_refuses_the_schema_refuses() {
 
 #[test]
 fn the_schema_has_the_keys_and_the_words_of_the_code() {
-    let schema = schema_of(Document::Study).expect("a schema");
+    let schema = schema_of(Document::Study);
     let sweep = &schema["properties"]["sweep"]["items"]["properties"];
     let keys: Vec<&String> = sweep.as_object().expect("an object").keys().collect();
     // The parser itself lists the keys that it knows.
@@ -98,6 +106,30 @@ fn the_schema_has_the_keys_and_the_words_of_the_code() {
     assert!(sweep["method"]["items"]["anyOf"][0]["enum"].as_array().is_some_and(|names| names.len() > 5));
 }
 
+/// Keys without a description, neither of their own nor of the one choice that they stand for.
+fn undescribed(schema: &Value, at: &str, missing: &mut Vec<String>) {
+    let is_told = |schema: &Value| schema["description"].as_str().is_some_and(|text| text.len() > 3);
+    for (name, property) in schema["properties"].as_object().into_iter().flatten() {
+        if !is_told(property) && !is_told(schema) {
+            missing.push(format!("{at}.{name}"));
+        }
+        undescribed(property, &format!("{at}.{name}"), missing);
+    }
+    let choices = ["anyOf", "oneOf"].into_iter().filter_map(|word| schema[word].as_array()).flatten();
+    for part in choices.chain(schema.get("items")) {
+        undescribed(part, at, missing);
+    }
+}
+
+#[test]
+fn every_key_of_every_schema_has_a_description() {
+    for document in [Document::Study, Document::Record, Document::Mapping] {
+        let mut missing = Vec::new();
+        undescribed(&schema_of(document), "", &mut missing);
+        assert!(missing.is_empty(), "{document:?}: {missing:?}");
+    }
+}
+
 #[test]
 fn every_record_keeps_to_the_schema_and_misses_nothing() {
     let text = "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.01]\n[[sweep]]\n\
@@ -107,7 +139,7 @@ fn every_record_keeps_to_the_schema_and_misses_nothing() {
     let options = RunOptions::whole(Tier::Full, 1);
     let records = run_study(&study, &options, None, &|_| {}).records;
     assert!(records.iter().any(|record| matches!(record.status, crate::record::Status::Failed(_))));
-    let schema = schema_of(Document::Record).expect("a schema");
+    let schema = schema_of(Document::Record);
     for record in &records {
         let value = serde_json::to_value(record).expect("JSON");
         assert_eq!(breach(&schema, &value, "record"), None);
@@ -124,7 +156,7 @@ fn every_record_keeps_to_the_schema_and_misses_nothing() {
 
 #[test]
 fn the_convention_of_a_mapping_keeps_to_the_schema() {
-    let schema = schema_of(Document::Mapping).expect("a schema");
+    let schema = schema_of(Document::Mapping);
     for text in [crate::import::mapping::CONVENTION, crate::import::mapping::PLANE_CONVENTION] {
         assert_eq!(breach(&schema, &study_value(text), "mapping"), None);
     }

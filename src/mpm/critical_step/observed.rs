@@ -29,7 +29,7 @@ const VISIBLE_GROWTH: f64 = 1.35e-3;
 pub const SHARES: [f64; 2] = [0.97, 1.03];
 
 /// One run at a share of the predicted step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Probe {
     /// Share of the predicted critical step.
     pub share: f64,
@@ -47,7 +47,7 @@ pub struct Probe {
 }
 
 /// What is known of a problem's critical step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CriticalStep {
     /// From the spectral radius, s: beyond it something grows by a seven hundredth a step or more.
     pub predicted: f64,

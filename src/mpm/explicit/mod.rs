@@ -14,7 +14,7 @@ use crate::soil::tensor::{Tensor, Vector};
 use serde::{Deserialize, Serialize};
 
 /// Time level at which the drag between skeleton and water is taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Drag {
     /// Old velocities: bounds the step by the drag.
@@ -40,7 +40,7 @@ impl Drag {
 }
 
 /// Choices of the explicit integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ExplicitSettings {
     /// Time levels of velocities and stresses.
     #[serde(default, skip_serializing_if = "Scheme::is_paper")]

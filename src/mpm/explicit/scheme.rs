@@ -11,7 +11,7 @@ use crate::mpm::explicit::{Drag, ExplicitSettings};
 use serde::{Deserialize, Serialize};
 
 /// Time levels of velocities and stresses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scheme {
     /// Zheng et al. (2021): velocities and stresses at the same times.

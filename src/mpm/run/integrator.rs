@@ -12,7 +12,7 @@ const SEMI_IMPLICIT_SHARE: f64 = 0.1;
 const DEFAULT_GROWTH: f64 = 0.05;
 
 /// Time integrator.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum IntegratorKind {
     /// The eight steps of Zheng et al. (2021).
@@ -84,7 +84,7 @@ impl IntegratorKind {
 }
 
 /// Which accelerations the balances keep (docs/theory.md, section 1).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Formulation {
     /// None: Biot's consolidation.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Why a run ended before its last output.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FailureKind {
     /// Velocities left their physical scale a thousandfold or are not finite, or a settlement or a
@@ -52,7 +52,7 @@ impl FailureKind {
 }
 
 /// The end of a run that did not reach its last output.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Failure {
     /// Name of the failure.
     pub kind: FailureKind,
@@ -84,7 +84,7 @@ pub enum RunStatus {
 }
 
 /// Work done, in integers: the same on every machine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Counters {
     /// Material points.
     pub points: usize,
@@ -107,7 +107,7 @@ pub struct Counters {
 }
 
 /// Step sizes of a run, s.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct StepSizes {
     /// Predicted critical step on the initial configuration.
     pub predicted_critical: f64,

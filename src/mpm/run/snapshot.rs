@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// Fields at one kind of places. Stresses and displacements are the vertical ones; in two
 /// dimensions the places along the layer and the horizontal displacements stand beside them.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Samples {
     /// Initial height of each place above the base, m.
     pub initial_height: Vec<f64>,
@@ -27,7 +27,7 @@ pub struct Samples {
 }
 
 /// What the samples of two dimensions have beside those of a column.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct PlaneSamples {
     /// Initial distance of each place along the layer, m.
     pub initial_distance: Vec<f64>,
@@ -38,7 +38,7 @@ pub struct PlaneSamples {
 }
 
 /// State at one time.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Snapshot {
     /// Time, s.
     pub time: f64,
@@ -56,7 +56,7 @@ pub struct Snapshot {
 }
 
 /// Conserved quantities.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Totals {
     /// Volume of the mixture, m^D.
     pub volume: f64,

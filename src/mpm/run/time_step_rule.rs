@@ -6,7 +6,7 @@ use crate::mpm::run::step_limit::StepLimit;
 use serde::{Deserialize, Serialize};
 
 /// How the time step is chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum TimeStepRule {
     /// Share of the predicted critical step.

@@ -1,101 +1,95 @@
 //! Checks of methods, by name or choice by choice.
 
-use crate::mpm::method::{
-    Basis, Configuration, Memory, Method, PressureIntegration, Recovery, StrainGradient,
-};
+use crate::case::keys::Choice;
+use crate::mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery};
 use crate::scene::SceneKind;
 use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
-use crate::study::file::{MethodEntry, MethodTable};
+use crate::study::file::MethodTable;
+use crate::study::inputs::{MethodEntry, Named};
 use std::ops::Range;
 use toml::Spanned;
 
 impl Checker<'_> {
-    pub(crate) fn method(&mut self, typed: &Spanned<MethodEntry>) -> Option<Method> {
-        match typed.get_ref() {
+    /// The method that an entry names, where its scene takes its configuration.
+    pub(crate) fn method(
+        &mut self,
+        entry: &MethodEntry,
+        span: Range<usize>,
+        scene: SceneKind,
+    ) -> Option<Method> {
+        let (method, place) = match entry {
             MethodEntry::Name(name) => {
                 let method = Method::named(name);
                 if method.is_none() {
                     let names = Method::names();
                     let names: Vec<&str> = names.iter().map(String::as_str).collect();
                     self.complain(
-                        typed.span(),
+                        span.clone(),
                         format!("no method is called `{name}`"),
                         one_of(name, &names),
                     );
                 }
-                method
+                (method?, None)
             }
-            MethodEntry::Choices(table) => self.method_of_choices(table, typed.span()),
-        }
-    }
-
-    /// Whether a scene takes the configuration that a method insists on.
-    pub(crate) fn configuration_fits(
-        &mut self,
-        typed: &Spanned<MethodEntry>,
-        scene: SceneKind,
-        method: Method,
-    ) -> bool {
-        let refused =
-            method.configuration.and_then(|configuration| scene.refuses_configuration(configuration));
-        if let Some(why) = refused {
-            let place = match typed.get_ref() {
-                MethodEntry::Choices(table) => table.configuration.as_ref().map(Spanned::span),
-                MethodEntry::Name(_) => None,
-            };
-            self.complain(
-                place.unwrap_or_else(|| typed.span()),
-                why,
-                "take \"updated\" or \"total\", or leave the key out",
-            );
-        }
-        refused.is_none()
-    }
-
-    fn method_of_choices(&mut self, table: &MethodTable, span: Range<usize>) -> Option<Method> {
-        let mut pick = |word: &Option<Spanned<String>>, name: &str, choices: &[&str]| {
-            if let Some(word) = word {
-                self.word(word, name, choices)
-            } else {
-                self.complain(
-                    span.clone(),
-                    format!("the method names no `{name}`"),
-                    format!("it can be {}", choices.join(", ")),
-                );
-                None
+            MethodEntry::Choices(table) => {
+                (self.method_of_choices(table, &span)?, table.configuration.as_ref().map(|word| word.span()))
             }
         };
-        let basis = pick(&table.basis, "basis", &["hat", "ugimp", "cpgimp", "cpdi", "bspline2", "bspline3"]);
-        let strain = pick(&table.strain, "strain", &StrainGradient::ALL.map(StrainGradient::name));
-        let pressure =
-            pick(&table.pressure, "pressure", &PressureIntegration::ALL.map(PressureIntegration::name));
+        if let Some(why) = method.configuration.and_then(|kind| scene.refuses_configuration(kind)) {
+            let help = "take \"updated\" or \"total\", or leave the key out";
+            self.complain(place.unwrap_or(span), why, help);
+            return None;
+        }
+        Some(method)
+    }
+
+    /// A choice that a method must name.
+    fn picked<T: Choice>(
+        &mut self,
+        typed: Option<&Spanned<Named<T>>>,
+        name: &str,
+        span: &Range<usize>,
+    ) -> Option<T> {
+        if typed.is_none() {
+            self.names_no(name, &T::words(), span);
+        }
+        self.named(typed?, name)
+    }
+
+    fn names_no(&mut self, name: &str, choices: &[&str], span: &Range<usize>) {
+        self.complain(
+            span.clone(),
+            format!("the method names no `{name}`"),
+            format!("it can be {}", choices.join(", ")),
+        );
+    }
+
+    fn method_of_choices(&mut self, table: &MethodTable, span: &Range<usize>) -> Option<Method> {
+        const BASES: [&str; 6] = ["hat", "ugimp", "cpgimp", "cpdi", "bspline2", "bspline3"];
+        if table.basis.is_none() {
+            self.names_no("basis", &BASES, span);
+        }
+        let basis = table.basis.as_ref().and_then(|word| self.word(word, "basis", &BASES));
+        let strain = self.picked(table.strain.as_deref(), "strain", span);
+        let pressure = self.picked(table.pressure.as_deref(), "pressure", span);
         let recovery = match (&table.recovery, pressure) {
-            (None, Some(0)) => Some(0),
-            (word, _) => pick(word, "recovery", &Recovery::ALL.map(Recovery::name)),
+            (None, Some(PressureIntegration::Points)) => Some(Recovery::Constant),
+            (word, _) => self.picked(word.as_deref(), "recovery", span),
         };
         let memory = match &table.memory {
             Some(word) => Memory::ALL[self.word(word, "memory", &["points", "cells"])?],
             None => Memory::Points,
         };
         let configuration = match &table.configuration {
-            Some(word) => {
-                Some(self.word(word, "configuration", &Configuration::ALL.map(Configuration::name))?)
-            }
+            Some(word) => Some(self.named(word, "configuration")?),
             None => None,
         };
-        let (pressure, recovery) = (PressureIntegration::ALL[pressure?], Recovery::ALL[recovery?]);
+        let (pressure, recovery) = (pressure?, recovery?);
         if let (Some(why), Some(word)) = (recovery.refuses(pressure), &table.recovery) {
             self.complain(word.span(), why, "leave the key out, or take another");
             return None;
         }
-        Some(Method {
-            basis: Basis::ALL[basis?],
-            strain: StrainGradient::ALL[strain?],
-            pressure,
-            recovery,
-            memory,
-            configuration: configuration.map(|index| Configuration::ALL[index]),
-        })
+        Some(Method { basis: Basis::ALL[basis?], strain: strain?, pressure, recovery, memory, configuration })
     }
 }

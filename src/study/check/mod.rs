@@ -1,16 +1,17 @@
 //! From what was typed to what will run: every value judged, every complaint at its place.
 
-pub mod case;
-pub mod expectation;
+pub mod case_expectation;
 pub mod geometry;
-pub mod integrator;
 pub mod material;
 pub mod method;
+pub mod series_expectation;
+pub mod step_rule;
 pub mod sweep;
 pub mod value;
 
-use crate::case::Case;
+use crate::case::keys::{Key, Value};
 use crate::case::tier::Tier;
+use crate::case::{Case, Task};
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::run::integrator::Formulation;
 use crate::record::Record;
@@ -19,8 +20,9 @@ use crate::scene::column::Column;
 use crate::study::case_expectation::CaseExpectation;
 use crate::study::check::sweep::Common;
 use crate::study::diagnostic::{Diagnostic, StudyError};
-use crate::study::expectation::Expectation;
+use crate::study::expectation::SeriesExpectation;
 use crate::study::file::{OutputTable, StudyFile, StudySource};
+use crate::study::inputs::Placed;
 use crate::study::name::name_of;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -36,11 +38,6 @@ const DEFAULT_CASE_SECONDS: f64 = 3600.0;
 /// Cases that a study may have, counted as its sweeps multiply out: as many as a machine holds and a person
 /// can still mean.
 const MOST_CASES: usize = 1_000_000;
-/// More cells than a column is ever given on purpose.
-const MOST_CELLS: i64 = 100_000;
-/// More points a cell and direction than any scheme uses.
-const MOST_POINTS: i64 = 16;
-
 /// A case with the tier from which on it runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedCase {
@@ -66,7 +63,7 @@ pub struct Study {
     /// Cases in the order of the sweeps, each once.
     pub planned: Vec<PlannedCase>,
     /// What it expects of its results.
-    pub expectations: Vec<Expectation>,
+    pub expectations: Vec<SeriesExpectation>,
     /// What it expects of single cases.
     pub case_expectations: Vec<CaseExpectation>,
     /// Longest wall time of a case, s.
@@ -138,22 +135,18 @@ impl Checker<'_> {
     }
 
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
-        let scene = self.scene(&file.scene)?;
-        let column = Column { points: self.arrangement(&file.points), ..self.geometry(file, scene) };
-        self.column_height = Some(column.height);
-        let material = self.material(&file.material, scene);
-        self.porosity_at_the_end(file, scene, &column, &material);
-        let warnings = self.large_for_small_strain(file, scene, &column, &material).into_iter().collect();
-        let task = self.task(file)?;
-        let settings = self.settings(&file.integrator);
-        let typed = file.integrator.formulation.as_ref().and_then(|word| self.formulation(word));
-        let formulation = typed.or(scene.has_waves().then_some(Formulation::VW));
-        let common = Common { task, scene, column, soil: material, settings, formulation };
+        let scene = self.named(&file.scene, "scene")?;
+        let task = self.choice(file.task.as_deref(), "task", Task::default())?;
+        let common = self.common(file, Case::seed(task, scene));
+        let mut base = common.base();
+        self.column_height = Some(base.column.height);
+        self.porosity_at_the_end(file, &base);
+        let warnings = self.large_for_small_strain(file, &base).into_iter().collect();
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
         };
-        let references = self.references(&file.output, scene, &column);
+        let references = self.references(&file.output, scene, &base.column);
         if file.sweep.is_empty() {
             let end = self.source.text.trim_end().len();
             let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
@@ -167,18 +160,17 @@ impl Checker<'_> {
         let mut places: HashMap<String, usize> = HashMap::new();
         for block in &file.sweep {
             let table = block.get_ref();
-            let Some(sweep) = self.sweep(table, block.span(), &common) else { continue };
+            let Some(sweep) = self.sweep(table, block.span(), &common, &base) else { continue };
             if self.purpose == Purpose::Solving {
-                self.cells_fill_the_width(table, &column);
-                self.memory_fits(table, sweep.combinations().map(|one| common.case_of(&one, &[])));
+                self.cells_fill_the_width(table, &base.column);
+                self.memory_fits(table, sweep.cases(&base));
             }
-            let time_factors = match &table.time_factors {
+            base.time_factors = match &table.time_factors {
                 Some(list) => self.time_factors(list),
                 None => time_factors.clone(),
             };
-            let tier = self.tier(table);
-            for one in sweep.combinations() {
-                let case = common.case_of(&one, &time_factors);
+            let tier = self.choice(table.tier.as_deref(), "tier", Tier::default()).unwrap_or_default();
+            for case in sweep.cases(&base) {
                 match places.entry(case.hash()) {
                     Entry::Occupied(place) => {
                         let other = &mut planned[*place.get()];
@@ -193,11 +185,15 @@ impl Checker<'_> {
         }
         let expectations =
             file.expect.iter().filter_map(|entry| self.expectation(entry, scene, &references)).collect();
-        let case_expectations = self.case_expectations(file, scene, &references);
+        let case_expectations = file
+            .expect_case
+            .iter()
+            .filter_map(|entry| self.case_expectation(entry, scene, &references))
+            .collect();
         let case_seconds =
-            self.positive(file.case_seconds.as_ref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
+            self.positive(file.case_seconds.as_deref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
         let timing_repeats =
-            self.count(file.timing.repeats.as_ref(), "timing.repeats", 0..=1000).unwrap_or(0);
+            self.count(file.timing.repeats.as_deref(), "timing.repeats", 0..=1000).unwrap_or(0);
         Some(Study {
             name: name_of(&self.source.name).to_owned(),
             title: file.title.get_ref().clone(),
@@ -213,13 +209,21 @@ impl Checker<'_> {
         })
     }
 
-    fn scene(&mut self, typed: &Spanned<String>) -> Option<SceneKind> {
-        let names = SceneKind::ALL.map(SceneKind::name);
-        let index = self.word(typed, "scene", &names)?;
-        Some(SceneKind::ALL[index])
+    /// What the tables of the study give its cases.
+    fn common(&mut self, file: &StudyFile, seed: Case) -> Common {
+        let mut given = self.geometry(file, &seed);
+        given.extend(self.inputs("points", &file.points.inputs, &seed));
+        given.extend(self.inputs("material", &file.material.inputs, &seed));
+        self.units_of_thought(&file.material);
+        given.extend(self.inputs("integrator", &file.integrator.inputs, &seed));
+        if seed.scene.has_waves() && file.integrator.typed("formulation").is_none() {
+            let waves = Value::Word(Formulation::VW.name());
+            given.extend(Key::named("formulation", "integrator").map(|key| (key, waves)));
+        }
+        Common { seed, given }
     }
 
-    fn time_factors(&mut self, list: &Spanned<Vec<Spanned<f64>>>) -> Vec<f64> {
+    fn time_factors(&mut self, list: &Spanned<Vec<Placed<f64>>>) -> Vec<f64> {
         if list.get_ref().is_empty() {
             self.complain(list.span(), "no time factor", "name at least one, like [0.05, 0.1, 0.2]");
         }

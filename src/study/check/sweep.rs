@@ -1,16 +1,13 @@
 //! Checks of what is varied: the blocks `[[sweep]]`, axis by axis and together.
 
-use crate::case::tier::Tier;
-use crate::case::{Case, Task};
-use crate::mpm::explicit::ExplicitSettings;
-use crate::mpm::run::integrator::{Formulation, IntegratorKind};
-use crate::scene::SceneKind;
-use crate::scene::arrangement::Arrangement;
+use crate::case::Case;
+use crate::case::keys::{Key, Value};
+use crate::mpm::run::integrator::Formulation;
 use crate::scene::column::Column;
-use crate::soil::material::Material;
-use crate::study::check::{Checker, MOST_CASES, MOST_CELLS, MOST_POINTS};
+use crate::study::check::{Checker, MOST_CASES};
 use crate::study::file::SweepTable;
-use crate::study::sweep::{AXES, Combination, Sweep};
+use crate::study::inputs::{One, TypedInput};
+use crate::study::sweep::{Sweep, SweptKey};
 use std::ops::Range;
 use toml::Spanned;
 
@@ -18,144 +15,58 @@ use toml::Spanned;
 const MOST_BYTES: f64 = 32e9;
 
 /// What the cases of a study share where a sweep does not say otherwise.
-#[derive(Clone, Copy)]
 pub(crate) struct Common {
-    pub(crate) task: Task,
-    pub(crate) scene: SceneKind,
-    pub(crate) column: Column,
-    pub(crate) soil: Material,
-    pub(crate) settings: ExplicitSettings,
-    pub(crate) formulation: Option<Formulation>,
+    /// The seed values of the scene.
+    pub(crate) seed: Case,
+    /// What the study gives by its own tables.
+    pub(crate) given: Vec<(&'static Key, Value)>,
 }
 
 impl Common {
-    /// The case of one combination of a sweep.
-    pub(crate) fn case_of(&self, one: &Combination, time_factors: &[f64]) -> Case {
-        Case {
-            task: self.task,
-            scene: self.scene,
-            column: Column {
-                points: Arrangement { offset: one.offset, ..self.column.points },
-                ..self.column
-            },
-            material: Material {
-                law: one.law,
-                continuity: one.continuity,
-                hydraulic_conductivity: one.hydraulic_conductivity,
-                water_bulk_modulus: one.water_bulk_modulus,
-                porosity: one.porosity,
-                poissons_ratio: one.poissons_ratio,
-                ..self.soil
-            },
-            method: one.method,
-            integrator: one.integrator,
-            formulation: one.formulation,
-            settings: ExplicitSettings {
-                scheme: one.scheme,
-                drag: one.drag,
-                flip: one.flip,
-                mapping_back: one.mapping_back,
-            },
-            cells: one.cells,
-            points_per_cell: one.points_per_cell,
-            time_step: one.time_step,
-            time_factors: time_factors.to_vec(),
+    /// A case of the study before anything is swept.
+    pub(crate) fn base(&self) -> Case {
+        let mut case = self.seed.clone();
+        for (key, value) in &self.given {
+            key.set(&mut case, *value);
         }
+        case
     }
 }
 
 impl Checker<'_> {
-    pub(crate) fn sweep(&mut self, table: &SweepTable, span: Range<usize>, common: &Common) -> Option<Sweep> {
-        let Common { scene, column, soil, settings, formulation, .. } = *common;
+    pub(crate) fn sweep(
+        &mut self,
+        table: &SweepTable,
+        span: Range<usize>,
+        common: &Common,
+        base: &Case,
+    ) -> Option<Sweep> {
         let before = self.diagnostics.len();
-        if table.method.is_none() {
-            self.complain(
-                span.start..span.start + 1,
-                "the sweep names no method",
-                "add `method = [\"GC-SRI-patch\"]`",
-            );
+        for (name, example) in [("method", "[\"GC-SRI-patch\"]"), ("cells", "[5, 10, 20]")] {
+            if table.typed(name).is_none() {
+                let message = format!("the sweep names no {name}");
+                self.complain(span.start..span.start + 1, message, format!("add `{name} = {example}`"));
+            }
         }
-        if table.cells.is_none() {
-            self.complain(
-                span.start..span.start + 1,
-                "the sweep names no cells",
-                "add `cells = [5, 10, 20]`",
-            );
-        }
-        let sweep = Sweep {
-            method: self.list(table.method.as_ref(), "method", &[], |c, typed| {
-                c.method(typed).filter(|method| c.configuration_fits(typed, scene, *method))
-            }),
-            integrator: self.list(
-                table.integrator.as_ref(),
-                "integrator",
-                &[IntegratorKind::Explicit],
-                Self::integrator,
-            ),
-            formulation: self.list(table.formulation.as_ref(), "formulation", &[formulation], |c, word| {
-                c.formulation(word).map(Some)
-            }),
-            cells: self.list(table.cells.as_ref(), "cells", &[], |c, typed| {
-                c.count(Some(typed), "cells", 1..=MOST_CELLS)
-            }),
-            points_per_cell: self.list(
-                table.points_per_cell.as_ref(),
-                "points_per_cell",
-                &[2],
-                |c, typed| c.count(Some(typed), "points_per_cell", 1..=MOST_POINTS),
-            ),
-            time_step: self.list(table.time_step.as_ref(), "time_step", &[None], |c, typed| {
-                c.time_step(typed).map(Some)
-            }),
-            scheme: self.list(table.scheme.as_ref(), "scheme", &[settings.scheme], Self::scheme),
-            drag: self.list(table.drag.as_ref(), "drag", &[settings.drag], Self::drag),
-            flip: self.list(table.flip.as_ref(), "flip", &[settings.flip], |c, typed| Some(c.flip(typed))),
-            mapping_back: self.list(
-                table.mapping_back.as_ref(),
-                "mapping_back",
-                &[settings.mapping_back],
-                |_, typed| Some(*typed.get_ref()),
-            ),
-            law: self.list(table.law.as_ref(), "law", &[soil.law], |c, word| c.law(word, scene)),
-            porosity: self.list(table.porosity.as_ref(), "porosity", &[soil.porosity], |c, typed| {
-                Some(c.between(Some(typed), "porosity", 0.0, 1.0, soil.porosity))
-            }),
-            hydraulic_conductivity: self.list(
-                table.hydraulic_conductivity.as_ref(),
-                "hydraulic_conductivity",
-                &[soil.hydraulic_conductivity],
-                |c, typed| {
-                    let usual = soil.hydraulic_conductivity;
-                    Some(c.positive(Some(typed), "hydraulic_conductivity", "m/s", usual))
-                },
-            ),
-            water_bulk_modulus: self.list(
-                table.water_bulk_modulus.as_ref(),
-                "water_bulk_modulus",
-                &[soil.water_bulk_modulus],
-                |c, typed| Some(c.positive(Some(typed), "water_bulk_modulus", "Pa", soil.water_bulk_modulus)),
-            ),
-            offset: self.list(table.offset.as_ref(), "offset", &[column.points.offset], Self::offset),
-            continuity: self.list(
-                table.continuity.as_ref(),
-                "continuity",
-                &[soil.continuity],
-                Self::continuity,
-            ),
-            poissons_ratio: self.list(
-                table.poissons_ratio.as_ref(),
-                "poissons_ratio",
-                &[soil.poissons_ratio],
-                |c, typed| Some(c.between(Some(typed), "poissons_ratio", -1.0, 0.5, 0.25)),
-            ),
-            path: self.list(table.path.as_ref(), "path", &[], |c, word| {
-                c.word(word, "axis", &AXES).map(|index| AXES[index].to_owned())
-            }),
+        // What the study gives stands with what is swept: an integrator would bring its own formulation.
+        let values = |key: &'static Key| {
+            let given =
+                || common.given.iter().find(|(given, _)| *given == key).map(|(_, value)| vec![*value]);
+            let one = |c: &mut Self, one: &One| c.input(key, one, key.name, &common.seed);
+            table.typed(key.name).map(|list| self.list(list, key.name, one)).or_else(given)
         };
+        let keys: Vec<_> = Key::of("sweep").map(values).zip(Key::of("sweep")).collect();
+        let swept = keys.into_iter().filter_map(|(values, key)| Some(SweptKey { key, values: values? }));
+        let keys = swept.collect();
+        let names: Vec<&str> = Key::of("sweep").map(|key| key.name).collect();
+        let path = table.path.as_deref().map(|list| {
+            self.list(list, "path", |c, word| c.word(word, "axis", &names).map(|at| names[at].to_owned()))
+        });
+        let sweep = Sweep { keys, path: path.unwrap_or_default() };
         self.path_is_even(table, &sweep);
         if self.diagnostics.len() == before && self.can_be_multiplied_out(&span, &sweep) {
-            self.rules_fit(table, &sweep);
-            self.formulations_fit(table, &span, &sweep, scene);
+            self.rules_fit(table, &sweep, base);
+            self.formulations_fit(table, &span, &sweep, base);
         }
         (self.diagnostics.len() == before).then_some(sweep)
     }
@@ -194,26 +105,21 @@ impl Checker<'_> {
         false
     }
 
-    pub(crate) fn tier(&mut self, table: &SweepTable) -> Tier {
-        let names = Tier::ALL.map(Tier::name);
-        let index = table.tier.as_ref().and_then(|word| self.word(word, "tier", &names));
-        index.map_or(Tier::default(), |index| Tier::ALL[index])
-    }
-
     /// Complains where a formulation meets an integrator that cannot solve it.
-    fn formulations_fit(&mut self, table: &SweepTable, span: &Range<usize>, sweep: &Sweep, scene: SceneKind) {
-        let refusal = |one: Combination| one.integrator.refuses_formulation(one.formulation);
-        if let Some(why) = sweep.combinations().find_map(refusal) {
-            let place = table.formulation.as_ref().map(Spanned::span);
+    fn formulations_fit(&mut self, table: &SweepTable, span: &Range<usize>, sweep: &Sweep, base: &Case) {
+        let scene = base.scene;
+        let refusal = |one: Case| one.integrator.refuses_formulation(one.formulation);
+        if let Some(why) = sweep.cases(base).find_map(refusal) {
+            let place = table.typed("formulation").map(Spanned::span);
             self.complain(
                 place.unwrap_or(span.start..span.start + 1),
                 why,
                 "give each integrator a [[sweep]] block of its own, or leave `formulation` out",
             );
         }
-        let still = |one: &Combination| one.formulation == Formulation::QuasiStatic;
-        if scene.has_waves() && sweep.combinations().any(|one| still(&one)) {
-            let place = table.formulation.as_ref().map(Spanned::span);
+        let still = |one: &Case| one.formulation == Formulation::QuasiStatic;
+        if scene.has_waves() && sweep.cases(base).any(|one| still(&one)) {
+            let place = table.typed("formulation").map(Spanned::span);
             self.complain(
                 place.unwrap_or(span.start..span.start + 1),
                 format!("the quasi-static formulation leaves out the waves that `{}` is about", scene.name()),
@@ -223,9 +129,9 @@ impl Checker<'_> {
     }
 
     /// Complains where a step rule meets an integrator that cannot follow it.
-    fn rules_fit(&mut self, table: &SweepTable, sweep: &Sweep) {
-        let Some(list) = &table.time_step else { return };
-        let refused = sweep.combinations().find_map(|one| one.integrator.refuses_rule(one.time_step));
+    fn rules_fit(&mut self, table: &SweepTable, sweep: &Sweep, base: &Case) {
+        let Some(list) = table.typed("time_step") else { return };
+        let refused = sweep.cases(base).find_map(|one| one.integrator.refuses_rule(one.time_step));
         if let Some(why) = refused {
             self.complain(
                 list.span(),
@@ -237,8 +143,9 @@ impl Checker<'_> {
 
     /// Square cells must fill the width: their number over the height decides their size.
     pub(crate) fn cells_fill_the_width(&mut self, table: &SweepTable, column: &Column) {
-        for typed in table.cells.iter().flat_map(Spanned::get_ref) {
-            let cells = usize::try_from(*typed.get_ref()).unwrap_or(0);
+        for typed in table.typed("cells").into_iter().flat_map(Spanned::get_ref) {
+            let TypedInput::Count(cells) = typed.get_ref() else { continue };
+            let cells = usize::try_from(*cells).unwrap_or(0);
             if cells == 0 || column.cells_across(cells).is_some() {
                 continue;
             }
@@ -254,7 +161,7 @@ impl Checker<'_> {
     /// Complains of a mesh whose run would end for want of memory, and the others with it.
     pub(crate) fn memory_fits(&mut self, table: &SweepTable, cases: impl Iterator<Item = Case>) {
         let largest = cases.max_by(|a, b| a.estimated_bytes().total_cmp(&b.estimated_bytes()));
-        let (Some(case), Some(cells)) = (largest, &table.cells) else { return };
+        let (Some(case), Some(cells)) = (largest, table.typed("cells")) else { return };
         let bytes = case.estimated_bytes();
         if bytes > MOST_BYTES {
             self.complain(
@@ -270,15 +177,13 @@ impl Checker<'_> {
         }
     }
 
-    /// A list of choices, or the default where it is not given; empty lists are refused.
-    fn list<T, C: Clone>(
+    /// A list of values; empty lists are refused.
+    fn list<T, U>(
         &mut self,
-        typed: Option<&Spanned<Vec<Spanned<T>>>>,
+        list: &Spanned<Vec<T>>,
         name: &str,
-        default: &[C],
-        check: impl Fn(&mut Self, &Spanned<T>) -> Option<C>,
-    ) -> Vec<C> {
-        let Some(list) = typed else { return default.to_vec() };
+        check: impl Fn(&mut Self, &T) -> Option<U>,
+    ) -> Vec<U> {
         if list.get_ref().is_empty() {
             self.complain(
                 list.span(),

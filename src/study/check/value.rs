@@ -1,32 +1,96 @@
-//! Checks of single values: words among their choices, counts and numbers in their range.
+//! Checks of single values: inputs by the table of keys, words among their choices, numbers in their range.
 
+use crate::case::Case;
+use crate::case::keys::{Choice, Key, Kind, Range, Value};
+use crate::scene::SceneKind;
+use crate::soil::law::Law;
 use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
+use crate::study::inputs::{Named, One, TypedInput};
 use std::ops::RangeInclusive;
 use toml::Spanned;
 
+/// A place in the text.
+type Span = std::ops::Range<usize>;
+
 impl Checker<'_> {
-    /// Index of an optional word, or that of the default.
-    pub(crate) fn choice(
+    /// The value of an input, called by its name in the file; `seed` has the values to compare it with.
+    pub(crate) fn input(&mut self, key: &Key, typed: &One, name: &str, seed: &Case) -> Option<Value> {
+        let span = typed.span();
+        match (typed.get_ref(), key.kind) {
+            (TypedInput::Method(entry), _) => self.method(entry, span, seed.scene).map(Value::Method),
+            (TypedInput::TimeStep(table), _) => self.time_step(table, span).map(Value::TimeStep),
+            (TypedInput::Word(word), Kind::Word(words)) => {
+                let words = words();
+                let word = words[self.word_at(span.clone(), word, key.name, &words)?];
+                self.law_fits(word, span, key, seed.scene).then_some(Value::Word(word))
+            }
+            (TypedInput::Flag(flag), _) => Some(Value::Flag(*flag)),
+            (TypedInput::Count(count), Kind::Count(most)) => {
+                self.count(Some(&Spanned::new(span, *count)), name, 1..=most).map(Value::Count)
+            }
+            (TypedInput::Number(number), Kind::Number(range)) => {
+                let usual = key.get(seed).to_string();
+                self.number(*number, span, &format!("`{name}`"), range, &usual, key.unit).map(Value::Number)
+            }
+            _ => None,
+        }
+    }
+
+    /// Every input of a table that the study shares, by the key.
+    pub(crate) fn inputs(
         &mut self,
-        typed: Option<&Spanned<String>>,
+        table: &str,
+        typed: &[(&'static Key, One)],
+        seed: &Case,
+    ) -> Vec<(&'static Key, Value)> {
+        let value = |(key, one): &(&'static Key, One)| {
+            self.input(key, one, &format!("{table}.{}", key.name), seed).map(|value| (*key, value))
+        };
+        typed.iter().filter_map(value).collect()
+    }
+
+    /// The choice that a word names, or the default where there is none.
+    pub(crate) fn choice<T: Choice>(
+        &mut self,
+        typed: Option<&Spanned<Named<T>>>,
         name: &str,
-        choices: &[&str],
-        default: usize,
-    ) -> Option<usize> {
-        typed.map_or(Some(default), |word| self.word(word, name, choices))
+        default: T,
+    ) -> Option<T> {
+        typed.map_or(Some(default), |word| self.named(word, name))
+    }
+
+    /// The choice that a word names.
+    pub(crate) fn named<T: Choice>(&mut self, typed: &Spanned<Named<T>>, name: &str) -> Option<T> {
+        let index = self.word_at(typed.span(), typed.get_ref().word(), name, &T::words())?;
+        Some(T::all()[index])
     }
 
     /// Index of a word among its choices.
     pub(crate) fn word(&mut self, typed: &Spanned<String>, name: &str, choices: &[&str]) -> Option<usize> {
-        let word = typed.get_ref();
-        let index = choices.iter().position(|choice| choice == word);
+        self.word_at(typed.span(), typed.get_ref(), name, choices)
+    }
+
+    fn word_at(&mut self, span: Span, word: &str, name: &str, choices: &[&str]) -> Option<usize> {
+        let index = choices.iter().position(|choice| *choice == word);
         if index.is_none() {
-            self.complain(typed.span(), format!("no {name} is called `{word}`"), one_of(word, choices));
+            self.complain(span, format!("no {name} is called `{word}`"), one_of(word, choices));
         }
         index
     }
 
+    /// Whether a scene takes a word where it is a law.
+    fn law_fits(&mut self, word: &str, span: Span, key: &Key, scene: SceneKind) -> bool {
+        let refused = |law: &Law| scene.refuses_law(*law);
+        let law = Law::ALL.into_iter().find(|law| key.name == "law" && law.name() == word);
+        let Some(why) = law.as_ref().and_then(refused) else { return true };
+        let fit = Law::ALL.into_iter().filter(|law| refused(law).is_none());
+        let names: Vec<&str> = fit.map(Law::name).collect();
+        self.complain(span, why, format!("the scene `{}` takes {}", scene.name(), names.join(", ")));
+        false
+    }
+
+    /// A whole number in a range.
     pub(crate) fn count(
         &mut self,
         typed: Option<&Spanned<i64>>,
@@ -47,6 +111,7 @@ impl Checker<'_> {
         usize::try_from(count).ok()
     }
 
+    /// A positive number, or the default where there is none.
     pub(crate) fn positive(
         &mut self,
         typed: Option<&Spanned<f64>>,
@@ -55,50 +120,43 @@ impl Checker<'_> {
         default: f64,
     ) -> f64 {
         let Some(typed) = typed else { return default };
-        let value = *typed.get_ref();
-        if !(value.is_finite() && value > 0.0) {
-            self.complain(
-                typed.span(),
-                format!("`{name}` is {value} {unit}"),
-                format!("it must be positive and finite; the seed column has {default} {unit}"),
-            );
-        }
-        value
+        let (name, usual) = (format!("`{name}`"), default.to_string());
+        self.number(*typed.get_ref(), typed.span(), &name, Range::Positive, &usual, unit).unwrap_or(default)
     }
 
-    pub(crate) fn not_negative(&mut self, typed: Option<&Spanned<f64>>, name: &str, unit: &str) -> f64 {
-        let Some(typed) = typed else { return 0.0 };
-        let value = *typed.get_ref();
-        if !(value.is_finite() && value >= 0.0) {
-            self.complain(
-                typed.span(),
-                format!("`{name}` is {value} {unit}"),
-                "it must be 0 or positive, and finite",
-            );
+    /// A number in a range; a complaint where it is not in it.
+    fn number(
+        &mut self,
+        value: f64,
+        span: Span,
+        name: &str,
+        range: Range,
+        usual: &str,
+        unit: &str,
+    ) -> Option<f64> {
+        let told = || format!("{name} is {value} {unit}");
+        let (fits, message, help) = match range {
+            Range::Positive => (
+                value.is_finite() && value > 0.0,
+                told(),
+                format!("it must be positive and finite; the seed column has {usual} {unit}"),
+            ),
+            Range::NotNegative => {
+                (value.is_finite() && value >= 0.0, told(), "it must be 0 or positive, and finite".to_owned())
+            }
+            Range::Between(least, most) => (
+                value > least && value < most,
+                told(),
+                format!("it must lie between {least} and {most}, both excluded; the seed column has {usual}"),
+            ),
+            Range::Within(least, most, message, help) => {
+                ((least..=most).contains(&value), message.replace("{}", &value.to_string()), help.to_owned())
+            }
+        };
+        if !fits {
+            self.complain(span, message.trim_end(), help.trim_end());
         }
         // A zero with a sign is the same zero.
-        value + 0.0
-    }
-
-    pub(crate) fn between(
-        &mut self,
-        typed: Option<&Spanned<f64>>,
-        name: &str,
-        least: f64,
-        most: f64,
-        default: f64,
-    ) -> f64 {
-        let Some(typed) = typed else { return default };
-        let value = *typed.get_ref();
-        if !(value > least && value < most) {
-            self.complain(
-                typed.span(),
-                format!("`{name}` is {value}"),
-                format!(
-                    "it must lie between {least} and {most}, both excluded; the seed column has {default}"
-                ),
-            );
-        }
-        value + 0.0
+        fits.then_some(value + 0.0)
     }
 }

@@ -1,17 +1,19 @@
 //! Checks of what a study expects of its series: the blocks `[[expect]]`.
 
+use crate::case::keys::{Key, MOST_CELLS, MOST_POINTS};
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
-use crate::convergence::class::Class;
+use crate::case::{Case, Task};
 use crate::convergence::series_expectation::{
     Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure,
 };
 use crate::exact::reference::ReferenceKind;
 use crate::scene::SceneKind;
-use crate::study::check::{Checker, MOST_CELLS, MOST_POINTS};
-use crate::study::expectation::{Axis, Expectation, Measure, NEXT_FINER, NO_REFERENCE};
+use crate::study::check::Checker;
+use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE, Selection, SeriesExpectation};
 use crate::study::file::{ExpectTable, LevelTable};
+use crate::study::inputs::{Named, One};
 use toml::Spanned;
 
 /// Half-width of an order's band where an expectation names none.
@@ -23,39 +25,26 @@ impl Checker<'_> {
         entry: &Spanned<ExpectTable>,
         scene: SceneKind,
         references: &[ReferenceKind],
-    ) -> Option<Expectation> {
+    ) -> Option<SeriesExpectation> {
         let table = entry.get_ref();
         let before = self.diagnostics.len();
-        let quantity =
-            self.choice(table.quantity.as_ref(), "quantity", &Quantity::ALL.map(Quantity::name), 0)?;
-        let quantity = Quantity::ALL[quantity];
-        let default_sample = if quantity == Quantity::Settlement { Sample::Surface } else { Sample::Points };
-        let samples = Sample::ALL.map(Sample::name);
-        let sample = table.sample.as_ref().map(|word| self.word(word, "sample", &samples));
-        let sample = sample.map_or(Some(default_sample), |index| index.map(|index| Sample::ALL[index]))?;
-        let default_norm = if quantity == Quantity::Settlement { Norm::Relative } else { Norm::L2 };
-        let norms = Norm::ALL.map(Norm::name);
-        let norm = table.norm.as_ref().map(|word| self.word(word, "norm", &norms));
-        let norm = norm.map_or(Some(default_norm), |index| index.map(|index| Norm::ALL[index]))?;
+        let (quantity, sample, norm) =
+            self.measured(table.quantity.as_deref(), table.sample.as_deref(), table.norm.as_deref())?;
         let Some(time_factor) = table.time_factor.as_ref().map(|typed| *typed.get_ref()) else {
             self.complain(entry.span(), "the expectation names no time factor", "add `time_factor = 0.1`");
             return None;
         };
-        let axis = Axis::ALL[self.choice(table.axis.as_ref(), "axis", &Axis::ALL.map(Axis::name), 0)?];
+        let axis = self.choice(table.axis.as_deref(), "axis", Axis::Cells)?;
         let own_word = table.reference.as_ref().map(|word| word.get_ref().as_str());
         let own_word = own_word.filter(|word| [NEXT_FINER, NO_REFERENCE].contains(word));
         let reference = match own_word {
             Some(NEXT_FINER) if !self.can_be_held_against_itself(table, axis) => return None,
             Some(_) => None,
-            None => Some(self.expected_reference(table, scene, references)?),
+            None => Some(self.expected_reference(table.reference.as_deref(), scene, references)?),
         };
         let is_value = own_word == Some(NO_REFERENCE);
         self.value_is_one_number(entry, scene, quantity, is_value);
         self.oscillation_is_measured(table, scene, quantity, sample);
-        let method = match &table.method {
-            Some(typed) => Some(self.method(typed)?),
-            None => None,
-        };
         let height = self.column_height?;
         let demand = Demand {
             order: table.order.as_ref().map(|order| Band {
@@ -65,7 +54,7 @@ impl Checker<'_> {
             }),
             at: table.at.as_ref().and_then(|level| self.error_bound(level, axis, height)),
             class: match &table.class {
-                Some(word) => Some(Class::ALL[self.word(word, "class", &Class::ALL.map(Class::name))?]),
+                Some(word) => Some(self.named(word, "class")?),
                 None => None,
             },
             floor: table.floor.as_ref().map(|floor| FloorBand {
@@ -83,20 +72,9 @@ impl Checker<'_> {
         for problem in demand.problems() {
             self.complain(entry.span(), problem, "see the other expectations of the shipped studies");
         }
-        let tiers = Tier::ALL.map(Tier::name);
-        let tier = table.tier.as_ref().map_or(Some(1), |word| self.word(word, "tier", &tiers));
-        let expectation = Expectation {
-            method,
-            integrator: table.integrator.as_ref().and_then(|word| self.integrator(word)),
-            cells: self.count(table.cells.as_ref(), "cells", 1..=MOST_CELLS),
-            points_per_cell: self.count(table.points_per_cell.as_ref(), "points_per_cell", 1..=MOST_POINTS),
-            law: table.law.as_ref().and_then(|word| self.law(word, scene)),
-            continuity: table.continuity.as_ref().and_then(|word| self.continuity(word)),
-            water_bulk_modulus: table.water_bulk_modulus.as_ref().map(|typed| *typed.get_ref()),
-            poissons_ratio: table.poissons_ratio.as_ref().map(|typed| *typed.get_ref()),
-            scheme: table.scheme.as_ref().and_then(|word| self.scheme(word)),
-            drag: table.drag.as_ref().and_then(|word| self.drag(word)),
-            mapping_back: table.mapping_back.as_ref().map(|typed| *typed.get_ref()),
+        let tier = self.choice(table.tier.as_deref(), "tier", Tier::Ci);
+        let expectation = SeriesExpectation {
+            selection: self.selection(&table.inputs, scene),
             measure: Measure {
                 quantity,
                 sample,
@@ -108,7 +86,7 @@ impl Checker<'_> {
             reference,
             axis,
             demand,
-            tier: Tier::ALL[tier?],
+            tier: tier?,
             line: self.source.text[..entry.span().start.min(self.source.text.len())].matches('\n').count()
                 + 1,
         };
@@ -176,8 +154,8 @@ impl Checker<'_> {
             );
         }
         for (key, place) in [
-            ("at", table.at.as_ref().map(Spanned::span)),
-            ("oscillation", table.oscillation.as_ref().map(Spanned::span)),
+            ("at", table.at.as_ref().map(|typed| typed.span())),
+            ("oscillation", table.oscillation.as_ref().map(|typed| typed.span())),
         ] {
             if let Some(place) = place {
                 let message = format!("without a reference there is no error for `{key}` to bound");
@@ -204,15 +182,40 @@ impl Checker<'_> {
         }
     }
 
-    /// The reference of an expectation, the scene's own where it names none.
-    fn expected_reference(
+    /// Which cases an expectation is about.
+    pub(crate) fn selection(&mut self, inputs: &[(&'static Key, One)], scene: SceneKind) -> Selection {
+        let seed = Case::seed(Task::Solve, scene);
+        let value = |(key, typed): &(&'static Key, One)| {
+            self.input(key, typed, key.name, &seed).map(|value| (*key, value))
+        };
+        Selection(inputs.iter().filter_map(value).collect())
+    }
+
+    /// What is measured, where and in which norm: at the points in the mean square, but for the settlement.
+    pub(crate) fn measured(
         &mut self,
-        table: &ExpectTable,
+        quantity: Option<&Spanned<Named<Quantity>>>,
+        sample: Option<&Spanned<Named<Sample>>>,
+        norm: Option<&Spanned<Named<Norm>>>,
+    ) -> Option<(Quantity, Sample, Norm)> {
+        let quantity = self.choice(quantity, "quantity", Quantity::Pressure)?;
+        let (usual_sample, usual_norm) = match quantity {
+            Quantity::Settlement => (Sample::Surface, Norm::Relative),
+            _ => (Sample::Points, Norm::L2),
+        };
+        let sample = self.choice(sample, "sample", usual_sample)?;
+        Some((quantity, sample, self.choice(norm, "norm", usual_norm)?))
+    }
+
+    /// The reference of an expectation, the scene's own where it names none.
+    pub(crate) fn expected_reference(
+        &mut self,
+        typed: Option<&Spanned<String>>,
         scene: SceneKind,
         references: &[ReferenceKind],
     ) -> Option<ReferenceKind> {
         let names: Vec<&str> = references.iter().map(|kind| kind.name()).collect();
-        match &table.reference {
+        match typed {
             Some(word) => Some(references[self.word(word, "reference", &names)?]),
             None => Some(scene.references()[0]),
         }
@@ -223,10 +226,10 @@ impl Checker<'_> {
         let table = level.get_ref();
         let size = match axis {
             Axis::Cells => self
-                .count(table.cells.as_ref(), "at.cells", 1..=MOST_CELLS)
+                .count(table.cells.as_deref(), "at.cells", 1..=MOST_CELLS)
                 .map(|cells| height / cells as f64),
             Axis::PointsPerCell => self
-                .count(table.points_per_cell.as_ref(), "at.points_per_cell", 1..=MOST_POINTS)
+                .count(table.points_per_cell.as_deref(), "at.points_per_cell", 1..=MOST_POINTS)
                 .map(|points| 1.0 / points as f64),
             Axis::TimeStep => table.seconds.as_ref().map(|typed| *typed.get_ref()),
             Axis::WaterBulkModulus => table.water_bulk_modulus.as_ref().map(|typed| 1.0 / *typed.get_ref()),

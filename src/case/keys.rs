@@ -1,0 +1,301 @@
+//! The inputs of a case by the keys of study files: one table.
+//!
+//! What a key means, its unit, its range and its place in a case stand here once. Parsing, checks, sweeps,
+//! selections of expectations, the JSON Schema and the columns of tables follow from it.
+
+use crate::case::{Case, step_label};
+use crate::exact::cosine_layer::Base;
+use crate::mpm::explicit::Drag;
+use crate::mpm::explicit::scheme::Scheme;
+use crate::mpm::method::Method;
+use crate::mpm::run::TimeStepRule;
+use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::soil::continuity::Continuity;
+use crate::soil::law::Law;
+use std::fmt;
+
+/// More cells than a column is ever given on purpose.
+pub const MOST_CELLS: i64 = 100_000;
+/// More points per cell and direction than any scheme uses.
+pub const MOST_POINTS: i64 = 16;
+
+/// One input of a case.
+pub struct Key {
+    /// Name in study files.
+    pub name: &'static str,
+    /// Tables of a study file that take it. What a `sweep` takes, expectations may name too.
+    pub tables: &'static [&'static str],
+    /// What values it takes.
+    pub kind: Kind,
+    /// Unit of a number, empty where it has none.
+    pub unit: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+    get: fn(&Case) -> Value,
+    set: fn(&mut Case, Value),
+}
+
+/// What values a key takes.
+#[derive(Clone, Copy)]
+pub enum Kind {
+    /// A method, by name or by its choices.
+    Method,
+    /// A rule of the time step.
+    TimeStep,
+    /// One of several words.
+    Word(fn() -> Vec<&'static str>),
+    /// True or false.
+    Flag,
+    /// A whole number from 1 to this.
+    Count(i64),
+    /// A number.
+    Number(Range),
+}
+
+/// Which numbers a key takes.
+#[derive(Clone, Copy)]
+pub enum Range {
+    /// Positive and finite.
+    Positive,
+    /// Zero, or positive and finite.
+    NotNegative,
+    /// Between two numbers, both excluded.
+    Between(f64, f64),
+    /// Between two numbers, both included; with what is said of another one (`{}`), and what would be right.
+    Within(f64, f64, &'static str, &'static str),
+}
+
+/// The value of an input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// A method.
+    Method(Method),
+    /// A rule of the time step.
+    TimeStep(TimeStepRule),
+    /// A word among its choices.
+    Word(&'static str),
+    /// True or false.
+    Flag(bool),
+    /// A whole number.
+    Count(usize),
+    /// A number, in SI units.
+    Number(f64),
+}
+
+/// A choice among few, by its name in study files.
+pub trait Choice: Copy + 'static {
+    /// Every choice.
+    fn all() -> Vec<Self>;
+    /// Its name.
+    fn word(self) -> &'static str;
+    /// Names of all.
+    fn words() -> Vec<&'static str> {
+        Self::all().into_iter().map(Self::word).collect()
+    }
+}
+
+/// Makes enumerations with `ALL` and `name` choices.
+macro_rules! choices {
+    ($($kind:ty),+ $(,)?) => { $(
+        impl $crate::case::keys::Choice for $kind {
+            fn all() -> Vec<Self> {
+                Self::ALL.to_vec()
+            }
+            fn word(self) -> &'static str {
+                self.name()
+            }
+        }
+    )+ };
+}
+pub(crate) use choices;
+
+choices!(Base, Continuity, Drag, Formulation, IntegratorKind, Law, Scheme);
+
+/// A type of the fields of a case: its value as an input, and back.
+trait Field: Sized {
+    fn value(self) -> Value;
+    fn of(value: Value) -> Option<Self>;
+}
+
+macro_rules! fields {
+    ($($kind:ty: $variant:ident),+) => { $(
+        impl Field for $kind {
+            fn value(self) -> Value {
+                Value::$variant(self)
+            }
+            fn of(value: Value) -> Option<Self> {
+                if let Value::$variant(value) = value { Some(value) } else { None }
+            }
+        }
+    )+ };
+}
+
+fields!(Method: Method, TimeStepRule: TimeStep, bool: Flag, usize: Count, f64: Number);
+
+impl<T: Choice> Field for T {
+    fn value(self) -> Value {
+        Value::Word(self.word())
+    }
+    fn of(value: Value) -> Option<Self> {
+        Self::all().into_iter().find(|choice| value == Value::Word(choice.word()))
+    }
+}
+
+macro_rules! keys {
+    ($($name:ident in $tables:expr, $kind:expr, $unit:literal, $($field:ident).+ $(, then $then:expr)?;
+       $meaning:literal)+) => {
+        /// Every input of a case that a study file names; those of a sweep in the order in which it turns them,
+        /// the slowest first.
+        pub static KEYS: &[Key] = &[$(Key {
+            name: stringify!($name),
+            tables: $tables,
+            kind: $kind,
+            unit: $unit,
+            meaning: $meaning,
+            get: |case| case.$($field).+.value(),
+            set: |case, value| {
+                if let Some(value) = Field::of(value) {
+                    case.$($field).+ = value;
+                    $(let then: fn(&mut Case) = $then; then(case);)?
+                }
+            },
+        }),+];
+    };
+}
+
+impl Field for Option<Base> {
+    fn value(self) -> Value {
+        self.unwrap_or_default().value()
+    }
+    fn of(value: Value) -> Option<Self> {
+        Base::of(value).map(Some)
+    }
+}
+
+/// Words of an enumeration.
+const fn word<T: Choice>() -> Kind {
+    Kind::Word(T::words)
+}
+
+const POSITIVE: Kind = Kind::Number(Range::Positive);
+const SHIFT: Kind = Kind::Number(Range::Within(
+    -0.5,
+    0.5,
+    "points shifted by {} spacings",
+    "half a spacing up or down, 0.5 or -0.5, is as far as they go",
+));
+const SHARE_OF_FLIP: Kind =
+    Kind::Number(Range::Within(0.0, 1.0, "a FLIP share of {}", "it lies between 0 (PIC) and 1 (FLIP)"));
+const FILLING: Kind = Kind::Number(Range::Within(
+    f64::MIN_POSITIVE,
+    1.0,
+    "`points.filling` is {}",
+    "it is the share of the top cell that is filled: more than 0, at most 1",
+));
+
+// One row per key: name, tables, values, unit, field of the case; meaning.
+keys! {
+    method in &["sweep"], Kind::Method, "", method; "Method by its name, or by its choices"
+    integrator in &["sweep"], word::<IntegratorKind>(), "", integrator, then |case| {
+        case.formulation = case.integrator.default_formulation();
+        case.time_step = case.integrator.default_rule();
+    }; "Integrator in time"
+    cells in &["sweep"], Kind::Count(MOST_CELLS), "", cells; "Cells over the height"
+    points_per_cell in &["sweep"], Kind::Count(MOST_POINTS), "", points_per_cell;
+        "Material points per cell and direction"
+    time_step in &["sweep"], Kind::TimeStep, "", time_step; "Rule of the time step"
+    drag in &["sweep", "integrator"], word::<Drag>(), "", settings.drag;
+        "Time level of the drag between the phases"
+    flip in &["sweep", "integrator"], SHARE_OF_FLIP, "", settings.flip;
+        "Share of FLIP in the velocities of the points, 0 to 1"
+    mapping_back in &["sweep", "integrator"], Kind::Flag, "", settings.mapping_back;
+        "Whether stresses see velocities mapped back from the points"
+    formulation in &["sweep", "integrator"], word::<Formulation>(), "", formulation;
+        "Accelerations that the balances keep"
+    scheme in &["sweep", "integrator"], word::<Scheme>(), "", settings.scheme;
+        "Time levels of velocities and stresses in the explicit step"
+    law in &["sweep", "material"], word::<Law>(), "", material.law; "Stress–strain law of the skeleton"
+    youngs_modulus in &["sweep", "material"], POSITIVE, "Pa", material.youngs_modulus;
+        "Young's modulus of the skeleton"
+    poissons_ratio in &["sweep", "material"], Kind::Number(Range::Between(-1.0, 0.5)), "", material.poissons_ratio;
+        "Poisson's ratio of the skeleton"
+    porosity in &["sweep", "material"], Kind::Number(Range::Between(0.0, 1.0)), "", material.porosity;
+        "Initial porosity"
+    grain_density in &["sweep", "material"], POSITIVE, "kg/m³", material.grain_density; "Density of the grains"
+    water_density in &["sweep", "material"], POSITIVE, "kg/m³", material.water_density; "Density of the water"
+    water_bulk_modulus in &["sweep", "material"], POSITIVE, "Pa", material.water_bulk_modulus;
+        "Bulk modulus of the water"
+    hydraulic_conductivity in &["sweep", "material"], POSITIVE, "m/s", material.hydraulic_conductivity;
+        "Initial hydraulic conductivity"
+    gravity in &["sweep", "material"], POSITIVE, "m/s²", material.gravity; "Gravity in the drag"
+    continuity in &["sweep", "material"], word::<Continuity>(), "", material.continuity;
+        "Form of the water's continuity"
+    offset in &["sweep", "points"], SHIFT, "", column.points.offset;
+        "Shift of all points upward, in spacings of the points"
+    jitter in &["sweep", "points"], SHIFT, "", column.points.jitter, then |case| {
+        case.column.points.jitter = case.column.points.jitter.abs();
+    }; "Largest shift of a row of points up or down, in spacings of the points"
+    filling in &["sweep", "points"], FILLING, "", column.points.filling; "Share of the top cell that is filled"
+    length in &["layer"], POSITIVE, "m", column.horizontal_extent; "Length"
+    height in &["column", "layer"], POSITIVE, "m", column.height; "Initial height H"
+    width in &["column"], POSITIVE, "m", column.horizontal_extent; "Width, where there are two dimensions"
+    base in &["layer"], word::<Base>(), "", column.base; "How the layer rests on its base"
+    load in &["column", "layer"], POSITIVE, "Pa", column.load; "Load q on the surface"
+    dimensions in &["column"], Kind::Count(2), "", column.dimensions; "Directions that are solved"
+    loading_time in &["column"], Kind::Number(Range::NotNegative), "s", column.loading_time;
+        "Time over which the load grows, 0 where it acts at once"
+}
+
+impl Key {
+    /// The key of a table by its name.
+    pub fn named(name: &str, table: &str) -> Option<&'static Self> {
+        Self::of(table).find(|key| key.name == name)
+    }
+
+    /// The keys of a table.
+    pub fn of(table: &str) -> impl Iterator<Item = &'static Self> {
+        KEYS.iter().filter(move |key| key.tables.contains(&table))
+    }
+
+    /// The value in a case.
+    pub fn get(&self, case: &Case) -> Value {
+        (self.get)(case)
+    }
+
+    /// Gives a case the value. An integrator brings its own formulation and step rule.
+    pub fn set(&self, case: &mut Case, value: Value) {
+        (self.set)(case, value);
+    }
+
+    /// What it means, with its unit: a sentence.
+    pub fn description(&self) -> String {
+        let comma = if self.unit.is_empty() { "" } else { ", " };
+        format!("{}{comma}{}.", self.meaning, self.unit)
+    }
+}
+
+impl PartialEq for Key {
+    fn eq(&self, other: &Self) -> bool {
+        (self.name, self.tables) == (other.name, other.tables)
+    }
+}
+
+impl fmt::Debug for Key {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(self.name)
+    }
+}
+
+impl fmt::Display for Value {
+    /// As tables have it.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Method(method) => method.fmt(out),
+            Self::TimeStep(rule) => out.write_str(&step_label(rule)),
+            Self::Word(word) => out.write_str(word),
+            Self::Flag(flag) => flag.fmt(out),
+            Self::Count(count) => count.fmt(out),
+            Self::Number(number) => number.fmt(out),
+        }
+    }
+}

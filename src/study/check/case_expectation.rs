@@ -1,0 +1,81 @@
+//! Checks of what must become of single cases: the blocks `[[expect_case]]`.
+
+use crate::case::tier::Tier;
+use crate::exact::reference::ReferenceKind;
+use crate::mpm::run::outcome::FailureKind;
+use crate::scene::SceneKind;
+use crate::study::case_expectation::{CaseDemand, CaseExpectation, ErrorRange};
+use crate::study::check::Checker;
+use crate::study::expectation::Measure;
+use crate::study::file::{ExpectCaseTable, RangeTable};
+use crate::study::inputs::Placed;
+use toml::Spanned;
+
+impl Checker<'_> {
+    /// What single cases must do.
+    pub(crate) fn case_expectation(
+        &mut self,
+        entry: &Spanned<ExpectCaseTable>,
+        scene: SceneKind,
+        references: &[ReferenceKind],
+    ) -> Option<CaseExpectation> {
+        let table = entry.get_ref();
+        let before = self.diagnostics.len();
+        let status = table.status.as_ref().and_then(|word| {
+            let mut names = vec!["ok"];
+            names.extend(FailureKind::ALL.map(FailureKind::name));
+            self.word(word, "status", &names).map(|index| names[index].to_owned())
+        });
+        let error = table.error.as_ref().and_then(|range| self.error_range(table, range, scene, references));
+        let bound = |c: &mut Self, typed: &Option<Placed<f64>>, name: &str| {
+            typed.as_deref().map(|typed| c.positive(Some(typed), name, "", 1e-12))
+        };
+        let demand = CaseDemand {
+            status,
+            critical_step_within: bound(self, &table.critical_step_within, "critical_step_within"),
+            error,
+            solid_drift_below: bound(self, &table.solid_drift_below, "solid_drift_below"),
+            water_drift_below: bound(self, &table.water_drift_below, "water_drift_below"),
+        };
+        if demand == CaseDemand::default() && self.diagnostics.len() == before {
+            self.complain(
+                entry.span(),
+                "the expectation asks for nothing",
+                "add `status = \"ok\"`, `critical_step_within = 0.02` or `error = { below = 1e-2 }`",
+            );
+        }
+        let selection = self.selection(&table.inputs, scene);
+        let tier = self.choice(table.tier.as_deref(), "tier", Tier::Ci)?;
+        let line = self.source.text[..entry.span().start.min(self.source.text.len())].lines().count().max(1);
+        (self.diagnostics.len() == before).then_some(CaseExpectation { selection, demand, tier, line })
+    }
+
+    /// Bounds on one error of a case.
+    fn error_range(
+        &mut self,
+        table: &ExpectCaseTable,
+        range: &Spanned<RangeTable>,
+        scene: SceneKind,
+        references: &[ReferenceKind],
+    ) -> Option<ErrorRange> {
+        let (quantity, sample, norm) =
+            self.measured(table.quantity.as_deref(), table.sample.as_deref(), table.norm.as_deref())?;
+        let reference = self.expected_reference(table.reference.as_deref(), scene, references)?;
+        let Some(time_factor) = table.time_factor.as_ref().map(|typed| *typed.get_ref()) else {
+            self.complain(range.span(), "the error names no time factor", "add `time_factor = 0.1`");
+            return None;
+        };
+        Some(ErrorRange {
+            measure: Measure {
+                quantity,
+                sample,
+                norm,
+                reference: reference.name().to_owned(),
+                time_factor,
+                probe: None,
+            },
+            below: range.get_ref().below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
+            above: range.get_ref().above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
+        })
+    }
+}
