@@ -8,7 +8,7 @@ fn chart() -> Chart {
 }
 
 fn page() -> Page {
-    let mut table = Table::new("Orders", vec![TableColumn::text("method"), TableColumn::number("order")]);
+    let mut table = Table::of("Orders", vec![TableColumn::text("method"), TableColumn::number("order")], []);
     table.rows.push(vec![Cell::Code("GIMP".into()), Cell::Order(1.0)]);
     let hostile = "<script>alert(1)</script> & \"quotes\"";
     Page {
@@ -138,7 +138,7 @@ fn names_must_be_safe_and_differ() {
 #[test]
 fn a_ragged_table_anywhere_is_refused() {
     let mut page = page();
-    let mut table = Table::new("t", vec![TableColumn::text("a")]);
+    let mut table = Table::of("t", vec![TableColumn::text("a")], []);
     table.rows.push(Vec::new());
     page.sections[2]
         .blocks

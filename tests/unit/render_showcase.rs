@@ -5,7 +5,7 @@ use crate::render::page::{Block, Figure, Page, Section, figures, render_html, re
 use crate::render::table::{Cell, Mood, Table, TableColumn};
 
 fn orders() -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         "Relative L_2 error of p at the points, T_v = 0.1",
         vec![
             TableColumn::text("method"),
@@ -19,6 +19,7 @@ fn orders() -> Table {
             TableColumn::number("time").unit("median of 5"),
             TableColumn::text("verdict"),
         ],
+        [],
     );
     for (i, name) in ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "TL-GC-SRI-patch"].into_iter().enumerate()
     {

@@ -1,7 +1,7 @@
 use super::*;
 
 fn sample() -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         "Pore pressure, T_v = 0.1",
         vec![
             TableColumn::text("method"),
@@ -13,6 +13,7 @@ fn sample() -> Table {
             TableColumn::number("time"),
             TableColumn::text("verdict"),
         ],
+        [],
     );
     table.rows = vec![
         vec![
@@ -86,14 +87,14 @@ fn a_ragged_row_is_refused_by_every_writer() {
 
 #[test]
 fn an_empty_table_is_a_header() {
-    let table = Table::new("", vec![TableColumn::text("a")]);
+    let table = Table::of("", vec![TableColumn::text("a")], []);
     assert_eq!(written(table.to_csv()), "a\n");
     assert_eq!(written(table.to_markdown()), "| a |\n| :--- |\n");
 }
 
 #[test]
 fn a_terminal_is_never_steered() {
-    let mut table = Table::new("\u{1b}[31m", vec![TableColumn::text("a\n")]);
+    let mut table = Table::of("\u{1b}[31m", vec![TableColumn::text("a\n")], []);
     table.rows.push(vec!["\u{1b}]0;x\u{7}\r\n".into()]);
     let text = written(table.to_text());
     assert!(text.chars().all(|c| c == '\n' || !c.is_control()), "{text:?}");

@@ -6,7 +6,7 @@ use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::judge::verdict::Outcome;
 use crate::render::checks::failures;
 use crate::render::render_error::RenderError;
-use crate::render::table::{Cell, Mood, Table, TableColumn};
+use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::tables::{golden_changes, uncertainties};
 use std::fmt::Write;
 
@@ -132,12 +132,7 @@ fn tables_of(check: &StudyCheck) -> Vec<Table> {
     {
         if !notes.is_empty() {
             let row = |note: &CaseNote| vec![Cell::Code(note.case.clone()), note.sentence.as_str().into()];
-            tables.push(Table {
-                title: title.to_owned(),
-                columns: vec![TableColumn::text("case"), TableColumn::text("how")],
-                rows: notes.iter().map(row).collect(),
-                notes: Vec::new(),
-            });
+            tables.push(Table::of(title, columns("case | how"), notes.iter().map(row)));
         }
     }
     if !check.differences().is_empty() {
@@ -169,15 +164,5 @@ pub fn judgements_table(title: &str, judgements: &[&Judgement]) -> Table {
             verdict.reason.as_str().into(),
         ]
     });
-    Table {
-        title: title.to_owned(),
-        columns: vec![
-            TableColumn::text("verdict"),
-            TableColumn::text("series"),
-            TableColumn::text("class"),
-            TableColumn::text("reason"),
-        ],
-        rows: rows.collect(),
-        notes: Vec::new(),
-    }
+    Table::of(title, columns("verdict | series | class | reason"), rows)
 }

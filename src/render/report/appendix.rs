@@ -3,7 +3,7 @@
 use crate::case::norm::Norm;
 use crate::render::page::{Block, Section};
 use crate::render::report::StudyResults;
-use crate::render::table::{Cell, Table, TableColumn};
+use crate::render::table::{Cell, Table, columns};
 use std::collections::BTreeMap;
 
 /// Norms, references and provenance.
@@ -19,26 +19,21 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
         vec![Cell::Code((*name).to_owned()), Cell::Count(*terms as u64), Cell::Error(*tail)]
     });
     let blocks = vec![
-        Block::Table(Table {
-            title: "Norms".to_owned(),
-            columns: vec![TableColumn::text("norm"), TableColumn::text("formula: x computed, x̂ exact, V volume of a sample")],
-            rows: norms.collect(),
-            notes: vec!["the exact field is evaluated at the Lagrangian place of the sample".to_owned()],
-        }),
-        Block::Table(Table {
-            title: "References".to_owned(),
-            columns: vec![
-                TableColumn::text("reference"),
-                TableColumn::number("terms at most"),
-                TableColumn::number("tail bound, over the load"),
-            ],
-            rows: references.collect(),
-            notes: vec![
-                "terzaghi: with the water's compressibility; terzaghi-incompressible: the textbook's; single-mode: \
-                 slowest mode, with the water's compressibility"
-                    .to_owned(),
-            ],
-        }),
+        Block::Table(
+            Table::of("Norms", columns("norm | formula: x computed, x̂ exact, V volume of a sample"), norms)
+                .note("the exact field is evaluated at the Lagrangian place of the sample"),
+        ),
+        Block::Table(
+            Table::of(
+                "References",
+                columns("reference | > terms at most | > tail bound, over the load"),
+                references,
+            )
+            .note(
+                "terzaghi: with the water's compressibility; terzaghi-incompressible: the textbook's; \
+                 single-mode: slowest mode, with the water's compressibility",
+            ),
+        ),
     ];
     Section { heading: "How the numbers were made".to_owned(), id: "how".to_owned(), mood: None, blocks }
 }

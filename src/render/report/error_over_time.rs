@@ -8,7 +8,7 @@ use crate::judge::work_precision::{NextLevel, TimedRun, WorkPrecision};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Style};
 use crate::render::page::{Block, Figure, slug};
 use crate::render::report::StudyResults;
-use crate::render::table::{Cell, Table, TableColumn};
+use crate::render::table::{Cell, Table, TableColumn, columns};
 
 /// The comparison of a study with timed runs of several integrators.
 pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
@@ -94,16 +94,10 @@ fn cheapest_table(precision: &WorkPrecision<'_>) -> Table {
         row.resize_with(1 + RUN_COLUMNS, || Cell::Missing("no timed run is within the tolerance".to_owned()));
         row
     });
-    let mut columns = vec![TableColumn::number("tolerance")];
+    let mut columns = columns("> tolerance");
     columns.extend(run_columns());
-    Table {
-        title: "The cheapest way to a tolerance".to_owned(),
-        columns,
-        rows: rows.collect(),
-        notes: vec![
-            "error of the pore pressure at the points, relative L2, the worst of the outputs".to_owned(),
-        ],
-    }
+    Table::of("The cheapest way to a tolerance", columns, rows)
+        .note("error of the pore pressure at the points, relative L2, the worst of the outputs")
 }
 
 fn front_table(precision: &WorkPrecision<'_>) -> Table {
@@ -142,12 +136,7 @@ fn runs_table(title: &str, runs: &[&TimedRun<'_>], precision: &WorkPrecision<'_>
     notes.extend(
         precision.noise_floor.map(|noise| format!("noise floor of the session: {:.1} %", 100.0 * noise)),
     );
-    Table {
-        title: title.to_owned(),
-        columns: run_columns().to_vec(),
-        rows: runs.iter().map(|run| run_cells(run).to_vec()).collect(),
-        notes,
-    }
+    Table::of(title, run_columns().to_vec(), runs.iter().map(|run| run_cells(run).to_vec())).notes(notes)
 }
 
 fn next_table(levels: &[NextLevel]) -> Table {
@@ -166,24 +155,16 @@ fn next_table(levels: &[NextLevel]) -> Table {
                 .map_or_else(unknown, |error| Cell::Percent(error / level.finest.error - 1.0)),
         ]
     });
-    Table {
-        title: "One more level: cells half as large".to_owned(),
-        columns: vec![
-            TableColumn::text("path"),
-            TableColumn::number("wall of the finest").unit("ms"),
-            TableColumn::number("its error"),
-            TableColumn::number("wall predicted").unit("ms"),
-            TableColumn::number("error predicted"),
-            TableColumn::number("cost exponent"),
-            TableColumn::number("finest predicted by the coarser: wall off by"),
-            TableColumn::number("error off by"),
-        ],
-        rows: rows.collect(),
-        notes: vec![
-            "the cost grows as h^−exponent; the error falls with the order and the floor of its class"
-                .to_owned(),
-        ],
-    }
+    Table::of(
+        "One more level: cells half as large",
+        columns(
+            "path | > wall of the finest [ms] | > its error | > wall predicted [ms] | > error \
+                 predicted | > cost exponent | > finest predicted by the coarser: wall off by | > error \
+                 off by",
+        ),
+        rows,
+    )
+    .note("the cost grows as h^−exponent; the error falls with the order and the floor of its class")
 }
 
 fn peers_table(compared: &[Comparison<'_, '_>]) -> Table {
@@ -205,9 +186,9 @@ fn peers_table(compared: &[Comparison<'_, '_>]) -> Table {
         row
     });
     let [early, middle, late] = peers::TIME_FACTORS.map(|factor| format!("T_v = {factor}"));
-    Table {
-        title: "Other programs on this column, and the first run here that is nowhere worse".to_owned(),
-        columns: vec![
+    Table::of(
+        "Other programs on this column, and the first run here that is nowhere worse",
+        vec![
             TableColumn::text("program"),
             TableColumn::number(&early),
             TableColumn::number(&middle),
@@ -219,11 +200,11 @@ fn peers_table(compared: &[Comparison<'_, '_>]) -> Table {
             TableColumn::number(late),
             TableColumn::number("wall").unit("s"),
         ],
-        rows: rows.collect(),
-        notes: vec![
-            "errors against Terzaghi's solution for incompressible water, which every run with water's own stiffness \
-             is 2e-4 away from; the other programs' times are of another machine and session"
-                .to_owned(),
-        ],
-    }
+        rows,
+    )
+    .note(
+        "errors against Terzaghi's solution for incompressible water, which every run with water's \
+                 own stiffness is 2e-4 away from; the other programs' times are of another machine and \
+                 session",
+    )
 }

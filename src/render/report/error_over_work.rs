@@ -7,7 +7,7 @@ use crate::record::{Record, Status};
 use crate::render::chart::describe::{Chart, ChartAxis, Series};
 use crate::render::page::{Block, Figure, slug};
 use crate::render::report::{StudyResults, labels};
-use crate::render::table::{Cell, Table, TableColumn};
+use crate::render::table::{Cell, Table, columns};
 use crate::study::expectation::{Axis, Measure};
 
 /// Error over point updates, and over wall time where runs had the machine to themselves.
@@ -87,25 +87,13 @@ fn timing_table(timed: &[&Record], measure: &Measure) -> Table {
             Cell::Number(nanoseconds),
         ]
     });
-    Table {
-        title: format!(
-            "Cost, with the error of the {} at T_v = {}",
-            labels::measure(measure),
-            measure.time_factor
+    Table::of(
+        format!("Cost, with the error of the {} at T_v = {}", labels::measure(measure), measure.time_factor),
+        columns(
+            "case | > error | > steps | > point updates | > wall, median | spread | > a point and step \
+                 [ns]",
         ),
-        columns: vec![
-            TableColumn::text("case"),
-            TableColumn::number("error"),
-            TableColumn::number("steps"),
-            TableColumn::number("point updates"),
-            TableColumn::number("wall, median"),
-            TableColumn::text("spread"),
-            TableColumn::number("a point and step").unit("ns"),
-        ],
-        rows: rows.collect(),
-        notes: vec![
-            "wall times only of runs that had the machine to themselves, taken in rounds over all cases"
-                .to_owned(),
-        ],
-    }
+        rows,
+    )
+    .note("wall times only of runs that had the machine to themselves, taken in rounds over all cases")
 }

@@ -7,7 +7,7 @@ use crate::judge::paths::{Path, first_norm, paths};
 use crate::render::number;
 use crate::render::page::{Block, Section};
 use crate::render::report::{StudyResults, labels};
-use crate::render::table::{Cell, Mood, Table, TableColumn};
+use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure};
 use crate::wording::typed;
 
@@ -40,8 +40,7 @@ const QUOTED: [(Quantity, Sample); 4] = [
 
 /// One row a path: order and error on ten cells of each measure, and the floors there are.
 pub fn section(results: &[StudyResults<'_>]) -> Section {
-    let mut columns =
-        vec![TableColumn::text("study"), TableColumn::text("method"), TableColumn::text("against")];
+    let mut columns = columns("study | method | against");
     columns.extend(QUOTED.map(|(quantity, sample)| {
         TableColumn::text(format!("{} {}", labels::quantity(quantity), labels::sample(sample)))
     }));
@@ -81,16 +80,15 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
             }
         }
     }
-    let table = Table {
-        title: "What converges to what: order on the finest three meshes, error on ten cells".to_owned(),
+    let table = Table::of(
+        "What converges to what: order on the finest three meshes, error on ten cells",
         columns,
         rows,
-        notes: vec![
-            "at the middle output time of each study; relative L_2 norm over the volume; a class stands where it \
-             allows no order"
-                .to_owned(),
-        ],
-    };
+    )
+    .note(
+        "at the middle output time of each study; relative L_2 norm over the volume; a class \
+             stands where it allows no order",
+    );
     let unmet =
         results.iter().flat_map(|one| &one.judgements).filter(|judgement| !judgement.verdict.pass).count();
     let mut blocks = Vec::new();

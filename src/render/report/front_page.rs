@@ -2,7 +2,7 @@
 
 use crate::render::page::{Block, Figure, Page, Section, all_figures};
 use crate::render::report::{StudyResults, appendix, findings};
-use crate::render::table::{Cell, Mood, Table, TableColumn};
+use crate::render::table::{Cell, Mood, Table, columns};
 
 /// What the front page shows a figure of: its name there, and what the names of the report's figures
 /// have in them. The first figure of each kind is shown.
@@ -57,6 +57,5 @@ fn studies_table(results: &[StudyResults<'_>]) -> Table {
             Cell::Code(one.run_command()),
         ]
     });
-    let columns = ["study", "runs", "expectations met", "run it again"].map(TableColumn::text);
-    Table { rows: rows.collect(), ..Table::new("", columns.to_vec()) }
+    Table::of("", columns("study | > runs | expectations met | run it again"), rows)
 }

@@ -10,7 +10,7 @@ use crate::render::chart::field::{ColourField, Colours};
 use crate::render::number;
 use crate::render::page::{Block, Figure, slug};
 use crate::render::report::{StudyResults, stiffness_sweeps};
-use crate::render::table::{Cell, Mood, Table, TableColumn};
+use crate::render::table::{Cell, Mood, Table, columns};
 
 /// Cells over the height of the runs whose fields are drawn.
 const SHOWN_CELLS: usize = 8;
@@ -152,33 +152,27 @@ fn accuracy(standings: &[Standing]) -> Table {
             rounded(one.oscillation, 3),
         ]
     });
-    Table {
-        title: "Methods by their mean rank: accuracy".to_owned(),
-        columns: vec![
-            TableColumn::text("method"),
-            TableColumn::number("mean rank"),
-            TableColumn::text("class"),
-            TableColumn::number("u at T_v = 0"),
-            TableColumn::number("order"),
-            TableColumn::number("p at T_v = 0"),
-            TableColumn::number("order"),
-            TableColumn::number("p at the last output"),
-            TableColumn::number("oscillation"),
-        ],
-        rows: rows.collect(),
-        notes: vec![
-            "u: relative L2 error of the nodal displacement; p: of the pressure at the points; both against Biot's \
-             exact solution on the finest mesh that every method ran. Oscillation: total variation of the pressure \
-             over the exact one's, minus one. The rank is the mean over the columns of both tables."
-                .to_owned(),
-            "B-bar (Hughes 1980; by cells in the material point method: Coombs et al. 2018) sends the skeleton's \
-             volumetric strain the way of the water's; mean: cell means of the points' divergence (Mast et al. \
-             2012); nodal: averages at the nodes (Detournay & Dzik 2006); null-space: filter by cells (Gritton & \
-             Berzins 2017; Tran & Sołowski 2019); bspline2, bspline3: quadratic and cubic B-splines (Steffen, Kirby \
-             & Berzins 2008)."
-                .to_owned(),
-        ],
-    }
+    Table::of(
+        "Methods by their mean rank: accuracy",
+        columns(
+            "method | > mean rank | class | > u at T_v = 0 | > order | > p at T_v = 0 | > order | > p \
+             at the last output | > oscillation",
+        ),
+        rows,
+    )
+    .note(
+        "u: relative L2 error of the nodal displacement; p: of the pressure at the points; both \
+                     against Biot's exact solution on the finest mesh that every method ran. Oscillation: \
+                     total variation of the pressure over the exact one's, minus one. The rank is the mean \
+                     over the columns of both tables.",
+    )
+    .note(
+        "B-bar (Hughes 1980; by cells in the material point method: Coombs et al. 2018) sends the \
+                      skeleton's volumetric strain the way of the water's; mean: cell means of the points' \
+                      divergence (Mast et al. 2012); nodal: averages at the nodes (Detournay & Dzik 2006); \
+                      null-space: filter by cells (Gritton & Berzins 2017; Tran & Sołowski 2019); bspline2, \
+                      bspline3: quadratic and cubic B-splines (Steffen, Kirby & Berzins 2008).",
+    )
 }
 
 /// What stiffness and time cost, in the same order.
@@ -193,19 +187,15 @@ fn robustness(standings: &[Standing]) -> Table {
             one.seconds.map_or_else(missing, Cell::Seconds),
         ]
     });
-    Table {
-        title: "Methods by their mean rank: stiffness and cost".to_owned(),
-        columns: vec![
-            TableColumn::text("method"),
-            TableColumn::number("spread of u over K_w"),
-            TableColumn::number("u at the largest ν"),
-            TableColumn::number("p at the largest ν"),
-            TableColumn::number("explicit limit").unit("h/c"),
-            TableColumn::number("implicit run"),
-        ],
-        rows: rows.collect(),
-        notes: vec!["Spread: of the displacement error at T_v = 0 over K_w/E from 10³ on.".to_owned()],
-    }
+    Table::of(
+        "Methods by their mean rank: stiffness and cost",
+        columns(
+            "method | > spread of u over K_w | > u at the largest ν | > p at the largest ν | > \
+                 explicit limit [h/c] | > implicit run",
+        ),
+        rows,
+    )
+    .note("Spread: of the displacement error at T_v = 0 over K_w/E from 10³ on.")
 }
 
 fn missing() -> Cell {

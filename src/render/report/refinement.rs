@@ -10,7 +10,7 @@ use crate::render::chart::describe::{
 };
 use crate::render::page::{Block, Figure, slug};
 use crate::render::report::{StudyResults, labels};
-use crate::render::table::{Cell, Table, TableColumn};
+use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 
 /// Quantities of one figure, side by side; a layer's settlement says less than its displacements.
@@ -252,7 +252,7 @@ fn orders_table(
 ) -> Table {
     let levels = level_names(all, axis);
     let labels = labels::path_labels(all);
-    let mut columns = vec![TableColumn::text("method"), TableColumn::text("error of")];
+    let mut columns = columns("method | error of");
     columns.extend(levels.iter().map(|level| TableColumn::number(level.clone())));
     if shows_orders(axis, reference) {
         columns.extend(["pair orders", "fit, 95 %", "finest 3"].map(TableColumn::number));
@@ -284,7 +284,7 @@ fn orders_table(
     if !labels.shared.is_empty() {
         notes.insert(0, format!("all with {}", labels.shared));
     }
-    Table { title: format!("T_v = {time_factor}, against {reference}"), columns, rows, notes }
+    Table::of(format!("T_v = {time_factor}, against {reference}"), columns, rows).notes(notes)
 }
 
 fn orders_row(

@@ -6,7 +6,7 @@ use crate::judge::stiffness_sweep::{Showing, Stiffness, StiffnessSweep};
 use crate::render::chart::describe::{Chart, ChartAxis, ChartDirection, Rule, Series, Size, Style};
 use crate::render::page::{Block, Figure, slug};
 use crate::render::report::StudyResults;
-use crate::render::table::{Cell, Table, TableColumn};
+use crate::render::table::{Cell, Table, TableColumn, columns};
 
 /// Figures of the last output and, behind a click, every number.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
@@ -107,7 +107,7 @@ fn table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
         Stiffness::Water => format!("K_w/E = {value}"),
         Stiffness::Skeleton => format!("ν = {value}"),
     };
-    let mut columns = vec![TableColumn::text("method")];
+    let mut columns = columns("method");
     columns.extend(sweep.values.iter().map(|value| TableColumn::number(header(value))));
     let cell = |value: Option<f64>| match (value, showing) {
         (None, _) => Cell::Missing("not run".to_owned()),
@@ -122,10 +122,5 @@ fn table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
         Showing::Oscillation => vec!["Total variation over the exact one's, minus one.".to_owned()],
         Showing::Displacement | Showing::Pressure => Vec::new(),
     };
-    Table {
-        title: format!("{}, T_v = {time_factor}", subject(showing)),
-        columns,
-        rows: rows.collect(),
-        notes,
-    }
+    Table::of(format!("{}, T_v = {time_factor}", subject(showing)), columns, rows).notes(notes)
 }

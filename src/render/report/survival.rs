@@ -6,7 +6,7 @@ use crate::record::{Record, Status};
 use crate::render::number;
 use crate::render::page::{Block, Section};
 use crate::render::report::StudyResults;
-use crate::render::table::{Cell, Mood, Table, TableColumn};
+use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 
 /// An error as large as the answer: the run went on, and its result is none.
 const MEANINGLESS: f64 = 1.0;
@@ -24,7 +24,7 @@ pub fn section(results: &[StudyResults<'_>]) -> Option<Section> {
             methods.push(name);
         }
     }
-    let mut columns = vec![TableColumn::text("hard case"), TableColumn::text("mesh")];
+    let mut columns = columns("hard case | mesh");
     columns.extend(methods.iter().map(|method| TableColumn::text(method.clone())));
     let mut rows = Vec::new();
     for one in &hard {
@@ -44,16 +44,11 @@ pub fn section(results: &[StudyResults<'_>]) -> Option<Section> {
             rows.push(row);
         }
     }
-    let table = Table {
-        title: "How each case ended".to_owned(),
-        columns,
-        rows,
-        notes: vec![
-            "a number is the relative L_2 error of the pressure at the points at the last output, ✗ where it is as large \
-             as the answer; ✗ with the name of a failure and its step. What each study expects stands in its own section."
-                .to_owned(),
-        ],
-    };
+    let table = Table::of("How each case ended", columns, rows).note(
+        "a number is the relative L_2 error of the pressure at the points at the last output, ✗ \
+             where it is as large as the answer; ✗ with the name of a failure and its step. What each \
+             study expects stands in its own section.",
+    );
     let moods = hard.iter().all(|one| one.passes());
     Some(Section {
         heading: "What each method survives".to_owned(),

@@ -5,7 +5,7 @@ use crate::measure::record_checks::RecordCheck;
 use crate::record::{Record, Status};
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
-use crate::render::table::{Cell, Table, TableColumn};
+use crate::render::table::{Cell, Table, columns};
 use crate::render::tables::measures::bound_cell;
 
 /// The worst of every check over the runs of a study, and the groups of its first run.
@@ -24,16 +24,13 @@ pub fn block(results: &StudyResults<'_>) -> Block {
             rows.push(vec![what.into(), Cell::Error(value), Cell::Text(String::new())]);
         }
     }
-    let table = Table {
-        title: "Start checks, balances and groups".to_owned(),
-        columns: vec![TableColumn::text("what"), TableColumn::number("worst of all runs"), TableColumn::text("bound")],
-        rows,
-        notes: vec![
-            "A patch does not conserve the water's storage exactly: its imbalance falls with the mesh. A zero \
-             equilibrium residual is no evidence: constant recovery leaves both stresses wrong alike."
-                .to_owned(),
-        ],
-    };
+    let table =
+        Table::of("Start checks, balances and groups", columns("what | > worst of all runs | bound"), rows)
+            .note(
+                "A patch does not conserve the water's storage exactly: its imbalance falls with the mesh. \
+             A zero equilibrium residual is no evidence: constant recovery leaves both stresses wrong \
+             alike.",
+            );
     Block::Details {
         summary: "Start checks, balances and dimensionless groups".to_owned(),
         blocks: vec![Block::Table(table)],

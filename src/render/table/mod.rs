@@ -70,6 +70,19 @@ impl TableColumn {
     }
 }
 
+/// Columns from a header as it reads: parted by `|`, `>` before one of numbers, its unit in brackets, as in
+/// `case | > predicted [s] | verdict`.
+pub fn columns(header: &str) -> Vec<TableColumn> {
+    let column = |cell: &str| match cell.trim().strip_prefix('>').map(str::trim) {
+        None => TableColumn::text(cell.trim()),
+        Some(number) => match number.strip_suffix(']').and_then(|number| number.split_once(" [")) {
+            Some((name, unit)) => TableColumn::number(name).unit(unit),
+            None => TableColumn::number(number),
+        },
+    };
+    header.split('|').map(column).collect()
+}
+
 /// A cell. Every kind of number is spelled in one way throughout all reports.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
@@ -154,9 +167,27 @@ impl Cell {
 }
 
 impl Table {
-    /// A table without rows.
-    pub fn new(title: impl Into<String>, columns: Vec<TableColumn>) -> Self {
-        Self { title: title.into(), columns, ..Self::default() }
+    /// A table of rows under a title.
+    pub fn of(
+        title: impl Into<String>,
+        columns: Vec<TableColumn>,
+        rows: impl IntoIterator<Item = Vec<Cell>>,
+    ) -> Self {
+        Self { title: title.into(), columns, rows: rows.into_iter().collect(), notes: Vec::new() }
+    }
+
+    /// The same table with one more line below it.
+    #[must_use]
+    pub fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    /// The same table with more lines below it.
+    #[must_use]
+    pub fn notes(mut self, notes: impl IntoIterator<Item = String>) -> Self {
+        self.notes.extend(notes);
+        self
     }
 
     /// For a terminal.

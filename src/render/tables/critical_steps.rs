@@ -1,30 +1,23 @@
 //! Tables of predicted and observed critical steps.
 
 use crate::record::{Probe, Record};
-use crate::render::table::{Cell, Mood, Table, TableColumn};
+use crate::render::table::{Cell, Mood, Table, columns};
 
 /// One row a case: predicted and observed step, and what the runs beside the limit did.
 pub fn table_of(records: &[Record]) -> Table {
-    let rows = records.iter().filter_map(row_of).collect();
-    Table {
-        title: "Critical time step, predicted and observed".to_owned(),
-        columns: vec![
-            TableColumn::text("case"),
-            TableColumn::number("predicted").unit("s"),
-            TableColumn::number("observed").unit("s"),
-            TableColumn::number("difference"),
-            TableColumn::number("over h/c"),
-            TableColumn::number("slow growth from").unit("s"),
-            TableColumn::text("at 0.97"),
-            TableColumn::text("at 1.03"),
-        ],
+    let rows = records.iter().filter_map(row_of);
+    Table::of(
+        "Critical time step, predicted and observed",
+        columns(
+            "case | > predicted [s] | > observed [s] | > difference | > over h/c | > slow growth from \
+             [s] | at 0.97 | at 1.03",
+        ),
         rows,
-        notes: vec![
-            "predicted: spectral radius of the step operator on the case's own grid; observed: bisection of runs that \
-             know nothing of it; c: the fastest undamped wave"
-                .to_owned(),
-        ],
-    }
+    )
+    .note(
+        "predicted: spectral radius of the step operator on the case's own grid; observed: \
+                     bisection of runs that know nothing of it; c: the fastest undamped wave",
+    )
 }
 
 fn row_of(record: &Record) -> Option<Vec<Cell>> {

@@ -4,7 +4,7 @@ use crate::case::quantity::Quantity;
 use crate::judge::explain::{Carrier, Explanation, LevelSeries};
 use crate::record::{Record, Status};
 use crate::render::number;
-use crate::render::table::{Cell, Mood, Table, TableColumn};
+use crate::render::table::{Cell, Mood, Table, columns};
 use crate::render::tables::golden_changes::differences_table;
 
 /// Carriers, levels and changes of a case.
@@ -63,26 +63,18 @@ fn carriers_table(record: &Record, carriers: &[Carrier]) -> Table {
         Status::Failed(failure) => format!(" ({} at step {})", failure.kind.name(), failure.step),
     };
     let reference = record.references.first().map_or("no reference", |used| used.name.as_str());
-    Table {
-        title: format!("{}: {}{status}", record.case.scene.name(), record.case.label()),
-        columns: vec![
-            TableColumn::text("quantity"),
-            TableColumn::text("sample"),
-            TableColumn::number("largest at T_v"),
-            TableColumn::number("L1"),
-            TableColumn::number("L2"),
-            TableColumn::number("Linf"),
-            TableColumn::number("worst at ζ"),
-            TableColumn::number("its share"),
-            TableColumn::number("computed"),
-            TableColumn::number("exact"),
-        ],
-        rows: rows.collect(),
-        notes: vec![format!(
-            "relative errors against {reference}, the largest first; settlement as s/s_exact − 1; share of the \
+    Table::of(
+        format!("{}: {}{status}", record.case.scene.name(), record.case.label()),
+        columns(
+            "quantity | sample | > largest at T_v | > L1 | > L2 | > Linf | > worst at ζ | > its share \
+                 | > computed | > exact",
+        ),
+        rows,
+    )
+    .note(format!(
+        "relative errors against {reference}, the largest first; settlement as s/s_exact − 1; share of the \
              squared L2 error; values in Pa and m"
-        )],
-    }
+    ))
 }
 
 fn levels_table(first: &Carrier, series: &LevelSeries) -> Table {
@@ -94,16 +86,16 @@ fn levels_table(first: &Carrier, series: &LevelSeries) -> Table {
             if own { Cell::Verdict(Mood::Note, "this case".to_owned()) } else { "golden".into() },
         ]
     });
-    Table {
-        title: format!(
+    Table::of(
+        format!(
             "{} {} at T_v = {} over {}",
             first.row.quantity.name(),
             first.row.sample.name(),
             number::number(first.row.time_factor),
             series.axis.name().replace('_', " ")
         ),
-        columns: vec![TableColumn::text("level"), TableColumn::number("error"), TableColumn::text("from")],
-        rows: rows.collect(),
-        notes: vec![format!("{}: {}", series.class, series.reason)],
-    }
+        columns("level | > error | from"),
+        rows,
+    )
+    .note(format!("{}: {}", series.class, series.reason))
 }

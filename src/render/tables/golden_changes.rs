@@ -5,7 +5,7 @@ use crate::golden::case_changes::CaseChange;
 use crate::golden::compare::{Change, Difference};
 use crate::golden::difference_groups::DifferenceGroup;
 use crate::render::number;
-use crate::render::table::{Cell, Mood, Table, TableColumn};
+use crate::render::table::{Cell, Mood, Table, columns};
 use std::fmt::Write;
 
 /// Differences shown in a table before the rest is only counted.
@@ -75,19 +75,14 @@ pub(crate) fn changes_table(changes: &[CaseChange]) -> Table {
             Cell::Count(one.unpaired as u64),
         ]
     });
-    Table {
-        title: "accuracy and cost together".to_owned(),
-        columns: vec![
-            TableColumn::text("change"),
-            TableColumn::text("case"),
-            TableColumn::number("cost over golden"),
-            TableColumn::number("errors that grew"),
-            TableColumn::number("errors that fell"),
-            TableColumn::number("without partner"),
-        ],
-        rows: rows.collect(),
-        notes: Vec::new(),
-    }
+    Table::of(
+        "accuracy and cost together",
+        columns(
+            "change | case | > cost over golden | > errors that grew | > errors that fell | > without \
+                 partner",
+        ),
+        rows,
+    )
 }
 
 /// Values that differ from their golden ones.
@@ -110,17 +105,10 @@ pub fn differences_table(differences: &[Difference]) -> Table {
         ]
     });
     let rest = differences.len().saturating_sub(MOST_DIFFERENCES);
-    Table {
-        title: "golden values that moved".to_owned(),
-        columns: vec![
-            TableColumn::text("change"),
-            TableColumn::text("value"),
-            TableColumn::number("golden"),
-            TableColumn::number("now"),
-            TableColumn::number("difference"),
-            TableColumn::number("tolerance"),
-        ],
-        rows: rows.collect(),
-        notes: if rest > 0 { vec![format!("and {rest} more")] } else { Vec::new() },
-    }
+    Table::of(
+        "golden values that moved",
+        columns("change | value | > golden | > now | > difference | > tolerance"),
+        rows,
+    )
+    .notes(if rest > 0 { vec![format!("and {rest} more")] } else { Vec::new() })
 }

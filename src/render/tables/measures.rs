@@ -7,7 +7,7 @@ use crate::measure::record_checks::RecordCheck;
 use crate::record::{Record, Status};
 use crate::render::number;
 use crate::render::render_error::RenderError;
-use crate::render::table::{Cell, Mood, Table, TableColumn};
+use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use std::fmt::Write;
 
 /// Errors of a record, start checks and balances, as text.
@@ -23,8 +23,7 @@ pub fn table_of(record: &Record) -> Result<String, RenderError> {
 /// One row a reference, quantity and sample; one column a time factor; L2 or relative error.
 pub fn errors_table(record: &Record) -> Table {
     let case = &record.case;
-    let mut columns =
-        vec![TableColumn::text("reference"), TableColumn::text("quantity"), TableColumn::text("sample")];
+    let mut columns = columns("reference | quantity | sample");
     columns.extend(case.time_factors.iter().map(|factor| TableColumn::number(format!("T_v {factor}"))));
     let mut rows = Vec::new();
     for reference in &record.references {
@@ -44,16 +43,12 @@ pub fn errors_table(record: &Record) -> Table {
             rows.push(row);
         }
     }
-    Table {
-        title: format!("{}: {}", case.scene.name(), case.label()),
-        columns,
-        rows,
-        notes: vec![
-            "relative L2 error over the places of `sample`, weighted with volume; settlement as s/s_exact − 1"
-                .to_owned(),
-            work_note(record),
-        ],
-    }
+    Table::of(format!("{}: {}", case.scene.name(), case.label()), columns, rows)
+        .note(
+            "relative L2 error over the places of `sample`, weighted with volume; settlement as \
+             s/s_exact − 1",
+        )
+        .note(work_note(record))
 }
 
 const MEASURES: [(Quantity, Sample, Norm); 5] = [
@@ -100,12 +95,8 @@ pub fn checks_table(record: &Record) -> Table {
     add("storage n E_oed/K_w", Cell::Error(record.groups.storage), plain());
     add("finite strain m_vl q", Cell::Error(record.groups.finite_strain), plain());
     add("inertia c_v/(H V)", Cell::Error(record.groups.inertia), plain());
-    Table {
-        title: "checks and groups".to_owned(),
-        columns: vec![TableColumn::text("what"), TableColumn::number("value"), TableColumn::text("bound")],
-        rows,
-        notes: record_checks::complaints(record).iter().map(|one| format!("✗ {one}")).collect(),
-    }
+    Table::of("checks and groups", columns("what | > value | bound"), rows)
+        .notes(record_checks::complaints(record).iter().map(|one| format!("✗ {one}")))
 }
 
 /// The bound of a check with the mark of its judgement.

@@ -1,7 +1,7 @@
 //! The table of where the time of a case went.
 
 use crate::record::{PhaseTime, Record};
-use crate::render::table::{Cell, Table, TableColumn};
+use crate::render::table::{Cell, Table, columns};
 
 /// One row a phase, in the order of a run, with its share and what it costs a point and step.
 pub fn phases_table(phases: &[PhaseTime], record: &Record) -> Table {
@@ -15,19 +15,13 @@ pub fn phases_table(phases: &[PhaseTime], record: &Record) -> Table {
             Cell::Count(time.entries),
         ]
     });
-    Table {
-        title: "where the time went".to_owned(),
-        columns: vec![
-            TableColumn::text("phase"),
-            TableColumn::number("share"),
-            TableColumn::number("time").unit("ms"),
-            TableColumn::number("a point and step").unit("ns"),
-            TableColumn::number("entered"),
-        ],
-        rows: rows.collect(),
-        notes: vec![
-            "wall time without that of the clock, which is read where a phase begins; a run without it is faster"
-                .to_owned(),
-        ],
-    }
+    Table::of(
+        "where the time went",
+        columns("phase | > share | > time [ms] | > a point and step [ns] | > entered"),
+        rows,
+    )
+    .note(
+        "wall time without that of the clock, which is read where a phase begins; a run without it \
+             is faster",
+    )
 }

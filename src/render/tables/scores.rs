@@ -5,7 +5,7 @@ use crate::case::quantity::Quantity;
 use crate::judge::score::series::ScoredSeries;
 use crate::judge::score::{Score, WorstPlace};
 use crate::record::ErrorRow;
-use crate::render::table::{Cell, Table, TableColumn};
+use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::render::tables::measures::NOT_RESOLVED;
 use std::collections::HashMap;
 
@@ -22,8 +22,7 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
             references.push(name);
         }
     }
-    let mut columns =
-        vec![TableColumn::number("T_v"), TableColumn::text("quantity"), TableColumn::text("sample")];
+    let mut columns = columns("> T_v | quantity | sample");
     columns.extend(references.iter().map(|name| TableColumn::number(format!("error against {name}"))));
     let is_plane = score.worst.iter().any(|worst| worst.x.is_some());
     columns.push(TableColumn::number("worst at ζ"));
@@ -56,15 +55,10 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
         cells
     });
     let rows: Vec<Vec<Cell>> = rows.chain(unresolved).collect();
-    Table {
-        title: title.to_owned(),
-        columns,
-        rows,
-        notes: vec![
-            "relative L2 error over the samples; settlement as s/s_exact − 1; ζ is the initial depth over the height"
-                .to_owned(),
-        ],
-    }
+    Table::of(title, columns, rows).note(
+        "relative L2 error over the samples; settlement as s/s_exact − 1; ζ is the initial depth \
+             over the height",
+    )
 }
 
 fn error_cell(row: Option<&ErrorRow>) -> Cell {
@@ -116,5 +110,5 @@ pub fn series_table(series: &[ScoredSeries], cells: &[usize]) -> Table {
              solution at its own"
         ));
     }
-    Table { title: "convergence".to_owned(), columns, rows: rows.collect(), notes }
+    Table::of("convergence", columns, rows).notes(notes)
 }

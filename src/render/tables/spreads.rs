@@ -1,7 +1,7 @@
 //! The table of measured spreads.
 
 use crate::judge::scatter::Spread;
-use crate::render::table::{Cell, Table, TableColumn};
+use crate::render::table::{Cell, Table, columns};
 
 /// One row a study and source.
 pub fn table_of(spreads: &[Spread]) -> Table {
@@ -21,22 +21,16 @@ pub fn table_of(spreads: &[Spread]) -> Table {
             },
         ]
     });
-    Table {
-        title: "spread of results that should be equal".to_owned(),
-        columns: vec![
-            TableColumn::text("study"),
-            TableColumn::text("against"),
-            TableColumn::number("values"),
-            TableColumn::number("unpaired"),
-            TableColumn::number("differing"),
-            TableColumn::number("largest difference"),
-            TableColumn::number("relative"),
-            TableColumn::number("tolerance from it"),
-            TableColumn::text("widest at"),
-        ],
-        rows: rows.collect(),
-        notes: vec![
-            "a tolerance is ten times the spread; a golden value takes that of its own quantity, case and time".to_owned(),
-        ],
-    }
+    Table::of(
+        "spread of results that should be equal",
+        columns(
+            "study | against | > values | > unpaired | > differing | > largest difference | > relative \
+                 | > tolerance from it | widest at",
+        ),
+        rows,
+    )
+    .note(
+        "a tolerance is ten times the spread; a golden value takes that of its own quantity, case \
+             and time",
+    )
 }

@@ -3,32 +3,26 @@
 use crate::convergence::uncertainty::eca_hoekstra::ErrorModel;
 use crate::convergence::uncertainty::grid_convergence::Behaviour;
 use crate::judge::paths::Judgement;
-use crate::render::table::{Cell, Table, TableColumn};
+use crate::render::table::{Cell, Table, columns};
 
 /// One row a value that was asked for; none where none was.
 pub fn table_of(judgements: &[Judgement]) -> Option<Table> {
     let rows: Vec<Vec<Cell>> = judgements.iter().filter_map(row_of).collect();
-    (!rows.is_empty()).then(|| Table {
-        title: "values without a reference and their numerical uncertainty".to_owned(),
-        columns: vec![
-            TableColumn::text("value"),
-            TableColumn::number("levels"),
-            TableColumn::number("finest"),
-            TableColumn::text("behaviour"),
-            TableColumn::number("order"),
-            TableColumn::number("extrapolated"),
-            TableColumn::number("index, 3 levels"),
-            TableColumn::number("least squares"),
-            TableColumn::text("error model"),
-            TableColumn::number("uncertainty"),
-        ],
-        rows,
-        notes: vec![
-            "settlement over the final one of small strain, pressure and stress over the load; behaviour, order and \
-             grid convergence index (Celik et al. 2008) of the finest three levels; uncertainty by least squares over \
-             four levels and more (Eça & Hoekstra 2014); all uncertainties over the finest value"
-                .to_owned(),
-        ],
+    (!rows.is_empty()).then(|| {
+        Table::of(
+            "values without a reference and their numerical uncertainty",
+            columns(
+                "value | > levels | > finest | behaviour | > order | > extrapolated | > index, \
+             3 levels | > least squares | error model | > uncertainty",
+            ),
+            rows,
+        )
+        .note(
+            "settlement over the final one of small strain, pressure and stress over the \
+                      load; behaviour, order and grid convergence index (Celik et al. 2008) of the \
+                      finest three levels; uncertainty by least squares over four levels and more \
+                      (Eça & Hoekstra 2014); all uncertainties over the finest value",
+        )
     })
 }
 
