@@ -11,10 +11,9 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use oedometer::exact::consolidation;
 use oedometer::{
-    AssembledColumn, AssembledPlane, Basis, Body, Column, Configuration, DomainEnds, EqualSteps,
-    ExplicitSettings, Gimp, Hat, IntegratorKind, Kernel as StepKernel, LinearStepper, Material, Method, Plan,
-    Problem, SceneKind, Schedule, ShapeFunction, Stepper, TimeStepRule, column_problem,
-    predicted_critical_step,
+    AssembledStep, Basis, Body, Column, Configuration, DomainEnds, EqualSteps, ExplicitSettings, Gimp, Hat,
+    IntegratorKind, Kernel as StepKernel, LinearStepper, Material, Method, Plan, Problem, SceneKind,
+    Schedule, ShapeFunction, Stepper, TimeStepRule, column_problem, predicted_critical_step,
 };
 use std::time::Instant;
 
@@ -161,7 +160,7 @@ fn steps_of<const W: usize, S: ShapeFunction<W> + 'static>(
     settings: ExplicitSettings,
 ) -> Box<dyn FnMut()> {
     if kernel == Kernel::Assembled {
-        let mut column = AssembledColumn::new(&body).expect("one dimension");
+        let mut column = AssembledStep::new(&body);
         column.set_step(dt, &settings);
         Box::new(move || {
             for _ in 0..STEPS {
@@ -241,9 +240,10 @@ fn plane_cost(name: &str, cells: usize) -> PlaneCost {
     let settings = ExplicitSettings::default();
     let dt = 0.5 * predicted_critical_step(&problem, &settings);
     let mut body = Body::<2, 3, Gimp>::new(problem);
-    let mut plane = AssembledPlane::new(&body);
+    let mut plane = AssembledStep::new(&body);
     plane.set_step(dt, &settings);
-    let coefficients = vec![1.0_f64; plane.bytes_a_step() / size_of::<f64>()];
+    let [bytes, products] = plane.bytes_and_products().expect("sparse rows");
+    let coefficients = vec![1.0_f64; bytes / size_of::<f64>()];
     let points = body.points.len() as f64;
     let mut least = [f64::INFINITY; 3];
     for _ in 0..PLANE_ROUNDS {
@@ -256,8 +256,8 @@ fn plane_cost(name: &str, cells: usize) -> PlaneCost {
     }
     PlaneCost {
         nanoseconds: least.map(|seconds| 1e9 * seconds / (PLANE_STEPS as f64 * points)),
-        bytes: plane.bytes_a_step() as f64 / points,
-        products: plane.products_a_step() as f64 / points,
+        bytes: bytes as f64 / points,
+        products: products as f64 / points,
     }
 }
 
@@ -331,10 +331,10 @@ fn print_bound() {
 fn force_reach(method: &str, cells: usize) -> usize {
     let problem = problem(method, cells, Configuration::Frozen);
     let column = match problem.method.basis {
-        Basis::Hat => AssembledColumn::new(&Body::<1, 2, Hat>::new(problem)),
-        _ => AssembledColumn::new(&Body::<1, 3, Gimp>::new(problem)),
+        Basis::Hat => AssembledStep::new(&Body::<1, 2, Hat>::new(problem)),
+        _ => AssembledStep::new(&Body::<1, 3, Gimp>::new(problem)),
     };
-    column.expect("one dimension").force_reach()
+    column.force_reach().expect("bands")
 }
 
 /// `STEPS` passes over the nodes with so many multiply-adds each.

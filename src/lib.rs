@@ -80,7 +80,7 @@ pub use soil::material::{Continuity, Material};
 
 // What the benches time one by one.
 #[doc(hidden)]
-pub use mpm::assembled::{column::AssembledColumn, plane::AssembledPlane};
+pub use mpm::assembled::step::AssembledStep;
 #[doc(hidden)]
 pub use mpm::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
 #[doc(hidden)]

@@ -1,8 +1,8 @@
 //! A step allocates nothing, whatever the method, the configuration and the kernel.
 
 use oedometer::{
-    AssembledColumn, Basis, Body, Column, Configuration, Continuity, DomainEnds, Drag, ExplicitSettings,
-    Gimp, Hat, Material, Method, Problem, SceneKind, ShapeFunction, column_problem, predicted_critical_step,
+    AssembledStep, Basis, Body, Column, Configuration, Continuity, DomainEnds, Drag, ExplicitSettings, Gimp,
+    Hat, Material, Method, Problem, SceneKind, ShapeFunction, column_problem, predicted_critical_step,
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -40,7 +40,7 @@ fn assert_no_allocation<const W: usize, S: ShapeFunction<W>>(
     what: &str,
 ) {
     if !body.configuration.deforms() {
-        let mut column = AssembledColumn::new(&body).expect("one dimension");
+        let mut column = AssembledStep::new(&body);
         column.set_step(dt, settings);
         let count = allocations(|| (0..STEPS).for_each(|_| column.step(dt, settings)));
         assert_eq!(count, 0, "assembled, {what}");

@@ -4,7 +4,7 @@
 //! found by the method's own operators. It is a pure test of volumetric locking, and the start from
 //! which an explicit run has no waves.
 
-use crate::mpm::assembled::stiffness::NodeBlocks;
+use crate::mpm::assembled::stiffness::{NodeBlocks, pressure_stiffness};
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::implicit::banded::{Banded, BandedLu, Singular};
 use crate::mpm::method::Configuration;
@@ -71,7 +71,7 @@ impl<const D: usize> UndrainedSystem<D> {
     pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Result<Self, Singular> {
         let rows = body.volumetric_rows();
         let mut stiffness = body.skeleton_stiffness(&rows);
-        stiffness.add(&body.pressure_stiffness(&rows));
+        stiffness.add(&pressure_stiffness(&body.coupled_pressure_forces(&rows), &rows.divergence));
         let unknowns = FreeComponents::of(&body.nodes.free);
         let matrix = unknowns.banded(&stiffness);
         let mut factors = BandedLu::of_shape(&matrix);

@@ -1,7 +1,7 @@
 //! Stiffness of a body as sparse blocks between nodes: what its forces do under displacements.
 
 use crate::mpm::body::{Body, ShapeFunction};
-use crate::mpm::operators::volumetric::VolumetricRows;
+use crate::mpm::operators::volumetric::{VectorRow, VolumetricRows};
 use crate::soil::tensor::{Tensor, Vector};
 
 /// A sparse matrix of `D × D` blocks between nodes.
@@ -19,12 +19,7 @@ impl<const D: usize> NodeBlocks<D> {
 
     /// The block between two nodes, made where there is none.
     pub fn block(&mut self, row: usize, column: usize) -> &mut Tensor<D> {
-        let row = &mut self.rows[row];
-        let place = row.binary_search_by_key(&column, |entry| entry.0).unwrap_or_else(|place| {
-            row.insert(place, (column, [[0.0; D]; D]));
-            place
-        });
-        &mut row[place].1
+        entry_of(&mut self.rows[row], column, [[0.0; D]; D])
     }
 
     /// Adds another matrix.
@@ -40,6 +35,15 @@ impl<const D: usize> NodeBlocks<D> {
             }
         }
     }
+}
+
+/// The entry of a column in a row that ascends in its columns, made where there is none.
+pub fn entry_of<T>(row: &mut Vec<(usize, T)>, column: usize, zero: T) -> &mut T {
+    let place = row.binary_search_by_key(&column, |entry| entry.0).unwrap_or_else(|place| {
+        row.insert(place, (column, zero));
+        place
+    });
+    &mut row[place].1
 }
 
 /// What a node's displacement `u` does to the strain at a point: the gradient `u ⊗ g + (b·u/D) I`.
@@ -125,22 +129,16 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         blocks
     }
 
-    /// `B = Σ V ∇N ⊗ R`: force on the nodes of unit pressures at the sites, N/Pa, by site.
+    /// `A = Σ V ∇N ⊗ R`: force on the nodes of unit pressures at the sites, `[node] → (site, N/Pa)`.
     pub fn pressure_forces(&self, rows: &VolumetricRows<D>) -> Vec<Vec<(usize, Vector<D>)>> {
-        let mut forces: Vec<Vec<(usize, Vector<D>)>> = vec![Vec::new(); rows.divergence.len()];
+        let mut forces: Vec<Vec<(usize, Vector<D>)>> = vec![Vec::new(); self.nodes.len()];
         for point in 0..self.points.len() {
             let volume = self.points.volume(point);
-            let gradients = self.basis.gradient_row(&self.grid, point);
-            for (site, weight) in &rows.recovery[point] {
-                for (node, gradient) in &gradients {
-                    let share = gradient.map(|component| volume * weight * component);
-                    match forces[*site].binary_search_by_key(node, |entry| entry.0) {
-                        Ok(place) => {
-                            for d in 0..D {
-                                forces[*site][place].1[d] += share[d];
-                            }
-                        }
-                        Err(place) => forces[*site].insert(place, (*node, share)),
+            for (node, gradient) in self.basis.gradient_row(&self.grid, point) {
+                for (site, weight) in &rows.recovery[point] {
+                    let force = entry_of(&mut forces[node], *site, [0.0; D]);
+                    for d in 0..D {
+                        force[d] += volume * weight * gradient[d];
                     }
                 }
             }
@@ -148,25 +146,36 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         forces
     }
 
-    /// `K_p = B Q D`: force of the pressures of an undrained body over its displacements, N/m, with
-    /// its sign turned.
-    pub fn pressure_stiffness(&self, rows: &VolumetricRows<D>) -> NodeBlocks<D> {
-        let mut blocks = NodeBlocks::zero(self.nodes.len());
-        let forces = self.pressure_forces(rows);
-        for (site, divergence) in rows.divergence.iter().enumerate() {
-            for (row, force) in &forces[site] {
-                for (column, coefficients) in divergence {
-                    let block = blocks.block(*row, *column);
-                    for d in 0..D {
-                        for e in 0..D {
-                            block[d][e] += rows.coupling[site] * force[d] * coefficients[e];
-                        }
+    /// `A Q`: force on the nodes of unit dilations at the sites with its sign turned, `[node] → (site, N)`.
+    pub fn coupled_pressure_forces(&self, rows: &VolumetricRows<D>) -> Vec<Vec<(usize, Vector<D>)>> {
+        let mut forces = self.pressure_forces(rows);
+        for (site, force) in forces.iter_mut().flatten() {
+            *force = force.map(|component| rows.coupling[*site] * component);
+        }
+        forces
+    }
+}
+
+/// `K_p = A Q D`: force of the pressures of an undrained body over its displacements, N/m, with its sign
+/// turned, from `A Q` and `D`.
+pub fn pressure_stiffness<const D: usize>(
+    coupled_forces: &[Vec<(usize, Vector<D>)>],
+    divergence: &[VectorRow<D>],
+) -> NodeBlocks<D> {
+    let mut blocks = NodeBlocks::zero(coupled_forces.len());
+    for (row, forces) in coupled_forces.iter().enumerate() {
+        for (site, force) in forces {
+            for (column, coefficients) in &divergence[*site] {
+                let block = blocks.block(row, *column);
+                for d in 0..D {
+                    for e in 0..D {
+                        block[d][e] += force[d] * coefficients[e];
                     }
                 }
             }
         }
-        blocks
     }
+    blocks
 }
 
 #[cfg(test)]
@@ -196,7 +205,7 @@ mod tests {
                 .collect();
             let rows = body.volumetric_rows();
             let mut stiffness = body.skeleton_stiffness(&rows);
-            stiffness.add(&body.pressure_stiffness(&rows));
+            stiffness.add(&pressure_stiffness(&body.coupled_pressure_forces(&rows), &rows.divergence));
             // The explicit step's way: strains, pressures and forces of the points.
             body.displace_undrained(&rows, &field);
             body.nodes.external_force.fill([0.0; 2]);

@@ -1,6 +1,6 @@
 //! The critical time step of a problem, predicted from its own operators.
 
-use crate::mpm::assembled::frozen::FrozenStep;
+use crate::mpm::assembled::step::AssembledStep;
 use crate::mpm::body::{Body, CubicSpline, DomainEnds, Gimp, Hat, Problem, QuadraticSpline};
 use crate::mpm::critical_step::spectral_radius::GROWTH_TOLERANCE;
 use crate::mpm::critical_step::{formula, spectral_radius};
@@ -16,7 +16,7 @@ const FEW_CELLS: usize = 12;
 pub struct Prediction<const D: usize> {
     /// Largest stable step, s.
     pub critical_step: f64,
-    frozen: FrozenStep<D>,
+    assembled: AssembledStep<D>,
     settings: ExplicitSettings,
 }
 
@@ -24,23 +24,13 @@ impl<const D: usize> Prediction<D> {
     /// Largest step, s, under which nothing grows by more than `growth` a step; above one dimension the
     /// critical one.
     pub fn critical_step_for(&self, growth: f64) -> f64 {
-        match &self.frozen {
-            FrozenStep::Column(column) => {
-                spectral_radius::critical_step(column, &self.settings, self.critical_step, growth)
-            }
-            FrozenStep::Plane(_) => self.critical_step,
-        }
+        spectral_radius::critical_step(&self.assembled, &self.settings, self.critical_step, growth)
     }
 
-    /// Growth a step of what grows fastest under steps of a size, where the operator is small enough to
+    /// Growth per step of what grows fastest under steps of a size, where the operator is small enough to
     /// be known.
     pub fn growth(&self, step: f64) -> Option<f64> {
-        match &self.frozen {
-            FrozenStep::Column(column) => Some(spectral_radius::spectral_radius(
-                &spectral_radius::step_operator(column, step, &self.settings),
-            )),
-            FrozenStep::Plane(_) => None,
-        }
+        spectral_radius::growth(&self.assembled, step, &self.settings)
     }
 }
 
@@ -62,20 +52,15 @@ pub fn predict<const D: usize>(
     let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
     let problem =
         if is_narrow { without_middle(problem, most_cells) } else { corner(problem, most_cells / 2) };
-    let frozen = match problem.method.basis {
-        Basis::Hat => FrozenStep::new(&Body::<D, 2, Hat>::new(problem)),
-        Basis::Ugimp | Basis::Cpgimp => FrozenStep::new(&Body::<D, 3, Gimp>::new(problem)),
-        Basis::Cpdi => FrozenStep::new(&Body::<D, 3, DomainEnds>::new(problem)),
-        Basis::Bspline2 => FrozenStep::new(&Body::<D, 3, QuadraticSpline>::new(problem)),
-        Basis::Bspline3 => FrozenStep::new(&Body::<D, 4, CubicSpline>::new(problem)),
+    let assembled = match problem.method.basis {
+        Basis::Hat => AssembledStep::new(&Body::<D, 2, Hat>::new(problem)),
+        Basis::Ugimp | Basis::Cpgimp => AssembledStep::new(&Body::<D, 3, Gimp>::new(problem)),
+        Basis::Cpdi => AssembledStep::new(&Body::<D, 3, DomainEnds>::new(problem)),
+        Basis::Bspline2 => AssembledStep::new(&Body::<D, 3, QuadraticSpline>::new(problem)),
+        Basis::Bspline3 => AssembledStep::new(&Body::<D, 4, CubicSpline>::new(problem)),
     };
-    let critical_step = match &frozen {
-        FrozenStep::Column(column) => {
-            spectral_radius::critical_step(column, settings, safe, GROWTH_TOLERANCE)
-        }
-        FrozenStep::Plane(plane) => spectral_radius::critical_step_of_plane(plane, settings, safe),
-    };
-    Prediction { critical_step, frozen, settings: *settings }
+    let critical_step = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE);
+    Prediction { critical_step, assembled, settings: *settings }
 }
 
 /// The problem on so many cells of its lower corner, with the load on their top: the sides stay held,

@@ -1,8 +1,7 @@
 //! The critical time step, from the spectral radius of the method's own step operator.
 
 use crate::elementary;
-use crate::mpm::assembled::column::{AssembledColumn, STATE_FIELDS};
-use crate::mpm::assembled::plane::AssembledPlane;
+use crate::mpm::assembled::step::AssembledStep;
 use crate::mpm::explicit::ExplicitSettings;
 use nalgebra::DMatrix;
 
@@ -45,28 +44,32 @@ pub fn spectral_radius(operator: &DMatrix<f64>) -> f64 {
     if norm > 0.0 { elementary::exp(log_radius + share * elementary::ln(norm)) } else { 0.0 }
 }
 
-/// The step operator of an assembled column, loads removed: velocities of both phases, straining
-/// and flux displacement of every free node.
-pub fn step_operator(column: &AssembledColumn, dt: f64, settings: &ExplicitSettings) -> DMatrix<f64> {
-    let mut column = column.clone().without_loads();
-    column.set_step(dt, settings);
-    let free = column.free_nodes();
-    let size = STATE_FIELDS * free.len();
-    let mut operator = DMatrix::zeros(size, size);
-    for field in 0..STATE_FIELDS {
-        for (place, node) in free.iter().enumerate() {
-            let image = operator.column_mut(field * free.len() + place).data.into_slice_mut();
-            column.column_of_step(field, *node, dt, settings, &free, image);
-        }
-    }
-    operator
+/// Whether a step operator is small enough to be squared: a column's.
+const fn is_squared(dimensions: usize) -> bool {
+    dimensions == 1
 }
 
-/// Largest step, s, of an assembled column that nothing grows under by more than `growth` a step, by
-/// bisection of the spectral radius between a step known to be safe and multiples of it.
-pub fn critical_step(column: &AssembledColumn, settings: &ExplicitSettings, safe: f64, growth: f64) -> f64 {
-    let mut is_stable = |dt: f64| spectral_radius(&step_operator(column, dt, settings)) <= 1.0 + growth;
-    bracketed(safe, 1e-4, &mut is_stable)
+/// Growth per step of what grows fastest under steps of a size, where the operator is small enough to be
+/// known.
+pub fn growth<const D: usize>(step: &AssembledStep<D>, dt: f64, settings: &ExplicitSettings) -> Option<f64> {
+    is_squared(D).then(|| spectral_radius(&step.operator(dt, settings)))
+}
+
+/// Largest step, s, of a frozen body that nothing grows under by more than `growth` per step, by bisection
+/// between a step known to be safe and multiples of it: of the spectral radius, or where the operator is
+/// too large to be squared, of whether a disturbance of all wavelengths grows.
+pub fn critical_step<const D: usize>(
+    step: &AssembledStep<D>,
+    settings: &ExplicitSettings,
+    safe: f64,
+    growth: f64,
+) -> f64 {
+    if is_squared(D) {
+        bracketed(safe, 1e-4, &mut |dt| spectral_radius(&step.operator(dt, settings)) <= 1.0 + growth)
+    } else {
+        let mut disturbed = step.clone();
+        bracketed(safe, 1e-3, &mut |dt| stays_bounded(&mut disturbed, dt, settings))
+    }
 }
 
 /// The step between stable and unstable ones, to a relative `tolerance`.
@@ -100,32 +103,23 @@ fn bracketed(safe: f64, tolerance: f64, is_stable: &mut dyn FnMut(f64) -> bool) 
     low
 }
 
-/// Steps over which the growth of a plane body's disturbance is judged.
+/// Steps over which the growth of a disturbance is judged.
 const GROWTH_STEPS: usize = 512;
 /// Growth of the velocities over them that no stable step reaches: null modes of FLIP double.
 const MOST_GROWTH: f64 = 4.0;
 
-/// Largest stable step, s, of an assembled plane body: by bisection of whether a disturbance of all
-/// wavelengths grows. Its step operator is too large to be squared.
-pub fn critical_step_of_plane<const D: usize>(
-    plane: &AssembledPlane<D>,
-    settings: &ExplicitSettings,
-    safe: f64,
-) -> f64 {
-    let mut disturbed = plane.clone();
-    let mut is_stable = |dt: f64| {
-        disturbed.set_step(dt, settings);
-        disturbed.disturb();
-        let mut sizes = [0.0; 2];
-        for size in &mut sizes {
-            for _ in 0..GROWTH_STEPS {
-                disturbed.step(dt, settings);
-            }
-            *size = disturbed.largest_velocity();
+/// Whether a disturbance of all wavelengths stays as large as it soon is.
+fn stays_bounded<const D: usize>(step: &mut AssembledStep<D>, dt: f64, settings: &ExplicitSettings) -> bool {
+    step.set_step(dt, settings);
+    step.disturb();
+    let mut sizes = [0.0; 2];
+    for size in &mut sizes {
+        for _ in 0..GROWTH_STEPS {
+            step.step(dt, settings);
         }
-        sizes[1].is_finite() && sizes[1] <= MOST_GROWTH * sizes[0]
-    };
-    bracketed(safe, 1e-3, &mut is_stable)
+        *size = step.largest_velocity();
+    }
+    sizes[1].is_finite() && sizes[1] <= MOST_GROWTH * sizes[0]
 }
 
 #[cfg(test)]

@@ -69,17 +69,11 @@ impl<const D: usize> LinearOperators<D> {
     /// Takes a body's present operators and forces.
     pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
         let unknowns = Unknowns::of(body);
-        let mut pressure_forces = vec![Vec::new(); body.nodes.len()];
-        for (site, forces) in body.pressure_forces(&unknowns.rows).into_iter().enumerate() {
-            for (node, force) in forces {
-                pressure_forces[node].push((site, force));
-            }
-        }
         let mut loaded = body.clone();
         loaded.map_forces();
         Self {
             stiffness: body.skeleton_stiffness(&unknowns.rows),
-            pressure_forces,
+            pressure_forces: body.pressure_forces(&unknowns.rows),
             porosity: (0..unknowns.sites.len())
                 .map(|site| unknowns.porosity(&body.material, &body.points, &body.cells, site))
                 .collect(),

@@ -1,6 +1,6 @@
 //! The explicit step on its way through time: point by point, or assembled where nothing moves.
 
-use crate::mpm::assembled::frozen::FrozenStep;
+use crate::mpm::assembled::step::AssembledStep;
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::critical_step::formula;
 use crate::mpm::explicit::ExplicitSettings;
@@ -21,7 +21,7 @@ const WATCH_INTERVAL: u64 = 64;
 pub struct ExplicitStepper<const D: usize, const W: usize, S: ShapeFunction<W>> {
     /// The body; at its start where the step is assembled.
     body: Body<D, W, S>,
-    frozen: Option<FrozenStep<D>>,
+    frozen: Option<AssembledStep<D>>,
     start: Points<D>,
     initial_height: f64,
     initial_settlement: f64,
@@ -43,7 +43,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> ExplicitStepper<D, W, 
         let schedule = plan.schedule;
         let is_assembled = body.configuration == Configuration::Frozen && schedule.kernel == Kernel::Fastest;
         let mut stepper = Self {
-            frozen: is_assembled.then(|| FrozenStep::new(&body)),
+            frozen: is_assembled.then(|| AssembledStep::new(&body)),
             start: body.points.clone(),
             initial_height: plan.initial_height,
             initial_settlement: body.settlement(plan.initial_height),
