@@ -1,6 +1,6 @@
 //! Grid arrays of a frozen step.
 
-use crate::mpm::assembled::rows::{LANES, Lanes, REACH};
+use crate::mpm::assembled::rows::{LANES, Lanes, MARGIN};
 use crate::soil::tensor::Vector;
 
 /// Place of the skeleton in a pair of phases.
@@ -10,7 +10,7 @@ pub const WATER: usize = 1;
 /// The grid arrays that a step maps to themselves, for stability analysis.
 pub const FIELDS: usize = 4;
 
-/// Grid arrays `[REACH + row][component]`: empty places below the first row and above the last block are
+/// Grid arrays `[MARGIN + row][component]`: empty places below the first row and above the last block are
 /// what a band reaches there.
 #[derive(Clone, Debug)]
 pub struct FrozenState<const D: usize> {
@@ -33,7 +33,7 @@ pub struct FrozenState<const D: usize> {
 impl<const D: usize> FrozenState<D> {
     /// A state at rest.
     pub fn zero(rows: usize, sites: usize) -> Self {
-        let zero = vec![[0.0; D]; rows.next_multiple_of(LANES) + 2 * REACH];
+        let zero = vec![[0.0; D]; rows.next_multiple_of(LANES) + 2 * MARGIN];
         let both = [zero.clone(), zero.clone()];
         Self {
             velocity: both.clone(),
@@ -60,7 +60,7 @@ impl<const D: usize> FrozenState<D> {
 /// One component of a field at the rows of a block.
 #[inline]
 pub fn lanes<const D: usize>(field: &[Vector<D>], block: usize, component: usize) -> Lanes {
-    let first = block * LANES + REACH;
+    let first = block * LANES + MARGIN;
     let some = &field[first..first + LANES];
     std::array::from_fn(|i| some[i][component])
 }
@@ -68,7 +68,7 @@ pub fn lanes<const D: usize>(field: &[Vector<D>], block: usize, component: usize
 /// Sets one component of a field at the rows of a block.
 #[inline]
 pub fn set_lanes<const D: usize>(field: &mut [Vector<D>], block: usize, component: usize, values: Lanes) {
-    let first = block * LANES + REACH;
+    let first = block * LANES + MARGIN;
     for (vector, value) in field[first..first + LANES].iter_mut().zip(values) {
         vector[component] = value;
     }

@@ -2,7 +2,7 @@
 
 use crate::mpm::assembled::operators::{FrozenOperators, NodeConstants};
 use crate::mpm::assembled::rows::banded::BandsWithin;
-use crate::mpm::assembled::rows::{LANES, Lanes, REACH, RowStorage, Rows};
+use crate::mpm::assembled::rows::{LANES, Lanes, MARGIN, REACH, RowStorage, Rows};
 use crate::mpm::assembled::state::{FrozenState, SOLID, WATER, lanes, set_lanes};
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::explicit::ExplicitSettings;
@@ -81,7 +81,7 @@ impl<const D: usize> AssembledStep<D> {
         for (row, node) in operators.constants.iter().enumerate() {
             step.constants[row / LANES].set(row % LANES, node);
             for phase in [SOLID, WATER] {
-                step.state.velocity[phase][REACH + row] = node.velocity[phase];
+                step.state.velocity[phase][MARGIN + row] = node.velocity[phase];
             }
             if node.load_force != [0.0; D] {
                 let unloaded_force = std::array::from_fn(|d| node.mixture_force[d] - node.load_force[d]);
@@ -177,7 +177,7 @@ impl<const D: usize> AssembledStep<D> {
 
     /// Displacement of the loaded surface since the assembly, m, as its own settlement is measured.
     pub fn surface_displacement(&self) -> f64 {
-        self.surface.iter().map(|(row, weight)| weight * self.state.displacement[REACH + row][D - 1]).sum()
+        self.surface.iter().map(|(row, weight)| weight * self.state.displacement[MARGIN + row][D - 1]).sum()
     }
 
     /// The body at the present state, from the body that was assembled: stresses, pressures and
@@ -186,7 +186,7 @@ impl<const D: usize> AssembledStep<D> {
         let mut body = initial.clone();
         let spread = |field: &[Vector<D>]| {
             let mut whole = vec![[0.0; D]; self.node_count];
-            for (node, value) in self.nodes.iter().zip(&field[REACH..]) {
+            for (node, value) in self.nodes.iter().zip(&field[MARGIN..]) {
                 whole[*node] = *value;
             }
             whole
@@ -195,8 +195,8 @@ impl<const D: usize> AssembledStep<D> {
         let strained = spread(&self.state.strain_displacement);
         body.displace_points(&self.volumetric, &strained, &flux, &spread(&self.state.displacement));
         for (row, node) in self.nodes.iter().enumerate() {
-            body.nodes.solid_velocity[*node] = self.state.velocity[SOLID][REACH + row];
-            body.nodes.water_velocity[*node] = self.state.velocity[WATER][REACH + row];
+            body.nodes.solid_velocity[*node] = self.state.velocity[SOLID][MARGIN + row];
+            body.nodes.water_velocity[*node] = self.state.velocity[WATER][MARGIN + row];
         }
         body.surface_flux += body.surface.mean_of(&body.grid, &body.points, &flux);
         body
@@ -268,8 +268,7 @@ fn accelerate<const D: usize>(
     kick: f64,
 ) {
     for (block, nodes) in constants.iter().enumerate() {
-        let pressure = rows.pressure_forces(block, &state.flux_displacement, &state.dilation);
-        let skeleton = rows.skeleton_forces(block, &state.strain_displacement);
+        let [pressure, skeleton] = rows.forces(block, state);
         for d in 0..D {
             let solid = lanes(&state.velocity[SOLID], block, d);
             let water = lanes(&state.velocity[WATER], block, d);
@@ -304,23 +303,27 @@ fn advance<const D: usize>(
 ) {
     let (flip, pic) = (settings.flip, 1.0 - settings.flip);
     for (block, nodes) in constants.iter().enumerate() {
-        let rate = rows.projected(block, &state.acceleration);
-        let interpolated = (pic > 0.0).then(|| rows.projected(block, &state.trial));
-        for d in 0..D {
-            let mut mapped = [[0.0; LANES]; 2];
-            for phase in [SOLID, WATER] {
+        let mut mapped = rows.projected(block, &state.acceleration);
+        for phase in [SOLID, WATER] {
+            for d in 0..D {
                 let before = lanes(&state.velocity[phase], block, d);
-                let free = &nodes.free[phase][d];
                 for i in 0..LANES {
-                    mapped[phase][i] = flip * (before[i] + kick * free[i] * rate[phase][d][i]);
+                    mapped[phase][d][i] = flip * (before[i] + kick * mapped[phase][d][i]);
                 }
-                if let Some(interpolated) = &interpolated {
+            }
+        }
+        if pic > 0.0 {
+            let interpolated = rows.projected(block, &state.trial);
+            for phase in [SOLID, WATER] {
+                for d in 0..D {
                     for i in 0..LANES {
-                        mapped[phase][i] += pic * free[i] * interpolated[phase][d][i];
+                        mapped[phase][d][i] += pic * interpolated[phase][d][i];
                     }
                 }
-                set_lanes(&mut state.velocity[phase], block, d, mapped[phase]);
             }
+        }
+        for d in 0..D {
+            let mapped = [mapped[SOLID][d], mapped[WATER][d]];
             let trial = [lanes(&state.trial[SOLID], block, d), lanes(&state.trial[WATER], block, d)];
             let [solid, water] = if settings.mapping_back { mapped } else { trial };
             let mut strain_displacement = lanes(&state.strain_displacement, block, d);
@@ -331,6 +334,8 @@ fn advance<const D: usize>(
                 flux_displacement[i] += dt * (solid[i] + nodes.porosity[i] * (water[i] - solid[i]));
                 displacement[i] += dt * trial[SOLID][i];
             }
+            set_lanes(&mut state.velocity[SOLID], block, d, mapped[SOLID]);
+            set_lanes(&mut state.velocity[WATER], block, d, mapped[WATER]);
             set_lanes(&mut state.strain_displacement, block, d, strain_displacement);
             set_lanes(&mut state.flux_displacement, block, d, flux_displacement);
             set_lanes(&mut state.displacement, block, d, displacement);

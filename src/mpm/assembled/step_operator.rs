@@ -1,6 +1,6 @@
 //! What a frozen step makes of states without loads, for stability analysis.
 
-use crate::mpm::assembled::rows::{LANES, REACH};
+use crate::mpm::assembled::rows::{LANES, MARGIN};
 use crate::mpm::assembled::state::{FIELDS, SOLID, WATER};
 use crate::mpm::assembled::step::AssembledStep;
 use crate::mpm::explicit::ExplicitSettings;
@@ -30,12 +30,12 @@ impl<const D: usize> AssembledStep<D> {
         for (column, mut image) in operator.column_iter_mut().enumerate() {
             let (field, (row, d)) = (column / free.len(), free[column % free.len()]);
             step.come_to_rest();
-            step.state.field_mut(field)[REACH + row][d] = unit(field);
+            step.state.field_mut(field)[MARGIN + row][d] = unit(field);
             step.step(dt, settings);
             for target in 0..FIELDS {
                 let values = step.state.field_mut(target);
                 for (place, (row, d)) in free.iter().enumerate() {
-                    image[target * free.len() + place] = values[REACH + row][*d] / unit(target);
+                    image[target * free.len() + place] = values[MARGIN + row][*d] / unit(target);
                 }
             }
         }
@@ -53,7 +53,7 @@ impl<const D: usize> AssembledStep<D> {
                 for d in 0..D {
                     seed = seed.wrapping_mul(2_654_435_761).wrapping_add(12_345);
                     let free = self.constants[row / LANES].free[phase][d][row % LANES];
-                    self.state.velocity[phase][REACH + row][d] =
+                    self.state.velocity[phase][MARGIN + row][d] =
                         free * (f64::from(seed) / f64::from(u32::MAX) - 0.5);
                 }
             }

@@ -30,16 +30,6 @@ impl Banded {
         Self { size, lower, upper, width, entries: vec![0.0; size * width] }
     }
 
-    /// Number of rows.
-    pub fn size(&self) -> usize {
-        self.size
-    }
-
-    /// Diagonals with entries, the main one included.
-    pub fn bandwidth(&self) -> usize {
-        self.lower + self.upper + 1
-    }
-
     /// Adds to an entry, which must lie within the band.
     #[inline]
     pub fn add(&mut self, row: usize, column: usize, value: f64) {

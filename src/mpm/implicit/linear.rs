@@ -33,9 +33,6 @@ pub struct Change<const D: usize> {
 pub trait FrozenStart<const D: usize> {
     /// The body after a change, at a time, s, with a settlement, m.
     fn changed(&self, rows: &VolumetricRows<D>, change: Change<D>, time: f64, settlement: f64) -> Snapshot;
-
-    /// Material points and grid nodes.
-    fn sizes(&self) -> (usize, usize);
 }
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> FrozenStart<D> for Body<D, W, S> {
@@ -45,10 +42,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> FrozenStart<D> for Bod
         body.nodes.solid_velocity = change.velocity;
         body.surface_flux += change.surface_flux;
         body.snapshot(time, settlement, &self.points)
-    }
-
-    fn sizes(&self) -> (usize, usize) {
-        (self.points.len(), self.nodes.len())
     }
 }
 
@@ -103,7 +96,7 @@ impl<const D: usize> LinearStepper<D> {
             residual: system.start_residual.clone(),
             first_increment: zero.clone(),
             before: (zero.clone(), zero.clone(), 0.0),
-            error_scales: ErrorScales::of(&system.scales, plan),
+            error_scales: ErrorScales::of(&system.unknowns.scales, plan),
             increment: zero,
             rate_scale: 0.0,
             outflow: 0.0,
@@ -200,7 +193,7 @@ impl<const D: usize> Stepper for LinearStepper<D> {
     }
 
     fn snapshot(&self, time: f64) -> Snapshot {
-        let (unknowns, scales) = (&self.system.unknowns, &self.system.scales);
+        let (unknowns, scales) = (&self.system.unknowns, &self.system.unknowns.scales);
         let nodal = |values: &[f64], scale: f64| -> Vec<Vector<D>> {
             let component = |unknown: Option<usize>| unknown.map_or(0.0, |unknown| scale * values[unknown]);
             unknowns.displacement.iter().map(|node| node.map(component)).collect()
@@ -213,10 +206,6 @@ impl<const D: usize> Stepper for LinearStepper<D> {
             surface_flux: self.system.mean_displacement.product(0, &self.state) + self.outflow,
         };
         self.start.changed(&unknowns.rows, change, time, self.settlement())
-    }
-
-    fn sizes(&self) -> (usize, usize) {
-        self.start.sizes()
     }
 
     fn work(&self) -> Work {

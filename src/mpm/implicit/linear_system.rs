@@ -12,7 +12,6 @@
 use crate::mpm::assembled::stiffness::NodeBlocks;
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::implicit::banded::Banded;
-use crate::mpm::implicit::sdirk::Scales;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::operators::sparse_rows::SparseRows;
 use crate::mpm::operators::volumetric::VectorRow;
@@ -24,7 +23,6 @@ use crate::soil::continuity::Continuity;
 pub struct LinearOperators<const D: usize> {
     /// Numbering of `x`, with `D` and `R`.
     unknowns: Unknowns<D>,
-    scales: Scales,
     /// `K_σ`, N/m.
     stiffness: NodeBlocks<D>,
     /// Rows of `A`, by node: force of a unit pressure change at each site, m^(D−1).
@@ -43,10 +41,8 @@ pub struct LinearOperators<const D: usize> {
 /// `C ẋ + K x = g` of a frozen body, scaled.
 #[derive(Clone, Debug)]
 pub struct LinearSystem<const D: usize> {
-    /// Numbering of `x`.
+    /// Numbering and scales of `x`.
     pub unknowns: Unknowns<D>,
-    /// Scales of `x` and of the rows.
-    pub scales: Scales,
     /// What a step's matrix has whatever its size: `K` in the mixture's rows, `C` in the others.
     pub fixed: Banded,
     /// What it has in proportion to its size: `K` in the storage's rows, 1/s.
@@ -76,7 +72,6 @@ impl<const D: usize> LinearOperators<D> {
         let mut loaded = body.clone();
         loaded.map_forces();
         Self {
-            scales: Scales::of(body),
             stiffness: body.skeleton_stiffness(&unknowns.rows),
             pressure_forces: body.pressure_forces(&unknowns.rows),
             porosity: (0..unknowns.sites.len())
@@ -109,7 +104,7 @@ impl<const D: usize> LinearOperators<D> {
 
     /// Rows of the mixture: `K_σ` and `−A`.
     fn visit_mixture(&self, visitor: &mut dyn FnMut(Entry)) {
-        let (unknowns, scales) = (&self.unknowns, &self.scales);
+        let (unknowns, scales) = (&self.unknowns, &self.unknowns.scales);
         let per_displacement = scales.length / scales.force;
         for (node, blocks) in self.stiffness.rows.iter().enumerate() {
             for d in 0..D {
@@ -138,7 +133,7 @@ impl<const D: usize> LinearOperators<D> {
                 visitor((row, column, value, 0.0));
             }
             for (node, coefficients) in divergence {
-                let flux_of_force = self.flux_of_force(site, *node) * self.scales.pressure;
+                let flux_of_force = self.flux_of_force(site, *node) * self.unknowns.scales.pressure;
                 // Where the water is held, nothing flows; on a rough base it slides.
                 for d in (0..D).filter(|d| self.nodes.water_free[*node][*d] > 0.0) {
                     for (other, force) in self.pressure_forces[*node].iter().filter(|other| other.1[d] != 0.0)
@@ -154,10 +149,10 @@ impl<const D: usize> LinearOperators<D> {
     /// Row of `C` at a site.
     fn capacity_row(&self, site: usize) -> Vec<(usize, f64)> {
         let storage = self.porosity[site] / self.water_bulk_modulus;
-        let mut row = vec![(self.unknowns.pressure[site], storage * self.scales.pressure)];
+        let mut row = vec![(self.unknowns.pressure[site], storage * self.unknowns.scales.pressure)];
         for (node, coefficients) in &self.unknowns.rows.divergence[site] {
             for (column, coefficient) in self.unknowns.displacement[*node].iter().zip(coefficients) {
-                row.extend(column.map(|column| (column, coefficient * self.scales.length)));
+                row.extend(column.map(|column| (column, coefficient * self.unknowns.scales.length)));
             }
         }
         row
@@ -170,7 +165,7 @@ impl<const D: usize> LinearOperators<D> {
         for (numbers, forces) in unknowns.displacement.iter().zip(&nodes.mixture_force) {
             for (row, force) in numbers.iter().zip(forces) {
                 if let Some(row) = row {
-                    residual[*row] = force / self.scales.force;
+                    residual[*row] = force / self.unknowns.scales.force;
                 }
             }
         }
@@ -190,8 +185,9 @@ impl<const D: usize> LinearOperators<D> {
     /// The surface's displacement with some weights as a row.
     fn displacement_row(&self, weights: &[(usize, f64)]) -> SparseRows<f64> {
         let number = |node: usize| self.unknowns.displacement[node][D - 1];
-        let entry =
-            |(node, weight): &(usize, f64)| number(*node).map(|number| (number, weight * self.scales.length));
+        let entry = |(node, weight): &(usize, f64)| {
+            number(*node).map(|number| (number, weight * self.unknowns.scales.length))
+        };
         SparseRows::of([weights.iter().filter_map(entry).collect()])
     }
 
@@ -205,7 +201,7 @@ impl<const D: usize> LinearOperators<D> {
                 start += flux_of_force * nodes.water_force[*node][D - 1];
             }
             if self.unknowns.displacement[*node][D - 1].is_some() {
-                let scale = flux_of_force * self.scales.pressure;
+                let scale = flux_of_force * self.unknowns.scales.pressure;
                 let forces = self.pressure_forces[*node].iter();
                 row.extend(forces.map(|(site, force)| (self.unknowns.pressure[*site], scale * force[D - 1])));
             }
@@ -242,7 +238,6 @@ impl<const D: usize> LinearSystem<D> {
             mean_displacement: operators.displacement_row(&operators.mean_surface),
             surface_outflow,
             start_outflow,
-            scales: operators.scales,
             unknowns: operators.unknowns,
         }
     }

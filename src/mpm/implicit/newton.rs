@@ -4,7 +4,7 @@ use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::implicit::banded::{Banded, BandedLu};
 use crate::mpm::implicit::residual::{Balances, StageStart};
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
-use crate::mpm::implicit::tangent::{Pattern, Structure};
+use crate::mpm::implicit::tangent::Pattern;
 use crate::mpm::implicit::trial::{Skeleton, Trial};
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::mpm::run::outcome::FailureKind;
@@ -46,7 +46,6 @@ impl Stages {
 pub struct NewtonStepper<const D: usize> {
     trial: Box<dyn Balances<D>>,
     pattern: Pattern,
-    structure: Structure,
     tangent: Banded,
     lu: BandedLu,
     /// Stage duration that the factors belong to, s.
@@ -66,8 +65,6 @@ pub struct NewtonStepper<const D: usize> {
     initial_height: f64,
     /// Time over which the load grows, s.
     loading_time: f64,
-    /// What it grows to, Pa.
-    full_load: f64,
     /// Time at the start of the step, s.
     time: f64,
     settlement_rate: f64,
@@ -87,10 +84,9 @@ impl<const D: usize> NewtonStepper<D> {
     fn of(trial: Box<dyn Balances<D>>, plan: &Plan<'_>) -> Self {
         let pattern = trial.pattern();
         let tangent = pattern.zeros();
-        let scales = trial.scales();
+        let scales = trial.unknowns().scales;
         let zero = vec![0.0; trial.unknowns().count];
         Self {
-            structure: trial.structure_unless(&Structure::default()).unwrap_or_default(),
             lu: BandedLu::of_shape(&tangent),
             tangent,
             pattern,
@@ -109,7 +105,6 @@ impl<const D: usize> NewtonStepper<D> {
             scratch: zero,
             initial_height: plan.initial_height,
             loading_time: plan.loading_time,
-            full_load: trial.load(),
             time: 0.0,
             settlement_rate: 0.0,
             work: Work::default(),
@@ -176,7 +171,7 @@ impl<const D: usize> NewtonStepper<D> {
     /// The load at a time, where it grows.
     fn load_at(&mut self, time: f64) {
         if self.loading_time > 0.0 {
-            self.trial.set_load(self.full_load * (time / self.loading_time).min(1.0));
+            self.trial.set_load_share((time / self.loading_time).min(1.0));
         }
     }
 
@@ -275,8 +270,9 @@ impl<const D: usize> NewtonStepper<D> {
 
     /// Points that went on to other cells change which balances feel which unknowns.
     fn follow_structure(&mut self) {
-        let Some(structure) = self.trial.structure_unless(&self.structure) else { return };
-        self.structure = structure;
+        if self.trial.keeps(&self.pattern) {
+            return;
+        }
         self.pattern = self.trial.pattern();
         self.tangent = self.pattern.zeros();
         self.lu = BandedLu::of_shape(&self.tangent);
@@ -312,10 +308,6 @@ impl<const D: usize> Stepper for NewtonStepper<D> {
 
     fn snapshot(&self, time: f64) -> Snapshot {
         self.trial.snapshot(time, self.settlement())
-    }
-
-    fn sizes(&self) -> (usize, usize) {
-        (self.trial.point_count(), self.trial.nodes().len())
     }
 
     fn work(&self) -> Work {

@@ -2,8 +2,7 @@
 //! implicit step, made of the operators of the explicit one.
 
 use crate::mpm::body::{Body, ShapeFunction};
-use crate::mpm::implicit::sdirk::Scales;
-use crate::mpm::implicit::tangent::{Pattern, Structure};
+use crate::mpm::implicit::tangent::Pattern;
 use crate::mpm::implicit::trial::{Skeleton, Trial};
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::PressureIntegration;
@@ -44,14 +43,8 @@ pub trait Balances<const D: usize> {
     /// Ends a step at increments of the unknowns, after so much flux through the surface, m.
     fn end_step(&mut self, increments: &[f64], flux: f64);
 
-    /// Load on the surface, Pa.
-    fn load(&self) -> f64;
-
-    /// Loads the surface, Pa.
-    fn set_load(&mut self, load: f64);
-
-    /// Scales of the unknowns and of the balances.
-    fn scales(&self) -> Scales;
+    /// Lets a share of the load act that was there at the start.
+    fn set_load_share(&mut self, share: f64);
 
     /// Numbering of the unknowns.
     fn unknowns(&self) -> &Unknowns<D>;
@@ -68,8 +61,8 @@ pub trait Balances<const D: usize> {
     /// Which balances feel which unknowns.
     fn pattern(&self) -> Pattern;
 
-    /// What the pattern depends on, where it is not `known`.
-    fn structure_unless(&self, known: &Structure) -> Option<Structure>;
+    /// Whether a pattern still is that of the balances; nothing is allocated.
+    fn keeps(&self, pattern: &Pattern) -> bool;
 
     /// Settlement of the loaded surface, m, which was at `initial_height`.
     fn settlement(&self, initial_height: f64) -> f64;
@@ -79,9 +72,6 @@ pub trait Balances<const D: usize> {
 
     /// The body at a time, s, with a settlement, m.
     fn snapshot(&self, time: f64, settlement: f64) -> Snapshot;
-
-    /// Material points.
-    fn point_count(&self) -> usize;
 }
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Balances<D> for Trial<D, W, S> {
@@ -111,17 +101,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Balances<D> for Trial<
         self.body.surface_flux += flux;
     }
 
-    fn load(&self) -> f64 {
-        self.body.surface.load
-    }
-
-    fn scales(&self) -> Scales {
-        self.scales
-    }
-
-    fn set_load(&mut self, load: f64) {
+    fn set_load_share(&mut self, share: f64) {
         let body = &mut self.body;
-        body.surface.load = load;
+        body.surface.load = self.full_load * share;
         body.surface.apply(&body.grid, &body.points, &mut body.nodes);
     }
 
@@ -146,8 +128,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Balances<D> for Trial<
         Pattern::of(&self.body, &self.unknowns)
     }
 
-    fn structure_unless(&self, known: &Structure) -> Option<Structure> {
-        (!known.is_of(&self.body, &self.unknowns)).then(|| Structure::of(&self.body, &self.unknowns))
+    fn keeps(&self, pattern: &Pattern) -> bool {
+        pattern.is_of(&self.body, &self.unknowns)
     }
 
     fn settlement(&self, initial_height: f64) -> f64 {
@@ -160,10 +142,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Balances<D> for Trial<
 
     fn snapshot(&self, time: f64, settlement: f64) -> Snapshot {
         self.body.snapshot(time, settlement, &self.start)
-    }
-
-    fn point_count(&self) -> usize {
-        self.body.points.len()
     }
 }
 
@@ -183,7 +161,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
                 // Where the skeleton is held, the water may still slide.
                 let number = self.unknowns.displacement[node][d];
                 let moved = number.map_or(0.0, |number| increments[number] - start.unknowns[number]);
-                let solid = self.scales.length * per_duration * moved;
+                let solid = self.unknowns.scales.length * per_duration * moved;
                 let solid_change = solid - start.solid_velocity[node][d];
                 let force = nodes.water_force[node][d];
                 let before = start.water_velocity[node][d];
@@ -201,14 +179,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
                 let Some(row) = number else { continue };
                 let water_change = match self.formulation {
                     Formulation::QuasiStatic => {
-                        residual[row] = -nodes.mixture_force[node][d] / self.scales.force;
+                        residual[row] = -nodes.mixture_force[node][d] / self.unknowns.scales.force;
                         continue;
                     }
                     Formulation::UP => solid_change,
                     Formulation::VW => water - before,
                 };
                 let momentum = nodes.solid_mass[node] * solid_change + nodes.water_mass[node] * water_change;
-                residual[row] = (per_duration * momentum - nodes.mixture_force[node][d]) / self.scales.force;
+                residual[row] =
+                    (per_duration * momentum - nodes.mixture_force[node][d]) / self.unknowns.scales.force;
             }
         }
     }
@@ -220,7 +199,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
         for (site, number) in unknowns.pressure.iter().enumerate() {
             let porosity = unknowns.porosity(&body.material, &body.points, &body.cells, site);
             let stored = porosity / body.material.water_bulk_modulus
-                * self.scales.pressure
+                * self.unknowns.scales.pressure
                 * (increments[*number] - start.unknowns[*number]);
             residual[*number] = stored + start.duration * residual[*number];
         }

@@ -3,8 +3,7 @@
 //! With `γ = 1 − 1/√2` the stages start at `x̂_1 = x_n` and `x̂_2 = x_n + (1−γ)/γ z_1`, last `γ Δt`
 //! each and end at `x_i = x̂_i + z_i`; the step ends at `x_2`.
 
-use crate::mpm::body::{Body, ShapeFunction};
-use crate::mpm::implicit::unknowns::Unknowns;
+use crate::mpm::implicit::unknowns::{Scales, Unknowns};
 use crate::mpm::run::plan::Plan;
 
 /// `γ = 1 − 1/√2`: both stages have the same matrix and the method is L-stable.
@@ -17,26 +16,6 @@ pub const SECOND_STAGE: f64 = (1.0 - SDIRK_GAMMA) / SDIRK_GAMMA;
 /// It is of one order less than the step's own error, and so of the order of what the errors of
 /// steps that grow with time add up to.
 pub const ERROR_SHARE: f64 = (0.5 - SDIRK_GAMMA) / SDIRK_GAMMA;
-
-/// Scales that make the unknowns and the equations pure numbers of like size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scales {
-    /// Displacement of one, m: the cell.
-    pub length: f64,
-    /// Pressure of one, Pa: the oedometric modulus.
-    pub pressure: f64,
-    /// Force of one, N: that pressure on the face of a cell.
-    pub force: f64,
-}
-
-impl Scales {
-    /// The scales of a body.
-    pub fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
-        let (length, pressure) = (body.grid.cell_size, body.material.oedometric_modulus());
-        let face: f64 = (1..D).map(|_| length).product();
-        Self { length, pressure, force: pressure * face }
-    }
-}
 
 /// Sizes that errors of the scaled unknowns are relative to.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -16,7 +16,7 @@ const DIFFERENCE: f64 = 1e-7;
 
 /// Where the operators' rows begin: what the pattern of the tangent depends on.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Structure {
+struct Structure {
     basis: Vec<usize>,
     composite: Vec<usize>,
     between_ends: Vec<usize>,
@@ -28,8 +28,7 @@ pub struct Structure {
 }
 
 impl Structure {
-    /// The structure of a body's present operators and numbering.
-    pub fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(
         body: &Body<D, W, S>,
         unknowns: &Unknowns<D>,
     ) -> Self {
@@ -42,25 +41,12 @@ impl Structure {
             numbers: unknowns.displacement.as_flattened().to_vec(),
         }
     }
-
-    /// Whether it still is the structure of a body; nothing is allocated.
-    pub fn is_of<const D: usize, const W: usize, S: ShapeFunction<W>>(
-        &self,
-        body: &Body<D, W, S>,
-        unknowns: &Unknowns<D>,
-    ) -> bool {
-        self.basis == body.basis.first
-            && self.composite == body.composite.first
-            && self.between_ends == body.between_ends.first
-            && self.cells == body.cells.of_point
-            && self.last_node == body.last_spline_node()
-            && self.numbers == unknowns.displacement.as_flattened()
-    }
 }
 
 /// Which balances feel which unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
+    structure: Structure,
     /// Rows that feel each unknown.
     rows_of_column: Vec<Vec<usize>>,
     /// Unknowns that are moved together.
@@ -86,7 +72,22 @@ impl Pattern {
             }
         }
         let groups = groups_of(&columns_of_row, &rows_of_column);
-        Self { rows_of_column, groups, lower, upper }
+        Self { structure: Structure::of(body, unknowns), rows_of_column, groups, lower, upper }
+    }
+
+    /// Whether it still is the pattern of a body; nothing is allocated.
+    pub fn is_of<const D: usize, const W: usize, S: ShapeFunction<W>>(
+        &self,
+        body: &Body<D, W, S>,
+        unknowns: &Unknowns<D>,
+    ) -> bool {
+        let known = &self.structure;
+        known.basis == body.basis.first
+            && known.composite == body.composite.first
+            && known.between_ends == body.between_ends.first
+            && known.cells == body.cells.of_point
+            && known.last_node == body.last_spline_node()
+            && known.numbers == unknowns.displacement.as_flattened()
     }
 
     /// Zeros in the shape of the tangent.

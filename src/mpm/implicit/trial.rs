@@ -6,7 +6,6 @@
 use crate::elementary;
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::implicit::deformation::{identity, inverse, strain_between};
-use crate::mpm::implicit::sdirk::Scales;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::run::integrator::Formulation;
 use crate::mpm::state::points::Points;
@@ -26,14 +25,14 @@ pub enum Skeleton {
 pub struct Trial<const D: usize, const W: usize, S: ShapeFunction<W>> {
     /// The body; its nodes hold what the last residual was made of.
     pub body: Body<D, W, S>,
-    /// Numbering.
+    /// Numbering and scales.
     pub unknowns: Unknowns<D>,
-    /// Scales.
-    pub scales: Scales,
     /// Terms of the balances.
     pub formulation: Formulation,
     /// Time level of the effective stress.
     pub skeleton: Skeleton,
+    /// Load at the start of the run, Pa.
+    pub full_load: f64,
     /// Points at the start of the run.
     pub start: Points<D>,
     /// Points of the anchored state.
@@ -57,7 +56,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
         }
         let mut trial = Self {
             unknowns: Unknowns::of(&body),
-            scales: Scales::of(&body),
+            full_load: body.surface.load,
             start,
             anchor: Points::default(),
             anchor_deformation: Vec::new(),
@@ -82,8 +81,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
     /// Moves the body to increments of the unknowns since the anchor.
     pub fn move_to(&mut self, increments: &[f64]) {
         for (nodal, numbers) in self.displacement.iter_mut().zip(&self.unknowns.displacement) {
-            *nodal =
-                numbers.map(|number| number.map_or(0.0, |number| self.scales.length * increments[number]));
+            *nodal = numbers
+                .map(|number| number.map_or(0.0, |number| self.unknowns.scales.length * increments[number]));
         }
         let rows = &self.unknowns.rows;
         let is_bbar = self.body.method.strain.is_bbar();
@@ -102,7 +101,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
             for (site, weight) in &self.unknowns.rows.recovery[point] {
                 change += weight * increments[self.unknowns.pressure[*site]];
             }
-            self.body.points.pressure[point] = self.anchor.pressure[point] + self.scales.pressure * change;
+            self.body.points.pressure[point] =
+                self.anchor.pressure[point] + self.unknowns.scales.pressure * change;
         }
         if self.body.configuration.deforms() {
             self.body.follow_points();

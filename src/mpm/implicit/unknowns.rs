@@ -11,6 +11,26 @@ use crate::mpm::state::points::Points;
 use crate::soil::material::Material;
 use crate::soil::tensor::Vector;
 
+/// Scales that make the unknowns and the equations pure numbers of like size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// Displacement of one, m: the cell.
+    pub length: f64,
+    /// Pressure of one, Pa: the oedometric modulus.
+    pub pressure: f64,
+    /// Force of one, N: that pressure on the face of a cell.
+    pub force: f64,
+}
+
+impl Scales {
+    /// The scales of a soil on cells of a size, m.
+    pub fn of<const D: usize>(soil: &Material, cell_size: f64) -> Self {
+        let (length, pressure) = (cell_size, soil.oedometric_modulus());
+        let face: f64 = (1..D).map(|_| length).product();
+        Self { length, pressure, force: pressure * face }
+    }
+}
+
 /// Numbering of the unknowns. Neighbours in space are neighbours in number, along the longest
 /// direction of the grid: that keeps the band of the matrices narrow.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +49,8 @@ pub struct Unknowns<const D: usize> {
     pub integration: PressureIntegration,
     /// Number of unknowns.
     pub count: usize,
+    /// Scales of the unknowns and of their equations.
+    pub scales: Scales,
 }
 
 /// What an unknown stands for, while they are sorted.
@@ -41,18 +63,22 @@ enum Kind {
 impl<const D: usize> Unknowns<D> {
     /// Numbers the unknowns of a body on its present operators.
     pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
-        let rows = body.volumetric_rows();
-        Self::numbered(&body.grid, &body.nodes, &body.cells, &body.points, body.method.pressure, rows)
+        let mut unknowns = Self {
+            displacement: Vec::new(),
+            sites: Vec::new(),
+            pressure: Vec::new(),
+            site_of_place: Vec::new(),
+            rows: body.volumetric_rows(),
+            integration: body.method.pressure,
+            count: 0,
+            scales: Scales::of::<D>(&body.material, body.grid.cell_size),
+        };
+        unknowns.number(&body.grid, &body.nodes, &body.cells, &body.points);
+        unknowns
     }
 
-    fn numbered(
-        grid: &Grid<D>,
-        nodes: &Nodes<D>,
-        cells: &Cells<D>,
-        points: &Points<D>,
-        integration: PressureIntegration,
-        rows: VolumetricRows<D>,
-    ) -> Self {
+    fn number(&mut self, grid: &Grid<D>, nodes: &Nodes<D>, cells: &Cells<D>, points: &Points<D>) {
+        let integration = self.integration;
         let (sites, places): (Vec<usize>, usize) = match integration {
             PressureIntegration::Points => ((0..points.len()).collect(), points.len()),
             PressureIntegration::Sri | PressureIntegration::Mean => {
@@ -87,15 +113,16 @@ impl<const D: usize> Unknowns<D> {
                 .find(|order| order.is_ne())
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
-        let mut displacement = vec![[None; D]; nodes.len()];
-        let mut pressure = vec![0; sites.len()];
+        self.count = sorted.len();
+        self.displacement = vec![[None; D]; nodes.len()];
+        self.pressure = vec![0; sites.len()];
         for (number, (_, kind)) in sorted.iter().enumerate() {
             match *kind {
-                Kind::Displacement { node, direction } => displacement[node][direction] = Some(number),
-                Kind::Pressure { site } => pressure[site] = number,
+                Kind::Displacement { node, direction } => self.displacement[node][direction] = Some(number),
+                Kind::Pressure { site } => self.pressure[site] = number,
             }
         }
-        Self { displacement, pressure, rows, site_of_place, integration, count: sorted.len(), sites }
+        (self.sites, self.site_of_place) = (sites, site_of_place);
     }
 
     /// Site of a cell or point, where it is one.

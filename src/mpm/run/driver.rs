@@ -42,13 +42,12 @@ impl<'a> Driver<'a> {
     /// A run at its start.
     pub fn new(stepper: &'a mut dyn Stepper, plan: &'a Plan<'a>, observer: Observer<'a>) -> Self {
         let end = plan.schedule.outputs.last().copied().unwrap_or(0.0);
-        let (points, nodes) = stepper.sizes();
         Self {
             watch: Watch::of(plan),
             history: History::of(&plan.schedule.history),
             time: 0.0,
             sizes: plan.sizes,
-            counters: Counters { points, nodes, ..Counters::default() },
+            counters: Counters { points: plan.points, nodes: plan.nodes, ..Counters::default() },
             expected: plan.limit.expected_steps(end),
             adaptive_step: plan.sizes.target,
             stepper,

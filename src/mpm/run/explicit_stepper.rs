@@ -144,8 +144,4 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Stepper for ExplicitSt
             None => self.body.snapshot(time, settlement, &self.start),
         }
     }
-
-    fn sizes(&self) -> (usize, usize) {
-        (self.body.points.len(), self.body.nodes.len())
-    }
 }

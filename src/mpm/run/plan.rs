@@ -23,6 +23,10 @@ pub struct Plan<'a> {
     pub limit: StepLimit,
     /// Step sizes as far as they are known before.
     pub sizes: StepSizes,
+    /// Material points.
+    pub points: usize,
+    /// Grid nodes, ghosts included.
+    pub nodes: usize,
     /// Pressure that the problem is about, Pa.
     pub pressure_scale: f64,
     /// Velocity that the problem is about, m/s.
@@ -64,6 +68,8 @@ impl<'a> Plan<'a> {
         Self {
             limit: schedule.rule.limit(problem, sizes.target, most, &schedule.outputs),
             sizes,
+            points: problem.points.len(),
+            nodes: problem.grid.node_count(),
             pressure_scale: problem.pressure_scale,
             velocity_scale: velocity_scale(problem),
             initial_height: LoadedSurface::of(&problem.points, problem.load)

@@ -42,42 +42,27 @@ pub enum Phase {
 }
 
 impl Phase {
-    /// Every phase, in the order of a run.
-    pub const ALL: [Self; 14] = [
-        Self::Setup,
-        Self::CriticalStep,
-        Self::BuildWeights,
-        Self::MapVelocities,
-        Self::Forces,
-        Self::Motion,
-        Self::Stresses,
-        Self::Recovery,
-        Self::Balances,
-        Self::Assembly,
-        Self::Factors,
-        Self::Solve,
-        Self::Outputs,
-        Self::Assessment,
+    /// Every phase with its name in tables, in the order of a run.
+    const NAMED: [(Self, &'static str); 14] = [
+        (Self::Setup, "setup"),
+        (Self::CriticalStep, "critical step"),
+        (Self::BuildWeights, "build weights"),
+        (Self::MapVelocities, "map velocities"),
+        (Self::Forces, "forces"),
+        (Self::Motion, "motion"),
+        (Self::Stresses, "stresses"),
+        (Self::Recovery, "pressures and recovery"),
+        (Self::Balances, "balances of trial states"),
+        (Self::Assembly, "assembly"),
+        (Self::Factors, "factors"),
+        (Self::Solve, "solve"),
+        (Self::Outputs, "outputs"),
+        (Self::Assessment, "exact solution and errors"),
     ];
 
     /// Name in tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Setup => "setup",
-            Self::CriticalStep => "critical step",
-            Self::BuildWeights => "build weights",
-            Self::MapVelocities => "map velocities",
-            Self::Forces => "forces",
-            Self::Motion => "motion",
-            Self::Stresses => "stresses",
-            Self::Recovery => "pressures and recovery",
-            Self::Balances => "balances of trial states",
-            Self::Assembly => "assembly",
-            Self::Factors => "factors",
-            Self::Solve => "solve",
-            Self::Outputs => "outputs",
-            Self::Assessment => "exact solution and errors",
-        }
+        Self::NAMED[self as usize].1
     }
 }
 
@@ -95,16 +80,16 @@ pub struct PhaseTime {
 }
 
 /// Phase in which time passes, and what the others took.
-struct Watch {
+struct Clock {
     phase: Phase,
     since: Instant,
-    seconds: [f64; Phase::ALL.len()],
-    entries: [u64; Phase::ALL.len()],
+    seconds: [f64; Phase::NAMED.len()],
+    entries: [u64; Phase::NAMED.len()],
 }
 
 thread_local! {
     static LISTENING: Cell<bool> = const { Cell::new(false) };
-    static WATCH: RefCell<Option<Watch>> = const { RefCell::new(None) };
+    static CLOCK: RefCell<Option<Clock>> = const { RefCell::new(None) };
 }
 
 /// Says that a phase begins.
@@ -126,13 +111,13 @@ pub fn within<T>(phase: Phase, work: impl FnOnce() -> T) -> T {
 
 #[cold]
 fn switch(phase: Phase) {
-    WATCH.with_borrow_mut(|watch| {
-        if let Some(watch) = watch {
+    CLOCK.with_borrow_mut(|clock| {
+        if let Some(clock) = clock {
             let now = Instant::now();
-            watch.seconds[watch.phase as usize] += (now - watch.since).as_secs_f64();
-            watch.entries[phase as usize] += 1;
-            watch.phase = phase;
-            watch.since = now;
+            clock.seconds[clock.phase as usize] += (now - clock.since).as_secs_f64();
+            clock.entries[phase as usize] += 1;
+            clock.phase = phase;
+            clock.since = now;
         }
     });
 }
@@ -142,38 +127,38 @@ fn switch(phase: Phase) {
 pub fn profiled<T>(work: impl FnOnce() -> T) -> (T, Vec<PhaseTime>) {
     listen();
     let result = work();
-    let Some(watch) = stop_listening() else { return (result, Vec::new()) };
+    let Some(clock) = stop_listening() else { return (result, Vec::new()) };
     let cost = seconds_of_an_entry();
     let seconds =
-        |phase: Phase| (watch.seconds[phase as usize] - cost * watch.entries[phase as usize] as f64).max(0.0);
-    let whole: f64 = Phase::ALL.into_iter().map(seconds).sum();
+        |phase: Phase| (clock.seconds[phase as usize] - cost * clock.entries[phase as usize] as f64).max(0.0);
+    let whole: f64 = Phase::NAMED.into_iter().map(|(phase, _)| seconds(phase)).sum();
     let time_of = |phase: Phase| PhaseTime {
         phase,
         seconds: seconds(phase),
         share: seconds(phase) / whole.max(f64::MIN_POSITIVE),
-        entries: watch.entries[phase as usize],
+        entries: clock.entries[phase as usize],
     };
-    let entered = Phase::ALL.into_iter().filter(|phase| watch.entries[*phase as usize] > 0);
-    (result, entered.map(time_of).collect())
+    let entered = Phase::NAMED.into_iter().filter(|(phase, _)| clock.entries[*phase as usize] > 0);
+    (result, entered.map(|(phase, _)| time_of(phase)).collect())
 }
 
 fn listen() {
-    let mut entries = [0; Phase::ALL.len()];
+    let mut entries = [0; Phase::NAMED.len()];
     entries[Phase::Setup as usize] = 1;
-    let watch =
-        Watch { phase: Phase::Setup, since: Instant::now(), seconds: [0.0; Phase::ALL.len()], entries };
-    WATCH.set(Some(watch));
+    let clock =
+        Clock { phase: Phase::Setup, since: Instant::now(), seconds: [0.0; Phase::NAMED.len()], entries };
+    CLOCK.set(Some(clock));
     LISTENING.set(true);
 }
 
-fn stop_listening() -> Option<Watch> {
+fn stop_listening() -> Option<Clock> {
     // Ends the phase that is on; its own entry is not one of the run's.
-    let last = WATCH.with_borrow(|watch| watch.as_ref().map(|watch| watch.phase))?;
+    let last = CLOCK.with_borrow(|clock| clock.as_ref().map(|clock| clock.phase))?;
     enter(last);
     LISTENING.set(false);
-    let mut watch = WATCH.take()?;
-    watch.entries[last as usize] -= 1;
-    Some(watch)
+    let mut clock = CLOCK.take()?;
+    clock.entries[last as usize] -= 1;
+    Some(clock)
 }
 
 /// What the clock takes of the time between two words, s.
@@ -185,7 +170,7 @@ fn seconds_of_an_entry() -> f64 {
         for _ in 0..ENTRIES {
             enter(Phase::Setup);
         }
-        stop_listening().map_or(0.0, |watch| watch.seconds[0] / f64::from(ENTRIES))
+        stop_listening().map_or(0.0, |clock| clock.seconds[0] / f64::from(ENTRIES))
     };
     (0..ROUNDS).map(|_| round()).fold(f64::INFINITY, f64::min)
 }
@@ -215,6 +200,6 @@ mod tests {
     #[test]
     fn nothing_listens_outside() {
         enter(Phase::Forces);
-        assert!(WATCH.with_borrow(Option::is_none));
+        assert!(CLOCK.with_borrow(Option::is_none));
     }
 }

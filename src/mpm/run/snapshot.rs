@@ -119,18 +119,17 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     fn sample_centres(&self) -> Samples {
         let mut means = Means::new(self.grid.cell_count());
-        for point in 0..self.points.len() {
-            let cell = self.grid.flat_cell(&self.grid.cell_of(&self.points.position[point]));
-            self.add_point(&mut means, cell, point, 1.0);
+        for (point, position) in self.points.position.iter().enumerate() {
+            means.add(self.grid.flat_cell(&self.grid.cell_of(position)), point, self.points.volume(point));
         }
-        means.finish(D)
+        means.sample(&self.points)
     }
 
     fn sample_nodes(&self) -> Samples {
         let mut means = Means::new(self.nodes.len());
         for point in 0..self.points.len() {
             self.basis.visit(self.grid.node_stride(), point, |node, weight, _| {
-                self.add_point(&mut means, node, point, weight);
+                means.add(node, point, weight * self.points.volume(point));
             });
         }
         if S::PASSES_WALLS {
@@ -143,36 +142,21 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 means.volume[node] = 0.0;
             }
         }
-        let mut samples = means.finish(D);
+        let mut samples = means.sample(&self.points);
         if !self.configuration.moves_points() {
             // The nodes' own displacement is known, and better than any projection.
-            let least = means.least_volume();
-            let places = || (0..self.nodes.len()).filter(|node| means.volume[*node] > least);
-            samples.displacement = places().map(|node| self.displacement_at_node(node)[D - 1]).collect();
-            samples.displacement_height =
-                Some(places().map(|node| self.grid.node_position(node)[D - 1]).collect());
+            let places = means.places();
+            let displacement =
+                |d: usize| places.iter().map(|node| self.displacement_at_node(*node)[d]).collect();
+            let position = |d: usize| places.iter().map(|node| self.grid.node_position(*node)[d]).collect();
+            samples.displacement = displacement(D - 1);
+            samples.displacement_height = Some(position(D - 1));
             if let Some(plane) = &mut samples.plane {
-                plane.horizontal_displacement =
-                    places().map(|node| self.displacement_at_node(node)[0]).collect();
-                plane.displacement_distance =
-                    Some(places().map(|node| self.grid.node_position(node)[0]).collect());
+                plane.horizontal_displacement = displacement(0);
+                plane.displacement_distance = Some(position(0));
             }
         }
         samples
-    }
-
-    fn add_point(&self, means: &mut Means, place: usize, point: usize, weight: f64) {
-        let share = weight * self.points.volume(point);
-        let height = self.points.initial_position[point][D - 1];
-        means.volume[place] += share;
-        means.height[place] += share * height;
-        means.pressure[place] += share * self.points.pressure[point];
-        means.effective_stress[place] += share * self.points.effective_stress[point][D - 1][D - 1];
-        means.displacement[place] += share * self.points.displacement[point][D - 1];
-        if D > 1 {
-            means.distance[place] += share * self.points.initial_position[point][0];
-            means.horizontal_displacement[place] += share * self.points.displacement[point][0];
-        }
     }
 
     fn totals(&self, start: &Points<D>) -> Totals {
@@ -218,49 +202,48 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
 /// Volume-weighted means over the points that belong to a place.
 struct Means {
+    /// Volume of each place.
     volume: Vec<f64>,
-    height: Vec<f64>,
-    pressure: Vec<f64>,
-    effective_stress: Vec<f64>,
-    displacement: Vec<f64>,
-    distance: Vec<f64>,
-    horizontal_displacement: Vec<f64>,
+    /// Place, point and volume that they share.
+    shares: Vec<(usize, usize, f64)>,
 }
 
 impl Means {
     fn new(places: usize) -> Self {
-        let zero = vec![0.0; places];
-        Self {
-            volume: zero.clone(),
-            height: zero.clone(),
-            pressure: zero.clone(),
-            effective_stress: zero.clone(),
-            displacement: zero.clone(),
-            distance: zero.clone(),
-            horizontal_displacement: zero,
-        }
+        Self { volume: vec![0.0; places], shares: Vec::new() }
     }
 
-    /// Places with less volume than this hold a ghost of a point.
-    fn least_volume(&self) -> f64 {
-        1e-12 * self.volume.iter().copied().fold(0.0, f64::max)
+    fn add(&mut self, place: usize, point: usize, volume: f64) {
+        self.volume[place] += volume;
+        self.shares.push((place, point, volume));
     }
 
-    fn finish(&self, dimensions: usize) -> Samples {
-        let least = self.least_volume();
-        let places: Vec<usize> = (0..self.volume.len()).filter(|place| self.volume[*place] > least).collect();
-        let mean = |sum: &[f64]| places.iter().map(|place| sum[*place] / self.volume[*place]).collect();
+    /// Places with more volume than a ghost of a point.
+    fn places(&self) -> Vec<usize> {
+        let least = 1e-12 * self.volume.iter().copied().fold(0.0, f64::max);
+        (0..self.volume.len()).filter(|place| self.volume[*place] > least).collect()
+    }
+
+    fn sample<const D: usize>(&self, points: &Points<D>) -> Samples {
+        let places = self.places();
+        let mean = |value: &dyn Fn(usize) -> f64| {
+            let mut sums = vec![0.0; self.volume.len()];
+            for (place, point, volume) in &self.shares {
+                sums[*place] += volume * value(*point);
+            }
+            places.iter().map(|place| sums[*place] / self.volume[*place]).collect()
+        };
         Samples {
-            initial_height: mean(&self.height),
+            initial_height: mean(&|point| points.initial_position[point][D - 1]),
             displacement_height: None,
             volume: places.iter().map(|place| self.volume[*place]).collect(),
-            pressure: mean(&self.pressure),
-            effective_stress: mean(&self.effective_stress),
-            displacement: mean(&self.displacement),
-            plane: (dimensions > 1).then(|| PlaneSamples {
-                initial_distance: mean(&self.distance),
+            pressure: mean(&|point| points.pressure[point]),
+            effective_stress: mean(&|point| points.effective_stress[point][D - 1][D - 1]),
+            displacement: mean(&|point| points.displacement[point][D - 1]),
+            plane: (D > 1).then(|| PlaneSamples {
+                initial_distance: mean(&|point| points.initial_position[point][0]),
                 displacement_distance: None,
-                horizontal_displacement: mean(&self.horizontal_displacement),
+                horizontal_displacement: mean(&|point| points.displacement[point][0]),
             }),
         }
     }

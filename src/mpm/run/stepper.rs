@@ -103,9 +103,6 @@ pub trait Stepper {
     /// State at the present time, s.
     fn snapshot(&self, time: f64) -> Snapshot;
 
-    /// Material points and grid nodes.
-    fn sizes(&self) -> (usize, usize);
-
     /// Work of the solves so far.
     fn work(&self) -> Work {
         Work::default()

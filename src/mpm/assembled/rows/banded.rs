@@ -2,7 +2,8 @@
 //! row reads of its own, and the compiler makes one instruction of what is done to each.
 
 use crate::mpm::assembled::operators::FrozenOperators;
-use crate::mpm::assembled::rows::{LANES, Lanes, REACH, Rows};
+use crate::mpm::assembled::rows::{LANES, Lanes, MARGIN, REACH, Rows};
+use crate::mpm::assembled::state::FrozenState;
 use crate::mpm::assembled::stiffness::pressure_stiffness;
 use crate::soil::tensor::{Tensor, Vector};
 
@@ -35,8 +36,12 @@ struct BandBlock<const D: usize> {
 pub struct BandsWithin<'a, const D: usize, const R: usize>(pub &'a BandedStorage<D>);
 
 impl<const D: usize> BandedStorage<D> {
-    /// Takes the rows of a frozen body; `None` where one reaches beyond the band.
+    /// Takes the rows of a frozen body; `None` where one reaches beyond the band, or a component of its node
+    /// is held.
     pub fn of(operators: &FrozenOperators<D>) -> Option<Self> {
+        if operators.constants.iter().any(|node| node.free != [[1.0; D]; 2]) {
+            return None;
+        }
         let projection_reach = reach(&operators.projection, |weight| *weight != 0.0)?;
         let is_coupled = |block: &Tensor<D>| *block != [[0.0; D]; D];
         let skeleton_reach = reach(&operators.skeleton_force, is_coupled)?;
@@ -87,18 +92,12 @@ fn put_tensor<const D: usize>(bands: &mut [[Band; D]; D], k: usize, i: usize, en
 
 impl<const D: usize, const R: usize> Rows<D> for BandsWithin<'_, D, R> {
     #[inline]
-    fn pressure_forces(
-        &self,
-        block: usize,
-        flux_displacement: &[Vector<D>],
-        _dilation: &[f64],
-    ) -> [Lanes; D] {
-        forces::<D, R>(&self.0.blocks[block].pressure_stiffness, flux_displacement, block)
-    }
-
-    #[inline]
-    fn skeleton_forces(&self, block: usize, strain_displacement: &[Vector<D>]) -> [Lanes; D] {
-        forces::<D, R>(&self.0.blocks[block].skeleton_stiffness, strain_displacement, block)
+    fn forces(&self, block: usize, state: &FrozenState<D>) -> [[Lanes; D]; 2] {
+        let rows = &self.0.blocks[block];
+        [
+            forces::<D, R>(&rows.pressure_stiffness, &state.flux_displacement, block),
+            forces::<D, R>(&rows.skeleton_stiffness, &state.strain_displacement, block),
+        ]
     }
 
     #[inline]
@@ -122,7 +121,7 @@ impl<const D: usize, const R: usize> Rows<D> for BandsWithin<'_, D, R> {
 /// What the rows of a block reach of a field.
 #[inline]
 fn window<const D: usize, const R: usize>(field: &[Vector<D>], block: usize) -> &[Vector<D>] {
-    let first = block * LANES + REACH - R;
+    let first = block * LANES + MARGIN - R;
     &field[first..first + 2 * R + LANES]
 }
 

@@ -4,7 +4,8 @@
 //! be five times as long in a plane.
 
 use crate::mpm::assembled::operators::FrozenOperators;
-use crate::mpm::assembled::rows::{LANES, Lanes, REACH, Rows};
+use crate::mpm::assembled::rows::{LANES, Lanes, MARGIN, Rows};
+use crate::mpm::assembled::state::FrozenState;
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Rows that reach anywhere.
@@ -14,6 +15,8 @@ pub struct SparseStorage<const D: usize> {
     pressure_force: SparseMap<Vector<D>>,
     skeleton_force: SparseMap<Tensor<D>>,
     projection: SparseMap<f64>,
+    /// One where a component of a phase is free, else zero, by row.
+    free: Vec<[Vector<D>; 2]>,
 }
 
 /// Rows of entries, each with its place in the array that it is multiplied with.
@@ -51,11 +54,14 @@ impl<T: Copy> SparseMap<T> {
 impl<const D: usize> SparseStorage<D> {
     /// Takes the rows of a frozen body.
     pub fn of(operators: &FrozenOperators<D>) -> Self {
+        let mut free: Vec<_> = operators.constants.iter().map(|node| node.free).collect();
+        free.resize(free.len().next_multiple_of(LANES), [[0.0; D]; 2]);
         Self {
-            divergence: SparseMap::of(&operators.divergence, REACH),
+            divergence: SparseMap::of(&operators.divergence, MARGIN),
             pressure_force: SparseMap::of(&operators.pressure_force, 0),
-            skeleton_force: SparseMap::of(&operators.skeleton_force, REACH),
-            projection: SparseMap::of(&operators.projection, REACH),
+            skeleton_force: SparseMap::of(&operators.skeleton_force, MARGIN),
+            projection: SparseMap::of(&operators.projection, MARGIN),
+            free,
         }
     }
 
@@ -91,38 +97,30 @@ impl<const D: usize> SparseStorage<D> {
 
 impl<const D: usize> Rows<D> for SparseStorage<D> {
     #[inline]
-    fn pressure_forces(
-        &self,
-        block: usize,
-        _flux_displacement: &[Vector<D>],
-        dilation: &[f64],
-    ) -> [Lanes; D] {
-        by_row(block, |row| {
-            let mut sum = [0.0; D];
-            for (site, force) in self.pressure_force.row(row) {
-                let dilation = dilation[*site as usize];
+    fn forces(&self, block: usize, state: &FrozenState<D>) -> [[Lanes; D]; 2] {
+        let (mut pressures, mut skeletons) = ([[0.0; LANES]; D], [[0.0; LANES]; D]);
+        for i in 0..LANES {
+            let (mut pressure, mut skeleton) = ([0.0; D], [0.0; D]);
+            for (site, force) in self.pressure_force.row(block * LANES + i) {
+                let dilation = state.dilation[*site as usize];
                 for d in 0..D {
-                    sum[d] += force[d] * dilation;
+                    pressure[d] += force[d] * dilation;
                 }
             }
-            sum
-        })
-    }
-
-    #[inline]
-    fn skeleton_forces(&self, block: usize, strain_displacement: &[Vector<D>]) -> [Lanes; D] {
-        by_row(block, |row| {
-            let mut sum = [0.0; D];
-            for (column, stiffness) in self.skeleton_force.row(row) {
-                let moved = &strain_displacement[*column as usize];
+            for (column, stiffness) in self.skeleton_force.row(block * LANES + i) {
+                let moved = &state.strain_displacement[*column as usize];
                 for d in 0..D {
                     for e in 0..D {
-                        sum[d] += stiffness[d][e] * moved[e];
+                        skeleton[d] += stiffness[d][e] * moved[e];
                     }
                 }
             }
-            sum
-        })
+            for d in 0..D {
+                pressures[d][i] = pressure[d];
+                skeletons[d][i] = skeleton[d];
+            }
+        }
+        [pressures, skeletons]
     }
 
     #[inline]
@@ -140,24 +138,13 @@ impl<const D: usize> Rows<D> for SparseStorage<D> {
                     sums[1][d] += weight * water[place][d];
                 }
             }
+            let free = &self.free[block * LANES + i];
             for d in 0..D {
-                projected[0][d][i] = sums[0][d];
-                projected[1][d][i] = sums[1][d];
+                for phase in 0..2 {
+                    projected[phase][d][i] = free[phase][d] * sums[phase][d];
+                }
             }
         }
         projected
     }
-}
-
-/// Vectors of the rows of a block, component by component.
-#[inline]
-fn by_row<const D: usize>(block: usize, of_row: impl Fn(usize) -> Vector<D>) -> [Lanes; D] {
-    let mut lanes = [[0.0; LANES]; D];
-    for i in 0..LANES {
-        let value = of_row(block * LANES + i);
-        for d in 0..D {
-            lanes[d][i] = value[d];
-        }
-    }
-    lanes
 }
