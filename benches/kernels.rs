@@ -11,10 +11,9 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use oedometer::exact::consolidation;
 use oedometer::{
-    AssembledStep, Basis, Body, Column, Configuration, DomainEnds, ExplicitSettings, Gimp, Hat,
-    IntegratorKind, Kernel as StepKernel, LinearMarch, March, Material, Method, PhysicalBounds, Plan,
-    Problem, SceneKind, Schedule, ShapeFunction, StepLimit, StepSizes, TimeStepRule, column_problem,
-    predicted_critical_step,
+    AssembledStep, Basis, Body, Column, Configuration, DomainEnds, EqualSteps, ExplicitSettings, Gimp, Hat,
+    IntegratorKind, Kernel as StepKernel, LinearStepper, Material, Method, Plan, Problem, SceneKind,
+    Schedule, ShapeFunction, Stepper, TimeStepRule, column_problem, predicted_critical_step,
 };
 use std::time::Instant;
 
@@ -99,35 +98,15 @@ fn implicit_step<const C: usize>(bencher: Bencher, method: &str) {
         integrator: IntegratorKind::Implicit,
         formulation: IntegratorKind::Implicit.default_formulation(),
     };
-    let plan = Plan {
-        schedule: &schedule,
-        limit: StepLimit::Constant(0.01),
-        sizes: StepSizes::default(),
-        pressure_scale: 1.0,
-        initial_height: 1.0,
-        bounds: PhysicalBounds::of(&problem),
-        loading_time: 0.0,
+    let plan = Plan::of(&problem, &schedule);
+    let mut stepper = match problem.method.basis {
+        Basis::Hat => LinearStepper::new(Body::<1, 2, Hat>::new(problem), &plan),
+        _ => LinearStepper::new(Body::<1, 3, Gimp>::new(problem), &plan),
     };
-    match problem.method.basis {
-        Basis::Hat => bench_march(
-            bencher,
-            C * POINTS_PER_CELL,
-            LinearMarch::new(Body::<1, 2, Hat>::new(problem), &plan),
-        ),
-        _ => bench_march(
-            bencher,
-            C * POINTS_PER_CELL,
-            LinearMarch::new(Body::<1, 3, Gimp>::new(problem), &plan),
-        ),
-    }
-}
-
-fn bench_march<const W: usize, S: ShapeFunction<W>>(
-    bencher: Bencher,
-    points: usize,
-    mut march: impl March<1, W, S>,
-) {
-    bencher.counter(ItemsCount::new(points)).bench_local(|| march.step(black_box(0.01), f64::INFINITY));
+    let step = EqualSteps::first(0.0, 0.01, 1);
+    bencher
+        .counter(ItemsCount::new(C * POINTS_PER_CELL))
+        .bench_local(|| stepper.advance(black_box(&step), f64::INFINITY));
 }
 
 /// Time factors on both sides of the switch between the image and the series form.

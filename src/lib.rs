@@ -96,10 +96,11 @@ pub use record::origins::Origins;
 pub use record::provenance::Provenance;
 pub use record::store::RecordStore;
 pub use record::{ErrorRow, Record, Status, WallSample};
+pub use render::checks::{junit, verdicts};
 pub use render::page::{Block, Page, figures, render_html, render_markdown};
 pub use render::report::{StudyResults, page_of};
 pub use render::table::Table;
-pub use render::{junit, measures, verdicts};
+pub use render::tables::measures;
 pub use study::check::Study;
 pub use study::file::StudySource;
 pub use study::perturbed::LastDigit;
@@ -124,9 +125,12 @@ pub use mpm::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
 #[doc(hidden)]
 pub use mpm::critical_step::predicted::predicted_critical_step;
 #[doc(hidden)]
-pub use mpm::implicit::{drive::Plan, linear::LinearMarch, march::March, steps::StepLimit};
+pub use mpm::implicit::linear::LinearStepper;
 #[doc(hidden)]
-pub use mpm::run::physical_bounds::PhysicalBounds;
+pub use mpm::run::{
+    plan::Plan,
+    stepper::{EqualSteps, Stepper},
+};
 
 #[cfg(test)]
 #[path = "../tests/unit/mod.rs"]

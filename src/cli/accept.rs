@@ -11,7 +11,7 @@ use crate::golden::{GoldenFile, values_of};
 use crate::judge::study_check::StudyCheck;
 use crate::record::Record;
 use crate::record::provenance::Provenance;
-use crate::render::verdicts::objections_of;
+use crate::render::checks::verdicts::objections_of;
 use crate::study::check::Study;
 use crate::study::perturbed::LastDigit;
 use std::path::PathBuf;

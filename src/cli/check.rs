@@ -16,8 +16,8 @@ use crate::golden::references::REFERENCES;
 use crate::judge::paths::Judgement;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::record::Record;
-use crate::render::annotations::annotations_of;
-use crate::render::{junit, verdicts};
+use crate::render::checks::annotations::annotations_of;
+use crate::render::checks::{junit, verdicts};
 use crate::study::check::Study;
 use std::path::PathBuf;
 

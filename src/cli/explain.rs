@@ -13,7 +13,7 @@ use crate::judge::explain::explain;
 use crate::mpm::run::Kernel;
 use crate::record::Record;
 use crate::record::store::RecordStore;
-use crate::render::explanation;
+use crate::render::tables::explanation;
 use crate::study::check::Study;
 use std::path::{Path, PathBuf};
 

@@ -73,7 +73,7 @@ fn wants_colour(is_terminal: bool, variable: impl Fn(&str) -> Option<String>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::table::{Cell, Column};
+    use crate::render::table::{Cell, TableColumn};
 
     #[test]
     fn colours_are_for_terminals_that_want_them() {
@@ -89,7 +89,7 @@ mod tests {
     fn a_row_in_json_has_numbers_as_numbers_and_words_as_words() {
         let table = Table {
             rows: vec![vec!["GIMP".into(), Cell::Error(1.5e-3)], vec!["nan".into(), Cell::Error(f64::NAN)]],
-            ..Table::new("t", vec![Column::text("method"), Column::number("error")])
+            ..Table::new("t", vec![TableColumn::text("method"), TableColumn::number("error")])
         };
         let rows = rows_of(&table).expect("rows");
         assert_eq!(serde_json::to_string(&rows[0]).expect("JSON"), r#"{"error":0.0015,"method":"GIMP"}"#);

@@ -7,6 +7,7 @@ use crate::cli::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
 use crate::cli::stream::say;
 use crate::record::whole_file::write_whole;
 use crate::render::page::{figures, render_html, render_markdown};
+use crate::render::report::front_page::front_page;
 use crate::render::report::{StudyResults, page_of};
 use std::path::PathBuf;
 
@@ -27,7 +28,7 @@ pub struct Arguments {
     jobs: Option<u64>,
 }
 
-/// Runs, renders and writes `index.html`, `report.md` and `figures/`.
+/// Runs, renders and writes `index.html`, `report.md`, the short `README.md` and `figures/`.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let studies = load_or_shipped(&arguments.studies)?;
     let options = RunOptions { resume: true, ..RunOptions::whole(Tier::Full, jobs_of(arguments.jobs)) };
@@ -38,10 +39,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         .map(|(study, report)| StudyResults::new(study, &report.records, Tier::Full))
         .collect();
     let page = page_of(&results)?;
+    let front = front_page(&results, &page);
     let html = arguments.out.join("index.html");
     write_whole(&html, render_html(&page)?.as_bytes())?;
-    write_whole(&arguments.out.join("report.md"), render_markdown(&page)?.as_bytes())?;
-    for (name, svg) in figures(&page)? {
+    for (name, page) in [("report.md", &page), ("README.md", &front)] {
+        write_whole(&arguments.out.join(name), render_markdown(page)?.as_bytes())?;
+    }
+    for (name, svg) in figures(&page)?.into_iter().chain(figures(&front)?) {
         write_whole(&arguments.out.join("figures").join(name), svg.as_bytes())?;
     }
     say!("the report is {}", html.display());

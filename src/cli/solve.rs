@@ -11,8 +11,8 @@ use crate::mpm::run::Kernel;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::mpm::run::profile::{PhaseTime, profiled};
 use crate::record::{ERROR_COLUMNS, ErrorRow, Record, Status};
-use crate::render::measures;
-use crate::render::phases::phases_table;
+use crate::render::tables::measures;
+use crate::render::tables::phases::phases_table;
 use crate::study::check::Study;
 use clap::ValueEnum;
 

@@ -15,7 +15,7 @@ use crate::judge::scatter::{Spread, spread_of};
 use crate::mpm::run::Kernel;
 use crate::record::Record;
 use crate::record::store::RecordStore;
-use crate::render::spreads;
+use crate::render::tables::spreads;
 use crate::study::check::Study;
 use crate::study::perturbed::LastDigit;
 use std::path::PathBuf;

@@ -11,7 +11,7 @@ use crate::cli::solve::Format;
 use crate::cli::stream::print_data;
 use crate::mpm::critical_step::observed::CriticalStep;
 use crate::record::{Record, Status};
-use crate::render::stability;
+use crate::render::tables::critical_steps;
 
 /// Difference of observed from predicted step up to which they agree.
 const AGREEMENT: f64 = 0.02;
@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Err(error.into());
     }
     match arguments.format {
-        Format::Table => print_data(&(stability::table_of(&report.records).to_text()? + "\n"))?,
+        Format::Table => print_data(&(critical_steps::table_of(&report.records).to_text()? + "\n"))?,
         Format::Csv => print_data(&csv_of(&report.records)?)?,
         Format::Json => {
             let rows: Vec<_> = report.records.iter().map(StabilityJson::of).collect();

@@ -154,6 +154,9 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     pub method: Method,
     /// Configuration of the weights.
     pub configuration: Configuration,
+    /// Whether gradients are pushed forward from where the weights were built: on the initial
+    /// configuration always, and within an implicit step that moves points.
+    pub is_pushed_forward: bool,
     /// Loaded surface.
     pub surface: LoadedSurface<D>,
     /// `N` and `∇N` between points and nodes.
@@ -223,6 +226,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             material,
             method,
             configuration,
+            is_pushed_forward: configuration == Configuration::Total,
             shape_function: std::marker::PhantomData,
         };
         body.displace(&initial_gradient);
@@ -261,12 +265,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// Whether gradients on the initial configuration are to be pushed forward.
-    #[inline]
-    fn is_total(&self) -> bool {
-        self.configuration == Configuration::Total
-    }
-
     /// Brings operators and masses up to the points' places and volumes: all of them where points
     /// move, what follows the volumes where weights stay on the initial configuration.
     pub fn follow_points(&mut self) {
@@ -278,20 +276,18 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Brings the operators alone up to the points' places and volumes.
     pub(crate) fn follow_places(&mut self) {
-        match self.configuration {
-            Configuration::Updated => self.build_operators(),
-            Configuration::Total => {
-                self.cells.sum_volumes(&self.points, self.material.porosity);
-                self.cells.average_deformation(&self.points);
-            }
-            Configuration::Frozen => {}
+        if self.is_pushed_forward {
+            self.cells.sum_volumes(&self.points, self.material.porosity);
+            self.cells.average_deformation(&self.points);
+        } else if self.configuration.moves_points() {
+            self.build_operators();
         }
     }
 
     /// A gradient on the initial configuration on the present one, `∇₀v F⁻¹`.
     #[inline]
     pub fn pushed_forward(&self, point: usize, gradient: Tensor<D>) -> Tensor<D> {
-        if !self.is_total() {
+        if !self.is_pushed_forward {
             return gradient;
         }
         pushed_forward(&self.points.inverse_deformation[point], &gradient)
@@ -300,7 +296,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Divergence of a nodal field at a point, on the present configuration.
     #[inline]
     pub fn divergence_at_point(&self, point: usize, field: &[Vector<D>]) -> f64 {
-        if !self.is_total() {
+        if !self.is_pushed_forward {
             return self.basis.divergence(self.grid.node_stride(), point, field);
         }
         let gradient = self.pushed_forward(point, self.basis.gradient(self.grid.node_stride(), point, field));
@@ -310,7 +306,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Divergence of a nodal field at a cell's centre, on the present configuration.
     #[inline]
     pub fn divergence_at_centre(&self, cell: usize, field: &[Vector<D>]) -> f64 {
-        if self.is_total() {
+        if self.is_pushed_forward {
             self.cells.deformed_centre_divergence(&self.grid, cell, field)
         } else {
             self.cells.centre_divergence(&self.grid, cell, field)
@@ -343,7 +339,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         if self.method.uses_patch() {
             self.patch.build(&self.grid, &self.cells);
         }
-        if self.is_total() {
+        if self.is_pushed_forward {
             self.cells.average_deformation(&self.points);
         }
         self.surface.apply(&self.grid, &self.points, &mut self.nodes);

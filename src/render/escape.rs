@@ -1,5 +1,5 @@
 //! Text made safe for the document it goes into.
-use crate::render::script::{Level, runs};
+use crate::render::script::{ScriptLevel, runs};
 
 /// Text for HTML, with real subscripts and superscripts.
 pub(crate) fn html(text: &str) -> String {
@@ -8,9 +8,9 @@ pub(crate) fn html(text: &str) -> String {
         .map(|run| {
             let text = plain_html(&run.text);
             match run.level {
-                Level::Base => text,
-                Level::Sub => format!("<sub>{text}</sub>"),
-                Level::Super => format!("<sup>{text}</sup>"),
+                ScriptLevel::Base => text,
+                ScriptLevel::Sub => format!("<sub>{text}</sub>"),
+                ScriptLevel::Super => format!("<sup>{text}</sup>"),
             }
         })
         .collect()

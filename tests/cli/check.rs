@@ -440,7 +440,9 @@ fn a_report_shows_verdicts_and_does_not_gate_on_them() {
     assert_eq!(told.code, 0, "{}", told.err);
     let html = fs::read_to_string(place.path().join("made/index.html")).expect("a page");
     let markdown = fs::read_to_string(place.path().join("made/report.md")).expect("a page");
-    for page in [&html, &markdown] {
+    let front = fs::read_to_string(place.path().join("made/README.md")).expect("a front page");
+    assert!(front.len() < markdown.len(), "the front page is the shorter one");
+    for page in [&html, &markdown, &front] {
         assert!(page.contains("GIMP-SRI") && page.contains("A short study"));
         assert!(!page.contains(place.path().to_str().expect("a path")), "no absolute path");
     }

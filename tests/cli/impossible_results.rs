@@ -180,7 +180,7 @@ fn no_error_is_held_against_a_theory_that_leaves_out_what_rules() {
 #[test]
 fn beyond_the_bound_of_inertia_theory_is_off_by_thousandths() {
     // Terzaghi's settlement against that of the column with its inertia, both exact.
-    use oedometer::exact::parameters::ColumnParameters;
+    use oedometer::exact::ColumnParameters;
     use oedometer::exact::reference::{Reference, ReferenceKind};
     let gap = |conductivity: f64| {
         let column = ColumnParameters { hydraulic_conductivity: conductivity, ..ColumnParameters::default() };

@@ -2,7 +2,8 @@
 //! at.
 
 use crate::render::chart::describe::{
-    Annotation, Axis, Band, Chart, Direction, Place, Rule, Series, Size, SlopeTriangle, Style,
+    Chart, ChartAxis, ChartDirection, PointLabel, Rule, Series, ShadedBand, Size, SlopeTriangle, Style,
+    TrianglePlace,
 };
 use crate::render::chart::field::Colours;
 use crate::render::chart::gallery::{convergence, gallery, nothing, pressure_field};
@@ -55,7 +56,8 @@ fn what_is_not_drawn_is_counted() {
 #[test]
 fn points_outside_fixed_axes_are_counted_and_lines_cut() {
     let series = Series::new("a", vec![(0.0, 0.0), (1.0, 1e300), (0.5, 1e9)]);
-    let chart = Chart::new("t", Axis::linear("x"), Axis::linear("y").between(0.0, 1.0)).with(series);
+    let chart =
+        Chart::new("t", ChartAxis::linear("x"), ChartAxis::linear("y").between(0.0, 1.0)).with(series);
     let text = svg(&chart);
     assert!(text.contains("1 beyond 10^±150 (a); 1 outside the axes (a)"), "{text}");
 }
@@ -66,15 +68,15 @@ fn hostile_descriptions_still_make_a_figure() {
     chart.title = "a < b & \"c\" \u{0} \u{e000}".into();
     chart.size = Size { width: f64::NAN, plot_height: -5.0, equal_units: true };
     chart.x.ticks = Some(vec![f64::NAN, -1.0, 0.05]);
-    chart.triangles.push(SlopeTriangle { slope: f64::NAN, place: Place::At(0.1, 0.1) });
-    chart.triangles.push(SlopeTriangle { slope: 0.0, place: Place::At(-0.1, f64::NAN) });
-    chart.rules.push(Rule { axis: Direction::X, at: -1.0, label: "x".into() });
-    chart.annotations.push(Annotation { at: (f64::NAN, 1.0), text: "?".into() });
+    chart.triangles.push(SlopeTriangle { slope: f64::NAN, place: TrianglePlace::At(0.1, 0.1) });
+    chart.triangles.push(SlopeTriangle { slope: 0.0, place: TrianglePlace::At(-0.1, f64::NAN) });
+    chart.rules.push(Rule { axis: ChartDirection::X, at: -1.0, label: "x".into() });
+    chart.annotations.push(PointLabel { at: (f64::NAN, 1.0), text: "?".into() });
     chart.series[0].ringed = vec![999];
     chart.series[0].bars = vec![(f64::NAN, 0.0); 9];
     chart.series.push(Series::new("one", vec![(0.1, 0.1)]).tag("only"));
     chart.series.push(Series::new("", Vec::new()).tag("none"));
-    chart.bands.push(Band { name: String::new(), points: vec![(f64::NAN, 0.0, -1.0)], colour: 99 });
+    chart.bands.push(ShadedBand { name: String::new(), points: vec![(f64::NAN, 0.0, -1.0)], colour: 99 });
     let text = svg(&chart);
     assert!(text.contains("a &lt; b &amp; &quot;c&quot;"), "{text}");
     let mut field = pressure_field();
@@ -139,7 +141,7 @@ fn no_text_is_clipped() {
 
 #[test]
 fn theory_lies_above_other_lines_and_beneath_markers() {
-    let chart = Chart::new("t", Axis::linear("x"), Axis::linear("y"))
+    let chart = Chart::new("t", ChartAxis::linear("x"), ChartAxis::linear("y"))
         .with(Series::theory("exact", vec![(0.0, 0.0), (1.0, 1.0)]))
         .with(Series::new("a", vec![(0.0, 0.1), (1.0, 0.9)]));
     let text = svg(&chart);
@@ -150,14 +152,14 @@ fn theory_lies_above_other_lines_and_beneath_markers() {
 
 #[test]
 fn depth_runs_downwards() {
-    let rows = |axis: Axis| {
+    let rows = |axis: ChartAxis| {
         let points = vec![(0.0, 0.0), (1.0, 1.0)];
         let series = Series::new("a", points).style(Style::Markers);
-        let text = svg(&Chart::new("t", Axis::linear("x"), axis).with(series));
+        let text = svg(&Chart::new("t", ChartAxis::linear("x"), axis).with(series));
         let discs = text.lines().filter(|l| l.starts_with("<circle") && l.contains("#0072B2"));
         discs.map(|l| number(l, "cy")).collect::<Vec<_>>()
     };
-    let (up, down) = (rows(Axis::linear("y")), rows(Axis::linear("depth").inverted()));
+    let (up, down) = (rows(ChartAxis::linear("y")), rows(ChartAxis::linear("depth").inverted()));
     assert!(up[0] > up[1], "{up:?}");
     assert!(down[0] < down[1], "{down:?}");
 }

@@ -1,8 +1,9 @@
 //! Figures of every kind from made-up data.
 use crate::render::chart::describe::{
-    Annotation, Axis, Band, Chart, Direction, Place, Range, Rule, Scale, Series, Size, SlopeTriangle, Style,
+    Chart, ChartAxis, ChartDirection, PointLabel, Range, Rule, Scale, Series, ShadedBand, Size,
+    SlopeTriangle, Style, TrianglePlace,
 };
-use crate::render::chart::field::{Colours, Field};
+use crate::render::chart::field::{ColourField, Colours};
 use std::f64::consts::PI;
 
 /// Terzaghi's series, good enough for a picture.
@@ -34,8 +35,8 @@ pub(crate) fn convergence() -> Chart {
     let h = [0.2, 0.1, 0.05, 0.025, 0.0125];
     let mut chart = Chart::new(
         "Terzaghi: error of the pore pressure under mesh refinement",
-        Axis::log10("cell size h/H (–)").with_ticks(h.to_vec()),
-        Axis::log10("relative L_2 error of p at the points (–)"),
+        ChartAxis::log10("cell size h/H (–)").with_ticks(h.to_vec()),
+        ChartAxis::log10("relative L_2 error of p at the points (–)"),
     );
     chart.subtitle = Some("T_v = 0.1, 2 points a cell, held against Terzaghi with compressible water".into());
     for (i, name) in METHODS.into_iter().enumerate() {
@@ -48,17 +49,19 @@ pub(crate) fn convergence() -> Chart {
         chart.series.push(Series::new(name, points));
     }
     chart.triangles = [(1.0, METHODS[2]), (2.0, METHODS[4])]
-        .map(|(slope, name)| SlopeTriangle { slope, place: Place::Beside(name.into()) })
+        .map(|(slope, name)| SlopeTriangle { slope, place: TrianglePlace::Beside(name.into()) })
         .to_vec();
-    chart.rules.push(Rule { axis: Direction::Y, at: 1.4e-4, label: "water storage: 1.4·10⁻⁴".into() });
+    chart
+        .rules
+        .push(Rule { axis: ChartDirection::Y, at: 1.4e-4, label: "water storage: 1.4·10⁻⁴".into() });
     chart
 }
 
 fn isochrones() -> Chart {
     let mut chart = Chart::new(
         "Isochrones of excess pore pressure",
-        Axis::linear("p/q (–)").between(0.0, 1.1),
-        Axis::linear("depth ζ = 1 − Y/H (–)").inverted(),
+        ChartAxis::linear("p/q (–)").between(0.0, 1.1),
+        ChartAxis::linear("depth ζ = 1 − Y/H (–)").inverted(),
     );
     for t in [0.02, 0.05, 0.1, 0.2, 0.5] {
         let theory = steps(80).map(|z| (pressure(z, t), z)).collect();
@@ -77,8 +80,8 @@ fn isochrones() -> Chart {
 fn degree() -> Chart {
     let mut chart = Chart::new(
         "Degree of consolidation",
-        Axis::log10("time factor T_v (–)"),
-        Axis::linear("degree of consolidation U (–)").inverted(),
+        ChartAxis::log10("time factor T_v (–)"),
+        ChartAxis::linear("degree of consolidation U (–)").inverted(),
     );
     let times: Vec<f64> = (0..=80).map(|i| 10f64.powf(-3.0 + f64::from(i) / 20.0 * 0.85)).collect();
     chart.series.push(Series::theory("Terzaghi", times.iter().map(|&t| (t, consolidation(t))).collect()));
@@ -90,7 +93,7 @@ fn degree() -> Chart {
         let points = times.iter().step_by(10).map(|&t| (t, consolidation(t) * 0.98)).collect();
         chart.series.push(Series::new(name, points).style(Style::Markers));
     }
-    chart.bands.push(Band {
+    chart.bands.push(ShadedBand {
         name: "±5 %".into(),
         points: times.iter().map(|&t| (t, 0.95 * consolidation(t), 1.05 * consolidation(t))).collect(),
         colour: 6,
@@ -101,8 +104,8 @@ fn degree() -> Chart {
 fn work_precision() -> Chart {
     let mut chart = Chart::new(
         "Work and precision",
-        Axis::log10("wall time, median of 5 (s)"),
-        Axis::log10("relative L_2 error of p at T_v = 0.2 (–)"),
+        ChartAxis::log10("wall time, median of 5 (s)"),
+        ChartAxis::log10("relative L_2 error of p at T_v = 0.2 (–)"),
     );
     let mut front = Vec::new();
     for (i, name) in ["explicit", "semi-implicit", "implicit (SDIRK2)"].into_iter().enumerate() {
@@ -124,8 +127,11 @@ fn work_precision() -> Chart {
 
 pub(crate) fn pressure_field() -> Chart {
     let edges: Vec<f64> = steps(24).collect();
-    let mut chart =
-        Chart::new("Pore pressure, full integration", Axis::linear("x/L (–)"), Axis::linear("y/H (–)"));
+    let mut chart = Chart::new(
+        "Pore pressure, full integration",
+        ChartAxis::linear("x/L (–)"),
+        ChartAxis::linear("y/H (–)"),
+    );
     let mut values = Vec::new();
     for r in 0..24 {
         for c in 0..24 {
@@ -135,7 +141,7 @@ pub(crate) fn pressure_field() -> Chart {
         }
     }
     values[30] = f64::NAN;
-    chart.field = Some(Field {
+    chart.field = Some(ColourField {
         label: "p/q (–)".into(),
         x_edges: edges.clone(),
         y_edges: edges,
@@ -151,8 +157,8 @@ pub(crate) fn pressure_field() -> Chart {
 fn stability_map() -> Chart {
     let mut chart = Chart::new(
         "Critical step of GC-SRI-patch, explicit",
-        Axis::log10("hydraulic conductivity k (m/s)"),
-        Axis::log10("K_w/E (–)"),
+        ChartAxis::log10("hydraulic conductivity k (m/s)"),
+        ChartAxis::log10("K_w/E (–)"),
     );
     let x_edges: Vec<f64> = (0..=20).map(|i| 10f64.powf(-12.0 + f64::from(i) / 2.0)).collect();
     let y_edges: Vec<f64> = (0..=15).map(|i| 10f64.powf(1.0 + f64::from(i) / 3.0)).collect();
@@ -162,7 +168,7 @@ fn stability_map() -> Chart {
             values.push((2e-4 / y.sqrt()).min(x * 1e2));
         }
     }
-    chart.field = Some(Field {
+    chart.field = Some(ColourField {
         label: "critical Δt (s)".into(),
         x_edges,
         y_edges,
@@ -180,15 +186,15 @@ fn stability_map() -> Chart {
 
 pub(crate) fn nothing() -> Chart {
     let series = Series::new("GIMP", vec![(f64::NAN, 1.0), (1.0, -1.0), (f64::INFINITY, 2.0)]);
-    Chart::new("Nothing to see", Axis::log10("h (m)"), Axis::log10("error (–)")).with(series)
+    Chart::new("Nothing to see", ChartAxis::log10("h (m)"), ChartAxis::log10("error (–)")).with(series)
 }
 
 /// More than a figure should hold, with long words everywhere.
 fn crowd() -> Chart {
     let mut chart = Chart::new(
         "Everything at once: fourteen methods with long names, over sixteen decades of error, so that a title needs two lines and the legend all of its room",
-        Axis::log10("time step over the predicted limit of the explicit scheme, Δt/Δt_crit (–)"),
-        Axis::log10("relative L_∞ error of the effective vertical stress σ'_yy at the cell centres (–)"),
+        ChartAxis::log10("time step over the predicted limit of the explicit scheme, Δt/Δt_crit (–)"),
+        ChartAxis::log10("relative L_∞ error of the effective vertical stress σ'_yy at the cell centres (–)"),
     );
     for i in 0..14_u8 {
         let name = format!("TL-{}-patch-with-long-name-{i}", METHODS[usize::from(i % 5)]);
@@ -198,11 +204,11 @@ fn crowd() -> Chart {
         chart.series.push(Series::new(name, points.collect()));
     }
     for (i, slope) in [(3, 1.0), (6, 2.5), (12, 4.0)] {
-        let place = Place::Beside(chart.series[i].name.clone());
+        let place = TrianglePlace::Beside(chart.series[i].name.clone());
         chart.triangles.push(SlopeTriangle { slope, place });
     }
-    chart.rules.push(Rule { axis: Direction::X, at: 0.5, label: "half the limit".into() });
-    chart.annotations.push(Annotation { at: (1e-2, 1e-6), text: "round-off".into() });
+    chart.rules.push(Rule { axis: ChartDirection::X, at: 0.5, label: "half the limit".into() });
+    chart.annotations.push(PointLabel { at: (1e-2, 1e-6), text: "round-off".into() });
     chart.notes.push("A note of the caller's own.".into());
     chart
 }
@@ -211,8 +217,9 @@ fn crowd() -> Chart {
 fn column() -> Chart {
     let y_edges: Vec<f64> = steps(20).collect();
     let values = (0..20).map(|i| pressure(1.0 - (f64::from(i) + 0.5) / 20.0, 0.1) * 2e5).collect();
-    let mut chart = Chart::new("Pressure in the column", Axis::linear("x (m)"), Axis::linear("y (m)"));
-    chart.field = Some(Field {
+    let mut chart =
+        Chart::new("Pressure in the column", ChartAxis::linear("x (m)"), ChartAxis::linear("y (m)"));
+    chart.field = Some(ColourField {
         label: "p (Pa)".into(),
         x_edges: vec![0.0, 0.1],
         y_edges,

@@ -1,14 +1,14 @@
 use super::*;
-use crate::render::chart::describe::{Axis, Series};
-use crate::render::table::{Cell, Column};
+use crate::render::chart::describe::{ChartAxis, Series};
+use crate::render::table::{Cell, TableColumn};
 
 fn chart() -> Chart {
-    Chart::new("Error <of> p", Axis::log10("h (m)"), Axis::log10("error (–)"))
+    Chart::new("Error <of> p", ChartAxis::log10("h (m)"), ChartAxis::log10("error (–)"))
         .with(Series::new("GIMP", vec![(0.1, 1e-2), (0.05, 5e-3)]))
 }
 
 fn page() -> Page {
-    let mut table = Table::new("Orders", vec![Column::text("method"), Column::number("order")]);
+    let mut table = Table::new("Orders", vec![TableColumn::text("method"), TableColumn::number("order")]);
     table.rows.push(vec![Cell::Code("GIMP".into()), Cell::Order(1.0)]);
     let hostile = "<script>alert(1)</script> & \"quotes\"";
     Page {
@@ -138,7 +138,7 @@ fn names_must_be_safe_and_differ() {
 #[test]
 fn a_ragged_table_anywhere_is_refused() {
     let mut page = page();
-    let mut table = Table::new("t", vec![Column::text("a")]);
+    let mut table = Table::new("t", vec![TableColumn::text("a")]);
     table.rows.push(Vec::new());
     page.sections[2]
         .blocks

@@ -2,22 +2,22 @@
 use crate::elementary;
 use crate::render::chart::gallery::gallery;
 use crate::render::page::{Block, Figure, Page, Section, figures, render_html, render_markdown};
-use crate::render::table::{Cell, Column, Mood, Table};
+use crate::render::table::{Cell, Mood, Table, TableColumn};
 
 fn orders() -> Table {
     let mut table = Table::new(
         "Relative L_2 error of p at the points, T_v = 0.1",
         vec![
-            Column::text("method"),
-            Column::number("5 cells"),
-            Column::number("10 cells"),
-            Column::number("20 cells"),
-            Column::number("40 cells"),
-            Column::number("order, finest pair"),
-            Column::number("order, fit"),
-            Column::number("steps"),
-            Column::number("time").unit("median of 5"),
-            Column::text("verdict"),
+            TableColumn::text("method"),
+            TableColumn::number("5 cells"),
+            TableColumn::number("10 cells"),
+            TableColumn::number("20 cells"),
+            TableColumn::number("40 cells"),
+            TableColumn::number("order, finest pair"),
+            TableColumn::number("order, fit"),
+            TableColumn::number("steps"),
+            TableColumn::number("time").unit("median of 5"),
+            TableColumn::text("verdict"),
         ],
     );
     for (i, name) in ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "TL-GC-SRI-patch"].into_iter().enumerate()

@@ -4,14 +4,14 @@ fn sample() -> Table {
     let mut table = Table::new(
         "Pore pressure, T_v = 0.1",
         vec![
-            Column::text("method"),
-            Column::number("error").unit("–"),
-            Column::number("order"),
-            Column::number("fit"),
-            Column::number("steps"),
-            Column::number("settlement"),
-            Column::number("time"),
-            Column::text("verdict"),
+            TableColumn::text("method"),
+            TableColumn::number("error").unit("–"),
+            TableColumn::number("order"),
+            TableColumn::number("fit"),
+            TableColumn::number("steps"),
+            TableColumn::number("settlement"),
+            TableColumn::number("time"),
+            TableColumn::text("verdict"),
         ],
     );
     table.rows = vec![
@@ -86,14 +86,14 @@ fn a_ragged_row_is_refused_by_every_writer() {
 
 #[test]
 fn an_empty_table_is_a_header() {
-    let table = Table::new("", vec![Column::text("a")]);
+    let table = Table::new("", vec![TableColumn::text("a")]);
     assert_eq!(written(table.to_csv()), "a\n");
     assert_eq!(written(table.to_markdown()), "| a |\n| :--- |\n");
 }
 
 #[test]
 fn a_terminal_is_never_steered() {
-    let mut table = Table::new("\u{1b}[31m", vec![Column::text("a\n")]);
+    let mut table = Table::new("\u{1b}[31m", vec![TableColumn::text("a\n")]);
     table.rows.push(vec!["\u{1b}]0;x\u{7}\r\n".into()]);
     let text = written(table.to_text());
     assert!(text.chars().all(|c| c == '\n' || !c.is_control()), "{text:?}");

@@ -13,7 +13,7 @@ use crate::cli::stream::{print_data, say};
 use crate::import::mapping::{CONVENTION, Mapping, PLANE_CONVENTION};
 use crate::judge::score::Score;
 use crate::record::ERROR_COLUMNS;
-use crate::render::scores;
+use crate::render::tables::scores;
 use crate::scene::SceneKind;
 use crate::study::check::Study;
 use crate::study::file::StudySource;

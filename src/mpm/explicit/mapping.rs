@@ -4,7 +4,6 @@
 //! slice, so that its bounds are checked once, and sums side by side what belongs to one node.
 
 use crate::mpm::body::{Body, ShapeFunction};
-use crate::mpm::method::Configuration;
 use crate::soil::tensor::Tensor;
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
@@ -93,7 +92,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             (&points.initial_volume[..count], &points.volume_ratio[..count], &points.stressed_share[..count]);
         let (effective_stress, pressure) = (&points.effective_stress[..count], &points.pressure[..count]);
         let inverse_deformation = &points.inverse_deformation[..count];
-        let is_total = self.configuration == Configuration::Total;
+        let is_total = self.is_pushed_forward;
         let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
         for point in 0..count {
             let volume = initial_volume[point] * volume_ratio[point] * stressed_share[point];

@@ -1,32 +1,61 @@
 //! SDIRK2 on the linear system of a frozen body.
 //!
-//! Two stages with one matrix, L-stable and stiffly accurate (Alexander 1977): with
-//! `γ = 1 − 1/√2`, `x_i = x̂_i + z_i`, `(C + γΔt K) z_i = γΔt (g − K x̂_i)` and
-//! `x̂_1 = x_n`, `x̂_2 = x_n + (1−γ)/γ z_1`, `x_{n+1} = x_2`.
-//!
-//! What a stage leaves of `g − K x` is zero in the rows of the mixture and `C z/(γΔt)` in those of
-//! the storage, and an extrapolated state has the extrapolated residual: no product with `K` is
-//! ever taken.
+//! With `x_i = x̂_i + z_i` a stage solves `(C + γΔt K) z_i = γΔt (g − K x̂_i)`. What it leaves of
+//! `g − K x` is zero in the rows of the mixture and `C z/(γΔt)` in those of the storage, and an
+//! extrapolated state has the extrapolated residual: no product with `K` is ever taken.
 
 use crate::mpm::body::{Body, ShapeFunction};
-use crate::mpm::implicit::assembly::LinearSystem;
 use crate::mpm::implicit::banded::BandedLu;
-use crate::mpm::implicit::drive::Plan;
-use crate::mpm::implicit::march::{ERROR_SHARE, ErrorScales, March, StepFailure, Work};
+use crate::mpm::implicit::linear_system::{LinearOperators, LinearSystem};
+use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
+use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::mpm::run::outcome::FailureKind;
+use crate::mpm::run::plan::Plan;
 use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
 use crate::soil::tensor::Vector;
 
-/// `γ = 1 − 1/√2`: both stages have the same matrix and the method is L-stable.
-pub const SDIRK_GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
-/// `(1 − γ)/γ`: share of the first stage's increment in the start of the second.
-pub const SECOND_STAGE: f64 = (1.0 - SDIRK_GAMMA) / SDIRK_GAMMA;
+/// What a linear run has changed of its body.
+#[derive(Clone, Debug, Default)]
+pub struct Change<const D: usize> {
+    /// Displacement of the nodes since the start, m.
+    displacement: Vec<Vector<D>>,
+    /// Velocity of the skeleton at the nodes, m/s.
+    velocity: Vec<Vector<D>>,
+    /// Change of the pressures at the sites, Pa.
+    pressures: Vec<f64>,
+    /// Mixture that passed the surface, m.
+    surface_flux: f64,
+}
+
+/// A frozen body at its start, whatever its basis.
+pub trait FrozenStart<const D: usize> {
+    /// The body after a change, at a time, s, with a settlement, m.
+    fn changed(&self, rows: &VolumetricRows<D>, change: Change<D>, time: f64, settlement: f64) -> Snapshot;
+
+    /// Material points and grid nodes.
+    fn sizes(&self) -> (usize, usize);
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> FrozenStart<D> for Body<D, W, S> {
+    fn changed(&self, rows: &VolumetricRows<D>, change: Change<D>, time: f64, settlement: f64) -> Snapshot {
+        let mut body = self.clone();
+        body.change_points(rows, &change.displacement, &change.pressures, &change.displacement);
+        body.nodes.solid_velocity = change.velocity;
+        body.surface_flux += change.surface_flux;
+        body.snapshot(time, settlement, &self.points)
+    }
+
+    fn sizes(&self) -> (usize, usize) {
+        (self.points.len(), self.nodes.len())
+    }
+}
 
 /// A frozen body on its way through time.
-#[derive(Clone, Debug)]
-pub struct LinearMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
+pub struct LinearStepper<const D: usize> {
     /// The body at the start.
-    start: Body<D, W, S>,
+    start: Box<dyn FrozenStart<D>>,
     /// Settlement of the start, m.
     settled: f64,
     system: LinearSystem<D>,
@@ -43,22 +72,31 @@ pub struct LinearMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
     /// State, residual and outflow at the start of the step, where it may be taken back.
     before: (Vec<f64>, Vec<f64>, f64),
     error_scales: ErrorScales,
-    rejected_steps: u64,
     /// Factor of the last increment that makes it the rate of `x`, 1/s: one over `γΔt`.
     rate_scale: f64,
     /// Relative flux that passed the surface, `∫ n (v_w − v_s) dt`, m.
     outflow: f64,
-    factorisations: u64,
+    work: Work,
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
+impl<const D: usize> LinearStepper<D> {
     /// A body at its start.
-    pub fn new(start: Body<D, W, S>, plan: &Plan<'_>) -> Self {
+    pub fn new<const W: usize, S: ShapeFunction<W> + 'static>(body: Body<D, W, S>, plan: &Plan<'_>) -> Self {
         enter(Phase::Assembly);
-        let system = LinearSystem::of(&start);
+        let system = LinearSystem::of(LinearOperators::of(&body));
+        let settled = body.settlement(plan.initial_height);
+        Self::from_system(Box::new(body), settled, system, plan)
+    }
+
+    fn from_system(
+        start: Box<dyn FrozenStart<D>>,
+        settled: f64,
+        system: LinearSystem<D>,
+        plan: &Plan<'_>,
+    ) -> Self {
         let zero = vec![0.0; system.unknowns.count];
         Self {
-            settled: -start.surface.amplitude_of(&start.grid, &start.points, &start.nodes.displacement),
+            settled,
             lu: BandedLu::of_shape(&system.fixed),
             factored: None,
             state: zero.clone(),
@@ -66,11 +104,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
             first_increment: zero.clone(),
             before: (zero.clone(), zero.clone(), 0.0),
             error_scales: ErrorScales::of(&system.scales, plan),
-            rejected_steps: 0,
             increment: zero,
             rate_scale: 0.0,
             outflow: 0.0,
-            factorisations: 0,
+            work: Work::default(),
             system,
             start,
         }
@@ -87,7 +124,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
                 reason: format!("the matrix of a step of {dt:.4e} s has no pivot in row {}", singular.row),
             })?;
             self.factored = Some(dt);
-            self.factorisations += 1;
+            self.work.factorisations += 1;
         }
         Ok(())
     }
@@ -125,13 +162,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> LinearMarch<D, W, S> {
         self.rate_scale = 1.0 / stage;
     }
 
-    /// Vertical displacement of the loaded surface since the start, m.
-    fn surface_displacement(&self) -> f64 {
-        self.system.surface_displacement.product(0, &self.state)
-    }
-}
-
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> March<D, W, S> for LinearMarch<D, W, S> {
+    /// One step, taken back where its error is larger than `most_error`; the error.
     fn step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure> {
         self.set_step(dt)?;
         if most_error == f64::INFINITY {
@@ -149,43 +180,46 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> March<D, W, S> for Lin
             self.state.copy_from_slice(&self.before.0);
             self.residual.copy_from_slice(&self.before.1);
             self.outflow = self.before.2;
-            self.rejected_steps += 1;
+            self.work.rejected_steps += 1;
         }
         Ok(error)
     }
+}
+
+impl<const D: usize> Stepper for LinearStepper<D> {
+    fn advance(&mut self, steps: &EqualSteps, most_error: f64) -> Result<f64, StepFailure> {
+        (0..steps.count).try_fold(0.0, |_, _| self.step(steps.dt, most_error))
+    }
 
     fn settlement(&self) -> f64 {
-        self.settled - self.surface_displacement()
+        self.settled - self.system.surface_displacement.product(0, &self.state)
     }
 
-    fn settlement_rate(&self) -> f64 {
-        -self.rate_scale * self.system.surface_displacement.product(0, &self.increment)
+    fn settlement_rate(&self) -> Option<f64> {
+        Some(-self.rate_scale * self.system.surface_displacement.product(0, &self.increment))
     }
 
-    fn lost_point(&self) -> Option<StepFailure> {
-        None
-    }
-
-    fn work(&self) -> Work {
-        Work { factorisations: self.factorisations, rejected_steps: self.rejected_steps, iterations: 0 }
-    }
-
-    fn body_now(&self) -> Body<D, W, S> {
-        let mut body = self.start.clone();
-        let unknowns = &self.system.unknowns;
+    fn snapshot(&self, time: f64) -> Snapshot {
+        let (unknowns, scales) = (&self.system.unknowns, &self.system.scales);
         let nodal = |values: &[f64], scale: f64| -> Vec<Vector<D>> {
             let component = |unknown: Option<usize>| unknown.map_or(0.0, |unknown| scale * values[unknown]);
             unknowns.displacement.iter().map(|node| node.map(component)).collect()
         };
-        let displacement = nodal(&self.state, self.system.scales.length);
-        let pressures: Vec<f64> = unknowns
-            .pressure
-            .iter()
-            .map(|unknown| self.system.scales.pressure * self.state[*unknown])
-            .collect();
-        body.change_points(&unknowns.rows, &displacement, &pressures, &displacement);
-        body.nodes.solid_velocity = nodal(&self.increment, self.rate_scale * self.system.scales.length);
-        body.surface_flux += self.system.mean_displacement.product(0, &self.state) + self.outflow;
-        body
+        let pressure = |unknown: &usize| scales.pressure * self.state[*unknown];
+        let change = Change {
+            displacement: nodal(&self.state, scales.length),
+            velocity: nodal(&self.increment, self.rate_scale * scales.length),
+            pressures: unknowns.pressure.iter().map(pressure).collect(),
+            surface_flux: self.system.mean_displacement.product(0, &self.state) + self.outflow,
+        };
+        self.start.changed(&unknowns.rows, change, time, self.settlement())
+    }
+
+    fn sizes(&self) -> (usize, usize) {
+        self.start.sizes()
+    }
+
+    fn work(&self) -> Work {
+        self.work
     }
 }

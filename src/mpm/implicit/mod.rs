@@ -1,23 +1,21 @@
 //! Implicit integrators, on the operators of the explicit one.
 //!
 //! - `unknowns`: displacements of the nodes and pressures of the sites, numbered along the column,
-//! - `assembly`: the frozen body as `C ẋ + K x = g`; `linear`: SDIRK2 on it, one factorisation a
-//!   step size,
-//! - `trial`: what the balances of a moving or inertial body leave at a trial state; `tangent`:
-//!   its differences; `newton`: SDIRK2 with Newton's iteration on it,
-//! - `steps`: few distinct step sizes; `march`, `drive`: from output to output,
-//! - `banded`, `sparse`, `tensor`: the algebra.
+//! - `sdirk`: the two stages of every step, and the scales of its error,
+//! - `linear_system`: the frozen body as `C ẋ + K x = g`; `linear`: SDIRK2 on it, one
+//!   factorisation per step size,
+//! - `trial`: a moving or inertial body at a trial state; `residual`: what its balances leave there;
+//!   `tangent`: the residual's differences; `newton`: SDIRK2 with Newton's iteration on it,
+//! - `banded`, `deformation`: the algebra.
 
-pub mod assembly;
 pub mod banded;
-pub mod drive;
+pub mod deformation;
 pub mod linear;
-pub mod march;
+pub mod linear_system;
 pub mod newton;
-pub mod sparse;
-pub mod steps;
+pub mod residual;
+pub mod sdirk;
 pub mod tangent;
-pub mod tensor;
 pub mod trial;
 pub mod unknowns;
 

@@ -2,15 +2,16 @@
 
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::implicit::banded::{Banded, BandedLu};
-use crate::mpm::implicit::drive::Plan;
-use crate::mpm::implicit::linear::{SDIRK_GAMMA, SECOND_STAGE};
-use crate::mpm::implicit::march::{ERROR_SHARE, ErrorScales, March, StepFailure, Work};
-use crate::mpm::implicit::tangent::Pattern;
-use crate::mpm::implicit::trial::{Skeleton, StageStart, Trial};
+use crate::mpm::implicit::residual::{Balances, StageStart};
+use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
+use crate::mpm::implicit::tangent::{Pattern, Structure};
+use crate::mpm::implicit::trial::{Skeleton, Trial};
 use crate::mpm::run::integrator::IntegratorKind;
-use crate::mpm::run::lost_point;
 use crate::mpm::run::outcome::FailureKind;
+use crate::mpm::run::plan::Plan;
 use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
 
 /// Iterations of a stage.
 const MOST_ITERATIONS: usize = 16;
@@ -20,43 +21,6 @@ const MOST_HALVINGS: u32 = 10;
 const TOLERANCE: f64 = 1e-11;
 /// Ratio of an iteration's correction to the last one's beyond which the tangent is made anew.
 const SLOW: f64 = 0.1;
-
-/// Where the operators' rows begin: what the pattern of the tangent depends on.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct Structure {
-    basis: Vec<usize>,
-    composite: Vec<usize>,
-    between_ends: Vec<usize>,
-    cells: Vec<usize>,
-    /// Splines that end at the surface lose a node without any point's row beginning elsewhere.
-    last_node: Option<usize>,
-    /// A domain that touches a face reaches the node beyond it without its row beginning elsewhere.
-    numbers: Vec<Option<usize>>,
-}
-
-impl Structure {
-    fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(trial: &Trial<D, W, S>) -> Self {
-        let body = &trial.body;
-        Self {
-            basis: body.basis.first.clone(),
-            composite: body.composite.first.clone(),
-            between_ends: body.between_ends.first.clone(),
-            cells: body.cells.of_point.clone(),
-            last_node: body.last_spline_node(),
-            numbers: trial.unknowns.displacement.as_flattened().to_vec(),
-        }
-    }
-
-    fn is_of<const D: usize, const W: usize, S: ShapeFunction<W>>(&self, trial: &Trial<D, W, S>) -> bool {
-        let body = &trial.body;
-        self.basis == body.basis.first
-            && self.composite == body.composite.first
-            && self.between_ends == body.between_ends.first
-            && self.cells == body.cells.of_point
-            && self.last_node == body.last_spline_node()
-            && self.numbers == trial.unknowns.displacement.as_flattened()
-    }
-}
 
 /// Stages of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,9 +43,8 @@ impl Stages {
 }
 
 /// A body on its way through time.
-#[derive(Clone, Debug)]
-pub struct NewtonMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
-    trial: Trial<D, W, S>,
+pub struct NewtonStepper<const D: usize> {
+    trial: Box<dyn Balances<D>>,
     pattern: Pattern,
     structure: Structure,
     tangent: Banded,
@@ -111,26 +74,34 @@ pub struct NewtonMarch<const D: usize, const W: usize, S: ShapeFunction<W>> {
     work: Work,
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
+impl<const D: usize> NewtonStepper<D> {
     /// A body at its start.
-    pub fn new(body: Body<D, W, S>, plan: &Plan<'_>) -> Self {
-        let full_load = body.surface.load;
-        let is_semi_implicit = plan.schedule.integrator == IntegratorKind::SemiImplicit;
-        let skeleton = if is_semi_implicit { Skeleton::Explicit } else { Skeleton::Implicit };
-        let trial = Trial::new(body, plan.schedule.formulation, skeleton);
-        let pattern = Pattern::of(&trial.body, &trial.unknowns);
+    pub fn new<const W: usize, S: ShapeFunction<W> + 'static>(body: Body<D, W, S>, plan: &Plan<'_>) -> Self {
+        let skeleton = match plan.schedule.integrator {
+            IntegratorKind::SemiImplicit => Skeleton::Explicit,
+            IntegratorKind::Explicit | IntegratorKind::Implicit => Skeleton::Implicit,
+        };
+        Self::of(Box::new(Trial::new(body, plan.schedule.formulation, skeleton)), plan)
+    }
+
+    fn of(trial: Box<dyn Balances<D>>, plan: &Plan<'_>) -> Self {
+        let pattern = trial.pattern();
         let tangent = pattern.zeros();
-        let zero = vec![0.0; trial.unknowns.count];
+        let scales = trial.scales();
+        let zero = vec![0.0; trial.unknowns().count];
         Self {
-            structure: Structure::of(&trial),
+            structure: trial.structure_unless(&Structure::default()).unwrap_or_default(),
             lu: BandedLu::of_shape(&tangent),
             tangent,
             pattern,
             factored: None,
             contraction: SLOW,
-            tolerance: TOLERANCE * plan.pressure_scale / trial.scales.pressure,
-            error_scales: ErrorScales::of(&trial.scales, plan),
-            stages: if is_semi_implicit { Stages::Single } else { Stages::Sdirk },
+            tolerance: TOLERANCE * plan.pressure_scale / scales.pressure,
+            error_scales: ErrorScales::of(&scales, plan),
+            stages: match plan.schedule.integrator {
+                IntegratorKind::SemiImplicit => Stages::Single,
+                IntegratorKind::Explicit | IntegratorKind::Implicit => Stages::Sdirk,
+            },
             start: StageStart::default(),
             rate: zero.clone(),
             state: zero.clone(),
@@ -138,7 +109,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
             scratch: zero,
             initial_height: plan.initial_height,
             loading_time: plan.loading_time,
-            full_load,
+            full_load: trial.load(),
             time: 0.0,
             settlement_rate: 0.0,
             work: Work::default(),
@@ -169,8 +140,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
             }
             self.load_at(self.time + end * dt);
             self.solve_stage()?;
-            let body = &self.trial.body;
-            flux += share * stage * body.surface.mean_of(&body.grid, &body.points, &body.nodes.flux);
+            flux += share * stage * self.trial.surface_mean(|nodes| &nodes.flux);
             if *share != 1.0 {
                 self.start_second_stage();
             }
@@ -184,12 +154,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
         for (rate, (end, start)) in self.rate.iter_mut().zip(self.state.iter().zip(&self.start.unknowns)) {
             *rate = (end - start) / stage;
         }
-        let body = &self.trial.body;
-        self.settlement_rate = -body.surface.mean_of(&body.grid, &body.points, &body.nodes.solid_velocity);
+        self.settlement_rate = -self.trial.surface_mean(|nodes| &nodes.solid_velocity);
         enter(Phase::BuildWeights);
-        self.trial.commit(&self.state);
+        self.trial.end_step(&self.state, flux);
         self.time += dt;
-        self.trial.body.surface_flux += flux;
         self.follow_structure();
         Ok(error)
     }
@@ -199,7 +167,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
         if self.stages == Stages::Single {
             return 0.0;
         }
-        self.error_scales.largest(&self.trial.unknowns, |unknown| {
+        self.error_scales.largest(self.trial.unknowns(), |unknown| {
             let start = self.start.unknowns[unknown];
             ERROR_SHARE * (start / SECOND_STAGE - (self.state[unknown] - start))
         })
@@ -208,7 +176,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
     /// The load at a time, where it grows.
     fn load_at(&mut self, time: f64) {
         if self.loading_time > 0.0 {
-            self.trial.load(self.full_load * (time / self.loading_time).min(1.0));
+            self.trial.set_load(self.full_load * (time / self.loading_time).min(1.0));
         }
     }
 
@@ -217,7 +185,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
         self.start.duration = stage;
         self.start.unknowns.clear();
         self.start.unknowns.resize(self.state.len(), 0.0);
-        let [solid, water] = &self.trial.velocity;
+        let [solid, water] = self.trial.velocity();
         self.start.solid_velocity.clone_from(solid);
         self.start.water_velocity.clone_from(water);
         for (state, rate) in self.state.iter_mut().zip(&self.rate) {
@@ -227,7 +195,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
 
     /// The second stage starts where the first one's rates lead, and is guessed to have the same.
     fn start_second_stage(&mut self) {
-        let nodes = &self.trial.body.nodes;
+        let nodes = self.trial.nodes();
         for (start, now) in [
             (&mut self.start.solid_velocity, &nodes.solid_velocity),
             (&mut self.start.water_velocity, &nodes.water_velocity),
@@ -247,7 +215,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
         let mut last = f64::INFINITY;
         let mut renew = self.factored != Some(self.start.duration);
         for _ in 0..MOST_ITERATIONS {
-            self.evaluate()?;
+            enter(Phase::Balances);
+            self.trial.residual(&self.state, &self.start, &mut self.residual)?;
             if renew {
                 self.renew_tangent()?;
                 self.contraction = SLOW;
@@ -279,19 +248,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
         })
     }
 
-    /// The residual at the present iterate.
-    fn evaluate(&mut self) -> Result<(), StepFailure> {
-        enter(Phase::Balances);
-        let grains = 1.0 - self.trial.body.material.porosity;
-        self.trial.residual(&self.state, &self.start, &mut self.residual).map_err(|point| {
-            let ratio = self.trial.body.points.volume_ratio[point];
-            StepFailure {
-                kind: FailureKind::PoresClosed,
-                reason: format!("point {point} has J = {ratio:.4}, its grains alone fill {grains:.4}"),
-            }
-        })
-    }
-
     fn renew_tangent(&mut self) -> Result<(), StepFailure> {
         enter(Phase::Assembly);
         let (trial, start) = (&mut self.trial, &self.start);
@@ -319,15 +275,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
 
     /// Points that went on to other cells change which balances feel which unknowns.
     fn follow_structure(&mut self) {
-        if self.structure.is_of(&self.trial) {
-            return;
-        }
-        self.structure = Structure::of(&self.trial);
-        self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
+        let Some(structure) = self.trial.structure_unless(&self.structure) else { return };
+        self.structure = structure;
+        self.pattern = self.trial.pattern();
         self.tangent = self.pattern.zeros();
         self.lu = BandedLu::of_shape(&self.tangent);
         self.factored = None;
-        let count = self.trial.unknowns.count;
+        let count = self.trial.unknowns().count;
         if count != self.state.len() {
             for vector in [&mut self.rate, &mut self.state, &mut self.residual, &mut self.scratch] {
                 vector.clear();
@@ -337,28 +291,31 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> NewtonMarch<D, W, S> {
     }
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> March<D, W, S> for NewtonMarch<D, W, S> {
-    fn step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure> {
+impl<const D: usize> Stepper for NewtonStepper<D> {
+    fn advance(&mut self, steps: &EqualSteps, most_error: f64) -> Result<f64, StepFailure> {
         // Smaller steps would hide that an explicit skeleton is beyond its limit.
         let halvings = if self.stages == Stages::Single { 0 } else { MOST_HALVINGS };
-        self.step_within(dt, halvings, most_error)
-    }
-
-    fn body_now(&self) -> Body<D, W, S> {
-        self.trial.body_now()
+        (0..steps.count).try_fold(0.0, |_, _| self.step_within(steps.dt, halvings, most_error))
     }
 
     fn settlement(&self) -> f64 {
         self.trial.settlement(self.initial_height)
     }
 
-    fn settlement_rate(&self) -> f64 {
-        self.settlement_rate
+    fn settlement_rate(&self) -> Option<f64> {
+        Some(self.settlement_rate)
     }
 
     fn lost_point(&self) -> Option<StepFailure> {
-        let (kind, reason) = lost_point(&self.trial.body)?;
-        Some(StepFailure { kind, reason })
+        self.trial.lost_point()
+    }
+
+    fn snapshot(&self, time: f64) -> Snapshot {
+        self.trial.snapshot(time, self.settlement())
+    }
+
+    fn sizes(&self) -> (usize, usize) {
+        (self.trial.point_count(), self.trial.nodes().len())
     }
 
     fn work(&self) -> Work {

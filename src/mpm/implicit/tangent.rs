@@ -14,6 +14,50 @@ use crate::mpm::method::PressureIntegration;
 /// digits of a tangent whose unknowns are strains.
 const DIFFERENCE: f64 = 1e-7;
 
+/// Where the operators' rows begin: what the pattern of the tangent depends on.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Structure {
+    basis: Vec<usize>,
+    composite: Vec<usize>,
+    between_ends: Vec<usize>,
+    cells: Vec<usize>,
+    /// Splines that end at the surface lose a node without any point's row beginning elsewhere.
+    last_node: Option<usize>,
+    /// A domain that touches a face reaches the node beyond it without its row beginning elsewhere.
+    numbers: Vec<Option<usize>>,
+}
+
+impl Structure {
+    /// The structure of a body's present operators and numbering.
+    pub fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(
+        body: &Body<D, W, S>,
+        unknowns: &Unknowns<D>,
+    ) -> Self {
+        Self {
+            basis: body.basis.first.clone(),
+            composite: body.composite.first.clone(),
+            between_ends: body.between_ends.first.clone(),
+            cells: body.cells.of_point.clone(),
+            last_node: body.last_spline_node(),
+            numbers: unknowns.displacement.as_flattened().to_vec(),
+        }
+    }
+
+    /// Whether it still is the structure of a body; nothing is allocated.
+    pub fn is_of<const D: usize, const W: usize, S: ShapeFunction<W>>(
+        &self,
+        body: &Body<D, W, S>,
+        unknowns: &Unknowns<D>,
+    ) -> bool {
+        self.basis == body.basis.first
+            && self.composite == body.composite.first
+            && self.between_ends == body.between_ends.first
+            && self.cells == body.cells.of_point
+            && self.last_node == body.last_spline_node()
+            && self.numbers == unknowns.displacement.as_flattened()
+    }
+}
+
 /// Which balances feel which unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
@@ -48,11 +92,6 @@ impl Pattern {
     /// Zeros in the shape of the tangent.
     pub fn zeros(&self) -> Banded {
         Banded::zeros(self.rows_of_column.len(), self.lower, self.upper)
-    }
-
-    /// Residuals that a tangent takes.
-    pub fn group_count(&self) -> usize {
-        self.groups.len()
     }
 
     /// Differences of `residual` at `state`, where it is `base`. `scratch` has the length of the
@@ -93,7 +132,7 @@ fn felt_unknowns<const D: usize, const W: usize, S: ShapeFunction<W>>(
             for entry in body.strain_row(point, &unknowns.rows) {
                 felt.extend(unknowns.displacement[entry.node].into_iter().flatten());
             }
-            unknowns.visit_recovery(point, |site, _| felt.push(unknowns.pressure[site]));
+            felt.extend(unknowns.rows.recovery[point].iter().map(|(site, _)| unknowns.pressure[*site]));
             felt
         })
         .collect();
@@ -126,7 +165,9 @@ fn felt_unknowns<const D: usize, const W: usize, S: ShapeFunction<W>>(
     for site in 0..unknowns.sites.len() {
         let row = &mut rows[unknowns.pressure[site]];
         row.push(unknowns.pressure[site]);
-        unknowns.visit_divergence(site, |node, _| row.extend_from_slice(&by_node[node]));
+        for (node, _) in &unknowns.rows.divergence[site] {
+            row.extend_from_slice(&by_node[*node]);
+        }
         row.sort_unstable();
         row.dedup();
     }

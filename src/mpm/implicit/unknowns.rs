@@ -4,6 +4,11 @@
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::method::PressureIntegration;
 use crate::mpm::operators::volumetric::VolumetricRows;
+use crate::mpm::state::cells::Cells;
+use crate::mpm::state::grid::Grid;
+use crate::mpm::state::nodes::Nodes;
+use crate::mpm::state::points::Points;
+use crate::soil::material::Material;
 use crate::soil::tensor::Vector;
 
 /// Numbering of the unknowns. Neighbours in space are neighbours in number, along the longest
@@ -36,11 +41,22 @@ enum Kind {
 impl<const D: usize> Unknowns<D> {
     /// Numbers the unknowns of a body on its present operators.
     pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
-        let integration = body.method.pressure;
+        let rows = body.volumetric_rows();
+        Self::numbered(&body.grid, &body.nodes, &body.cells, &body.points, body.method.pressure, rows)
+    }
+
+    fn numbered(
+        grid: &Grid<D>,
+        nodes: &Nodes<D>,
+        cells: &Cells<D>,
+        points: &Points<D>,
+        integration: PressureIntegration,
+        rows: VolumetricRows<D>,
+    ) -> Self {
         let (sites, places): (Vec<usize>, usize) = match integration {
-            PressureIntegration::Points => ((0..body.points.len()).collect(), body.points.len()),
+            PressureIntegration::Points => ((0..points.len()).collect(), points.len()),
             PressureIntegration::Sri | PressureIntegration::Mean => {
-                (body.cells.occupied().collect(), body.grid.cell_count())
+                (cells.occupied().collect(), grid.cell_count())
             }
         };
         let mut site_of_place = vec![None; places];
@@ -48,17 +64,17 @@ impl<const D: usize> Unknowns<D> {
             site_of_place[*place] = Some(site);
         }
         let site_position = |site: usize| match integration {
-            PressureIntegration::Points => body.points.position[sites[site]],
-            PressureIntegration::Sri | PressureIntegration::Mean => body.grid.cell_centre(sites[site]),
+            PressureIntegration::Points => points.position[sites[site]],
+            PressureIntegration::Sri | PressureIntegration::Mean => grid.cell_centre(sites[site]),
         };
         let mut sorted: Vec<(Vector<D>, Kind)> = Vec::new();
-        for node in 0..body.nodes.len() {
-            for direction in (0..D).filter(|d| body.nodes.free[node][*d] > 0.0) {
-                sorted.push((body.grid.node_position(node), Kind::Displacement { node, direction }));
+        for node in 0..nodes.len() {
+            for direction in (0..D).filter(|d| nodes.free[node][*d] > 0.0) {
+                sorted.push((grid.node_position(node), Kind::Displacement { node, direction }));
             }
         }
         sorted.extend((0..sites.len()).map(|site| (site_position(site), Kind::Pressure { site })));
-        let slowest = (0..D).max_by_key(|d| body.grid.cells[*d]).unwrap_or(0);
+        let slowest = (0..D).max_by_key(|d| grid.cells[*d]).unwrap_or(0);
         let key = |place: &Vector<D>| {
             let mut key = *place;
             key.swap(0, slowest);
@@ -71,7 +87,7 @@ impl<const D: usize> Unknowns<D> {
                 .find(|order| order.is_ne())
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
-        let mut displacement = vec![[None; D]; body.nodes.len()];
+        let mut displacement = vec![[None; D]; nodes.len()];
         let mut pressure = vec![0; sites.len()];
         for (number, (_, kind)) in sorted.iter().enumerate() {
             match *kind {
@@ -79,15 +95,7 @@ impl<const D: usize> Unknowns<D> {
                 Kind::Pressure { site } => pressure[site] = number,
             }
         }
-        Self {
-            displacement,
-            pressure,
-            rows: body.volumetric_rows(),
-            site_of_place,
-            integration,
-            count: sorted.len(),
-            sites,
-        }
+        Self { displacement, pressure, rows, site_of_place, integration, count: sorted.len(), sites }
     }
 
     /// Site of a cell or point, where it is one.
@@ -95,26 +103,13 @@ impl<const D: usize> Unknowns<D> {
         self.site_of_place[place]
     }
 
-    /// Visits the sites that a point's pressure comes from, with their weights.
-    pub fn visit_recovery(&self, point: usize, mut visitor: impl FnMut(usize, f64)) {
-        for (site, weight) in &self.rows.recovery[point] {
-            visitor(*site, *weight);
-        }
-    }
-
-    /// Visits the nodes of a site's divergence with its coefficients, 1/m.
-    pub fn visit_divergence(&self, site: usize, mut visitor: impl FnMut(usize, &Vector<D>)) {
-        for (node, coefficients) in &self.rows.divergence[site] {
-            visitor(*node, coefficients);
-        }
-    }
-
     /// Porosity at a site.
-    pub fn porosity<const W: usize, S: ShapeFunction<W>>(&self, body: &Body<D, W, S>, site: usize) -> f64 {
+    #[inline]
+    pub fn porosity(&self, soil: &Material, points: &Points<D>, cells: &Cells<D>, site: usize) -> f64 {
         let place = self.sites[site];
         match self.integration {
-            PressureIntegration::Points => body.material.porosity_at(body.points.volume_ratio[place]),
-            PressureIntegration::Sri | PressureIntegration::Mean => body.cells.porosity[place],
+            PressureIntegration::Points => soil.porosity_at(points.volume_ratio[place]),
+            PressureIntegration::Sri | PressureIntegration::Mean => cells.porosity[place],
         }
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod recovery;
 pub mod shape;
+pub mod sparse_rows;
 pub mod stencil;
 pub mod strain_gradient;
 pub mod surface_load;

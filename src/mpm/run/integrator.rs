@@ -1,6 +1,6 @@
 //! Time integrators by name.
 
-use crate::mpm::run::TimeStepRule;
+use crate::mpm::run::time_step_rule::TimeStepRule;
 use serde::{Deserialize, Serialize};
 
 /// Share of the critical step where an explicit run names no rule.
@@ -83,7 +83,7 @@ impl IntegratorKind {
     }
 }
 
-/// Which accelerations the balances keep (theory, section 2: model only what a scene needs).
+/// Which accelerations the balances keep (docs/theory.md, section 1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Formulation {

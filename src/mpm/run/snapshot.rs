@@ -76,6 +76,15 @@ pub struct Totals {
 }
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+    /// Settlement of the loaded surface, m, which was at `initial_height`.
+    pub fn settlement(&self, initial_height: f64) -> f64 {
+        if self.configuration.moves_points() {
+            initial_height - self.surface.height(&self.points)
+        } else {
+            -self.surface.amplitude_of(&self.grid, &self.points, &self.nodes.displacement)
+        }
+    }
+
     /// Samples the body at `time`; water is balanced against the points of the `start`.
     pub fn snapshot(&self, time: f64, settlement: f64, start: &Points<D>) -> Snapshot {
         Snapshot {

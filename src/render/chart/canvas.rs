@@ -1,20 +1,19 @@
-//! The only file that knows the plotting library: pixels in, SVG out.
+//! Shapes and words in pixels, drawn by the plotting library on its SVG backend.
 //!
 //! The library's coordinates are whole numbers, so everything is drawn ten times larger and shown
-//! through the view box. Each group is drawn on a sheet of its own, which lets it carry what the
-//! library cannot say: dashes, halos, crisp edges.
-use crate::render::chart::polish::{marked, polish};
-use crate::render::error::RenderError;
-use plotters::backend::SVGBackend;
+//! through the view box.
+use crate::render::chart::svg_backend::SvgBackend;
+use crate::render::escape::plain_html;
+use crate::render::render_error::RenderError;
 use plotters::coord::Shift;
-use plotters::prelude::{
-    Circle, DrawingArea, IntoDrawingArea, IntoFont, PathElement, Polygon, RGBAColor, Rectangle, Text,
-};
+use plotters::element::{Drawable, PointCollection};
+use plotters::prelude::{Circle, DrawingArea, IntoFont, PathElement, Polygon, RGBAColor, Rectangle, Text};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, FontTransform, ShapeStyle, TextStyle};
-use std::fmt::Write as _;
+use std::cell::RefCell;
+use std::rc::Rc;
 
-/// Drawing units a pixel.
+/// Drawing units per pixel.
 const UNIT: f64 = 10.0;
 const FONTS: &str = "'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 
@@ -61,51 +60,26 @@ pub(crate) struct Type {
     pub upright: bool,
 }
 
-type Drawn = Result<(), String>;
-type Sheet<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-/// Draws on the sheet of one group.
-pub(crate) struct Brush<'a, 'b>(&'a Sheet<'b>);
-
 /// A figure in the making.
 pub(crate) struct Canvas {
     size: (u32, u32),
-    body: String,
+    backend: Rc<RefCell<SvgBackend>>,
+    area: DrawingArea<SvgBackend, Shift>,
     failure: Option<String>,
 }
 
 impl Canvas {
     pub fn new(width: f64, height: f64) -> Self {
         let size = (units(width).unsigned_abs(), units(height).unsigned_abs());
-        Self { size, body: String::new(), failure: None }
+        let backend = Rc::new(RefCell::new(SvgBackend::new(size)));
+        Self { size, area: DrawingArea::from(&backend), backend, failure: None }
     }
 
-    /// Draws a group with attributes of its own. The first failure is kept for [`Canvas::finish`].
-    pub fn group(&mut self, attributes: &[(&str, &str)], draw: impl FnOnce(&Brush<'_, '_>) -> Drawn) {
-        let mut text = String::new();
-        let drawn = {
-            let sheet = SVGBackend::with_string(&mut text, self.size).into_drawing_area();
-            draw(&Brush(&sheet)).and_then(|()| sheet.present().map_err(|e| e.to_string()))
-        };
-        if let Err(reason) = drawn {
-            self.failure.get_or_insert(reason);
-        }
-        let inside = text
-            .split_once('\n')
-            .and_then(|(_, rest)| rest.rsplit_once("</svg>"))
-            .map_or("", |(inside, _)| inside);
-        if inside.is_empty() {
-            return;
-        }
-        if attributes.is_empty() {
-            self.body.push_str(&polish(inside));
-            return;
-        }
-        self.body.push_str("<g");
-        for (name, value) in attributes {
-            let _ = write!(self.body, r#" {name}="{}""#, escape(value));
-        }
-        let _ = write!(self.body, ">\n{}</g>\n", polish(inside));
+    /// Draws a group with attributes of its own.
+    pub fn group(&mut self, attributes: &[(&str, &str)], draw: impl FnOnce(&mut Self)) {
+        let group = self.backend.borrow_mut().open_group(attributes);
+        draw(self);
+        self.backend.borrow_mut().close_group(&group);
     }
 
     /// The finished SVG, named for those who cannot see it.
@@ -114,48 +88,50 @@ impl Canvas {
             return Err(RenderError::Draw { title: title.to_owned(), reason });
         }
         let (w, h) = self.size;
-        let (title, description) = (escape(&clean(title)), escape(&clean(description)));
+        let (title, description) = (one_line(title), one_line(description));
         Ok(format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{title}\" \
              width=\"{}\" height=\"{}\" viewBox=\"0 0 {w} {h}\" font-family=\"{FONTS}\">\n\
              <title>{title}</title>\n<desc>{description}</desc>\n{}</svg>\n",
             f64::from(w) / UNIT,
             f64::from(h) / UNIT,
-            self.body,
+            self.backend.borrow().elements(),
         ))
     }
-}
 
-impl Brush<'_, '_> {
-    pub fn line(&self, points: &[Px], ink: impl Into<Ink>, width: f64) -> Drawn {
-        self.0
-            .draw(&PathElement::new(spots(points), ink.into().style(width, false)))
-            .map_err(|e| e.to_string())
+    /// The first failure is kept for [`Canvas::finish`].
+    fn put<E>(&mut self, element: &E)
+    where
+        for<'e> &'e E: PointCollection<'e, (i32, i32)>,
+        E: Drawable<SvgBackend>,
+    {
+        if let Err(error) = self.area.draw(element) {
+            self.failure.get_or_insert(error.to_string());
+        }
     }
 
-    pub fn polygon(&self, points: &[Px], ink: impl Into<Ink>) -> Drawn {
-        self.0.draw(&Polygon::new(spots(points), ink.into().style(0.0, true))).map_err(|e| e.to_string())
+    pub fn line(&mut self, points: &[Px], ink: impl Into<Ink>, width: f64) {
+        self.put(&PathElement::new(spots(points), ink.into().style(width, false)));
     }
 
-    pub fn rect(&self, corner: Px, opposite: Px, ink: impl Into<Ink>) -> Drawn {
-        let corners = [spot(corner), spot(opposite)];
-        self.0.draw(&Rectangle::new(corners, ink.into().style(0.0, true))).map_err(|e| e.to_string())
+    pub fn polygon(&mut self, points: &[Px], ink: impl Into<Ink>) {
+        self.put(&Polygon::new(spots(points), ink.into().style(0.0, true)));
     }
 
-    pub fn disc(&self, centre: Px, radius: f64, ink: impl Into<Ink>) -> Drawn {
-        self.circle(centre, radius, ink.into().style(0.0, true))
+    pub fn rect(&mut self, corner: Px, opposite: Px, ink: impl Into<Ink>) {
+        self.put(&Rectangle::new([spot(corner), spot(opposite)], ink.into().style(0.0, true)));
     }
 
-    pub fn ring(&self, centre: Px, radius: f64, ink: impl Into<Ink>, width: f64) -> Drawn {
-        self.circle(centre, radius, ink.into().style(width, false))
+    pub fn disc(&mut self, centre: Px, radius: f64, ink: impl Into<Ink>) {
+        self.put(&Circle::new(spot(centre), units(radius), ink.into().style(0.0, true)));
     }
 
-    fn circle(&self, centre: Px, radius: f64, style: ShapeStyle) -> Drawn {
-        self.0.draw(&Circle::new(spot(centre), units(radius), style)).map_err(|e| e.to_string())
+    pub fn ring(&mut self, centre: Px, radius: f64, ink: impl Into<Ink>, width: f64) {
+        self.put(&Circle::new(spot(centre), units(radius), ink.into().style(width, false)));
     }
 
     /// Text whose base line runs through `at`.
-    pub fn text(&self, text: &str, at: Px, look: Type) -> Drawn {
+    pub fn text(&mut self, text: &str, at: Px, look: Type) {
         let Rgb(r, g, b) = look.ink;
         let weight = if look.bold { FontStyle::Bold } else { FontStyle::Normal };
         let turn = if look.upright { FontTransform::Rotate270 } else { FontTransform::None };
@@ -164,11 +140,10 @@ impl Brush<'_, '_> {
             Hold::Middle => HPos::Center,
             Hold::End => HPos::Right,
         };
-        // The library divides by 1.24 what it is given.
-        let font = ("sans-serif", look.size * UNIT * 1.24).into_font().style(weight).transform(turn);
+        let font = ("sans-serif", look.size * UNIT).into_font().style(weight).transform(turn);
         let ink = RGBAColor(r, g, b, 1.0);
         let style = TextStyle::from(font).color(&ink).pos(Pos::new(hold, VPos::Bottom));
-        self.0.draw(&Text::new(marked(text), spot(at), style)).map_err(|e| e.to_string())
+        self.put(&Text::new(text.to_owned(), spot(at), style));
     }
 }
 
@@ -189,13 +164,9 @@ fn spots(points: &[Px]) -> Vec<(i32, i32)> {
     out
 }
 
-/// The text as spelled, without what no document may hold.
-fn clean(text: &str) -> String {
-    text.chars().filter(|c| !c.is_control() && !('\u{e000}'..='\u{f8ff}').contains(c)).collect()
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+/// Text for an attribute or a title, as it is spelled.
+fn one_line(text: &str) -> String {
+    plain_html(&text.replace(char::is_control, ""))
 }
 
 #[cfg(test)]
@@ -205,15 +176,11 @@ mod tests {
     const PLAIN: Type =
         Type { size: 12.0, ink: Rgb(0, 0, 0), bold: false, hold: Hold::Start, upright: false };
 
-    fn text(words: &str) -> String {
-        let mut canvas = Canvas::new(100.0, 50.0);
-        canvas.group(&[], |b| b.text(words, (1.0, 2.0), PLAIN));
-        canvas.finish("a <title>", "").unwrap_or_default()
-    }
-
     #[test]
     fn text_is_escaped_and_scripts_become_spans() {
-        let svg = text("<b> T_v & 10⁻³ s");
+        let mut canvas = Canvas::new(100.0, 50.0);
+        canvas.text("<b> T_v & 10⁻³ s", (1.0, 2.0), PLAIN);
+        let svg = canvas.finish("a <title>", "").unwrap_or_default();
         assert!(svg.contains("&lt;b&gt; T<tspan dy=\"0.28em\" font-size=\"0.72em\">v</tspan>"), "{svg}");
         assert!(svg.contains("<tspan dy=\"-0.202em\">\u{a0}&amp; 10</tspan>"), "{svg}");
         assert!(svg.contains(r#"font-size="120""#), "{svg}");
@@ -221,24 +188,15 @@ mod tests {
     }
 
     #[test]
-    fn groups_carry_their_attributes() {
+    fn groups_carry_their_attributes_and_empty_ones_vanish() {
         let mut canvas = Canvas::new(100.0, 50.0);
-        canvas.group(&[("stroke-dasharray", "3 2")], |b| {
-            b.line(&[(0.0, 0.0), (10.04, 5.0)], Rgb(1, 2, 3), 1.5)
+        canvas.group(&[("stroke-dasharray", "3 2")], |canvas| {
+            canvas.line(&[(0.0, 0.0), (10.04, 5.0)], Rgb(1, 2, 3), 1.5);
         });
-        canvas.group(&[("class", "empty")], |_| Ok(()));
+        canvas.group(&[("class", "empty")], |_| {});
         let svg = canvas.finish("t", "d").unwrap_or_default();
         assert!(svg.contains("<g stroke-dasharray=\"3 2\">"), "{svg}");
         assert!(svg.contains("points=\"0,0 100,50\""), "{svg}");
         assert!(!svg.contains("empty"), "{svg}");
-    }
-
-    #[test]
-    fn a_failure_is_kept_and_told() {
-        let mut canvas = Canvas::new(10.0, 10.0);
-        canvas.group(&[], |_| Err("first".into()));
-        canvas.group(&[], |_| Err("second".into()));
-        let told = canvas.finish("t", "").err().map(|e| e.to_string());
-        assert_eq!(told.as_deref(), Some("figure `t` cannot be drawn: first"));
     }
 }

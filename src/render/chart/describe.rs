@@ -1,5 +1,5 @@
 //! What a figure shows, as plain data.
-use crate::render::chart::field::Field;
+use crate::render::chart::field::ColourField;
 
 /// A figure: axes, what is drawn between them, and what is said about it.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,13 +9,13 @@ pub struct Chart {
     /// A second, smaller line.
     pub subtitle: Option<String>,
     /// Horizontal axis.
-    pub x: Axis,
+    pub x: ChartAxis,
     /// Vertical axis.
-    pub y: Axis,
+    pub y: ChartAxis,
     /// Cells of colour beneath everything else.
-    pub field: Option<Field>,
+    pub field: Option<ColourField>,
     /// Shaded intervals beneath the lines.
-    pub bands: Vec<Band>,
+    pub bands: Vec<ShadedBand>,
     /// Lines and markers.
     pub series: Vec<Series>,
     /// Straight lines at one value of one axis.
@@ -23,7 +23,7 @@ pub struct Chart {
     /// Triangles that show what an order looks like.
     pub triangles: Vec<SlopeTriangle>,
     /// Words inside the figure.
-    pub annotations: Vec<Annotation>,
+    pub annotations: Vec<PointLabel>,
     /// What a ring around a point means; wanted where a series has ringed points.
     pub ring: Option<String>,
     /// Lines below the figure.
@@ -34,7 +34,7 @@ pub struct Chart {
 
 impl Chart {
     /// An empty figure with the usual size.
-    pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
+    pub fn new(title: impl Into<String>, x: ChartAxis, y: ChartAxis) -> Self {
         Self {
             title: title.into(),
             subtitle: None,
@@ -79,7 +79,7 @@ impl Default for Size {
 
 /// An axis.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub struct ChartAxis {
     /// Quantity and unit.
     pub label: String,
     /// How values are spread.
@@ -92,7 +92,7 @@ pub struct Axis {
     pub ticks: Option<Vec<f64>>,
 }
 
-impl Axis {
+impl ChartAxis {
     /// A linear axis that shows all of the data.
     pub fn linear(label: impl Into<String>) -> Self {
         Self { label: label.into(), scale: Scale::Linear, range: Range::Auto, inverted: false, ticks: None }
@@ -228,7 +228,7 @@ pub enum Style {
 
 /// A shaded interval.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Band {
+pub struct ShadedBand {
     /// Name in the legend.
     pub name: String,
     /// Place, lower end, upper end.
@@ -239,7 +239,7 @@ pub struct Band {
 
 /// Which axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
+pub enum ChartDirection {
     /// The horizontal axis.
     X,
     /// The vertical axis.
@@ -250,7 +250,7 @@ pub enum Direction {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
     /// The axis on which the value is read.
-    pub axis: Direction,
+    pub axis: ChartDirection,
     /// The value.
     pub at: f64,
     /// Words at the line.
@@ -263,12 +263,12 @@ pub struct SlopeTriangle {
     /// The slope; negative where the error falls to the right.
     pub slope: f64,
     /// Where to put it.
-    pub place: Place,
+    pub place: TrianglePlace,
 }
 
 /// Where a triangle is put.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Place {
+pub enum TrianglePlace {
     /// Where there is room beside the series of this name.
     Beside(String),
     /// At this point, in the units of the axes.
@@ -277,7 +277,7 @@ pub enum Place {
 
 /// Words at a point.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Annotation {
+pub struct PointLabel {
     /// The point, in the units of the axes.
     pub at: (f64, f64),
     /// The words.

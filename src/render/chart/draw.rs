@@ -1,17 +1,17 @@
 //! Puts a figure together, from the back to the front.
 use crate::elementary;
-use crate::render::chart::axes::{draw_axes, draw_bar, draw_grid};
 use crate::render::chart::canvas::{Canvas, Hold, Px, Type};
-use crate::render::chart::clip::{Frame, pieces};
-use crate::render::chart::describe::{Chart, Series, Style};
-use crate::render::chart::layout::{Layout, Side, lay_out};
-use crate::render::chart::legend::{Legend, Look, looks, stroke};
-use crate::render::chart::missing::place;
+use crate::render::chart::describe::{Chart, Scale, Series, Style};
+use crate::render::chart::layout::clip::{PixelFrame, pieces};
+use crate::render::chart::layout::missing::place;
+use crate::render::chart::layout::space::Space;
+use crate::render::chart::layout::{ChartLayout, LegendSide, lay_out};
 use crate::render::chart::palette::{DARK, QUIET, WHITE, marker};
-use crate::render::chart::space::Space;
-use crate::render::chart::triangle::draw_triangles;
-use crate::render::chart::words::{draw_annotations, draw_rules, draw_tag};
-use crate::render::error::RenderError;
+use crate::render::chart::parts::axes::{draw_axes, draw_bar, draw_grid};
+use crate::render::chart::parts::legend::{Legend, Look, looks, stroke};
+use crate::render::chart::parts::triangle::draw_triangles;
+use crate::render::chart::parts::words::{draw_annotations, draw_rules, draw_tag};
+use crate::render::render_error::RenderError;
 
 /// Radius of markers. Later ones are smaller, so that points that coincide are seen to be several,
 /// above all where no line tells of it.
@@ -39,14 +39,14 @@ impl Chart {
         let places = place(self, &layout.x.ruler, &layout.y.ruler, &layout.plot).points;
 
         let mut canvas = Canvas::new(layout.width, layout.height);
-        canvas.group(&[], |b| b.rect((0.0, 0.0), (layout.width, layout.height), WHITE));
+        canvas.rect((0.0, 0.0), (layout.width, layout.height), WHITE);
         self.draw_data(&mut canvas, &layout, &looks, &places);
         draw_axes(&mut canvas, &layout);
         self.draw_front(&mut canvas, &layout, &looks, &places);
         match layout.side {
-            Side::None => {}
-            Side::Right => legend.draw_column(&mut canvas, layout.legend),
-            Side::Below => {
+            LegendSide::None => {}
+            LegendSide::Right => legend.draw_column(&mut canvas, layout.legend),
+            LegendSide::Below => {
                 legend.draw_rows(&mut canvas, layout.legend, layout.width - layout.plot.left - layout.left);
             }
         }
@@ -54,18 +54,20 @@ impl Chart {
     }
 
     /// Field, grid, bands and lines.
-    fn draw_data(&self, canvas: &mut Canvas, layout: &Layout, looks: &[Look], places: &[Vec<Option<Px>>]) {
+    fn draw_data(
+        &self,
+        canvas: &mut Canvas,
+        layout: &ChartLayout,
+        looks: &[Look],
+        places: &[Vec<Option<Px>>],
+    ) {
         if let Some(field) = self.field.as_ref().filter(|f| f.shape().is_some()) {
             let span = field.span();
             self.draw_cells(canvas, layout);
             draw_bar(canvas, layout, |share| {
                 let value = match span.kind {
-                    crate::render::chart::describe::Scale::Linear => {
-                        span.low + share * (span.high - span.low)
-                    }
-                    crate::render::chart::describe::Scale::Log10 => {
-                        span.low * elementary::powf(span.high / span.low, share)
-                    }
+                    Scale::Linear => span.low + share * (span.high - span.low),
+                    Scale::Log10 => span.low * elementary::powf(span.high / span.low, share),
                 };
                 field.colour(&span, value)
             });
@@ -92,7 +94,13 @@ impl Chart {
     }
 
     /// Everything above the frame: bars, markers, rings, words.
-    fn draw_front(&self, canvas: &mut Canvas, layout: &Layout, looks: &[Look], places: &[Vec<Option<Px>>]) {
+    fn draw_front(
+        &self,
+        canvas: &mut Canvas,
+        layout: &ChartLayout,
+        looks: &[Look],
+        places: &[Vec<Option<Px>>],
+    ) {
         let inside = layout.plot.grown(0.5);
         let mut space = Space::within(layout.plot.grown(-2.0));
         let mut kinds: Vec<Look> = Vec::new();
@@ -110,14 +118,15 @@ impl Chart {
                     kinds.len() - 1
                 });
                 let size = radius(place, look.line);
-                canvas.group(&[], |b| shown().try_for_each(|p| marker(b, p, slot, size, look.colour)));
-                shown().for_each(|p| space.add_marker(p));
+                for at in shown() {
+                    marker(canvas, at, slot, size, look.colour);
+                    space.add_marker(at);
+                }
             }
         }
         for (series, places) in self.series.iter().zip(places) {
             let ringed = series.ringed.iter().filter_map(|&i| *places.get(i)?).filter(|&p| inside.holds(p));
-            let ringed: Vec<Px> = ringed.collect();
-            canvas.group(&[], |b| ringed.iter().try_for_each(|&p| b.ring(p, 7.6, DARK, 1.3)));
+            ringed.for_each(|at| canvas.ring(at, 7.6, DARK, 1.3));
         }
         if places.iter().flatten().flatten().next().is_none()
             && self.field.as_ref().is_none_or(|f| f.shape().is_none())
@@ -126,7 +135,7 @@ impl Chart {
             let look = Type { size: 22.0, ink: QUIET, bold: false, hold: Hold::Middle, upright: false };
             let f = layout.plot;
             let centre = (f64::midpoint(f.left, f.right), f64::midpoint(f.top, f.bottom) + 7.0);
-            canvas.group(&[], |b| b.text("no data", centre, look));
+            canvas.text("no data", centre, look);
         }
         draw_triangles(canvas, &mut space, self, layout, places);
         draw_rules(canvas, &mut space, self, layout);
@@ -150,7 +159,7 @@ impl Chart {
 }
 
 /// The visible pieces of the line of a series.
-fn lines(series: &Series, places: &[Option<Px>], plot: &Frame) -> Vec<Vec<Px>> {
+fn lines(series: &Series, places: &[Option<Px>], plot: &PixelFrame) -> Vec<Vec<Px>> {
     if series.style != Style::Stairs {
         return pieces(places, plot);
     }
@@ -165,21 +174,18 @@ fn lines(series: &Series, places: &[Option<Px>], plot: &Frame) -> Vec<Vec<Px>> {
     pieces(&steps, plot)
 }
 
-fn draw_bars(canvas: &mut Canvas, series: &Series, look: Look, layout: &Layout) {
-    canvas.group(&[], |b| {
-        for (&(at, _), &(low, high)) in series.points.iter().zip(&series.bars) {
-            let (Ok(x), Ok(low), Ok(high)) =
-                (layout.x.ruler.px(at), layout.y.ruler.px(low), layout.y.ruler.px(high))
-            else {
-                continue;
-            };
-            for piece in pieces(&[Some((x, low)), Some((x, high))], &layout.plot) {
-                b.line(&piece, look.colour, 1.2)?;
-                for end in piece {
-                    b.line(&[(end.0 - 3.5, end.1), (end.0 + 3.5, end.1)], look.colour, 1.2)?;
-                }
+fn draw_bars(canvas: &mut Canvas, series: &Series, look: Look, layout: &ChartLayout) {
+    for (&(at, _), &(low, high)) in series.points.iter().zip(&series.bars) {
+        let (Ok(x), Ok(low), Ok(high)) =
+            (layout.x.ruler.px(at), layout.y.ruler.px(low), layout.y.ruler.px(high))
+        else {
+            continue;
+        };
+        for piece in pieces(&[Some((x, low)), Some((x, high))], &layout.plot) {
+            canvas.line(&piece, look.colour, 1.2);
+            for end in piece {
+                canvas.line(&[(end.0 - 3.5, end.1), (end.0 + 3.5, end.1)], look.colour, 1.2);
             }
         }
-        Ok(())
-    });
+    }
 }

@@ -1,11 +1,11 @@
 //! Cells coloured by a value: fields over a body, maps over two parameters.
 use crate::render::chart::canvas::Rgb;
 use crate::render::chart::describe::{Range, Scale};
-use crate::render::chart::scale::{Span, drawable};
+use crate::render::chart::layout::scale::{Span, drawable};
 
 /// A value a cell, on a grid of straight lines.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Field {
+pub struct ColourField {
     /// What the colours mean, with its unit; written at the colour bar.
     pub label: String,
     /// The lines between the columns of cells, one more than columns.
@@ -60,7 +60,7 @@ const DIVERGING: [Rgb; 9] = [
 
 pub(crate) const MISSING: Rgb = Rgb(0xC9, 0xC9, 0xC9);
 
-impl Field {
+impl ColourField {
     /// Columns and rows, and nothing at all where edges and values do not belong together.
     pub(crate) fn shape(&self) -> Option<(usize, usize)> {
         let columns = self.x_edges.len().checked_sub(1)?;
@@ -124,8 +124,8 @@ fn mix(colours: &[Rgb; 9], share: f64) -> Rgb {
 mod tests {
     use super::*;
 
-    fn field(values: Vec<f64>, colours: Colours) -> Field {
-        Field {
+    fn field(values: Vec<f64>, colours: Colours) -> ColourField {
+        ColourField {
             label: "p/q".into(),
             x_edges: vec![0.0, 1.0, 2.0],
             y_edges: vec![0.0, 1.0],

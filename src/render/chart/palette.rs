@@ -1,6 +1,6 @@
 //! Colours, markers and dashes by number: any two of the first six series differ in all three, so
 //! that they are told apart by the colour-blind and on grey paper.
-use crate::render::chart::canvas::{Brush, Ink, Px, Rgb};
+use crate::render::chart::canvas::{Canvas, Ink, Px, Rgb};
 
 /// Okabe and Ito (2008), without the yellow that vanishes on white; black belongs to the theory.
 const COLOURS: [Rgb; 7] = [
@@ -80,27 +80,20 @@ fn outline(shape: usize) -> &'static [Px] {
 }
 
 /// Draws a marker. Beyond the seven full ones come the same shapes, hollow.
-pub(crate) fn marker(
-    brush: &Brush<'_, '_>,
-    at: Px,
-    slot: usize,
-    radius: f64,
-    ink: Rgb,
-) -> Result<(), String> {
+pub(crate) fn marker(canvas: &mut Canvas, at: Px, slot: usize, radius: f64, ink: Rgb) {
     let shape = outline(slot % 7);
     let hollow = (slot / 7) % 2 == 1;
-    let scaled = |r: f64| -> Vec<Px> { shape.iter().map(|(x, y)| (at.0 + r * x, at.1 + r * y)).collect() };
     // A thin white edge keeps neighbours apart.
     let layers: [(f64, Ink); 3] =
         [(radius + 0.7, Ink(WHITE, 0.9)), (radius, ink.into()), (radius * 0.55, WHITE.into())];
     for (r, ink) in layers.into_iter().take(if hollow { 3 } else { 2 }) {
         if shape.is_empty() {
-            brush.disc(at, r, ink)?;
+            canvas.disc(at, r, ink);
         } else {
-            brush.polygon(&scaled(r), ink)?;
+            let corners: Vec<Px> = shape.iter().map(|(x, y)| (at.0 + r * x, at.1 + r * y)).collect();
+            canvas.polygon(&corners, ink);
         }
     }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -4,12 +4,12 @@
 //! Running text is lightly marked: `` `code` ``, `**strong**`, `*stressed*`, `[words](target)`; a
 //! blank line ends a paragraph. Symbols such as `T_v` get their subscripts by themselves.
 
-pub mod html;
-pub mod inline;
-pub mod markdown;
+pub mod html_page;
+pub mod markdown_page;
+pub mod marked_text;
 
 use crate::render::chart::describe::Chart;
-use crate::render::error::RenderError;
+use crate::render::render_error::RenderError;
 use crate::render::table::{Mood, Table};
 
 /// A page.
@@ -113,7 +113,7 @@ impl Figure {
 /// If a name is unusable or used twice, a table is ragged, or a figure cannot be drawn.
 pub fn render_html(page: &Page) -> Result<String, RenderError> {
     check(page)?;
-    html::write(page)
+    html_page::write(page)
 }
 
 /// The page as Markdown. Its figures are at `figures/NAME.svg`, as [`figures`] lists them.
@@ -122,7 +122,7 @@ pub fn render_html(page: &Page) -> Result<String, RenderError> {
 /// If a name is unusable or used twice, or a table is ragged.
 pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
     check(page)?;
-    markdown::write(page)
+    markdown_page::write(page)
 }
 
 /// The figures of a page: file name (without a folder) and SVG.
@@ -134,7 +134,8 @@ pub fn figures(page: &Page) -> Result<Vec<(String, String)>, RenderError> {
     all_figures(page).into_iter().map(|figure| Ok((format!("{}.svg", figure.name), figure.svg()?))).collect()
 }
 
-fn all_figures(page: &Page) -> Vec<&Figure> {
+/// Every figure of a page, in order.
+pub(crate) fn all_figures(page: &Page) -> Vec<&Figure> {
     fn collect<'a>(blocks: &'a [Block], out: &mut Vec<&'a Figure>) {
         for block in blocks {
             match block {

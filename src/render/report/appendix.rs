@@ -3,7 +3,7 @@
 use crate::case::norm::Norm;
 use crate::render::page::{Block, Section};
 use crate::render::report::StudyResults;
-use crate::render::table::{Cell, Column, Table};
+use crate::render::table::{Cell, Table, TableColumn};
 use std::collections::BTreeMap;
 
 /// Norms, references and provenance.
@@ -21,16 +21,16 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
     let blocks = vec![
         Block::Table(Table {
             title: "Norms".to_owned(),
-            columns: vec![Column::text("norm"), Column::text("formula: x computed, x̂ exact, V volume of a sample")],
+            columns: vec![TableColumn::text("norm"), TableColumn::text("formula: x computed, x̂ exact, V volume of a sample")],
             rows: norms.collect(),
             notes: vec!["the exact field is evaluated at the Lagrangian place of the sample".to_owned()],
         }),
         Block::Table(Table {
             title: "References".to_owned(),
             columns: vec![
-                Column::text("reference"),
-                Column::number("terms at most"),
-                Column::number("tail bound, over the load"),
+                TableColumn::text("reference"),
+                TableColumn::number("terms at most"),
+                TableColumn::number("tail bound, over the load"),
             ],
             rows: references.collect(),
             notes: vec![

@@ -7,7 +7,7 @@ use crate::judge::paths::{Path, first_norm, paths};
 use crate::render::number;
 use crate::render::page::{Block, Section};
 use crate::render::report::{StudyResults, labels};
-use crate::render::table::{Cell, Column, Mood, Table};
+use crate::render::table::{Cell, Mood, Table, TableColumn};
 use crate::study::expectation::{Axis, Measure};
 use crate::wording::typed;
 
@@ -40,9 +40,10 @@ const QUOTED: [(Quantity, Sample); 4] = [
 
 /// One row a path: order and error on ten cells of each measure, and the floors there are.
 pub fn section(results: &[StudyResults<'_>]) -> Section {
-    let mut columns = vec![Column::text("study"), Column::text("method"), Column::text("against")];
+    let mut columns =
+        vec![TableColumn::text("study"), TableColumn::text("method"), TableColumn::text("against")];
     columns.extend(QUOTED.map(|(quantity, sample)| {
-        Column::text(format!("{} {}", labels::quantity(quantity), labels::sample(sample)))
+        TableColumn::text(format!("{} {}", labels::quantity(quantity), labels::sample(sample)))
     }));
     let mut rows = Vec::new();
     let mut floors = Vec::new();

@@ -1,18 +1,19 @@
 //! The report: one page over the records of studies, as HTML and as Markdown.
 
 pub mod appendix;
-pub mod checks;
-pub mod convergence;
+pub mod critical_step_maps;
+pub mod error_over_time;
+pub mod error_over_work;
 pub mod findings;
+pub mod front_page;
 pub mod labels;
-pub mod layer;
-pub mod precision;
-pub mod profiles;
-pub mod section;
-pub mod stability;
-pub mod stiffness;
+pub mod plane_fields;
+pub mod refinement;
+pub mod stiffness_sweeps;
+pub mod study_section;
 pub mod survival;
-pub mod work;
+pub mod theory_lines;
+pub mod worst_checks;
 
 use crate::case::tier::Tier;
 use crate::exact::error::ExactError;
@@ -49,6 +50,11 @@ impl<'a> StudyResults<'a> {
         self.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
     }
 
+    /// What runs the study again.
+    fn run_command(&self) -> String {
+        format!("oedometer run studies/{}.toml", self.study.name)
+    }
+
     /// Whether every expectation is met, by records that are sound.
     fn passes(&self) -> bool {
         self.unsound.is_empty() && self.judgements.iter().all(|judgement| judgement.verdict.pass)
@@ -62,7 +68,7 @@ impl<'a> StudyResults<'a> {
 pub fn page_of(results: &[StudyResults<'_>]) -> Result<Page, ExactError> {
     let mut sections = vec![findings::section(results)];
     for one in results {
-        sections.push(section::of_study(one)?);
+        sections.push(study_section::of_study(one)?);
     }
     sections.extend(survival::section(results));
     sections.push(appendix::section(results));

@@ -6,7 +6,7 @@ use crate::record::{Record, Status};
 use crate::render::number;
 use crate::render::page::{Block, Section};
 use crate::render::report::StudyResults;
-use crate::render::table::{Cell, Column, Mood, Table};
+use crate::render::table::{Cell, Mood, Table, TableColumn};
 
 /// An error as large as the answer: the run went on, and its result is none.
 const MEANINGLESS: f64 = 1.0;
@@ -24,8 +24,8 @@ pub fn section(results: &[StudyResults<'_>]) -> Option<Section> {
             methods.push(name);
         }
     }
-    let mut columns = vec![Column::text("hard case"), Column::text("mesh")];
-    columns.extend(methods.iter().map(|method| Column::text(method.clone())));
+    let mut columns = vec![TableColumn::text("hard case"), TableColumn::text("mesh")];
+    columns.extend(methods.iter().map(|method| TableColumn::text(method.clone())));
     let mut rows = Vec::new();
     for one in &hard {
         let mut setups: Vec<String> = Vec::new();

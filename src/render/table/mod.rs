@@ -1,12 +1,12 @@
 //! A table as plain data, and its writers: text, Markdown, HTML and CSV.
 
-pub mod csv;
-pub mod html;
-pub mod markdown;
-pub mod text;
+pub mod csv_table;
+pub mod html_table;
+pub mod markdown_table;
+pub mod text_table;
 
-use crate::render::error::RenderError;
 use crate::render::number;
+use crate::render::render_error::RenderError;
 
 /// A table.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -14,7 +14,7 @@ pub struct Table {
     /// One line above the table.
     pub title: String,
     /// The columns, from left to right.
-    pub columns: Vec<Column>,
+    pub columns: Vec<TableColumn>,
     /// The rows, each with a cell for every column.
     pub rows: Vec<Vec<Cell>>,
     /// Lines below the table.
@@ -23,7 +23,7 @@ pub struct Table {
 
 /// A column.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Column {
+pub struct TableColumn {
     /// What stands in the column.
     pub header: String,
     /// The unit, if the numbers have one.
@@ -43,7 +43,7 @@ pub enum Align {
     Right,
 }
 
-impl Column {
+impl TableColumn {
     /// A column of words.
     pub fn text(header: impl Into<String>) -> Self {
         Self { header: header.into(), unit: None, align: Align::Left }
@@ -155,7 +155,7 @@ impl Cell {
 
 impl Table {
     /// A table without rows.
-    pub fn new(title: impl Into<String>, columns: Vec<Column>) -> Self {
+    pub fn new(title: impl Into<String>, columns: Vec<TableColumn>) -> Self {
         Self { title: title.into(), columns, ..Self::default() }
     }
 
@@ -165,7 +165,7 @@ impl Table {
     /// If a row has too few or too many cells.
     pub fn to_text(&self) -> Result<String, RenderError> {
         self.check()?;
-        Ok(text::write(self))
+        Ok(text_table::write(self))
     }
 
     /// For GitHub's Markdown.
@@ -174,7 +174,7 @@ impl Table {
     /// If a row has too few or too many cells.
     pub fn to_markdown(&self) -> Result<String, RenderError> {
         self.check()?;
-        Ok(markdown::write(self))
+        Ok(markdown_table::write(self))
     }
 
     /// A fragment of HTML.
@@ -183,7 +183,7 @@ impl Table {
     /// If a row has too few or too many cells.
     pub fn to_html(&self) -> Result<String, RenderError> {
         self.check()?;
-        Ok(html::write(self))
+        Ok(html_table::write(self))
     }
 
     /// For machines: numbers with all of their digits, shares as shares, times in seconds, an empty
@@ -193,7 +193,7 @@ impl Table {
     /// If a row has too few or too many cells.
     pub fn to_csv(&self) -> Result<String, RenderError> {
         self.check()?;
-        csv::write(self)
+        csv_table::write(self)
     }
 
     fn check(&self) -> Result<(), RenderError> {

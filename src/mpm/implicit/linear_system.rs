@@ -1,0 +1,255 @@
+//! The frozen body as a linear system of differential and algebraic equations.
+//!
+//! With the displacement `U` of the skeleton since the start and the change `π` of the pressures,
+//!
+//! - mixture, at every free component of a node: `K_σ U − A π = F_0`,
+//! - storage, at every site: `(n/K_w) π̇ + D U̇ + D n d⁻¹ A π = −D n d⁻¹ F_w0`,
+//!
+//! with the operators of the explicit step: `K_σ = Σ V ∇N C G`, `A = Σ V ∇N R`, the divergence `D`
+//! and recovery `R` of the method, and the lumped nodal drag `d`, through which the water's
+//! relative velocity is eliminated. In short `C ẋ + K x = g`, `C` zero in the rows of the mixture.
+
+use crate::mpm::assembled::stiffness::NodeBlocks;
+use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::implicit::banded::Banded;
+use crate::mpm::implicit::sdirk::Scales;
+use crate::mpm::implicit::unknowns::Unknowns;
+use crate::mpm::operators::sparse_rows::SparseRows;
+use crate::mpm::operators::volumetric::VectorRow;
+use crate::mpm::state::nodes::Nodes;
+use crate::soil::continuity::Continuity;
+
+/// A frozen body as sparse operators between nodes and sites, whatever its basis.
+#[derive(Clone, Debug)]
+pub struct LinearOperators<const D: usize> {
+    /// Numbering of `x`, with `D` and `R`.
+    unknowns: Unknowns<D>,
+    scales: Scales,
+    /// `K_σ`, N/m.
+    stiffness: NodeBlocks<D>,
+    /// Rows of `A`, by node: force of a unit pressure change at each site, m^(D−1).
+    pressure_forces: Vec<VectorRow<D>>,
+    /// Porosity of each site.
+    porosity: Vec<f64>,
+    water_bulk_modulus: f64,
+    continuity: Continuity,
+    /// Nodes with the forces of the start.
+    nodes: Nodes<D>,
+    /// Weights of the nodes in the surface's displacement as it settles, and in its mean.
+    surface: Vec<(usize, f64)>,
+    mean_surface: Vec<(usize, f64)>,
+}
+
+/// `C ẋ + K x = g` of a frozen body, scaled.
+#[derive(Clone, Debug)]
+pub struct LinearSystem<const D: usize> {
+    /// Numbering of `x`.
+    pub unknowns: Unknowns<D>,
+    /// Scales of `x` and of the rows.
+    pub scales: Scales,
+    /// What a step's matrix has whatever its size: `K` in the mixture's rows, `C` in the others.
+    pub fixed: Banded,
+    /// What it has in proportion to its size: `K` in the storage's rows, 1/s.
+    pub proportional: Banded,
+    /// Rows of `C`, one per site.
+    pub capacity: SparseRows<f64>,
+    /// `g − K x` at the start, where `x` is zero; 1/s in the storage's rows.
+    pub start_residual: Vec<f64>,
+    /// Vertical displacement of the loaded surface, as much of it as has the load's shape, as a row
+    /// times `x`, m.
+    pub surface_displacement: SparseRows<f64>,
+    /// Its mean over the surface, as a row times `x`, m.
+    pub mean_displacement: SparseRows<f64>,
+    /// Mean over the surface of the relative flux `n (v_w − v_s)`, as a row times `x`, m/s.
+    pub surface_outflow: SparseRows<f64>,
+    /// The same at the start.
+    pub start_outflow: f64,
+}
+
+/// Entry of the system: row, column, part in `fixed`, part in `proportional`.
+type Entry = (usize, usize, f64, f64);
+
+impl<const D: usize> LinearOperators<D> {
+    /// Takes a body's present operators and forces.
+    pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
+        let unknowns = Unknowns::of(body);
+        let mut pressure_forces = vec![Vec::new(); body.nodes.len()];
+        for (site, forces) in body.pressure_forces(&unknowns.rows).into_iter().enumerate() {
+            for (node, force) in forces {
+                pressure_forces[node].push((site, force));
+            }
+        }
+        let mut loaded = body.clone();
+        loaded.map_forces();
+        Self {
+            scales: Scales::of(body),
+            stiffness: body.skeleton_stiffness(&unknowns.rows),
+            pressure_forces,
+            porosity: (0..unknowns.sites.len())
+                .map(|site| unknowns.porosity(&body.material, &body.points, &body.cells, site))
+                .collect(),
+            water_bulk_modulus: body.material.water_bulk_modulus,
+            continuity: body.material.continuity,
+            nodes: loaded.nodes,
+            surface: body.surface.weights(&body.grid, &body.points),
+            mean_surface: body.surface.mean_weights(&body.grid, &body.points),
+            unknowns,
+        }
+    }
+
+    /// Relative velocity that a unit of water force makes at a node, one over the drag, m/(N s).
+    fn mobility(&self, node: usize) -> f64 {
+        let drag = self.nodes.drag[node];
+        if self.nodes.is_active(node) && drag > 0.0 { 1.0 / drag } else { 0.0 }
+    }
+
+    /// Relative flux at a node over the water's force there, as the storage of a site sees it: with
+    /// the node's own porosity in the conservative form, with the site's where its gradient is dropped.
+    fn flux_of_force(&self, site: usize, node: usize) -> f64 {
+        let porosity = match self.continuity {
+            Continuity::Conservative => self.nodes.porosity[node],
+            Continuity::ConstantPorosityGradient => self.porosity[site],
+        };
+        porosity * self.mobility(node)
+    }
+
+    /// Rows of the mixture: `K_σ` and `−A`.
+    fn visit_mixture(&self, visitor: &mut dyn FnMut(Entry)) {
+        let (unknowns, scales) = (&self.unknowns, &self.scales);
+        let per_displacement = scales.length / scales.force;
+        for (node, blocks) in self.stiffness.rows.iter().enumerate() {
+            for d in 0..D {
+                let Some(row) = unknowns.displacement[node][d] else { continue };
+                for (other, block) in blocks {
+                    for (column, stiffness) in unknowns.displacement[*other].iter().zip(&block[d]) {
+                        if let Some(column) = column.filter(|_| *stiffness != 0.0) {
+                            visitor((row, column, per_displacement * stiffness, 0.0));
+                        }
+                    }
+                }
+                for (site, force) in self.pressure_forces[node].iter().filter(|entry| entry.1[d] != 0.0) {
+                    let column = unknowns.pressure[*site];
+                    visitor((row, column, -force[d] * scales.pressure / scales.force, 0.0));
+                }
+            }
+        }
+    }
+
+    /// Rows of the storage: `C` and `D n d⁻¹ A`.
+    fn visit_storage(&self, visitor: &mut dyn FnMut(Entry)) {
+        let unknowns = &self.unknowns;
+        for (site, divergence) in unknowns.rows.divergence.iter().enumerate() {
+            let row = unknowns.pressure[site];
+            for (column, value) in self.capacity_row(site) {
+                visitor((row, column, value, 0.0));
+            }
+            for (node, coefficients) in divergence {
+                let flux_of_force = self.flux_of_force(site, *node) * self.scales.pressure;
+                // Where the water is held, nothing flows; on a rough base it slides.
+                for d in (0..D).filter(|d| self.nodes.water_free[*node][*d] > 0.0) {
+                    for (other, force) in self.pressure_forces[*node].iter().filter(|other| other.1[d] != 0.0)
+                    {
+                        let rate = coefficients[d] * flux_of_force * force[d];
+                        visitor((row, unknowns.pressure[*other], 0.0, rate));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Row of `C` at a site.
+    fn capacity_row(&self, site: usize) -> Vec<(usize, f64)> {
+        let storage = self.porosity[site] / self.water_bulk_modulus;
+        let mut row = vec![(self.unknowns.pressure[site], storage * self.scales.pressure)];
+        for (node, coefficients) in &self.unknowns.rows.divergence[site] {
+            for (column, coefficient) in self.unknowns.displacement[*node].iter().zip(coefficients) {
+                row.extend(column.map(|column| (column, coefficient * self.scales.length)));
+            }
+        }
+        row
+    }
+
+    /// `g`: what the stresses of the start do.
+    fn start_residual(&self) -> Vec<f64> {
+        let (unknowns, nodes) = (&self.unknowns, &self.nodes);
+        let mut residual = vec![0.0; unknowns.count];
+        for (numbers, forces) in unknowns.displacement.iter().zip(&nodes.mixture_force) {
+            for (row, force) in numbers.iter().zip(forces) {
+                if let Some(row) = row {
+                    residual[*row] = force / self.scales.force;
+                }
+            }
+        }
+        for (site, divergence) in unknowns.rows.divergence.iter().enumerate() {
+            let mut rate = 0.0;
+            for (node, coefficients) in divergence {
+                let flux_of_force = self.flux_of_force(site, *node);
+                for d in (0..D).filter(|d| nodes.water_free[*node][*d] > 0.0) {
+                    rate += coefficients[d] * flux_of_force * nodes.water_force[*node][d];
+                }
+            }
+            residual[unknowns.pressure[site]] = -rate;
+        }
+        residual
+    }
+
+    /// The surface's displacement with some weights as a row.
+    fn displacement_row(&self, weights: &[(usize, f64)]) -> SparseRows<f64> {
+        let number = |node: usize| self.unknowns.displacement[node][D - 1];
+        let entry =
+            |(node, weight): &(usize, f64)| number(*node).map(|number| (number, weight * self.scales.length));
+        SparseRows::of([weights.iter().filter_map(entry).collect()])
+    }
+
+    /// The mean relative flux through the surface as a row, and at the start.
+    fn outflow(&self) -> (SparseRows<f64>, f64) {
+        let (mut row, mut start) = (Vec::new(), 0.0);
+        let nodes = &self.nodes;
+        for (node, weight) in &self.mean_surface {
+            let flux_of_force = weight * nodes.porosity[*node] * self.mobility(*node);
+            if nodes.water_free[*node][D - 1] > 0.0 {
+                start += flux_of_force * nodes.water_force[*node][D - 1];
+            }
+            if self.unknowns.displacement[*node][D - 1].is_some() {
+                let scale = flux_of_force * self.scales.pressure;
+                let forces = self.pressure_forces[*node].iter();
+                row.extend(forces.map(|(site, force)| (self.unknowns.pressure[*site], scale * force[D - 1])));
+            }
+        }
+        (SparseRows::of([row]), start)
+    }
+}
+
+impl<const D: usize> LinearSystem<D> {
+    /// Assembles a body's operators.
+    pub fn of(operators: LinearOperators<D>) -> Self {
+        let visit = |visitor: &mut dyn FnMut(Entry)| {
+            operators.visit_mixture(visitor);
+            operators.visit_storage(visitor);
+        };
+        let (mut lower, mut upper) = (0, 0);
+        visit(&mut |(row, column, _, _)| {
+            lower = lower.max(row.saturating_sub(column));
+            upper = upper.max(column.saturating_sub(row));
+        });
+        let mut fixed = Banded::zeros(operators.unknowns.count, lower, upper);
+        let mut proportional = fixed.clone();
+        visit(&mut |(row, column, constant, rate)| {
+            fixed.add(row, column, constant);
+            proportional.add(row, column, rate);
+        });
+        let (surface_outflow, start_outflow) = operators.outflow();
+        Self {
+            fixed,
+            proportional,
+            capacity: SparseRows::of((0..operators.porosity.len()).map(|site| operators.capacity_row(site))),
+            start_residual: operators.start_residual(),
+            surface_displacement: operators.displacement_row(&operators.surface),
+            mean_displacement: operators.displacement_row(&operators.mean_surface),
+            surface_outflow,
+            start_outflow,
+            scales: operators.scales,
+            unknowns: operators.unknowns,
+        }
+    }
+}

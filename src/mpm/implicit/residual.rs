@@ -1,0 +1,263 @@
+//! What the balances of a body leave at a trial state: the one residual of every nonlinear or inertial
+//! implicit step, made of the operators of the explicit one.
+
+use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::implicit::sdirk::Scales;
+use crate::mpm::implicit::tangent::{Pattern, Structure};
+use crate::mpm::implicit::trial::{Skeleton, Trial};
+use crate::mpm::implicit::unknowns::Unknowns;
+use crate::mpm::method::PressureIntegration;
+use crate::mpm::run::integrator::Formulation;
+use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::stepper::StepFailure;
+use crate::mpm::run::watch::{lost_point, pores_closed};
+use crate::mpm::state::nodes::Nodes;
+use crate::soil::tensor::Vector;
+
+/// Where a stage starts: the unknowns' share that is known before it is solved.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StageStart<const D: usize> {
+    /// `γ Δt`, s.
+    pub duration: f64,
+    /// Unknowns, scaled.
+    pub unknowns: Vec<f64>,
+    /// Velocity of the skeleton at the nodes, m/s.
+    pub solid_velocity: Vec<Vector<D>>,
+    /// Velocity of the water at the nodes, m/s.
+    pub water_velocity: Vec<Vector<D>>,
+}
+
+/// A body with its balances at trial states, whatever its basis.
+pub trait Balances<const D: usize> {
+    /// What the balances leave at increments of the unknowns, scaled: forces on the mixture that
+    /// nothing balances, and volume that a site gained beyond its storage.
+    ///
+    /// # Errors
+    /// [`StepFailure`] where the pores of a point are closed: there is no residual then.
+    fn residual(
+        &mut self,
+        increments: &[f64],
+        start: &StageStart<D>,
+        residual: &mut [f64],
+    ) -> Result<(), StepFailure>;
+
+    /// Ends a step at increments of the unknowns, after so much flux through the surface, m.
+    fn end_step(&mut self, increments: &[f64], flux: f64);
+
+    /// Load on the surface, Pa.
+    fn load(&self) -> f64;
+
+    /// Loads the surface, Pa.
+    fn set_load(&mut self, load: f64);
+
+    /// Scales of the unknowns and of the balances.
+    fn scales(&self) -> Scales;
+
+    /// Numbering of the unknowns.
+    fn unknowns(&self) -> &Unknowns<D>;
+
+    /// Nodes as the last residual left them.
+    fn nodes(&self) -> &Nodes<D>;
+
+    /// Velocities of skeleton and water at the nodes when the step began, m/s.
+    fn velocity(&self) -> &[Vec<Vector<D>>; 2];
+
+    /// Mean of a nodal field's vertical component over the surface.
+    fn surface_mean(&self, field: fn(&Nodes<D>) -> &[Vector<D>]) -> f64;
+
+    /// Which balances feel which unknowns.
+    fn pattern(&self) -> Pattern;
+
+    /// What the pattern depends on, where it is not `known`.
+    fn structure_unless(&self, known: &Structure) -> Option<Structure>;
+
+    /// Settlement of the loaded surface, m, which was at `initial_height`.
+    fn settlement(&self, initial_height: f64) -> f64;
+
+    /// A point that was lost, and how, where there is one.
+    fn lost_point(&self) -> Option<StepFailure>;
+
+    /// The body at a time, s, with a settlement, m.
+    fn snapshot(&self, time: f64, settlement: f64) -> Snapshot;
+
+    /// Material points.
+    fn point_count(&self) -> usize;
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> Balances<D> for Trial<D, W, S> {
+    fn residual(
+        &mut self,
+        increments: &[f64],
+        start: &StageStart<D>,
+        residual: &mut [f64],
+    ) -> Result<(), StepFailure> {
+        self.move_to(increments);
+        if self.skeleton == Skeleton::Explicit {
+            self.body.points.effective_stress.clone_from(&self.anchor.effective_stress);
+        }
+        self.body.map_forces();
+        self.momentum(increments, start, residual);
+        self.body.nodal_flux();
+        self.storage(increments, start, residual);
+        let (grains, ratios) = (1.0 - self.body.material.porosity, &self.body.points.volume_ratio);
+        match ratios.iter().position(|ratio| *ratio <= grains || ratio.is_nan()) {
+            Some(point) => Err(pores_closed(point, ratios[point], grains)),
+            None => Ok(()),
+        }
+    }
+
+    fn end_step(&mut self, increments: &[f64], flux: f64) {
+        self.commit(increments);
+        self.body.surface_flux += flux;
+    }
+
+    fn load(&self) -> f64 {
+        self.body.surface.load
+    }
+
+    fn scales(&self) -> Scales {
+        self.scales
+    }
+
+    fn set_load(&mut self, load: f64) {
+        let body = &mut self.body;
+        body.surface.load = load;
+        body.surface.apply(&body.grid, &body.points, &mut body.nodes);
+    }
+
+    fn unknowns(&self) -> &Unknowns<D> {
+        &self.unknowns
+    }
+
+    fn nodes(&self) -> &Nodes<D> {
+        &self.body.nodes
+    }
+
+    fn velocity(&self) -> &[Vec<Vector<D>>; 2] {
+        &self.velocity
+    }
+
+    fn surface_mean(&self, field: fn(&Nodes<D>) -> &[Vector<D>]) -> f64 {
+        let body = &self.body;
+        body.surface.mean_of(&body.grid, &body.points, field(&body.nodes))
+    }
+
+    fn pattern(&self) -> Pattern {
+        Pattern::of(&self.body, &self.unknowns)
+    }
+
+    fn structure_unless(&self, known: &Structure) -> Option<Structure> {
+        (!known.is_of(&self.body, &self.unknowns)).then(|| Structure::of(&self.body, &self.unknowns))
+    }
+
+    fn settlement(&self, initial_height: f64) -> f64 {
+        self.body.settlement(initial_height)
+    }
+
+    fn lost_point(&self) -> Option<StepFailure> {
+        lost_point(&self.body)
+    }
+
+    fn snapshot(&self, time: f64, settlement: f64) -> Snapshot {
+        self.body.snapshot(time, settlement, &self.start)
+    }
+
+    fn point_count(&self) -> usize {
+        self.body.points.len()
+    }
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
+    /// Nodal velocities of both phases at the end of the stage, and what is left of the mixture's
+    /// momentum.
+    fn momentum(&mut self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
+        let per_duration = 1.0 / start.duration;
+        let water_density = self.body.material.water_density;
+        let nodes = &mut self.body.nodes;
+        for node in 0..nodes.len() {
+            nodes.solid_velocity[node] = [0.0; D];
+            nodes.water_velocity[node] = [0.0; D];
+            let drag = nodes.drag[node];
+            let water_inertia = water_density * nodes.volume[node] * per_duration;
+            for d in 0..D {
+                // Where the skeleton is held, the water may still slide.
+                let number = self.unknowns.displacement[node][d];
+                let moved = number.map_or(0.0, |number| increments[number] - start.unknowns[number]);
+                let solid = self.scales.length * per_duration * moved;
+                let solid_change = solid - start.solid_velocity[node][d];
+                let force = nodes.water_force[node][d];
+                let before = start.water_velocity[node][d];
+                let water = match self.formulation {
+                    Formulation::QuasiStatic => solid + force / drag,
+                    Formulation::UP => solid + (force - water_inertia * solid_change) / drag,
+                    Formulation::VW => {
+                        (water_inertia * before + force + drag * solid) / (water_inertia + drag)
+                    }
+                };
+                nodes.solid_velocity[node][d] = solid;
+                if nodes.water_free[node][d] > 0.0 {
+                    nodes.water_velocity[node][d] = water;
+                }
+                let Some(row) = number else { continue };
+                let water_change = match self.formulation {
+                    Formulation::QuasiStatic => {
+                        residual[row] = -nodes.mixture_force[node][d] / self.scales.force;
+                        continue;
+                    }
+                    Formulation::UP => solid_change,
+                    Formulation::VW => water - before,
+                };
+                let momentum = nodes.solid_mass[node] * solid_change + nodes.water_mass[node] * water_change;
+                residual[row] = (per_duration * momentum - nodes.mixture_force[node][d]) / self.scales.force;
+            }
+        }
+    }
+
+    /// What is left of the mixture's volume at each site.
+    fn storage(&self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
+        let (body, unknowns) = (&self.body, &self.unknowns);
+        self.volume_rates(residual);
+        for (site, number) in unknowns.pressure.iter().enumerate() {
+            let porosity = unknowns.porosity(&body.material, &body.points, &body.cells, site);
+            let stored = porosity / body.material.water_bulk_modulus
+                * self.scales.pressure
+                * (increments[*number] - start.unknowns[*number]);
+            residual[*number] = stored + start.duration * residual[*number];
+        }
+    }
+
+    /// Rate of the mixture's volume at each site, 1/s, in the site's row.
+    fn volume_rates(&self, rates: &mut [f64]) {
+        let (body, unknowns) = (&self.body, &self.unknowns);
+        if unknowns.integration == PressureIntegration::Mean {
+            unknowns.pressure.iter().for_each(|number| rates[*number] = 0.0);
+            for point in 0..body.points.len() {
+                let cell = body.cells.of_point[point];
+                if let Some(site) = unknowns.site_of(cell) {
+                    let share = body.points.volume(point) / body.cells.volume(cell);
+                    let rate = rate_at_point(body, point, body.cells.porosity[cell]);
+                    rates[unknowns.pressure[site]] += share * rate;
+                }
+            }
+            return;
+        }
+        for (site, place) in unknowns.sites.iter().enumerate() {
+            let porosity = unknowns.porosity(&body.material, &body.points, &body.cells, site);
+            rates[unknowns.pressure[site]] = match unknowns.integration {
+                PressureIntegration::Points => rate_at_point(body, *place, porosity),
+                PressureIntegration::Sri | PressureIntegration::Mean => {
+                    body.volume_rate(porosity, |field| body.divergence_at_centre(*place, field))
+                }
+            };
+        }
+    }
+}
+
+/// Rate of the mixture's volume at a point, 1/s.
+fn rate_at_point<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    body: &Body<D, W, S>,
+    point: usize,
+    porosity: f64,
+) -> f64 {
+    body.volume_rate(porosity, |field| body.divergence_at_point(point, field))
+}

@@ -1,0 +1,35 @@
+//! Sparse rows: an operator as columns and values, one row after the other.
+
+/// Rows of columns with their values.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SparseRows<T> {
+    starts: Vec<usize>,
+    entries: Vec<(u32, T)>,
+}
+
+impl<T: Copy> SparseRows<T> {
+    /// The operator of some rows.
+    pub fn of(rows: impl IntoIterator<Item = Vec<(usize, T)>>) -> Self {
+        let (mut starts, mut entries) = (vec![0], Vec::new());
+        for row in rows {
+            let numbered = |(column, value)| (u32::try_from(column).unwrap_or(u32::MAX), value);
+            entries.extend(row.into_iter().map(numbered));
+            starts.push(entries.len());
+        }
+        Self { starts, entries }
+    }
+
+    /// The entries of a row.
+    #[inline]
+    pub fn row(&self, row: usize) -> &[(u32, T)] {
+        &self.entries[self.starts[row]..self.starts[row + 1]]
+    }
+}
+
+impl SparseRows<f64> {
+    /// Product of a row with a vector.
+    #[inline]
+    pub fn product(&self, row: usize, vector: &[f64]) -> f64 {
+        self.row(row).iter().map(|(column, value)| value * vector[*column as usize]).sum()
+    }
+}

@@ -1,0 +1,175 @@
+//! The door of the solver: where a basis, an integrator and a kernel become types.
+
+use crate::mpm::body::{Body, CubicSpline, DomainEnds, Gimp, Hat, Problem, QuadraticSpline, ShapeFunction};
+use crate::mpm::implicit::banded::Singular;
+use crate::mpm::implicit::linear::LinearStepper;
+use crate::mpm::implicit::newton::NewtonStepper;
+use crate::mpm::method::{Basis, Configuration};
+use crate::mpm::run::driver::Driver;
+use crate::mpm::run::explicit_stepper::ExplicitStepper;
+use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::mpm::run::outcome::{Failure, FailureKind, Outcome};
+use crate::mpm::run::plan::Plan;
+use crate::mpm::run::schedule::{Observer, Schedule};
+use crate::mpm::run::stepper::Stepper;
+
+/// Solves a problem. Never panics and never loops for ever: what goes wrong ends the run with a
+/// named status, and what was finished before stays.
+pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
+    match problem.method.basis {
+        Basis::Hat => solve(Body::<D, 2, Hat>::new, problem, schedule, observer),
+        Basis::Ugimp | Basis::Cpgimp => solve(Body::<D, 3, Gimp>::new, problem, schedule, observer),
+        Basis::Cpdi => solve(Body::<D, 3, DomainEnds>::new, problem, schedule, observer),
+        Basis::Bspline2 => solve(Body::<D, 3, QuadraticSpline>::new, problem, schedule, observer),
+        Basis::Bspline3 => solve(Body::<D, 4, CubicSpline>::new, problem, schedule, observer),
+    }
+}
+
+fn solve<const D: usize, const W: usize, S: ShapeFunction<W> + 'static>(
+    discretise: fn(Problem<D>) -> Body<D, W, S>,
+    problem: Problem<D>,
+    schedule: &Schedule,
+    observer: Observer<'_>,
+) -> Outcome {
+    let plan = Plan::of(&problem, schedule);
+    let undrained_start = problem.undrained_start;
+    let mut body = discretise(problem);
+    let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
+    let mut stepper = stepper_of(body, &plan);
+    Driver::new(stepper.as_mut(), &plan, observer).solve(start_failure.map(no_start))
+}
+
+/// The integrator of a body: explicit; one linear system where the body is frozen and at rest;
+/// Newton's iteration elsewhere.
+fn stepper_of<const D: usize, const W: usize, S: ShapeFunction<W> + 'static>(
+    body: Body<D, W, S>,
+    plan: &Plan<'_>,
+) -> Box<dyn Stepper> {
+    let Schedule { integrator, formulation, .. } = *plan.schedule;
+    let is_linear = body.configuration == Configuration::Frozen && formulation == Formulation::QuasiStatic;
+    match integrator {
+        IntegratorKind::Explicit => Box::new(ExplicitStepper::new(body, plan)),
+        _ if is_linear => Box::new(LinearStepper::new(body, plan)),
+        IntegratorKind::SemiImplicit | IntegratorKind::Implicit => Box::new(NewtonStepper::new(body, plan)),
+    }
+}
+
+/// The end of a run that has no undrained start.
+fn no_start(singular: Singular) -> Failure {
+    let reason = format!("the undrained start has no pivot in row {}: nothing holds the body", singular.row);
+    Failure { kind: FailureKind::Singular, step: 0, time: 0.0, growth: None, reason }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mpm::explicit::scheme::Scheme;
+    use crate::mpm::explicit::{Drag, ExplicitSettings};
+    use crate::mpm::method::Method;
+    use crate::mpm::run::outcome::RunStatus;
+    use crate::mpm::run::schedule::Kernel;
+    use crate::mpm::run::time_step_rule::TimeStepRule;
+    use crate::scene::SceneKind;
+    use crate::scene::column::{Column, column_problem};
+    use crate::soil::material::Material;
+
+    fn problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {
+        let method = Method::named(method).expect("a known method");
+        let (column, soil) = (Column::default(), Material::default());
+        column_problem(SceneKind::SingleMode, &column, &soil, method, cells, per_cell)
+            .expect("the seed column")
+    }
+
+    fn schedule(kernel: Kernel, settings: ExplicitSettings, end: f64) -> Schedule {
+        let history = vec![0.25 * end, 0.5 * end];
+        Schedule {
+            outputs: vec![0.0, 0.4 * end, end],
+            history,
+            rule: TimeStepRule::Stable(0.6),
+            settings,
+            kernel,
+            integrator: IntegratorKind::Explicit,
+            critical_step: None,
+            formulation: Formulation::VW,
+        }
+    }
+
+    #[test]
+    fn the_assembled_column_is_the_point_wise_step_to_round_off() {
+        for name in ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"] {
+            for (scheme, drag, flip, mapping_back) in [
+                (Scheme::ForwardEuler, Drag::Explicit, 1.0, true),
+                (Scheme::ForwardEuler, Drag::Implicit, 1.0, false),
+                (Scheme::ForwardEuler, Drag::Implicit, 0.99, true),
+                (Scheme::Leapfrog, Drag::Centred, 1.0, true),
+            ] {
+                let settings = ExplicitSettings { scheme, drag, flip, mapping_back };
+                let end = 0.02;
+                let fast = run(problem(name, 7, 3), &schedule(Kernel::Fastest, settings, end), &|_, _| true);
+                let plain =
+                    run(problem(name, 7, 3), &schedule(Kernel::PointWise, settings, end), &|_, _| true);
+                assert_eq!(fast.counters, plain.counters);
+                assert_eq!(fast.status, RunStatus::Ok);
+                let (fast, plain) = (fast.snapshots[2].clone(), plain.snapshots[2].clone());
+                for (a, b) in [
+                    (&fast.points.pressure, &plain.points.pressure),
+                    (&fast.points.effective_stress, &plain.points.effective_stress),
+                    (&fast.points.displacement, &plain.points.displacement),
+                    (&fast.nodes.displacement, &plain.nodes.displacement),
+                    (&vec![fast.settlement], &vec![plain.settlement]),
+                    (&vec![fast.totals.surface_flux], &vec![plain.totals.surface_flux]),
+                ] {
+                    let scale = b.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
+                    for (x, y) in a.iter().zip(b) {
+                        assert!((x - y).abs() <= 1e-10 * scale, "{name} {settings:?}: {x} for {y}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn outputs_are_hit_and_history_is_noted() {
+        let outcome = run(
+            problem("GIMP", 5, 2),
+            &schedule(Kernel::Fastest, ExplicitSettings::default(), 0.01),
+            &|_, _| true,
+        );
+        let times: Vec<f64> = outcome.snapshots.iter().map(|snapshot| snapshot.time).collect();
+        assert_eq!(times[0], 0.0);
+        assert!((times[1] - 0.004).abs() < 1e-15 && (times[2] - 0.01).abs() < 1e-15);
+        assert_eq!(outcome.history.len(), 2);
+        assert_eq!(outcome.history.iter().map(|point| point.time).collect::<Vec<_>>(), [0.0025, 0.005]);
+        assert!(outcome.step_sizes.largest <= 0.6 * outcome.step_sizes.predicted_critical * (1.0 + 1e-12));
+    }
+
+    #[test]
+    fn a_step_beyond_the_limit_ends_with_a_name_and_below_it_runs() {
+        for (share, stable) in [(0.97, true), (1.03, false)] {
+            for name in ["GIMP", "GIMP-SRI-patch", "GC-SRI-patch"] {
+                for mapping_back in [true, false] {
+                    let settings = ExplicitSettings { mapping_back, ..ExplicitSettings::default() };
+                    let mut schedule = schedule(Kernel::Fastest, settings, 0.3);
+                    schedule.rule = TimeStepRule::Stable(share);
+                    let outcome = run(problem(name, 8, 2), &schedule, &|_, _| true);
+                    match outcome.status {
+                        RunStatus::Ok => assert!(stable, "{name} {share} {mapping_back}"),
+                        RunStatus::Failed(failure) => {
+                            assert!(!stable, "{name} {share} {mapping_back}");
+                            assert_eq!(failure.kind, FailureKind::Unstable);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_observer_can_stop_a_run() {
+        let schedule = schedule(Kernel::Fastest, ExplicitSettings::default(), 0.1);
+        let outcome = run(problem("GIMP", 5, 2), &schedule, &|done, _| done < 100);
+        let RunStatus::Failed(failure) = outcome.status else { panic!("not stopped") };
+        assert_eq!((failure.kind, failure.step), (FailureKind::Stopped, 128));
+        assert_eq!(outcome.snapshots.len(), 1, "what was finished stays");
+    }
+}

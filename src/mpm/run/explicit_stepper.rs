@@ -1,0 +1,151 @@
+//! The explicit step on its way through time: point by point, or assembled where nothing moves.
+
+use crate::mpm::assembled::step::AssembledStep;
+use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::critical_step::formula;
+use crate::mpm::explicit::ExplicitSettings;
+use crate::mpm::explicit::scheme::Rhythm;
+use crate::mpm::method::Configuration;
+use crate::mpm::run::plan::Plan;
+use crate::mpm::run::schedule::Kernel;
+use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper};
+use crate::mpm::run::time_step_rule::TimeStepRule;
+use crate::mpm::run::watch::lost_point;
+use crate::mpm::state::points::Points;
+
+/// Steps between two looks.
+const WATCH_INTERVAL: u64 = 64;
+
+/// A body that goes by explicit steps.
+pub struct ExplicitStepper<const D: usize, const W: usize, S: ShapeFunction<W>> {
+    /// The body; at its start where the step is assembled.
+    body: Body<D, W, S>,
+    frozen: Option<AssembledStep<D>>,
+    start: Points<D>,
+    initial_height: f64,
+    initial_settlement: f64,
+    settings: ExplicitSettings,
+    /// Whether the step follows the deformation of the body.
+    step_follows: bool,
+    rhythm: Rhythm,
+    /// Kick that the assembled step is made for, s.
+    kick: f64,
+    /// Whole load, Pa, and the time over which it grows, s.
+    load: f64,
+    loading_time: f64,
+    load_share: f64,
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> ExplicitStepper<D, W, S> {
+    /// A body at its start.
+    pub fn new(body: Body<D, W, S>, plan: &Plan<'_>) -> Self {
+        let schedule = plan.schedule;
+        let is_assembled = body.configuration == Configuration::Frozen && schedule.kernel == Kernel::Fastest;
+        let mut stepper = Self {
+            frozen: is_assembled.then(|| AssembledStep::new(&body)),
+            start: body.points.clone(),
+            initial_height: plan.initial_height,
+            initial_settlement: body.settlement(plan.initial_height),
+            settings: schedule.settings,
+            step_follows: !matches!(schedule.rule, TimeStepRule::Seconds(_)),
+            rhythm: Rhythm::default(),
+            kick: f64::NAN,
+            load: body.surface.load,
+            loading_time: plan.loading_time,
+            load_share: 1.0,
+            body,
+        };
+        if plan.loading_time > 0.0 {
+            stepper.set_load_at(0.0);
+        }
+        stepper
+    }
+
+    /// Puts the load of a growing time on the surface.
+    fn set_load_at(&mut self, time: f64) {
+        self.load_share = (time / self.loading_time).min(1.0);
+        let body = &mut self.body;
+        body.surface.load = self.load_share * self.load;
+        body.surface.apply(&body.grid, &body.points, &mut body.nodes);
+        if let Some(frozen) = &mut self.frozen {
+            frozen.set_load_share(self.load_share);
+        }
+    }
+}
+
+impl<const D: usize, const W: usize, S: ShapeFunction<W>> Stepper for ExplicitStepper<D, W, S> {
+    fn advance(&mut self, steps: &EqualSteps, _most_error: f64) -> Result<f64, StepFailure> {
+        let (settings, dt) = (self.settings, steps.dt);
+        for step in 0..steps.count {
+            if self.load_share < 1.0 {
+                self.set_load_at(steps.time_after(step));
+            }
+            let kick = self.rhythm.kick(dt, &settings);
+            match &mut self.frozen {
+                Some(frozen) => {
+                    if kick != self.kick {
+                        frozen.set_step(kick, &settings);
+                        self.kick = kick;
+                    }
+                    frozen.kick_and_drift(kick, dt, &settings);
+                }
+                None => self.body.kick_and_drift(kick, dt, &settings),
+            }
+        }
+        Ok(0.0)
+    }
+
+    fn steps_unwatched(&self) -> u64 {
+        WATCH_INTERVAL
+    }
+
+    /// Shrinks as the pores close and waves get faster, and as cells shrink that go with the points.
+    fn step_reduction(&self) -> Option<f64> {
+        let body = &self.body;
+        if !body.configuration.deforms() {
+            return None;
+        }
+        if !self.step_follows {
+            return Some(1.0);
+        }
+        let soil = &body.material;
+        let least_ratio = body.points.volume_ratio.iter().copied().fold(1.0, f64::min);
+        let porosity = soil.porosity_at(least_ratio).max(1e-3);
+        let shrunk = if body.configuration.moves_points() { 1.0 } else { least_ratio };
+        Some(
+            shrunk * formula::fastest_wave_speed(soil, soil.porosity)
+                / formula::fastest_wave_speed(soil, porosity),
+        )
+    }
+
+    fn settlement(&self) -> f64 {
+        match &self.frozen {
+            Some(frozen) => self.initial_settlement - frozen.surface_displacement(),
+            None => self.body.settlement(self.initial_height),
+        }
+    }
+
+    fn largest_velocity(&self) -> Option<f64> {
+        Some(match &self.frozen {
+            Some(frozen) => frozen.largest_velocity(),
+            None => self.body.largest_velocity(),
+        })
+    }
+
+    fn lost_point(&self) -> Option<StepFailure> {
+        if self.body.configuration.deforms() { lost_point(&self.body) } else { None }
+    }
+
+    fn snapshot(&self, time: f64) -> Snapshot {
+        let settlement = self.settlement();
+        match &self.frozen {
+            Some(frozen) => frozen.body_now(&self.body).snapshot(time, settlement, &self.start),
+            None => self.body.snapshot(time, settlement, &self.start),
+        }
+    }
+
+    fn sizes(&self) -> (usize, usize) {
+        (self.body.points.len(), self.body.nodes.len())
+    }
+}

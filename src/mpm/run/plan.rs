@@ -1,0 +1,87 @@
+//! What a run needs beside its body, from the problem and the schedule.
+
+use crate::mpm::body::Problem;
+use crate::mpm::critical_step::formula;
+use crate::mpm::critical_step::predicted::predicted_critical_step;
+use crate::mpm::operators::surface_load::LoadedSurface;
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::outcome::StepSizes;
+use crate::mpm::run::physical_bounds::PhysicalBounds;
+use crate::mpm::run::profile::{self, Phase, enter};
+use crate::mpm::run::schedule::Schedule;
+use crate::mpm::run::step_limit::StepLimit;
+
+/// Share of a semi-implicit run's critical step that growing steps end at.
+const LARGEST_SHARE: f64 = 0.8;
+
+/// What a run needs beside its body.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan<'a> {
+    /// When to step and what to keep.
+    pub schedule: &'a Schedule,
+    /// How large the steps may be.
+    pub limit: StepLimit,
+    /// Step sizes as far as they are known before.
+    pub sizes: StepSizes,
+    /// Pressure that the problem is about, Pa.
+    pub pressure_scale: f64,
+    /// Velocity that the problem is about, m/s.
+    pub velocity_scale: f64,
+    /// Height of the surface that settlements count from, m.
+    pub initial_height: f64,
+    /// What a sound result does not leave.
+    pub bounds: PhysicalBounds,
+    /// Time over which the load grows to its full value, s.
+    pub loading_time: f64,
+}
+
+impl<'a> Plan<'a> {
+    /// The plan of a problem.
+    ///
+    /// What implicit steps are measured by is a formula: of their own limit where the skeleton is
+    /// explicit, of the explicit integrator's where there is none.
+    pub fn of<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
+        let (soil, cell_size, settings) = (&problem.material, problem.grid.cell_size, &schedule.settings);
+        let predicted = || predicted_critical_step(problem, settings);
+        let critical = match schedule.integrator {
+            IntegratorKind::Explicit => {
+                schedule.critical_step.unwrap_or_else(|| profile::within(Phase::CriticalStep, predicted))
+            }
+            IntegratorKind::SemiImplicit => formula::semi_implicit_limit(soil, cell_size, D),
+            IntegratorKind::Implicit => formula::combined_limit(soil, cell_size, settings.drag),
+        };
+        enter(Phase::Setup);
+        let sizes = StepSizes {
+            predicted_critical: critical,
+            target: schedule.rule.step(problem, critical),
+            largest: 0.0,
+        };
+        // Steps that grow must not outgrow what an explicit skeleton can stand.
+        let most = match schedule.integrator {
+            IntegratorKind::SemiImplicit => LARGEST_SHARE * sizes.predicted_critical,
+            IntegratorKind::Explicit | IntegratorKind::Implicit => f64::INFINITY,
+        };
+        Self {
+            limit: schedule.rule.limit(problem, sizes.target, most, &schedule.outputs),
+            sizes,
+            pressure_scale: problem.pressure_scale,
+            velocity_scale: velocity_scale(problem),
+            initial_height: LoadedSurface::of(&problem.points, problem.load)
+                .shaped(problem.load_shape, &problem.points)
+                .height(&problem.points),
+            bounds: PhysicalBounds::of(problem),
+            loading_time: problem.loading_time,
+            schedule,
+        }
+    }
+}
+
+/// Velocity, m/s, of an undrained wave or of Darcy's flow through one cell under the problem's
+/// pressure, the larger: what a sound run does not leave a thousandfold.
+fn velocity_scale<const D: usize>(problem: &Problem<D>) -> f64 {
+    let soil = &problem.material;
+    let wave = formula::undrained_wave_speed(soil);
+    let density = (1.0 - soil.porosity) * soil.grain_density + soil.porosity * soil.water_density;
+    let flow = soil.hydraulic_conductivity / soil.unit_weight_of_water() / problem.grid.cell_size;
+    problem.pressure_scale * (1.0 / (density * wave)).max(flow / soil.porosity)
+}

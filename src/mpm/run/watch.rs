@@ -1,0 +1,115 @@
+//! Whether a run is still sound: looked at every few steps, for every integrator alike.
+
+use crate::elementary;
+use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::outcome::{FailureKind, StepSizes};
+use crate::mpm::run::plan::Plan;
+use crate::mpm::run::stepper::{StepFailure, Stepper};
+
+/// Velocities beyond this multiple of their scale have left.
+const BLOW_UP: f64 = 1e3;
+
+/// What the last looks have seen.
+#[derive(Clone, Copy, Debug)]
+pub struct Watch<'a> {
+    plan: &'a Plan<'a>,
+    /// Largest velocity at the last look, m/s.
+    velocity: f64,
+    /// Largest velocity over that of the look before, and the steps between them.
+    growth: Option<(f64, u64)>,
+}
+
+impl<'a> Watch<'a> {
+    /// Nothing seen yet.
+    pub fn of(plan: &'a Plan<'a>) -> Self {
+        Self { plan, velocity: 0.0, growth: None }
+    }
+
+    /// Steps to the next look of at most `most`, when so many are done: at first it comes after 1, 2, 4
+    /// steps and so on, for what grows fast is soon beyond all numbers.
+    pub fn steps_to_look(done: u64, most: u64) -> u64 {
+        if done >= most { most } else { ((done + 1).next_power_of_two() - done).max(1) }
+    }
+
+    /// Growth a step of the largest velocity when it was last finite.
+    pub fn growth(&self) -> Option<f64> {
+        self.growth.map(|(ratio, steps)| elementary::powf(ratio, 1.0 / steps as f64))
+    }
+
+    /// Looks at velocities, settlement and points after some steps.
+    ///
+    /// # Errors
+    /// [`StepFailure`] where they are none of the scene's.
+    pub fn look(
+        &mut self,
+        stepper: &dyn Stepper,
+        settlement: f64,
+        steps: u64,
+        sizes: &StepSizes,
+    ) -> Result<(), StepFailure> {
+        if let Some(velocity) = stepper.largest_velocity() {
+            if velocity.is_finite() && self.velocity > 0.0 && velocity > 0.0 {
+                self.growth = Some((velocity / self.velocity, steps));
+            }
+            self.velocity = velocity;
+            let scale = self.plan.velocity_scale;
+            if velocity > BLOW_UP * scale {
+                let reason = format!(
+                    "a nodal velocity of {velocity:.3e} m/s is more than {BLOW_UP:.0} times its scale of \
+                     {scale:.3e} m/s"
+                );
+                return Err(self.unstable(&reason, sizes));
+            }
+        }
+        if let Some(reason) = self.plan.bounds.left_by_settlement(settlement) {
+            return Err(self.unstable(&reason, sizes));
+        }
+        stepper.lost_point().map_or(Ok(()), Err)
+    }
+
+    /// Looks at the pressures of an output.
+    ///
+    /// # Errors
+    /// [`StepFailure`] where they are none of the scene's.
+    pub fn look_at_pressures(&self, pressures: &[f64], sizes: &StepSizes) -> Result<(), StepFailure> {
+        let left = self.plan.bounds.left_by_pressure(pressures);
+        left.map_or(Ok(()), |reason| Err(self.unstable(&reason, sizes)))
+    }
+
+    /// The end of a run that has left, with the step that may be to blame: an implicit skeleton has no
+    /// critical one.
+    fn unstable(&self, reason: &str, sizes: &StepSizes) -> StepFailure {
+        let (step, share) = (sizes.largest, sizes.largest / sizes.predicted_critical);
+        let blame = match self.plan.schedule.integrator {
+            IntegratorKind::Explicit => {
+                format!("; the step of {step:.4e} s is {share:.3} of the predicted critical one")
+            }
+            IntegratorKind::SemiImplicit => {
+                format!("; the largest step is {share:.3} of the predicted critical one")
+            }
+            IntegratorKind::Implicit => String::new(),
+        };
+        StepFailure { kind: FailureKind::Unstable, reason: format!("{reason}{blame}") }
+    }
+}
+
+/// A point whose pores closed or that left the grid, where there is one.
+pub fn lost_point<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    body: &Body<D, W, S>,
+) -> Option<StepFailure> {
+    let points = &body.points;
+    let grains = 1.0 - body.material.porosity;
+    if let Some(point) = points.volume_ratio.iter().position(|ratio| *ratio <= grains) {
+        return Some(pores_closed(point, points.volume_ratio[point], grains));
+    }
+    let outside = points.position.iter().position(|position| !body.grid.holds(position))?;
+    let reason = format!("point {outside} is at {:?} m", points.position[outside]);
+    Some(StepFailure { kind: FailureKind::LeftGrid, reason })
+}
+
+/// The end of a run one of whose points has the volume ratio of its grains, or less.
+pub fn pores_closed(point: usize, ratio: f64, grains: f64) -> StepFailure {
+    let reason = format!("point {point} has J = {ratio:.4}, its grains alone fill {grains:.4}");
+    StepFailure { kind: FailureKind::PoresClosed, reason }
+}

@@ -1,0 +1,75 @@
+//! What a chart could not show, in words.
+use crate::render::chart::canvas::Px;
+use crate::render::chart::describe::{Chart, Style};
+use crate::render::chart::layout::clip::PixelFrame;
+use crate::render::chart::layout::scale::{Reason, Ruler};
+
+/// The places of the points of each series, and what is to be said about those without one.
+pub(crate) struct Placed {
+    pub points: Vec<Vec<Option<Px>>>,
+    pub notes: Vec<String>,
+}
+
+/// Puts every point of every series in its place.
+pub(crate) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &PixelFrame) -> Placed {
+    let mut lost: Vec<(Reason, usize, Vec<&str>)> = Vec::new();
+    let mut lose = |reason: Reason, name| {
+        let i = lost.iter().position(|(r, ..)| *r == reason).unwrap_or_else(|| {
+            lost.push((reason, 0, Vec::new()));
+            lost.len() - 1
+        });
+        lost[i].1 += 1;
+        if !lost[i].2.contains(&name) {
+            lost[i].2.push(name);
+        }
+    };
+    let mut points = Vec::new();
+    for series in &chart.series {
+        let has_markers = matches!(series.style, Style::Markers | Style::LineAndMarkers);
+        let mut places = Vec::new();
+        for &(a, b) in &series.points {
+            let place = match (x.px(a), y.px(b)) {
+                (Ok(px), Ok(py)) => {
+                    if has_markers && !frame.grown(0.5).holds((px, py)) {
+                        lose(Reason::Outside, series.name.as_str());
+                    }
+                    Some((px, py))
+                }
+                (Err(reason), _) | (_, Err(reason)) => {
+                    lose(reason, series.name.as_str());
+                    None
+                }
+            };
+            places.push(place);
+        }
+        points.push(places);
+    }
+    lost.sort_by_key(|(reason, ..)| *reason);
+    let mut notes = sentence(&lost).into_iter().collect::<Vec<_>>();
+    notes.extend(chart.field.as_ref().and_then(|field| match (field.shape(), field.missing()) {
+        (None, _) => Some("The field's edges and values do not belong together.".to_owned()),
+        (_, 0) => None,
+        (_, 1) => Some("1 cell without a value is grey.".to_owned()),
+        (_, n) => Some(format!("{n} cells without a value are grey.")),
+    }));
+    Placed { points, notes }
+}
+
+fn sentence(lost: &[(Reason, usize, Vec<&str>)]) -> Option<String> {
+    let total: usize = lost.iter().map(|(_, n, _)| n).sum();
+    let reasons: Vec<String> = lost
+        .iter()
+        .map(|(reason, n, names)| {
+            let named: Vec<&str> = names.iter().copied().filter(|n| !n.is_empty()).collect();
+            let more = if named.len() > 3 { ", …" } else { "" };
+            let who = named.iter().take(3).copied().collect::<Vec<_>>().join(", ");
+            if who.is_empty() {
+                format!("{n} {}", reason.words())
+            } else {
+                format!("{n} {} ({who}{more})", reason.words())
+            }
+        })
+        .collect();
+    let values = if total == 1 { "value" } else { "values" };
+    (total > 0).then(|| format!("{total} {values} not drawn: {}.", reasons.join("; ")))
+}

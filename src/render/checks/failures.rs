@@ -1,0 +1,147 @@
+//! What failed in a check, as lines of a terminal's width: the worst first, and the rest counted.
+
+use crate::golden::case_changes::CaseChange;
+use crate::golden::compare::Difference;
+use crate::judge::study_check::{CaseNote, StudyCheck};
+use crate::render::number;
+use crate::render::tables::golden_changes::{count_of, judgement_of, summary};
+use std::fmt::Write;
+
+/// Columns of a terminal.
+const WIDTH: usize = 80;
+/// Items of a list before the rest is only counted.
+const MOST: usize = 10;
+
+/// A text in lines that fit a terminal; a longer word stays whole.
+pub(crate) fn wrapped(text: &str, first: &str, others: &str) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    let mut line = first.to_owned();
+    let mut is_empty = true;
+    for word in text.split_whitespace() {
+        if !is_empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            lines.push(std::mem::replace(&mut line, others.to_owned()));
+            is_empty = true;
+        }
+        if !is_empty {
+            line.push(' ');
+        }
+        line.extend(word.chars().filter(|c| !c.is_control()));
+        is_empty = false;
+    }
+    lines.push(line);
+    lines.join("\n") + "\n"
+}
+
+/// Everything that failed, section by section.
+pub(crate) fn text_of(check: &StudyCheck) -> String {
+    text_of_failures(check) + &text_of_changes(check)
+}
+
+/// Expectations that are not met, cases that failed and records that cannot be right.
+pub(crate) fn text_of_failures(check: &StudyCheck) -> String {
+    let unmet = check.judgements.iter().filter(|judgement| !judgement.verdict.pass);
+    let unmet = unmet.map(|judgement| {
+        let verdict = &judgement.verdict;
+        let (class, reason) = (verdict.classification.class.name(), &verdict.reason);
+        wrapped(&format!("✗ {}", judgement.subject), "  ", "    ")
+            + &wrapped(&format!("{class}: {reason}"), "    ", "    ")
+    });
+    let notes = |notes: &[CaseNote]| -> Vec<String> {
+        let item = |note: &CaseNote| {
+            wrapped(&format!("✗ {}", note.case), "  ", "    ") + &wrapped(&note.sentence, "    ", "    ")
+        };
+        notes.iter().map(item).collect()
+    };
+    [
+        section("expectations not met", unmet.collect()),
+        section("failed cases", notes(&check.failed_cases)),
+        section("records that cannot be right", notes(&check.unsound)),
+    ]
+    .concat()
+}
+
+/// Golden values that differ: kinds, the worst values, and cases.
+fn text_of_changes(check: &StudyCheck) -> String {
+    let mut sections = Vec::new();
+    if !check.groups.is_empty() {
+        let groups = check.groups.iter().map(|group| wrapped(&summary(group), "  ", "    "));
+        sections.push(format!("\ngolden values that differ\n{}", groups.collect::<String>()));
+        sections.push(section("the worst of them", check.differences().iter().map(difference).collect()));
+        sections.push(section("accuracy and cost together", check.changes.iter().map(case_change).collect()));
+    }
+    sections.concat()
+}
+
+/// A list under its title; nothing where it is empty.
+fn section(title: &str, items: Vec<String>) -> String {
+    if items.is_empty() {
+        return String::new();
+    }
+    let rest = items.len().saturating_sub(MOST);
+    let mut text = format!("\n{title}\n");
+    text.extend(items.into_iter().take(MOST));
+    if rest > 0 {
+        let _ = writeln!(text, "  and {rest} more");
+    }
+    text
+}
+
+fn difference(one: &Difference) -> String {
+    let how = match (one.golden, one.found, one.relative_change()) {
+        (Some(golden), Some(found), Some(change)) => format!(
+            "{}: {} was {}, a relative change of {}, {} its tolerance",
+            one.change.name(),
+            number::exact(found),
+            number::exact(golden),
+            number::error(change),
+            times((found - golden).abs() / one.tolerance)
+        ),
+        (Some(golden), None, _) => format!("{}: was {}", one.change.name(), number::exact(golden)),
+        (_, found, _) => {
+            format!("{}: {}", one.change.name(), found.map_or(String::new(), number::exact))
+        }
+    };
+    wrapped(&one.name, "  ", "    ") + &wrapped(&how, "    ", "    ")
+}
+
+fn times(ratio: f64) -> String {
+    format!("{} times", number::number(ratio))
+}
+
+fn case_change(one: &CaseChange) -> String {
+    let (mood, word) = judgement_of(one);
+    let counts = format!(
+        "{word}: cost {} of golden, {}, {} fell, {} without a partner",
+        number::number(one.cost_ratio),
+        count_of(one.worse, "value grew", "values grew"),
+        one.better,
+        one.unpaired
+    );
+    wrapped(&format!("{} {}", mood.mark(), one.case), "  ", "    ") + &wrapped(&counts, "    ", "    ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_fit_a_terminal_and_lose_no_word() {
+        let text = "order 1.01 outside 1.90 … 2.10, ".repeat(20);
+        let lines = wrapped(&text, "  ", "    ");
+        assert!(lines.lines().count() > 5 && lines.lines().all(|line| line.chars().count() <= WIDTH));
+        assert!(lines.starts_with("  order") && lines.lines().skip(1).all(|line| line.starts_with("    ")));
+        let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(words(&lines), words(&text));
+        let long = "x".repeat(100);
+        assert_eq!(wrapped(&long, "", "  "), format!("{long}\n"), "a name stays whole");
+        assert_eq!(wrapped("a\u{1b}[31m", "", ""), "a[31m\n", "nothing steers the terminal");
+    }
+
+    #[test]
+    fn a_long_list_is_cut_and_counted() {
+        let items = |count: usize| (0..count).map(|number| format!("  {number}\n")).collect::<Vec<_>>();
+        assert_eq!(section("title", items(0)), "");
+        assert!(section("title", items(MOST)).ends_with("  9\n"));
+        assert!(section("title", items(MOST + 3)).ends_with("  9\n  and 3 more\n"));
+    }
+}

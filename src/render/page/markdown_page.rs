@@ -1,0 +1,76 @@
+//! Pages in GitHub's Markdown.
+use crate::render::escape;
+use crate::render::page::marked_text::{paragraphs, to_markdown};
+use crate::render::page::{Block, Figure, Mood, Page};
+use crate::render::render_error::RenderError;
+
+pub(crate) fn write(page: &Page) -> Result<String, RenderError> {
+    let mut out = vec![format!("# {}", escape::markdown(&page.title))];
+    out.extend(paragraphs(&page.lead).iter().map(|p| to_markdown(p)));
+    if page.sections.len() > 2 {
+        let entries = page.sections.iter().map(|s| {
+            let mark = s.mood.map(|m| format!(" {}", m.mark())).unwrap_or_default();
+            format!("- [{}](#{}){mark}", escape::markdown(&s.heading), s.id)
+        });
+        out.push(entries.collect::<Vec<_>>().join("\n"));
+    }
+    for section in &page.sections {
+        // An anchor of our own: those made from headings change with every word.
+        let mark = section.mood.map(|m| format!(" {}", m.mark())).unwrap_or_default();
+        out.push(format!("<a id=\"{}\"></a>", section.id));
+        out.push(format!("## {}{mark}", escape::markdown(&section.heading)));
+        for block in &section.blocks {
+            out.push(write_block(block)?);
+        }
+    }
+    if !page.footer.is_empty() {
+        out.push("---".to_owned());
+        out.extend(paragraphs(&page.footer).iter().map(|p| to_markdown(p)));
+    }
+    out.retain(|part| !part.is_empty());
+    Ok(format!("{}\n", out.join("\n\n")))
+}
+
+fn write_block(block: &Block) -> Result<String, RenderError> {
+    Ok(match block {
+        Block::Paragraph(text) => {
+            paragraphs(text).iter().map(|p| to_markdown(p)).collect::<Vec<_>>().join("\n\n")
+        }
+        Block::Heading(text) => format!("### {}", escape::markdown(text)),
+        Block::List(points) => {
+            let point = |p: &String| format!("- {}", to_markdown(&paragraphs(p).join(" ")));
+            points.iter().map(point).collect::<Vec<_>>().join("\n")
+        }
+        Block::Table(table) => table.to_markdown()?.trim_end().to_owned(),
+        Block::Figure(figure) => write_figure(figure),
+        Block::Figures(figures) => figures.iter().map(write_figure).collect::<Vec<_>>().join("\n\n"),
+        Block::Callout(mood, text) => {
+            let kind = match mood {
+                Mood::Pass => "TIP",
+                Mood::Fail => "CAUTION",
+                Mood::Note => "NOTE",
+            };
+            let lines = paragraphs(text).iter().map(|p| format!("> {}", to_markdown(p))).collect::<Vec<_>>();
+            format!("> [!{kind}]\n{}", lines.join("\n>\n"))
+        }
+        Block::Details { summary, blocks } => {
+            let inside = blocks.iter().map(write_block).collect::<Result<Vec<_>, _>>()?.join("\n\n");
+            format!("<details>\n<summary>{}</summary>\n\n{inside}\n\n</details>", escape::html(summary))
+        }
+        Block::Code(text) => {
+            let fence = "`".repeat(longest_quotes(text).max(2) + 1);
+            format!("{fence}text\n{}\n{fence}", text.trim_end())
+        }
+    })
+}
+
+fn write_figure(figure: &Figure) -> String {
+    let image = format!("![{}](figures/{}.svg)", escape::markdown(figure.title()), figure.name);
+    let caption: Vec<String> = paragraphs(&figure.caption).iter().map(|p| to_markdown(p)).collect();
+    if caption.is_empty() { image } else { format!("{image}\n\n{}", caption.join("\n\n")) }
+}
+
+/// The longest row of back quotes, which the fence has to outdo.
+fn longest_quotes(text: &str) -> usize {
+    text.split(|c| c != '`').map(str::len).max().unwrap_or(0)
+}

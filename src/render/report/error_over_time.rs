@@ -1,0 +1,229 @@
+//! Error against wall time over every integrator: the front, the first way to a tolerance, one more
+//! level, and other programs.
+
+use crate::case::IntegratorKind;
+use crate::judge::peers;
+use crate::judge::peers::Comparison;
+use crate::judge::work_precision::{NextLevel, TimedRun, WorkPrecision};
+use crate::render::chart::describe::{Chart, ChartAxis, Series, Style};
+use crate::render::page::{Block, Figure, slug};
+use crate::render::report::StudyResults;
+use crate::render::table::{Cell, Table, TableColumn};
+
+/// The comparison of a study with timed runs of several integrators.
+pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
+    let Some(reference) = results.study.references.first() else { return Vec::new() };
+    let Some(precision) = WorkPrecision::of(results.records, reference.name()) else { return Vec::new() };
+    let several =
+        IntegratorKind::ALL.iter().filter(|kind| runs_of(&precision, **kind).next().is_some()).count() > 1;
+    if !several {
+        return Vec::new();
+    }
+    let mut blocks = vec![
+        Block::Heading("Error against wall time".to_owned()),
+        Block::Figure(Figure::new(
+            slug(&format!("{}-wall-time", results.study.name)),
+            chart_of(&precision),
+            caption(&precision),
+        )),
+        Block::Table(cheapest_table(&precision)),
+        Block::Table(front_table(&precision)),
+    ];
+    if !precision.next_levels.is_empty() {
+        blocks.push(Block::Table(next_table(&precision.next_levels)));
+    }
+    if peers::solve_their_column(&precision.runs) {
+        blocks.push(Block::Table(peers_table(&peers::compare(&precision.runs))));
+    }
+    let all: Vec<&TimedRun<'_>> = precision.runs.iter().collect();
+    blocks.push(Block::Details {
+        summary: format!("All {} timed runs", all.len()),
+        blocks: vec![Block::Table(runs_table("Every timed run, the cheapest first", &all, &precision))],
+    });
+    blocks
+}
+
+fn runs_of<'b, 'a>(
+    precision: &'b WorkPrecision<'a>,
+    kind: IntegratorKind,
+) -> impl Iterator<Item = &'b TimedRun<'a>> {
+    precision.runs.iter().filter(move |run| run.record.case.integrator == kind)
+}
+
+fn chart_of(precision: &WorkPrecision<'_>) -> Chart {
+    let mut chart = Chart::new(
+        "Error against wall time",
+        ChartAxis::log10("wall time, s"),
+        ChartAxis::log10("error of the pore pressure, worst of the outputs"),
+    );
+    for kind in IntegratorKind::ALL {
+        let points: Vec<_> = runs_of(precision, kind).map(point).collect();
+        if !points.is_empty() {
+            chart.series.push(Series::new(kind.name(), points).style(Style::Markers));
+        }
+    }
+    let front = precision.runs.iter().filter(|run| run.on_front).map(point).collect();
+    chart.series.push(Series::theory("Pareto front", front));
+    chart
+}
+
+fn point(run: &TimedRun<'_>) -> (f64, f64) {
+    (run.wall.median, run.error)
+}
+
+fn caption(precision: &WorkPrecision<'_>) -> String {
+    let noise = precision.noise_floor.map_or(String::new(), |noise| {
+        format!(
+            " In this session a run timed against itself came out the same within {:.0} %.",
+            100.0 * noise
+        )
+    });
+    format!(
+        "Each point is a run: its wall time is the median over repeats taken in rounds over all runs. Nobody is ahead \
+         of a run on the front in both error and time.{noise}"
+    )
+}
+
+fn cheapest_table(precision: &WorkPrecision<'_>) -> Table {
+    let rows = precision.cheapest.iter().map(|cheapest| {
+        let mut row = vec![Cell::Percent(cheapest.tolerance)];
+        match &cheapest.run {
+            Some(run) => row.extend(run_cells(run)),
+            None => row.push(Cell::Missing("no timed run is within it".to_owned())),
+        }
+        row.resize_with(1 + RUN_COLUMNS, || Cell::Missing("no timed run is within the tolerance".to_owned()));
+        row
+    });
+    let mut columns = vec![TableColumn::number("tolerance")];
+    columns.extend(run_columns());
+    Table {
+        title: "The cheapest way to a tolerance".to_owned(),
+        columns,
+        rows: rows.collect(),
+        notes: vec![
+            "error of the pore pressure at the points, relative L2, the worst of the outputs".to_owned(),
+        ],
+    }
+}
+
+fn front_table(precision: &WorkPrecision<'_>) -> Table {
+    let front: Vec<_> = precision.runs.iter().filter(|run| run.on_front).collect();
+    runs_table("The Pareto front", &front, precision)
+}
+
+/// Columns of a run.
+const RUN_COLUMNS: usize = 6;
+
+fn run_columns() -> [TableColumn; RUN_COLUMNS] {
+    [
+        TableColumn::text("run"),
+        TableColumn::number("error"),
+        TableColumn::number("wall, median").unit("ms"),
+        TableColumn::number("± deviation").unit("ms"),
+        TableColumn::number("steps"),
+        TableColumn::number("point updates"),
+    ]
+}
+
+fn run_cells(run: &TimedRun<'_>) -> [Cell; RUN_COLUMNS] {
+    [
+        Cell::Code(run.record.case.label()),
+        Cell::Error(run.error),
+        Cell::Number(1e3 * run.wall.median),
+        Cell::Number(1e3 * run.wall.deviation),
+        Cell::Count(run.record.counters.steps),
+        Cell::Count(run.record.counters.point_updates),
+    ]
+}
+
+fn runs_table(title: &str, runs: &[&TimedRun<'_>], precision: &WorkPrecision<'_>) -> Table {
+    let mut notes =
+        vec!["wall times of runs that had the machine to themselves, in rounds over all runs".to_owned()];
+    notes.extend(
+        precision.noise_floor.map(|noise| format!("noise floor of the session: {:.1} %", 100.0 * noise)),
+    );
+    Table {
+        title: title.to_owned(),
+        columns: run_columns().to_vec(),
+        rows: runs.iter().map(|run| run_cells(run).to_vec()).collect(),
+        notes,
+    }
+}
+
+fn next_table(levels: &[NextLevel]) -> Table {
+    let unknown = || Cell::Missing("the coarser levels predict none".to_owned());
+    let rows = levels.iter().map(|level| {
+        let held = level.finest_predicted;
+        vec![
+            Cell::Text(level.label.clone()),
+            Cell::Number(1e3 * level.finest.cost),
+            Cell::Error(level.finest.error),
+            Cell::Number(1e3 * level.next.cost),
+            level.next.error.map_or(Cell::Missing("the series does not converge".to_owned()), Cell::Error),
+            Cell::Order(level.next.cost_exponent),
+            held.map_or_else(unknown, |held| Cell::Percent(held.cost / level.finest.cost - 1.0)),
+            held.and_then(|held| held.error)
+                .map_or_else(unknown, |error| Cell::Percent(error / level.finest.error - 1.0)),
+        ]
+    });
+    Table {
+        title: "One more level: cells half as large".to_owned(),
+        columns: vec![
+            TableColumn::text("path"),
+            TableColumn::number("wall of the finest").unit("ms"),
+            TableColumn::number("its error"),
+            TableColumn::number("wall predicted").unit("ms"),
+            TableColumn::number("error predicted"),
+            TableColumn::number("cost exponent"),
+            TableColumn::number("finest predicted by the coarser: wall off by"),
+            TableColumn::number("error off by"),
+        ],
+        rows: rows.collect(),
+        notes: vec![
+            "the cost grows as h^−exponent; the error falls with the order and the floor of its class"
+                .to_owned(),
+        ],
+    }
+}
+
+fn peers_table(compared: &[Comparison<'_, '_>]) -> Table {
+    let missing = || Cell::Missing("not measured".to_owned());
+    let rows = compared.iter().map(|one| {
+        let mut row = vec![Cell::Text(format!("{}: {}", one.peer.name, one.peer.kind))];
+        row.extend(one.peer.errors.map(|error| error.map_or_else(missing, Cell::Error)));
+        row.push(one.peer.seconds.map_or_else(missing, Cell::Number));
+        match &one.ahead {
+            Some((run, errors)) => {
+                row.push(Cell::Code(run.record.case.label()));
+                row.extend(errors.map(|error| error.map_or_else(missing, Cell::Error)));
+                row.push(Cell::Number(run.wall.median));
+            }
+            None => {
+                row.resize_with(10, || Cell::Missing("every run here is somewhere worse".to_owned()));
+            }
+        }
+        row
+    });
+    let [early, middle, late] = peers::TIME_FACTORS.map(|factor| format!("T_v = {factor}"));
+    Table {
+        title: "Other programs on this column, and the first run here that is nowhere worse".to_owned(),
+        columns: vec![
+            TableColumn::text("program"),
+            TableColumn::number(&early),
+            TableColumn::number(&middle),
+            TableColumn::number(&late),
+            TableColumn::number("CPU").unit("s"),
+            TableColumn::text("run here"),
+            TableColumn::number(early),
+            TableColumn::number(middle),
+            TableColumn::number(late),
+            TableColumn::number("wall").unit("s"),
+        ],
+        rows: rows.collect(),
+        notes: vec![
+            "errors against Terzaghi's solution for incompressible water, which every run with water's own stiffness \
+             is 2e-4 away from; the other programs' times are of another machine and session"
+                .to_owned(),
+        ],
+    }
+}

@@ -1,0 +1,111 @@
+//! Error against work, and the wall times that were measured fairly.
+
+use crate::case::quantity::{Quantity, Sample};
+use crate::judge::paths::{first_norm, paths};
+use crate::measure::wall_times::median;
+use crate::record::{Record, Status};
+use crate::render::chart::describe::{Chart, ChartAxis, Series};
+use crate::render::page::{Block, Figure, slug};
+use crate::render::report::{StudyResults, labels};
+use crate::render::table::{Cell, Table, TableColumn};
+use crate::study::expectation::{Axis, Measure};
+
+/// Error over point updates, and over wall time where runs had the machine to themselves.
+pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
+    let along_mesh = paths(results.records, Axis::Cells);
+    let mut blocks = Vec::new();
+    let Some(measure) = measure_of(results) else { return blocks };
+    if along_mesh.len() > 1 {
+        let mut chart = Chart::new(
+            "Error against work",
+            ChartAxis::log10("point updates (points × steps)"),
+            ChartAxis::log10(labels::error_axis(&measure)),
+        );
+        let labels = labels::path_labels(&along_mesh);
+        let shared = if labels.shared.is_empty() { String::new() } else { format!("; {}", labels.shared) };
+        chart.subtitle =
+            Some(format!("{}, T_v = {}{shared}", labels::measure(&measure), measure.time_factor));
+        for (path, label) in along_mesh.iter().zip(&labels.each) {
+            let points = path
+                .records
+                .iter()
+                .filter_map(|record| Some((record.counters.point_updates as f64, error(record, &measure)?)));
+            chart.series.push(Series::new(label.clone(), points.collect()));
+        }
+        let caption = "Work to the last output, counted and not timed: every step visits every point once, or does \
+                       the same by one banded map of the grid. Order p in h costs e ~ W^(−p/2): a mesh twice as fine \
+                       has twice the points and twice the steps."
+            .to_owned();
+        let figure = Figure::new(slug(&format!("{}-work", results.study.name)), chart, caption);
+        blocks.push(Block::Heading("Error against work".to_owned()));
+        blocks.push(Block::Figure(figure));
+    }
+    let timed: Vec<&Record> = results
+        .records
+        .iter()
+        .filter(|record| !record.wall_alone().is_empty() && record.status == Status::Ok)
+        .collect();
+    if timed.len() > 1 && results.study.timing_repeats > 0 {
+        blocks.push(Block::Table(timing_table(&timed, &measure)));
+    }
+    blocks
+}
+
+/// Pressure at the points against the scene's own reference at the last output.
+fn measure_of(results: &StudyResults<'_>) -> Option<Measure> {
+    let record = results.records.first()?;
+    Some(Measure {
+        quantity: Quantity::Pressure,
+        sample: Sample::Points,
+        norm: first_norm(Quantity::Pressure),
+        reference: results.study.references.first()?.name().to_owned(),
+        time_factor: *record.case.time_factors.last()?,
+        probe: None,
+    })
+}
+
+fn error(record: &Record, measure: &Measure) -> Option<f64> {
+    record
+        .error(measure.quantity, measure.sample, measure.norm, &measure.reference, measure.time_factor)
+        .map(|row| row.value.abs())
+}
+
+fn timing_table(timed: &[&Record], measure: &Measure) -> Table {
+    let rows = timed.iter().map(|record| {
+        let wall = record.wall_alone();
+        let middle = median(&wall).unwrap_or(f64::NAN);
+        let least = wall.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = wall.iter().copied().fold(0.0, f64::max);
+        let nanoseconds = 1e9 * middle / record.counters.point_updates as f64;
+        vec![
+            Cell::Code(record.case.label()),
+            error(record, measure).map_or(Cell::Missing("no error was measured".to_owned()), Cell::Error),
+            Cell::Count(record.counters.steps),
+            Cell::Count(record.counters.point_updates),
+            Cell::Seconds(middle),
+            Cell::Text(format!("{least:.3} … {most:.3} s, {} runs", wall.len())),
+            Cell::Number(nanoseconds),
+        ]
+    });
+    Table {
+        title: format!(
+            "Cost, with the error of the {} at T_v = {}",
+            labels::measure(measure),
+            measure.time_factor
+        ),
+        columns: vec![
+            TableColumn::text("case"),
+            TableColumn::number("error"),
+            TableColumn::number("steps"),
+            TableColumn::number("point updates"),
+            TableColumn::number("wall, median"),
+            TableColumn::text("spread"),
+            TableColumn::number("a point and step").unit("ns"),
+        ],
+        rows: rows.collect(),
+        notes: vec![
+            "wall times only of runs that had the machine to themselves, taken in rounds over all cases"
+                .to_owned(),
+        ],
+    }
+}

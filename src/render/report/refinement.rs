@@ -1,0 +1,342 @@
+//! Errors under refinement: figures with slope triangles, and tables of orders.
+
+use crate::case::quantity::{Quantity, Sample};
+use crate::case::step_label;
+use crate::convergence::orders::WINDOW;
+use crate::exact::reference::ReferenceKind;
+use crate::judge::paths::{Path, SeriesSummary, first_norm, paths};
+use crate::render::chart::describe::{
+    Chart, ChartAxis, ChartDirection, Rule, Series, Size, SlopeTriangle, Style, TrianglePlace,
+};
+use crate::render::page::{Block, Figure, slug};
+use crate::render::report::{StudyResults, labels};
+use crate::render::table::{Cell, Table, TableColumn};
+use crate::study::expectation::{Axis, Measure, NEXT_FINER};
+
+/// Quantities of one figure, side by side; a layer's settlement says less than its displacements.
+fn panels(results: &StudyResults<'_>) -> [(Quantity, Sample); 4] {
+    let of_the_body = if results.study.scene.has_plane_fields() {
+        (Quantity::Displacement, Sample::Nodes)
+    } else {
+        (Quantity::Settlement, Sample::Surface)
+    };
+    [
+        (Quantity::Pressure, Sample::Points),
+        (Quantity::Pressure, Sample::Centres),
+        (Quantity::EffectiveStress, Sample::Points),
+        of_the_body,
+    ]
+}
+
+/// More series than these are no figure.
+const MOST_SERIES: usize = 14;
+
+/// The paths that a figure shows: all of them, or, where they are too many, those of the undisturbed soil.
+fn drawn<'a, 'b>(all: &'b [Path<'a>]) -> Vec<Path<'a>> {
+    let is_plain = |path: &&Path<'_>| path.records[0].case.variant().is_empty();
+    let plain: Vec<Path<'a>> = all.iter().filter(is_plain).cloned().collect();
+    if all.len() > MOST_SERIES && !plain.is_empty() { plain } else { all.to_vec() }
+}
+
+/// Width of a figure that has a neighbour.
+const PANEL_WIDTH: f64 = 560.0;
+
+/// Figures and tables of a study along an axis; none where nothing was refined on it.
+pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
+    let all = longest_paths(results, axis);
+    if all.is_empty() {
+        return Vec::new();
+    }
+    let times = common_times(&all);
+    let Some(shown) = times.get(times.len().saturating_sub(1) / 2).copied() else { return Vec::new() };
+    let mut blocks = vec![Block::Heading(heading(axis).to_owned())];
+    let mut references: Vec<&str> = results.study.references.iter().map(|kind| kind.name()).collect();
+    if axis == Axis::TimeStep && results.asks_for(NEXT_FINER) {
+        references.insert(0, NEXT_FINER);
+    }
+    let own = references.first().copied().unwrap_or_default();
+    let few = drawn(&all);
+    let figures =
+        panels(results).map(|(quantity, sample)| figure(results, &few, axis, quantity, sample, own, shown));
+    blocks.push(Block::Figures(figures.into_iter().flatten().collect()));
+    if let (true, Some(other)) = (floors_of_model(results), references.get(1)) {
+        blocks.extend(
+            figure(results, &few, axis, Quantity::Pressure, Sample::Points, other, shown).map(Block::Figure),
+        );
+    }
+    if few.len() < all.len() {
+        blocks.push(Block::Paragraph(
+            "The figures show the undisturbed soil; the table has every variant too.".to_owned(),
+        ));
+    }
+    blocks.push(Block::Table(orders_table(results, &all, axis, own, shown)));
+    let mut more: Vec<Block> = times
+        .iter()
+        .filter(|time| **time != shown)
+        .map(|time| Block::Table(orders_table(results, &all, axis, own, *time)))
+        .collect();
+    for other in references.iter().skip(1) {
+        more.push(Block::Table(orders_table(results, &all, axis, other, shown)));
+    }
+    if !more.is_empty() {
+        blocks.push(Block::Details { summary: "The other times and references".to_owned(), blocks: more });
+    }
+    blocks
+}
+
+/// Paths of at least three levels; in a study of variants with two levels there is no order.
+fn longest_paths<'a>(results: &StudyResults<'a>, axis: Axis) -> Vec<Path<'a>> {
+    let mut all = paths(results.records, axis);
+    all.retain(|path| path.records.len() >= WINDOW);
+    all
+}
+
+/// Whether the study expects to run into the difference of two models.
+fn floors_of_model(results: &StudyResults<'_>) -> bool {
+    let own = results.study.references.first().copied();
+    results.study.expectations.iter().any(|one| one.reference.is_some() && one.reference != own)
+}
+
+fn common_times(all: &[Path<'_>]) -> Vec<f64> {
+    let first = all[0].records[0].case.time_factors.clone();
+    first
+        .into_iter()
+        .filter(|time| all.iter().all(|path| path.records[0].case.time_factors.contains(time)))
+        .collect()
+}
+
+fn heading(axis: Axis) -> &'static str {
+    match axis {
+        Axis::Cells => "Error against the mesh",
+        Axis::TimeStep => "Error against the time step",
+        Axis::PointsPerCell => "Error against the points in a cell",
+        Axis::WaterBulkModulus => "Error against the compressibility of the water",
+    }
+}
+
+/// A measure in the norm in which its quantity is reported first.
+fn first_measure(quantity: Quantity, sample: Sample, reference: &str, time_factor: f64) -> Measure {
+    let norm = first_norm(quantity);
+    Measure { quantity, sample, norm, reference: reference.to_owned(), time_factor, probe: None }
+}
+
+fn figure(
+    results: &StudyResults<'_>,
+    all: &[Path<'_>],
+    axis: Axis,
+    quantity: Quantity,
+    sample: Sample,
+    reference: &str,
+    time_factor: f64,
+) -> Option<Figure> {
+    let measure = first_measure(quantity, sample, reference, time_factor);
+    let summaries: Vec<SeriesSummary<'_>> = all.iter().map(|path| path.summary(&measure)).collect();
+    if summaries.iter().all(|summary| summary.series.levels().iter().all(|level| level.error.is_none())) {
+        return None;
+    }
+    let title = format!("Error of the {}", labels::measure(&measure));
+    let sizes = summaries.iter().flat_map(|summary| summary.series.levels()).map(|level| level.size);
+    let mut ticks: Vec<f64> = sizes.collect();
+    ticks.sort_by(f64::total_cmp);
+    ticks.dedup();
+    let mut chart = Chart::new(
+        title,
+        ChartAxis::log10(labels::axis(axis)).with_ticks(ticks),
+        ChartAxis::log10(labels::error_axis(&measure)),
+    );
+    let labels = labels::path_labels(all);
+    let shared = if labels.shared.is_empty() { String::new() } else { format!("; {}", labels.shared) };
+    chart.subtitle = Some(format!("T_v = {time_factor}, against {reference}{shared}"));
+    chart.size = Size { width: PANEL_WIDTH, ..Size::default() };
+    for (summary, label) in summaries.iter().zip(&labels.each) {
+        let points =
+            summary.series.levels().iter().filter_map(|level| Some((level.size, level.error?))).collect();
+        chart.series.push(Series::new(label.clone(), points).style(Style::LineAndMarkers));
+    }
+    if shows_orders(axis, reference) {
+        add_triangles(&mut chart, &summaries, &labels.each);
+    }
+    if axis == Axis::Cells
+        && let Some((at, whose)) = shared_floor(&summaries, &labels.each)
+    {
+        let kind: Option<ReferenceKind> = reference.parse().ok();
+        let cause = kind.and_then(|kind| {
+            results.study.scene.model_difference(kind, &summaries[0].path.records[0].case.material)
+        });
+        let cause = cause.map_or_else(String::new, |cause| format!(": {cause}"));
+        chart.rules.push(Rule { axis: ChartDirection::Y, at, label: format!("floor of {whose}{cause}") });
+    }
+    let name = slug(&format!(
+        "{}-{}-{}-{}-{reference}",
+        results.study.name,
+        axis.name(),
+        quantity.name(),
+        sample.name()
+    ));
+    let caption = match axis {
+        Axis::Cells | Axis::TimeStep | Axis::WaterBulkModulus => captions(&summaries),
+        Axis::PointsPerCell => {
+            "More points refine the quadrature, not the mesh: the error tends to the mesh's own.".to_owned()
+        }
+    };
+    Some(Figure::new(name, chart, caption))
+}
+
+/// Whether a series along the axis is expected to fall with an order, and not to end in the mesh's
+/// error.
+fn shows_orders(axis: Axis, reference: &str) -> bool {
+    axis == Axis::Cells || axis == Axis::TimeStep && reference == NEXT_FINER
+}
+
+/// The floor that a figure can show as one line, and whose it is: that of its only limited series, or of
+/// all its series where they end within a tenth of each other. Others are told in the table alone.
+fn shared_floor(summaries: &[SeriesSummary<'_>], labels: &[String]) -> Option<(f64, String)> {
+    let floor = |summary: &SeriesSummary<'_>| Some(summary.classification.floor.as_ref()?.value);
+    let floors: Vec<(f64, &String)> =
+        summaries.iter().zip(labels).filter_map(|(summary, label)| Some((floor(summary)?, label))).collect();
+    let (lowest, highest) = floors
+        .iter()
+        .fold((f64::INFINITY, 0.0_f64), |(low, high), (floor, _)| (low.min(*floor), high.max(*floor)));
+    match floors.as_slice() {
+        [(only, label)] => Some((*only, (*label).clone())),
+        [_, _, ..] if floors.len() == summaries.len() && highest <= SAME_FLOOR * lowest => {
+            Some(((lowest * highest).sqrt(), "all series".to_owned()))
+        }
+        _ => None,
+    }
+}
+
+/// Floors within this factor are one line in a figure.
+const SAME_FLOOR: f64 = 1.1;
+
+/// One triangle for each order that a series comes near.
+fn add_triangles(chart: &mut Chart, summaries: &[SeriesSummary<'_>], labels: &[String]) {
+    for slope in [1.0, 2.0] {
+        let near = summaries.iter().zip(labels).find(|(summary, _)| {
+            summary.finest.as_ref().is_ok_and(|finest| (finest.order - slope).abs() < 0.3)
+        });
+        if let Some((_, label)) = near {
+            chart.triangles.push(SlopeTriangle { slope, place: TrianglePlace::Beside(label.clone()) });
+        }
+    }
+}
+
+/// The class of every series of a figure, those that share a class together.
+fn captions(summaries: &[SeriesSummary<'_>]) -> String {
+    let mut said: Vec<(String, Vec<String>)> = Vec::new();
+    for summary in summaries {
+        let class = summary.classification.class.name().to_owned();
+        let order = match (&summary.classification.order, summary.path.axis) {
+            (Some(order), axis) if shows_orders(axis, &summary.measure.reference) => {
+                format!("{} (order {order:.2})", summary.path.records[0].case.method)
+            }
+            _ => summary.path.records[0].case.method.to_string(),
+        };
+        match said.iter_mut().find(|(known, _)| *known == class) {
+            Some((_, labels)) => labels.push(order),
+            None => said.push((class, vec![order])),
+        }
+    }
+    let parts: Vec<String> =
+        said.iter().map(|(class, labels)| format!("*{class}*: {}", labels.join(", "))).collect();
+    parts.join("; ") + "."
+}
+
+/// Errors at every level with pairwise orders, fit, finest window and class.
+fn orders_table(
+    results: &StudyResults<'_>,
+    all: &[Path<'_>],
+    axis: Axis,
+    reference: &str,
+    time_factor: f64,
+) -> Table {
+    let levels = level_names(all, axis);
+    let labels = labels::path_labels(all);
+    let mut columns = vec![TableColumn::text("method"), TableColumn::text("error of")];
+    columns.extend(levels.iter().map(|level| TableColumn::number(level.clone())));
+    if shows_orders(axis, reference) {
+        columns.extend(["pair orders", "fit, 95 %", "finest 3"].map(TableColumn::number));
+    }
+    if axis != Axis::PointsPerCell {
+        columns.push(TableColumn::text("class"));
+    }
+    let mut rows = Vec::new();
+    let mut notes = Vec::new();
+    for (quantity, sample) in panels(results) {
+        let measure = first_measure(quantity, sample, reference, time_factor);
+        for (path, label) in all.iter().zip(&labels.each) {
+            let summary = path.summary(&measure);
+            let told = summary.classification.floor.as_ref().filter(|_| axis != Axis::PointsPerCell);
+            if let (Some(floor), Some(advice)) = (told, &summary.classification.advice) {
+                notes.push(format!(
+                    "{label}, {}: floor {:.1e}; {advice}",
+                    labels::measure(&measure),
+                    floor.value
+                ));
+            }
+            rows.push(orders_row(&summary, label, &measure, levels.len(), axis));
+        }
+    }
+    notes.push(format!(
+        "{} over the volume; settlement |s/s_exact − 1|",
+        first_norm(Quantity::Pressure).formula()
+    ));
+    if !labels.shared.is_empty() {
+        notes.insert(0, format!("all with {}", labels.shared));
+    }
+    Table { title: format!("T_v = {time_factor}, against {reference}"), columns, rows, notes }
+}
+
+fn orders_row(
+    summary: &SeriesSummary<'_>,
+    label: &str,
+    measure: &Measure,
+    levels: usize,
+    axis: Axis,
+) -> Vec<Cell> {
+    let mut row = vec![Cell::Code(label.to_owned()), labels::measure(measure).as_str().into()];
+    let errors = summary.series.levels().iter().map(|level| match level.error {
+        Some(error) => Cell::Error(error),
+        None => Cell::Missing("no error was measured".to_owned()),
+    });
+    row.extend(errors);
+    row.resize(2 + levels, Cell::Missing("not run".to_owned()));
+    if shows_orders(axis, &measure.reference) {
+        let pairs: Vec<String> = summary
+            .pairs
+            .iter()
+            .map(|pair| pair.order.as_ref().map_or("–".to_owned(), |order| format!("{order:.2}")))
+            .collect();
+        row.push(pairs.join(", ").as_str().into());
+        row.push(match &summary.slope {
+            Ok(fit) => {
+                fit.half_width.map_or(Cell::Order(fit.order), |half| Cell::OrderWithin(fit.order, half))
+            }
+            Err(undefined) => Cell::Missing(undefined.to_string()),
+        });
+        row.push(match &summary.finest {
+            Ok(finest) => Cell::Order(finest.order),
+            Err(undefined) => Cell::Missing(undefined.to_string()),
+        });
+    }
+    if axis != Axis::PointsPerCell {
+        row.push(summary.classification.class.name().into());
+    }
+    row
+}
+
+/// Names of the levels, from the path that has most of them.
+fn level_names(all: &[Path<'_>], axis: Axis) -> Vec<String> {
+    let longest = all.iter().max_by_key(|path| path.records.len());
+    longest.map_or(Vec::new(), |path| {
+        path.records
+            .iter()
+            .map(|record| match axis {
+                Axis::Cells => record.case.cells.to_string(),
+                Axis::TimeStep => step_label(&record.case.time_step).replace("seconds=", "Δt = ") + " s",
+                Axis::PointsPerCell => format!("m = {}", record.case.points_per_cell),
+                Axis::WaterBulkModulus => format!("K_w = {:e} Pa", record.case.material.water_bulk_modulus),
+            })
+            .collect()
+    })
+}

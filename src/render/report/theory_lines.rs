@@ -1,0 +1,156 @@
+//! Isochrones of the pore pressure and the degree of consolidation, with the theory line.
+
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::exact::error::ExactError;
+use crate::measure::theory_curves::{
+    computed_consolidation, computed_isochrone, constant_recovery_error, theory_consolidation, theory_degree,
+    theory_isochrone,
+};
+use crate::record::{Record, Status};
+use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
+use crate::render::page::{Block, Figure, slug};
+use crate::render::report::StudyResults;
+
+/// Cells of the runs whose profiles are drawn: the paper's column.
+const SHOWN_CELLS: usize = 10;
+
+/// Points a cell of those runs: the first of these that a study has.
+const SHOWN_POINTS: [usize; 2] = [2, 4];
+
+/// Profiles of a study's runs on the paper's mesh, one run a method; none for studies that refine
+/// but one method.
+pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
+    let shown = shown_records(results.records);
+    if shown.len() < 2 || results.study.scene.has_plane_fields() {
+        return Ok(Vec::new());
+    }
+    let mut blocks = vec![Block::Heading("Profiles on ten cells".to_owned())];
+    let mut figures = Vec::new();
+    for record in compared(&shown) {
+        figures.push(isochrones(results, record)?);
+    }
+    figures.push(consolidation(results, &shown)?);
+    blocks.push(Block::Figures(figures));
+    blocks.extend(sampling_note(&shown).map(Block::Paragraph));
+    Ok(blocks)
+}
+
+/// The first sound run of each method on the paper's mesh.
+fn shown_records(records: &[Record]) -> Vec<&Record> {
+    let is_sound = |record: &&Record| record.case.cells == SHOWN_CELLS && record.status == Status::Ok;
+    let has =
+        |points: &usize| records.iter().filter(is_sound).any(|record| record.case.points_per_cell == *points);
+    let points_per_cell = SHOWN_POINTS.into_iter().find(has);
+    let is_shown =
+        |record: &&Record| is_sound(record) && Some(record.case.points_per_cell) == points_per_cell;
+    let mut shown: Vec<&Record> = Vec::new();
+    for record in records.iter().filter(is_shown) {
+        if shown.iter().all(|other| other.case.method != record.case.method) {
+            shown.push(record);
+        }
+    }
+    shown
+}
+
+/// The first and the last method of the ladder: the plainest and the paper's.
+fn compared<'a>(shown: &[&'a Record]) -> Vec<&'a Record> {
+    [shown.first(), shown.last()].into_iter().flatten().copied().collect()
+}
+
+/// Time factor of an isochrone, with the degree of consolidation where large strains make that the
+/// measure of progress.
+fn isochrone_name(
+    results: &StudyResults<'_>,
+    record: &Record,
+    time_factor: f64,
+) -> Result<String, ExactError> {
+    if !results.study.scene.is_large_strain() {
+        return Ok(format!("T_v = {time_factor}"));
+    }
+    let degree = theory_degree(&record.case, results.study.references[0], time_factor)?;
+    Ok(format!("T_v = {time_factor:.3}, U = {:.0} %", 100.0 * degree))
+}
+
+/// The paper's Figs 3a and 4a: `p/q` against depth.
+fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, ExactError> {
+    let own = results.study.references[0];
+    let mut chart = Chart::new(
+        format!("Isochrones, {}", record.case.method),
+        if results.study.scene.has_waves() {
+            ChartAxis::linear("excess pore pressure p/q (–)")
+        } else {
+            ChartAxis::linear("excess pore pressure p/q (–)").between(0.0, 1.05)
+        },
+        ChartAxis::linear("depth below the surface (H − Y)/H (–)").between(0.0, 1.0).inverted(),
+    );
+    chart.size = Size { width: 560.0, ..Size::default() };
+    for (slot, time_factor) in record.case.time_factors.iter().enumerate() {
+        chart
+            .series
+            .push(Series::theory(own.name(), theory_isochrone(&record.case, own, *time_factor)?).slot(0));
+        chart.series.push(
+            Series::new(
+                isochrone_name(results, record, *time_factor)?,
+                computed_isochrone(record, *time_factor),
+            )
+            .style(Style::Markers)
+            .slot(slot),
+        );
+    }
+    let name = slug(&format!("{}-isochrones-{}", results.study.name, record.case.method));
+    let caption = format!(
+        "Markers: material points of {} on {} cells. Lines: theory.",
+        record.case.method, record.case.cells
+    );
+    Ok(Figure::new(name, chart, caption))
+}
+
+/// The paper's Figs 3b and 4b: degree of consolidation against the time factor.
+fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Figure, ExactError> {
+    let own = results.study.references[0];
+    let case = &shown[0].case;
+    let end = case.time_factors.last().copied().unwrap_or(1.0);
+    let mut chart = Chart::new(
+        "Degree of consolidation",
+        ChartAxis::log10("time factor T_v (–)"),
+        ChartAxis::linear("degree of consolidation by settlement U (–)").between(0.0, 1.0).inverted(),
+    );
+    chart.size = Size { width: 560.0, ..Size::default() };
+    chart.series.push(Series::theory(own.name(), theory_consolidation(case, own, end)?));
+    for (slot, record) in shown.iter().enumerate() {
+        chart.series.push(
+            Series::new(record.case.method.to_string(), computed_consolidation(record))
+                .style(Style::Markers)
+                .slot(slot),
+        );
+    }
+    let name = slug(&format!("{}-consolidation", results.study.name));
+    let caption =
+        "Settlement over its final value, downward as engineers draw it. The methods differ in their \
+                   stresses, hardly in their settlement."
+            .to_owned();
+    Ok(Figure::new(name, chart, caption))
+}
+
+/// Why a constant in each cell is of first order at the points and of second at the centres, with
+/// the numbers.
+fn sampling_note(shown: &[&Record]) -> Option<String> {
+    let record = shown.iter().find(|record| record.case.method.has_constant_recovery())?;
+    let own = record.references.first()?.name.as_str();
+    let time_factor = *record.case.time_factors.iter().rfind(|factor| **factor <= 0.2)?;
+    let error =
+        |sample| record.error(Quantity::Pressure, sample, Norm::L2, own, time_factor).map(|row| row.value);
+    Some(format!(
+        "**Where one samples decides the order.** {} gives every point of a cell the value of its centre. That value \
+         is right to second order at the centre (error {:.2e} at T_v = {time_factor}), but a point beside it misses \
+         the slope times its distance: a profile of slope (π/2) q/H leaves (π/2)(h/H)√((1 − 1/m²)/12) = {:.2e} with m \
+         = {} points a cell, and {:.2e} is measured. It is the same run, seen at two places; a patch gives the points \
+         their slope back.",
+        record.case.method,
+        error(Sample::Centres)?,
+        constant_recovery_error(&record.case),
+        record.case.points_per_cell,
+        error(Sample::Points)?,
+    ))
+}

@@ -1,0 +1,46 @@
+//! Tables for machines.
+use crate::render::number;
+use crate::render::render_error::RenderError;
+use crate::render::table::{Cell, Table};
+
+pub(crate) fn write(table: &Table) -> Result<String, RenderError> {
+    let fail = |reason: String| RenderError::Csv { title: table.title.clone(), reason };
+    let wide: Vec<bool> = (0..table.columns.len())
+        .map(|i| table.rows.iter().any(|row| matches!(row[i], Cell::OrderWithin(..))))
+        .collect();
+    let mut writer = ::csv::Writer::from_writer(Vec::new());
+    let mut header = Vec::new();
+    for (column, &wide) in table.columns.iter().zip(&wide) {
+        header.push(column.heading());
+        if wide {
+            header.push(format!("{} ±", column.heading()));
+        }
+    }
+    writer.write_record(&header).map_err(|e| fail(e.to_string()))?;
+    for row in &table.rows {
+        let mut fields = Vec::new();
+        for (cell, &wide) in row.iter().zip(&wide) {
+            let (value, half) = show(cell);
+            fields.push(value);
+            if wide {
+                fields.push(half);
+            }
+        }
+        writer.write_record(&fields).map_err(|e| fail(e.to_string()))?;
+    }
+    let bytes = writer.into_inner().map_err(|e| fail(e.to_string()))?;
+    String::from_utf8(bytes).map_err(|e| fail(e.to_string()))
+}
+
+fn show(cell: &Cell) -> (String, String) {
+    let value = match cell {
+        Cell::Text(text) | Cell::Code(text) | Cell::Verdict(_, text) => text.clone(),
+        Cell::Error(v) | Cell::Order(v) | Cell::Percent(v) | Cell::Seconds(v) | Cell::Number(v) => {
+            number::exact(*v)
+        }
+        Cell::OrderWithin(v, half) => return (number::exact(*v), number::exact(*half)),
+        Cell::Count(n) => n.to_string(),
+        Cell::Missing(_) => String::new(),
+    };
+    (value, String::new())
+}

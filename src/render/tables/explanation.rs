@@ -1,0 +1,109 @@
+//! The tables of an explained case.
+
+use crate::case::quantity::Quantity;
+use crate::judge::explain::{Carrier, Explanation, LevelSeries};
+use crate::record::{Record, Status};
+use crate::render::number;
+use crate::render::table::{Cell, Mood, Table, TableColumn};
+use crate::render::tables::golden_changes::differences_table;
+
+/// Carriers, levels and changes of a case.
+pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {
+    let mut tables = vec![carriers_table(record, &explanation.carriers)];
+    tables.extend(explanation.carriers.first().into_iter().flat_map(|first| {
+        explanation.levels.iter().map(|series| levels_table(first, series)).collect::<Vec<_>>()
+    }));
+    if !explanation.differences.is_empty() {
+        tables.push(differences_table(&explanation.differences));
+    }
+    tables
+}
+
+/// One sentence on the golden values of a case.
+pub fn golden_sentence(explanation: &Explanation) -> String {
+    match (explanation.has_golden, explanation.differences.len(), explanation.agreeing) {
+        (false, ..) => "there are no golden values to hold the case against".to_owned(),
+        (true, 0, 0) => "no golden value is of this case: it is not in the CI tier".to_owned(),
+        (true, 0, agreeing) => format!("all {agreeing} golden values of the case agree"),
+        (true, differing, agreeing) => {
+            format!("{differing} values differ from the golden ones, {agreeing} agree")
+        }
+    }
+}
+
+fn carriers_table(record: &Record, carriers: &[Carrier]) -> Table {
+    let optional = |value: Option<f64>| value.map_or(Cell::Missing(String::new()), Cell::Error);
+    let rows = carriers.iter().map(|carrier| {
+        let row = &carrier.row;
+        let main = match row.quantity {
+            Quantity::Settlement => Cell::Percent(row.value),
+            _ => Cell::Error(row.value),
+        };
+        let mut cells = vec![
+            row.quantity.name().into(),
+            row.sample.name().into(),
+            Cell::Number(row.time_factor),
+            optional(carrier.l1),
+            main,
+            optional(carrier.linf),
+        ];
+        cells.extend(match carrier.place {
+            Some(place) => [
+                Cell::Number(place.zeta),
+                Cell::Percent(place.share),
+                Cell::Error(place.computed),
+                Cell::Error(place.exact),
+            ],
+            None => std::array::from_fn(|_| Cell::Missing(String::new())),
+        });
+        cells
+    });
+    let status = match &record.status {
+        Status::Ok => String::new(),
+        Status::Failed(failure) => format!(" ({} at step {})", failure.kind.name(), failure.step),
+    };
+    let reference = record.references.first().map_or("no reference", |used| used.name.as_str());
+    Table {
+        title: format!("{}: {}{status}", record.case.scene.name(), record.case.label()),
+        columns: vec![
+            TableColumn::text("quantity"),
+            TableColumn::text("sample"),
+            TableColumn::number("largest at T_v"),
+            TableColumn::number("L1"),
+            TableColumn::number("L2"),
+            TableColumn::number("Linf"),
+            TableColumn::number("worst at ζ"),
+            TableColumn::number("its share"),
+            TableColumn::number("computed"),
+            TableColumn::number("exact"),
+        ],
+        rows: rows.collect(),
+        notes: vec![format!(
+            "relative errors against {reference}, the largest first; settlement as s/s_exact − 1; share of the \
+             squared L2 error; values in Pa and m"
+        )],
+    }
+}
+
+fn levels_table(first: &Carrier, series: &LevelSeries) -> Table {
+    let rows = series.labels.iter().zip(&series.errors).enumerate().map(|(place, (label, error))| {
+        let own = place == series.own;
+        vec![
+            label.as_str().into(),
+            error.map_or(Cell::Missing("no golden value".to_owned()), Cell::Error),
+            if own { Cell::Verdict(Mood::Note, "this case".to_owned()) } else { "golden".into() },
+        ]
+    });
+    Table {
+        title: format!(
+            "{} {} at T_v = {} over {}",
+            first.row.quantity.name(),
+            first.row.sample.name(),
+            number::number(first.row.time_factor),
+            series.axis.name().replace('_', " ")
+        ),
+        columns: vec![TableColumn::text("level"), TableColumn::number("error"), TableColumn::text("from")],
+        rows: rows.collect(),
+        notes: vec![format!("{}: {}", series.class, series.reason)],
+    }
+}

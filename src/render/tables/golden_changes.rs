@@ -1,0 +1,126 @@
+//! Golden values that changed, in words and as tables, the worst first.
+
+use crate::convergence::pareto::ParetoChange;
+use crate::golden::case_changes::CaseChange;
+use crate::golden::compare::{Change, Difference};
+use crate::golden::difference_groups::DifferenceGroup;
+use crate::render::number;
+use crate::render::table::{Cell, Mood, Table, TableColumn};
+use std::fmt::Write;
+
+/// Differences shown in a table before the rest is only counted.
+const MOST_DIFFERENCES: usize = 40;
+
+/// A count of things, in the singular where there is one.
+pub(crate) fn count_of(count: usize, one: &str, several: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { several })
+}
+
+/// What values of one kind have in common and how far the worst is off, in one sentence.
+pub(crate) fn summary(group: &DifferenceGroup) -> String {
+    let is = if group.values == 1 { "is" } else { "are" };
+    let what = match group.change {
+        Change::Moved => "moved".to_owned(),
+        Change::Missing => format!("{is} no longer measured"),
+        Change::Extra => format!("{is} not in the golden file"),
+        Change::Smaller => format!("{is} smaller where the case got worse elsewhere"),
+        Change::Stale => format!("{is} better: a stale golden"),
+    };
+    let mut sentence = format!(
+        "{} {what}, in {}",
+        count_of(group.values, "value", "values"),
+        count_of(group.cases, "case", "cases")
+    );
+    let shared =
+        |words: &[String]| words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
+    if group.values > 1 && !group.shared_by_cases.is_empty() {
+        let _ = write!(sentence, ", all with {}", shared(&group.shared_by_cases));
+    }
+    if group.values > 1 && !group.shared_by_measures.is_empty() {
+        let _ = write!(sentence, ", all of {}", shared(&group.shared_by_measures));
+    }
+    if let Some(change) = group.worst.relative_change() {
+        let _ = write!(sentence, "; largest relative change {}", number::error(change));
+    }
+    sentence
+}
+
+/// The same with the name of the worst.
+pub fn sentence(group: &DifferenceGroup) -> String {
+    format!("{}: {}", summary(group), group.worst.name)
+}
+
+/// How accuracy and cost of a case changed together.
+pub(crate) fn judgement_of(one: &CaseChange) -> (Mood, &'static str) {
+    match one.change {
+        ParetoChange::Same => (Mood::Pass, "same"),
+        ParetoChange::Better => (Mood::Note, "better"),
+        ParetoChange::Traded if one.is_stale() => (Mood::Note, "cost traded for accuracy"),
+        ParetoChange::Traded => (Mood::Fail, "better here, worse there"),
+        ParetoChange::Dominated => (Mood::Fail, "dominated by its golden values"),
+        ParetoChange::NotComparable => (Mood::Fail, "values without a partner"),
+    }
+}
+
+/// Cases that differ from their golden values, accuracy and cost together.
+pub(crate) fn changes_table(changes: &[CaseChange]) -> Table {
+    let rows = changes.iter().take(MOST_DIFFERENCES).map(|one| {
+        let (mood, word) = judgement_of(one);
+        vec![
+            Cell::Verdict(mood, word.to_owned()),
+            Cell::Code(one.case.clone()),
+            Cell::Number(one.cost_ratio),
+            Cell::Count(one.worse as u64),
+            Cell::Count(one.better as u64),
+            Cell::Count(one.unpaired as u64),
+        ]
+    });
+    Table {
+        title: "accuracy and cost together".to_owned(),
+        columns: vec![
+            TableColumn::text("change"),
+            TableColumn::text("case"),
+            TableColumn::number("cost over golden"),
+            TableColumn::number("errors that grew"),
+            TableColumn::number("errors that fell"),
+            TableColumn::number("without partner"),
+        ],
+        rows: rows.collect(),
+        notes: Vec::new(),
+    }
+}
+
+/// Values that differ from their golden ones.
+pub fn differences_table(differences: &[Difference]) -> Table {
+    let value = |value: Option<f64>| {
+        value.map_or(Cell::Missing("no value".to_owned()), |v| number::exact(v).as_str().into())
+    };
+    let rows = differences.iter().take(MOST_DIFFERENCES).map(|one| {
+        let change = match (one.golden, one.found) {
+            (Some(golden), Some(found)) => Cell::Error(found - golden),
+            _ => Cell::Missing("nothing to compare".to_owned()),
+        };
+        vec![
+            one.change.name().into(),
+            one.name.as_str().into(),
+            value(one.golden),
+            value(one.found),
+            change,
+            Cell::Error(one.tolerance),
+        ]
+    });
+    let rest = differences.len().saturating_sub(MOST_DIFFERENCES);
+    Table {
+        title: "golden values that moved".to_owned(),
+        columns: vec![
+            TableColumn::text("change"),
+            TableColumn::text("value"),
+            TableColumn::number("golden"),
+            TableColumn::number("now"),
+            TableColumn::number("difference"),
+            TableColumn::number("tolerance"),
+        ],
+        rows: rows.collect(),
+        notes: if rest > 0 { vec![format!("and {rest} more")] } else { Vec::new() },
+    }
+}

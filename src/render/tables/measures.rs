@@ -1,0 +1,120 @@
+//! Tables of one record.
+
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::measure::record_checks;
+use crate::measure::record_checks::RecordCheck;
+use crate::record::{Record, Status};
+use crate::render::number;
+use crate::render::render_error::RenderError;
+use crate::render::table::{Cell, Mood, Table, TableColumn};
+use std::fmt::Write;
+
+/// Errors of a record, start checks and balances, as text.
+///
+/// # Errors
+/// If a table cannot be written.
+pub fn table_of(record: &Record) -> Result<String, RenderError> {
+    let mut text = errors_table(record).to_text()?;
+    let _ = write!(text, "\n{}", checks_table(record).to_text()?);
+    Ok(text)
+}
+
+/// One row a reference, quantity and sample; one column a time factor; L2 or relative error.
+pub fn errors_table(record: &Record) -> Table {
+    let case = &record.case;
+    let mut columns =
+        vec![TableColumn::text("reference"), TableColumn::text("quantity"), TableColumn::text("sample")];
+    columns.extend(case.time_factors.iter().map(|factor| TableColumn::number(format!("T_v {factor}"))));
+    let mut rows = Vec::new();
+    for reference in &record.references {
+        for (quantity, sample, norm) in MEASURES {
+            let errors = case.time_factors.iter().map(|factor| {
+                match record.error(quantity, sample, norm, &reference.name, *factor) {
+                    Some(row) if norm == Norm::Relative => Cell::Percent(row.value),
+                    Some(row) => Cell::Error(row.value),
+                    None => Cell::Missing(
+                        reference.does_not_hold.clone().unwrap_or_else(|| missing_reason(record)),
+                    ),
+                }
+            });
+            let mut row: Vec<Cell> =
+                vec![Cell::Text(reference.name.clone()), quantity.name().into(), sample.name().into()];
+            row.extend(errors);
+            rows.push(row);
+        }
+    }
+    Table {
+        title: format!("{}: {}", case.scene.name(), case.label()),
+        columns,
+        rows,
+        notes: vec![
+            "relative L2 error over the places of `sample`, weighted with volume; settlement as s/s_exact − 1"
+                .to_owned(),
+            work_note(record),
+        ],
+    }
+}
+
+const MEASURES: [(Quantity, Sample, Norm); 5] = [
+    (Quantity::Pressure, Sample::Points, Norm::L2),
+    (Quantity::Pressure, Sample::Centres, Norm::L2),
+    (Quantity::EffectiveStress, Sample::Points, Norm::L2),
+    (Quantity::Displacement, Sample::Nodes, Norm::L2),
+    (Quantity::Settlement, Sample::Surface, Norm::Relative),
+];
+
+/// Why a relative error has no value.
+pub(crate) const NOT_RESOLVED: &str = "the exact value is zero, or below what round-off of the run and the accuracy of the reference leave of it";
+
+fn missing_reason(record: &Record) -> String {
+    match &record.status {
+        Status::Ok => NOT_RESOLVED.to_owned(),
+        Status::Failed(failure) => format!("{} at step {}", failure.kind.name(), failure.step),
+    }
+}
+
+fn work_note(record: &Record) -> String {
+    let wall: f64 = record.wall.iter().map(|sample| sample.seconds).sum();
+    format!(
+        "{} steps of at most {:.3e} s ({:.2} of the predicted critical step), {} point updates, {wall:.3} s",
+        record.counters.steps,
+        record.step_sizes.largest,
+        record.groups.step_over_limit,
+        record.counters.point_updates,
+    )
+}
+
+/// Start checks, balances at the end and dimensionless groups of a record; checks with their bounds.
+pub fn checks_table(record: &Record) -> Table {
+    let mut rows: Vec<Vec<Cell>> = Vec::new();
+    let mut add = |name: &str, value: Cell, bound: Cell| rows.push(vec![name.into(), value, bound]);
+    let plain = || Cell::Text(String::new());
+    if let Some(start) = &record.start {
+        add("points at the start", Cell::Count(start.points as u64), plain());
+    }
+    let at_end = record.balance.last().map(|last| record_checks::balance_checks(record, last));
+    for check in record_checks::start_checks(record).iter().chain(at_end.iter().flatten()) {
+        add(check.what, Cell::Error(check.value), bound_cell(check));
+    }
+    add("storage n E_oed/K_w", Cell::Error(record.groups.storage), plain());
+    add("finite strain m_vl q", Cell::Error(record.groups.finite_strain), plain());
+    add("inertia c_v/(H V)", Cell::Error(record.groups.inertia), plain());
+    Table {
+        title: "checks and groups".to_owned(),
+        columns: vec![TableColumn::text("what"), TableColumn::number("value"), TableColumn::text("bound")],
+        rows,
+        notes: record_checks::complaints(record).iter().map(|one| format!("✗ {one}")).collect(),
+    }
+}
+
+/// The bound of a check with the mark of its judgement.
+pub fn bound_cell(check: &RecordCheck) -> Cell {
+    match check.bound {
+        Some(bound) => {
+            let mood = if check.holds() { Mood::Pass } else { Mood::Fail };
+            Cell::Verdict(mood, format!("≤ {}", number::error(bound)))
+        }
+        None => Cell::Text("not judged".to_owned()),
+    }
+}

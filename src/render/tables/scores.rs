@@ -1,0 +1,120 @@
+//! Tables of somebody else's result held against references.
+
+use crate::case::norm::Norm;
+use crate::case::quantity::Quantity;
+use crate::judge::score::series::ScoredSeries;
+use crate::judge::score::{Score, WorstPlace};
+use crate::record::ErrorRow;
+use crate::render::table::{Cell, Table, TableColumn};
+use crate::render::tables::measures::NOT_RESOLVED;
+use std::collections::HashMap;
+
+/// Times closer than this, relative, are equal but for the digits that were written.
+const SAME_TIME: f64 = 1e-9;
+
+/// One row a time and quantity: the main norm against every reference, and the place that carries
+/// most of the error against the first.
+pub fn errors_table(score: &Score, title: &str) -> Table {
+    let mut references: Vec<&str> = Vec::new();
+    let unresolved = score.unresolved.iter().map(|one| one.reference.as_str());
+    for name in score.errors.iter().map(|row| row.reference.as_str()).chain(unresolved) {
+        if !references.contains(&name) {
+            references.push(name);
+        }
+    }
+    let mut columns =
+        vec![TableColumn::number("T_v"), TableColumn::text("quantity"), TableColumn::text("sample")];
+    columns.extend(references.iter().map(|name| TableColumn::number(format!("error against {name}"))));
+    let is_plane = score.worst.iter().any(|worst| worst.x.is_some());
+    columns.push(TableColumn::number("worst at ζ"));
+    columns.extend(is_plane.then(|| TableColumn::number("and x/L")));
+    columns.extend([
+        TableColumn::number("its share"),
+        TableColumn::number("result there"),
+        TableColumn::number("exact there"),
+    ]);
+    let is_main = |row: &&ErrorRow| matches!(row.norm, Norm::L2 | Norm::Relative);
+    let index = score.index();
+    let worst_of: HashMap<(u64, Quantity), &WorstPlace> =
+        score.worst.iter().map(|worst| ((worst.time_factor.to_bits(), worst.quantity), worst)).collect();
+    let first = references.first().copied().unwrap_or_default();
+    let rows = score.errors.iter().filter(is_main).filter(|row| row.reference == first).map(|row| {
+        let mut cells =
+            vec![Cell::Number(row.time_factor), row.quantity.name().into(), row.sample.name().into()];
+        cells.extend(references.iter().map(|name| {
+            let like = ErrorRow { reference: (*name).to_owned(), ..row.clone() };
+            error_cell(index.find(&like))
+        }));
+        let worst = worst_of.get(&(row.time_factor.to_bits(), row.quantity)).copied();
+        cells.extend(place_cells(worst, is_plane));
+        cells
+    });
+    let unresolved = score.unresolved.iter().filter(|one| one.reference == first).map(|one| {
+        let mut cells =
+            vec![Cell::Number(one.time_factor), one.quantity.name().into(), one.sample.name().into()];
+        cells.resize_with(columns.len(), || Cell::Missing(NOT_RESOLVED.to_owned()));
+        cells
+    });
+    let rows: Vec<Vec<Cell>> = rows.chain(unresolved).collect();
+    Table {
+        title: title.to_owned(),
+        columns,
+        rows,
+        notes: vec![
+            "relative L2 error over the samples; settlement as s/s_exact − 1; ζ is the initial depth over the height"
+                .to_owned(),
+        ],
+    }
+}
+
+fn error_cell(row: Option<&ErrorRow>) -> Cell {
+    match row {
+        Some(row) if row.quantity == Quantity::Settlement => Cell::Percent(row.value),
+        Some(row) => Cell::Error(row.value),
+        None => Cell::Missing(NOT_RESOLVED.to_owned()),
+    }
+}
+
+fn place_cells(worst: Option<&WorstPlace>, is_plane: bool) -> Vec<Cell> {
+    let missing = || Cell::Missing(String::new());
+    let mut cells = vec![worst.map_or_else(missing, |worst| Cell::Number(worst.zeta))];
+    cells.extend(is_plane.then(|| worst.and_then(|worst| worst.x).map_or_else(missing, Cell::Number)));
+    cells.extend(match worst {
+        Some(worst) => [Cell::Percent(worst.share), Cell::Error(worst.computed), Cell::Error(worst.exact)],
+        None => std::array::from_fn(|_| missing()),
+    });
+    cells
+}
+
+/// One row a series over meshes, with its errors, order and class.
+pub fn series_table(series: &[ScoredSeries], cells: &[usize]) -> Table {
+    let mut columns = ["T_v", "quantity", "reference"].map(TableColumn::text).to_vec();
+    columns[0] = TableColumn::number("T_v");
+    columns.extend(cells.iter().map(|cells| TableColumn::number(format!("{cells} cells"))));
+    columns.extend([TableColumn::number("order"), TableColumn::text("class"), TableColumn::text("reason")]);
+    let rows = series.iter().map(|one| {
+        let mut row = vec![
+            Cell::Number(one.measure.time_factor),
+            one.measure.quantity.name().into(),
+            one.measure.reference.as_str().into(),
+        ];
+        row.extend(one.series.levels().iter().map(|level| match level.error {
+            Some(error) => Cell::Error(error),
+            None => Cell::Missing("no such row in the result".to_owned()),
+        }));
+        let class = &one.classification;
+        row.push(class.order.map_or(Cell::Missing("the class allows no order".to_owned()), Cell::Order));
+        row.push(class.class.name().into());
+        row.push(class.reason.as_str().into());
+        row
+    });
+    let mut notes = vec!["the order is that of the finest three meshes".to_owned()];
+    let difference = series.iter().map(|one| one.time_difference).fold(0.0, f64::max);
+    if difference > SAME_TIME {
+        notes.push(format!(
+            "times differ between the meshes, by up to {difference:.1e} of the T_v shown; each is held against the exact \
+             solution at its own"
+        ));
+    }
+    Table { title: "convergence".to_owned(), columns, rows: rows.collect(), notes }
+}
