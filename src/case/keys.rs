@@ -299,3 +299,51 @@ impl fmt::Display for Value {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Task;
+    use crate::scene::SceneKind;
+
+    /// A value that the seed does not have.
+    fn another(key: &Key, seed: &Case) -> Value {
+        let others = match key.kind {
+            Kind::Method => vec![Value::Method(Method::named("GIMP").expect("a method"))],
+            Kind::TimeStep => vec![Value::TimeStep(TimeStepRule::Seconds(0.1))],
+            Kind::Word(words) => words().into_iter().map(Value::Word).collect(),
+            Kind::Flag => [true, false].map(Value::Flag).to_vec(),
+            Kind::Count(_) => [1, 2].map(Value::Count).to_vec(),
+            Kind::Number(_) => vec![Value::Number(0.125)],
+        };
+        others.into_iter().find(|value| *value != key.get(seed)).expect("another value")
+    }
+
+    #[test]
+    fn every_key_has_a_place_of_its_own_in_a_case_and_in_its_identity() {
+        let seed = Case::seed(Task::Solve, SceneKind::Terzaghi);
+        for key in KEYS {
+            let mut case = seed.clone();
+            key.set(&mut case, another(key, &seed));
+            assert_eq!(key.get(&case), another(key, &seed), "{key:?}");
+            assert_ne!(case.hash(), seed.hash(), "{key:?}");
+            let same = |other: &&Key| other.get(&case) != other.get(&seed);
+            let changed: Vec<&str> = KEYS.iter().filter(same).map(|other| other.name).collect();
+            let expected: &[&str] = match key.name {
+                "integrator" => &["integrator", "time_step"],
+                "length" | "width" => &["length", "width"],
+                name => &[name],
+            };
+            assert_eq!(changed, expected, "{key:?}");
+        }
+    }
+
+    #[test]
+    fn every_key_of_the_material_the_points_and_the_integrator_can_be_swept() {
+        for key in
+            KEYS.iter().filter(|key| !key.tables.iter().any(|table| ["column", "layer"].contains(table)))
+        {
+            assert!(key.tables.contains(&"sweep"), "{key:?}");
+        }
+    }
+}

@@ -233,6 +233,11 @@ impl Case {
             (soil.hydraulic_conductivity, seed.hydraulic_conductivity, "k ="),
             (soil.water_bulk_modulus, seed.water_bulk_modulus, "K_w ="),
             (soil.porosity, seed.porosity, "n ="),
+            (soil.youngs_modulus, seed.youngs_modulus, "E ="),
+            (soil.poissons_ratio, seed.poissons_ratio, "ν ="),
+            (soil.grain_density, seed.grain_density, "ρ_s ="),
+            (soil.water_density, seed.water_density, "ρ_w ="),
+            (soil.gravity, seed.gravity, "g ="),
         ]
         .into_iter()
         .filter(|(value, usual, _)| value != usual)
@@ -286,18 +291,11 @@ mod tests {
 
     fn seed() -> Case {
         Case {
-            task: Task::Solve,
-            scene: SceneKind::Terzaghi,
-            column: Column::default(),
-            material: Material::default(),
             method: Method::named("GC-SRI-patch").expect("the paper's method"),
-            integrator: IntegratorKind::Explicit,
-            formulation: Formulation::VW,
-            settings: ExplicitSettings::default(),
             cells: 10,
-            points_per_cell: 2,
             time_step: TimeStepRule::Stable(0.5),
             time_factors: vec![0.1],
+            ..Case::seed(Task::Solve, SceneKind::Terzaghi)
         }
     }
 

@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use std::str::FromStr;
-use thiserror::Error;
 
 /// How the error of a field is turned into one number.
 #[derive(
@@ -20,11 +18,6 @@ pub enum Norm {
     /// Relative error of a single number, such as a settlement.
     Relative,
 }
-
-/// A name that is no norm.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("unknown norm `{0}`: one of l1, l2, linf, relative")]
-pub struct UnknownNorm(pub String);
 
 impl Norm {
     /// Every norm, in the order of reports.
@@ -64,13 +57,5 @@ impl Norm {
 impl fmt::Display for Norm {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.pad(self.name())
-    }
-}
-
-impl FromStr for Norm {
-    type Err = UnknownNorm;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Self::ALL.into_iter().find(|norm| norm.name() == text).ok_or_else(|| UnknownNorm(text.to_owned()))
     }
 }

@@ -1,9 +1,9 @@
 //! One row a measure: the tidy CSV of a study.
 
-use crate::case::step_label;
+use crate::case::keys::Key;
 use crate::record::{ErrorRow, Record};
 
-/// Columns of the tidy CSV.
+/// Columns of the tidy CSV: those with the name of a key have the value of that input.
 const COLUMNS: [&str; 21] = [
     "study",
     "case",
@@ -56,25 +56,18 @@ pub fn tidy_csv<'a>(
 }
 
 /// What all rows of a record begin with.
-fn case_fields(study: &str, record: &Record) -> [String; COLUMNS.len() - MEASURE_COLUMNS] {
-    let case = &record.case;
-    [
-        study.to_owned(),
-        record.hash.clone(),
-        case.method.to_string(),
-        case.integrator.name().to_owned(),
-        format!("{:?}", case.settings.drag).to_lowercase(),
-        case.settings.flip.to_string(),
-        case.settings.mapping_back.to_string(),
-        case.cells.to_string(),
-        case.points_per_cell.to_string(),
-        step_label(&case.time_step),
+fn case_fields(study: &str, record: &Record) -> Vec<String> {
+    let inputs = COLUMNS.iter().filter_map(|name| Key::named(name, "sweep"));
+    let mut fields = vec![study.to_owned(), record.hash.clone()];
+    fields.extend(inputs.map(|key| key.get(&record.case).to_string()));
+    fields.extend([
         format!("{:e}", record.step_sizes.largest),
         record.counters.steps.to_string(),
         record.counters.point_updates.to_string(),
         record.status.name(),
         record.provenance.sources.clone(),
-    ]
+    ]);
+    fields
 }
 
 /// What a measure's row ends with.

@@ -22,7 +22,7 @@ const MAY_IMPORT: [(&str, &str); 16] = [
         "campaign case convergence elementary exact golden import measure mpm record scene soil study wording",
     ),
     ("render", "case convergence elementary exact golden judge measure record study wording"),
-    ("schema", "case convergence exact import mpm record scene soil study"),
+    ("schema", "import record study"),
     (
         "cli",
         "campaign case exact golden import judge measure mpm record render scene schema soil study wording",

@@ -97,11 +97,3 @@ fn a_sample_without_volume_counts_in_no_norm() {
         assert!((error - 0.5).abs() < 1e-15, "{norm}: {error}");
     }
 }
-
-#[test]
-fn names_parse_back() {
-    for norm in Norm::ALL {
-        assert_eq!(norm.name().parse::<Norm>(), Ok(norm));
-    }
-    assert!("L2".parse::<Norm>().unwrap_err().to_string().contains("l1, l2, linf, relative"));
-}

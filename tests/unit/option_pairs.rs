@@ -4,17 +4,14 @@
 //! case; pairs of values that a study may ask for and none does are listed in a snapshot, so that the list
 //! changes knowingly. What cannot go together is told by the checker itself.
 
+use crate::case::keys::{Key, Kind, Value};
 use crate::case::tier::Tier;
 use crate::case::{Case, Task};
 use crate::exact::cosine_layer::Base;
-use crate::mpm::explicit::Drag;
-use crate::mpm::explicit::scheme::Scheme;
 use crate::mpm::method::{Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient};
 use crate::mpm::run::TimeStepRule;
-use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::SceneKind;
-use crate::soil::continuity::Continuity;
-use crate::soil::law::Law;
 use crate::soil::material::Material;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
@@ -38,13 +35,13 @@ fn options() -> Vec<(&'static str, Vec<&'static str>)> {
         ("load", vec!["at once", "while it grows", "after it has grown"]),
         ("points", vec!["regular", "shifted", "jittered", "top cell part filled"]),
         ("water", vec!["seed", "softer", "stiffer"]),
-        ("law", Law::ALL.map(Law::name).to_vec()),
-        ("continuity", Continuity::ALL.map(Continuity::name).to_vec()),
-        ("integrator", IntegratorKind::ALL.map(IntegratorKind::name).to_vec()),
-        ("formulation", Formulation::ALL.map(Formulation::name).to_vec()),
+        words("law"),
+        words("continuity"),
+        words("integrator"),
+        words("formulation"),
         ("step", vec!["stable", "courant", "seconds", "growth", "tolerance"]),
-        ("scheme", Scheme::ALL.map(Scheme::name).to_vec()),
-        ("drag", Drag::ALL.map(Drag::name).to_vec()),
+        words("scheme"),
+        words("drag"),
         ("mapping back", vec!["yes", "no"]),
         ("velocities", vec!["FLIP", "FLIP and PIC", "PIC"]),
         ("basis", Basis::ALL.map(basis).to_vec()),
@@ -54,6 +51,21 @@ fn options() -> Vec<(&'static str, Vec<&'static str>)> {
         ("memory", Memory::ALL.map(memory).to_vec()),
         ("configuration", Configuration::ALL.map(Configuration::name).to_vec()),
     ]
+}
+
+/// A key of the table of inputs with its words.
+fn words(name: &'static str) -> (&'static str, Vec<&'static str>) {
+    let key = Key::named(name, "sweep").expect("a key");
+    let Kind::Word(words) = key.kind else { panic!("`{name}` has no words") };
+    (name, words())
+}
+
+/// The word that a case has for a key.
+fn word_of(case: &Case, name: &'static str) -> Choice {
+    match Key::named(name, "sweep").map(|key| key.get(case)) {
+        Some(Value::Word(word)) => (name, word),
+        other => panic!("`{name}` is {other:?}"),
+    }
 }
 
 fn basis(basis: Basis) -> &'static str {
@@ -81,10 +93,6 @@ fn choices_of(case: &Case) -> BTreeSet<Choice> {
         ("scene", case.scene.name()),
         ("dimensions", if column.dimensions == 1 { "one" } else { "two" }),
         ("task", case.task.name()),
-        ("law", soil.law.name()),
-        ("continuity", soil.continuity.name()),
-        ("integrator", case.integrator.name()),
-        ("formulation", case.formulation.name()),
         ("basis", basis(method.basis)),
         ("strain", method.strain.name()),
         ("pressure", method.pressure.name()),
@@ -93,6 +101,7 @@ fn choices_of(case: &Case) -> BTreeSet<Choice> {
         ("configuration", method.configuration_or(case.scene.configuration()).name()),
     ]
     .into();
+    choices.extend(["law", "continuity", "integrator", "formulation"].map(|name| word_of(case, name)));
     choices.insert((
         "step",
         match case.time_step {
@@ -132,8 +141,7 @@ fn choices_of(case: &Case) -> BTreeSet<Choice> {
     }
     if case.integrator == IntegratorKind::Explicit {
         let settings = &case.settings;
-        choices.insert(("scheme", settings.scheme.name()));
-        choices.insert(("drag", settings.drag.name()));
+        choices.extend(["scheme", "drag"].map(|name| word_of(case, name)));
         choices.insert(("mapping back", if settings.mapping_back { "yes" } else { "no" }));
         choices.insert((
             "velocities",

@@ -118,7 +118,7 @@ pub struct StepSizes {
 }
 
 /// Settlement at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct HistoryPoint {
     /// Time, s.
     pub time: f64,
