@@ -11,10 +11,10 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use oedometer::exact::consolidation;
 use oedometer::{
-    AssembledColumn, AssembledPlane, Basis, Body, Column, Configuration, DomainEnds, ExplicitSettings, Gimp,
-    Hat, IntegratorKind, Kernel as StepKernel, LinearMarch, March, Material, Method, PhysicalBounds, Plan,
-    Problem, SceneKind, Schedule, ShapeFunction, StepLimit, StepSizes, TimeStepRule, column_problem,
-    predicted_critical_step,
+    AssembledColumn, AssembledPlane, Body, Column, Configuration, ExplicitSettings, Gimp, IntegratorKind,
+    Kernel as StepKernel, LinearMarch, March, Material, Method, PhysicalBounds, Plan, Problem, SceneKind,
+    Schedule, ShapeFunction, StepLimit, StepSizes, TimeStepRule, column_problem, predicted_critical_step,
+    with_basis,
 };
 use std::time::Instant;
 
@@ -67,21 +67,10 @@ fn moving_step<const C: usize>(bencher: Bencher, method: &str) {
 fn build_operators<const C: usize>(bencher: Bencher, method: &str) {
     let problem = problem(method, C, Configuration::Updated);
     let bencher = bencher.counter(ItemsCount::new(problem.points.len()));
-    match problem.method.basis {
-        Basis::Hat => {
-            let mut body = Body::<1, 2, Hat>::new(problem);
-            bencher.bench_local(|| body.build_operators());
-        }
-        Basis::Ugimp | Basis::Cpgimp => {
-            let mut body = Body::<1, 3, Gimp>::new(problem);
-            bencher.bench_local(|| body.build_operators());
-        }
-        Basis::Cpdi => {
-            let mut body = Body::<1, 3, DomainEnds>::new(problem);
-            bencher.bench_local(|| body.build_operators());
-        }
-        Basis::Bspline2 | Basis::Bspline3 => unreachable!("no name has splines"),
-    }
+    with_basis!(problem.method.basis, W, S => {
+        let mut body = Body::<1, W, S>::new(problem);
+        bencher.bench_local(|| body.build_operators());
+    });
 }
 
 /// One step of SDIRK2 on the frozen column: two solves of a banded system. What bounds it is the
@@ -108,18 +97,9 @@ fn implicit_step<const C: usize>(bencher: Bencher, method: &str) {
         bounds: PhysicalBounds::of(&problem),
         loading_time: 0.0,
     };
-    match problem.method.basis {
-        Basis::Hat => bench_march(
-            bencher,
-            C * POINTS_PER_CELL,
-            LinearMarch::new(Body::<1, 2, Hat>::new(problem), &plan),
-        ),
-        _ => bench_march(
-            bencher,
-            C * POINTS_PER_CELL,
-            LinearMarch::new(Body::<1, 3, Gimp>::new(problem), &plan),
-        ),
-    }
+    with_basis!(problem.method.basis, W, S => {
+        bench_march(bencher, C * POINTS_PER_CELL, LinearMarch::new(Body::<1, W, S>::new(problem), &plan));
+    });
 }
 
 fn bench_march<const W: usize, S: ShapeFunction<W>>(
@@ -166,12 +146,7 @@ fn stepper(method: &str, cells: usize, kernel: Kernel) -> Box<dyn FnMut()> {
     let problem = problem(method, cells, configuration);
     let settings = ExplicitSettings::default();
     let dt = 0.5 * predicted_critical_step(&problem, &settings);
-    match problem.method.basis {
-        Basis::Hat => steps_of(Body::<1, 2, Hat>::new(problem), kernel, dt, settings),
-        Basis::Ugimp | Basis::Cpgimp => steps_of(Body::<1, 3, Gimp>::new(problem), kernel, dt, settings),
-        Basis::Cpdi => steps_of(Body::<1, 3, DomainEnds>::new(problem), kernel, dt, settings),
-        Basis::Bspline2 | Basis::Bspline3 => unreachable!("no name has splines"),
-    }
+    with_basis!(problem.method.basis, W, S => steps_of(Body::<1, W, S>::new(problem), kernel, dt, settings))
 }
 
 fn steps_of<const W: usize, S: ShapeFunction<W> + 'static>(
@@ -350,10 +325,8 @@ fn print_bound() {
 
 fn force_reach(method: &str, cells: usize) -> usize {
     let problem = problem(method, cells, Configuration::Frozen);
-    let column = match problem.method.basis {
-        Basis::Hat => AssembledColumn::new(&Body::<1, 2, Hat>::new(problem)),
-        _ => AssembledColumn::new(&Body::<1, 3, Gimp>::new(problem)),
-    };
+    let column =
+        with_basis!(problem.method.basis, W, S => AssembledColumn::new(&Body::<1, W, S>::new(problem)));
     column.expect("one dimension").force_reach()
 }
 

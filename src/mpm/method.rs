@@ -309,6 +309,16 @@ impl Method {
         }
     }
 
+    /// Whether increments come back from the cells by a patch.
+    pub fn uses_patch(&self) -> bool {
+        self.pressure.is_by_cells() && self.recovery == Recovery::Patch
+    }
+
+    /// Whether the domains of the points follow the deformation.
+    pub fn domains_follow(&self) -> bool {
+        matches!(self.basis, Basis::Cpgimp | Basis::Cpdi)
+    }
+
     /// Whether the weights follow moving points, given the scene's own choice.
     pub fn configuration_or(&self, scene: Configuration) -> Configuration {
         self.configuration.unwrap_or(scene)

@@ -1,6 +1,6 @@
 //! The implicit integrator against the explicit one, against itself and across dimensions.
 
-use crate::mpm::body::{Body, Gimp, Problem};
+use crate::mpm::body::{Body, Problem};
 use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::implicit::drive::Plan;
 use crate::mpm::implicit::linear::LinearMarch;
@@ -8,6 +8,7 @@ use crate::mpm::implicit::march::March;
 use crate::mpm::implicit::newton::NewtonMarch;
 use crate::mpm::implicit::steps::StepLimit;
 use crate::mpm::method::{Configuration, Method};
+use crate::mpm::operators::basis::Gimp;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::outcome::{FailureKind, Outcome, RunStatus, StepSizes};
 use crate::mpm::run::physical_bounds::PhysicalBounds;

@@ -1,6 +1,7 @@
 //! Stiffness of a body as sparse blocks between nodes: what its forces do under displacements.
 
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
+use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::soil::tensor::{Tensor, Vector};
 
@@ -172,8 +173,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mpm::body::Gimp;
     use crate::mpm::method::Method;
+    use crate::mpm::operators::basis::Gimp;
     use crate::scene::SceneKind;
     use crate::scene::column::{Column, column_problem};
     use crate::soil::material::Material;

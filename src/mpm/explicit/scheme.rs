@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scheme {
-    /// Zheng et al. (2021): velocities and stresses at the same times.
+    /// Zheng et al.: velocities and stresses at the same times.
     #[default]
     ForwardEuler,
     /// Velocities in the middle between the times of the stresses.

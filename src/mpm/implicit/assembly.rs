@@ -10,10 +10,11 @@
 //! relative velocity is eliminated. In short `C ẋ + K x = g`, `C` zero in the rows of the mixture.
 
 use crate::mpm::assembled::stiffness::StrainEntry;
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::implicit::banded::Banded;
 use crate::mpm::implicit::sparse::{SparseRows, accumulate};
 use crate::mpm::implicit::unknowns::Unknowns;
+use crate::mpm::operators::basis::ShapeFunction;
 use crate::soil::continuity::Continuity;
 
 /// Scales that make the unknowns and the equations pure numbers of like size.

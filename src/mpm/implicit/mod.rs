@@ -17,7 +17,6 @@ pub mod newton;
 pub mod sparse;
 pub mod steps;
 pub mod tangent;
-pub mod tensor;
 pub mod trial;
 pub mod unknowns;
 

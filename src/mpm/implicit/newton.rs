@@ -1,12 +1,13 @@
 //! A Newton iteration a stage: for finite strain, and for bodies with inertia.
 
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::implicit::banded::{Banded, BandedLu};
 use crate::mpm::implicit::drive::Plan;
 use crate::mpm::implicit::linear::{SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::implicit::march::{ERROR_SHARE, ErrorScales, March, StepFailure, Work};
 use crate::mpm::implicit::tangent::Pattern;
 use crate::mpm::implicit::trial::{Skeleton, StageStart, Trial};
+use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::mpm::run::lost_point;
 use crate::mpm::run::outcome::FailureKind;
@@ -25,8 +26,7 @@ const SLOW: f64 = 0.1;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Structure {
     basis: Vec<usize>,
-    composite: Vec<usize>,
-    between_ends: Vec<usize>,
+    strain: Vec<usize>,
     cells: Vec<usize>,
     /// Splines that end at the surface lose a node without any point's row beginning elsewhere.
     last_node: Option<usize>,
@@ -39,8 +39,7 @@ impl Structure {
         let body = &trial.body;
         Self {
             basis: body.basis.first.clone(),
-            composite: body.composite.first.clone(),
-            between_ends: body.between_ends.first.clone(),
+            strain: body.strain.first().to_vec(),
             cells: body.cells.of_point.clone(),
             last_node: body.last_spline_node(),
             numbers: trial.unknowns.displacement.as_flattened().to_vec(),
@@ -50,8 +49,7 @@ impl Structure {
     fn is_of<const D: usize, const W: usize, S: ShapeFunction<W>>(&self, trial: &Trial<D, W, S>) -> bool {
         let body = &trial.body;
         self.basis == body.basis.first
-            && self.composite == body.composite.first
-            && self.between_ends == body.between_ends.first
+            && self.strain == body.strain.first()
             && self.cells == body.cells.of_point
             && self.last_node == body.last_spline_node()
             && self.numbers == trial.unknowns.displacement.as_flattened()

@@ -2,14 +2,14 @@
 //! inertial implicit step, made of the operators of the explicit one.
 
 use crate::elementary;
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::implicit::assembly::Scales;
-use crate::mpm::implicit::tensor::{identity, inverse, strain_between};
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::{Configuration, Memory, PressureIntegration};
+use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::integrator::Formulation;
 use crate::mpm::state::points::Points;
-use crate::soil::tensor::{Tensor, Vector};
+use crate::soil::tensor::{Tensor, Vector, identity, inverse, strain_between};
 
 /// Where a stage starts: the unknowns' share that is known before it is solved.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -315,7 +315,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
         }
         if self.moves_points {
             if self.body.method.memory == Memory::Cells {
-                self.body.remember_in_cells();
+                let body = &mut self.body;
+                body.cell_memory.spread_over_points(&body.grid, &body.cells, &mut body.points);
             }
             self.body.build_operators();
             self.body.map_masses();

@@ -2,9 +2,7 @@
 
 use crate::elementary;
 use crate::mpm::method::Basis;
-use crate::mpm::operators::shape;
-use crate::mpm::operators::shape::Row;
-use crate::mpm::state::grid::{Grid, power};
+use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::{Nodes, Support};
 use crate::mpm::state::points::Points;
 use crate::soil::tensor::Vector;
@@ -67,9 +65,6 @@ struct Spot {
 
 /// Gauss points of an edge: exact for the hats times a line.
 const EDGE_SPOTS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
-
-/// A surface this near to a face, in cells, lies on it.
-const ON_A_FACE: f64 = 1e-9;
 
 impl<const D: usize> LoadedSurface<D> {
     /// The surface of a lattice: the highest points of the initial configuration.
@@ -134,24 +129,7 @@ impl<const D: usize> LoadedSurface<D> {
     /// Visits the nodes that carry a place of the surface, with their weights.
     #[inline]
     fn visit_nodes(&self, grid: &Grid<D>, place: &Vector<D>, node_visitor: impl FnMut(usize, f64)) {
-        let at = grid.held_in_cells(place);
-        let cell = grid.cell_at(&at);
-        match self.basis {
-            Basis::Hat | Basis::Ugimp | Basis::Cpgimp | Basis::Cpdi => {
-                let rows: [Row<2>; D] = std::array::from_fn(|d| shape::hat(at[d], cell[d]));
-                visit_block(grid, &rows, node_visitor);
-            }
-            Basis::Bspline2 => {
-                let row = |d: usize| self.support.folded(grid, d, shape::quadratic_spline(at[d]));
-                let rows: [Row<3>; D] = std::array::from_fn(row);
-                visit_block(grid, &rows, node_visitor);
-            }
-            Basis::Bspline3 => {
-                let row = |d: usize| self.support.folded(grid, d, shape::cubic_spline(at[d], cell[d]));
-                let rows: [Row<4>; D] = std::array::from_fn(row);
-                visit_block(grid, &rows, node_visitor);
-            }
-        }
+        self.basis.visit_surface(grid, &self.support, &grid.held_in_cells(place), node_visitor);
     }
 
     /// Ends splines at the surface where the points have carried it, and returns the faces with that end.
@@ -162,12 +140,7 @@ impl<const D: usize> LoadedSurface<D> {
     pub fn end_splines(&mut self, grid: &Grid<D>, points: &Points<D>) -> Support<D> {
         let height = |spot| grid.held_in_cells(&self.place(points, spot))[D - 1];
         let highest = self.spots.iter().map(height).fold(0.0, f64::max);
-        self.support.outermost = match self.basis {
-            Basis::Bspline2 => Some(shape::whole(highest + 0.5)),
-            // The upper node of the cell that the surface is in; one on a face is in the cell below.
-            Basis::Bspline3 => Some(shape::whole(highest - ON_A_FACE) + 1),
-            Basis::Hat | Basis::Ugimp | Basis::Cpgimp | Basis::Cpdi => None,
-        };
+        self.support.outermost = self.basis.outermost_node(highest);
         self.support
     }
 
@@ -237,25 +210,6 @@ impl<const D: usize> LoadedSurface<D> {
             });
         }
         sum / self.spots.len() as f64
-    }
-}
-
-/// Visits the nodes of a tensor product of rows with their weights.
-#[inline]
-pub(crate) fn visit_block<const D: usize, const W: usize>(
-    grid: &Grid<D>,
-    rows: &[Row<W>; D],
-    mut node_visitor: impl FnMut(usize, f64),
-) {
-    for corner in 0..power(W, D) {
-        let (mut node, mut weight, mut rest) = (0, 1.0, corner);
-        for direction in 0..D {
-            let k = rest % W;
-            rest /= W;
-            node += (rows[direction].first + k) * grid.node_stride()[direction];
-            weight *= rows[direction].weights[k];
-        }
-        node_visitor(node, weight);
     }
 }
 

@@ -83,7 +83,7 @@ impl IntegratorKind {
     }
 }
 
-/// Which accelerations the balances keep (theory, section 2: model only what a scene needs).
+/// Which accelerations the balances keep (docs/theory.md, section 1, reduced forms).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Formulation {

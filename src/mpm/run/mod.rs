@@ -8,7 +8,7 @@ pub mod snapshot;
 
 use crate::elementary;
 use crate::mpm::assembled::frozen::FrozenStep;
-use crate::mpm::body::{Body, CubicSpline, DomainEnds, Gimp, Hat, Problem, QuadraticSpline, ShapeFunction};
+use crate::mpm::body::{Body, Problem};
 use crate::mpm::critical_step::formula;
 use crate::mpm::critical_step::predicted::predicted_critical_step;
 use crate::mpm::explicit::ExplicitSettings;
@@ -17,7 +17,8 @@ use crate::mpm::implicit::banded::Singular;
 use crate::mpm::implicit::drive;
 use crate::mpm::implicit::drive::Plan;
 use crate::mpm::implicit::steps::{StepLimit, steps_for};
-use crate::mpm::method::{Basis, Configuration};
+use crate::mpm::method::Configuration;
+use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::operators::surface_load::LoadedSurface;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
@@ -25,6 +26,7 @@ use crate::mpm::run::physical_bounds::PhysicalBounds;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::state::points::Points;
+use crate::with_basis;
 use serde::{Deserialize, Serialize};
 
 /// Steps between two looks at whether the run has left, and between two calls of the observer.
@@ -91,13 +93,7 @@ pub type Observer<'a> = &'a dyn Fn(u64, u64) -> bool;
 /// Solves a problem. Never panics and never loops for ever: what goes wrong ends the run with a
 /// named status, and what was finished before stays.
 pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
-    match problem.method.basis {
-        Basis::Hat => solve(Body::<D, 2, Hat>::new, problem, schedule, observer),
-        Basis::Ugimp | Basis::Cpgimp => solve(Body::<D, 3, Gimp>::new, problem, schedule, observer),
-        Basis::Cpdi => solve(Body::<D, 3, DomainEnds>::new, problem, schedule, observer),
-        Basis::Bspline2 => solve(Body::<D, 3, QuadraticSpline>::new, problem, schedule, observer),
-        Basis::Bspline3 => solve(Body::<D, 4, CubicSpline>::new, problem, schedule, observer),
-    }
+    with_basis!(problem.method.basis, W, S => solve(Body::<D, W, S>::new, problem, schedule, observer))
 }
 
 fn solve<const D: usize, const W: usize, S: ShapeFunction<W>>(

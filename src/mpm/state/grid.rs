@@ -3,7 +3,7 @@
 //! Two layers of ghost nodes surround the grid, so that no stencil needs a bounds case. The last
 //! direction is vertical; a column is `D = 1`, plane strain `D = 2` with `x` first.
 
-use crate::mpm::operators::shape::whole;
+use crate::mpm::operators::row::whole;
 use crate::soil::tensor::Vector;
 
 /// Layers of nodes beyond the grid on every side.
