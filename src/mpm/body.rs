@@ -140,7 +140,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             cell_memory: CellMemory::new(&grid),
             support,
             splines_end_at_surface: S::PASSES_WALLS && configuration.moves_points(),
-            recovery: RecoveryOperator::of(&method, &grid, count),
+            recovery: RecoveryOperator::of(method, &grid, count),
             site_values: vec![0.0; sites],
             dilation_rates: vec![0.0; if method.strain.is_bbar() { count } else { 0 }],
             surface_flux: 0.0,

@@ -165,6 +165,7 @@ impl Memory {
     pub const ALL: [Self; 2] = [Self::Points, Self::Cells];
 
     /// Whether it is the paper's.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     pub fn is_points(&self) -> bool {
         *self == Self::Points
     }

@@ -9,7 +9,7 @@ use crate::mpm::method::StrainGradient;
 use crate::mpm::operators::row::{Row, SIXTH};
 use crate::mpm::operators::stencil::{Blocks, Stencils};
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::Grid;
+use crate::mpm::state::grid::{Grid, cell_below};
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Nodes per direction between the ends of a domain: four at either end, at most one cell apart.
@@ -67,7 +67,7 @@ impl<const D: usize> StrainOperator<D> {
                         let half = (half_length[point][d] * per_cell).min(0.5);
                         let end = |side: f64| {
                             let at = place[d] + side * half;
-                            let along = grid.cell_below(at - side * INSET).clamp(cell[d] - 1, cell[d] + 1);
+                            let along = cell_below(at - side * INSET).clamp(cell[d] - 1, cell[d] + 1);
                             composite_row(grid, cells, &cell, d, at, along)
                         };
                         Row::between(&end(-1.0), &end(1.0), 2.0 * half)

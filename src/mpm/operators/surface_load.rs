@@ -126,10 +126,13 @@ impl<const D: usize> LoadedSurface<D> {
         Self { basis, support, ..self }
     }
 
-    /// Visits the nodes that carry a place of the surface, with their weights.
+    /// Visits the nodes that carry each spot of the surface, with their weights.
     #[inline]
-    fn visit_nodes(&self, grid: &Grid<D>, place: &Vector<D>, node_visitor: impl FnMut(usize, f64)) {
-        self.basis.visit_surface(grid, &self.support, &grid.held_in_cells(place), node_visitor);
+    fn visit(&self, grid: &Grid<D>, points: &Points<D>, mut visitor: impl FnMut(&Spot, usize, f64)) {
+        for spot in &self.spots {
+            let place = grid.held_in_cells(&self.place(points, spot));
+            self.basis.visit_surface(grid, &self.support, &place, |node, weight| visitor(spot, node, weight));
+        }
     }
 
     /// Ends splines at the surface where the points have carried it, and returns the faces with that end.
@@ -155,37 +158,26 @@ impl<const D: usize> LoadedSurface<D> {
     pub fn apply(&self, grid: &Grid<D>, points: &Points<D>, nodes: &mut Nodes<D>) {
         nodes.external_force.fill([0.0; D]);
         let share = if D == 1 { 1.0 } else { 1.0 / EDGE_SPOTS.len() as f64 };
-        for spot in &self.spots {
+        self.visit(grid, points, |spot, node, weight| {
             let half_length = &points.half_length[spot.point];
             let width: f64 = half_length[..D - 1].iter().map(|half| 2.0 * half).product();
-            let force = -self.load * spot.shape * share * width;
-            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
-                nodes.external_force[node][D - 1] += weight * force;
-            });
-        }
+            nodes.external_force[node][D - 1] += weight * (-self.load * spot.shape * share * width);
+        });
     }
 
     /// Nodes that span the surface, with the weights of [`amplitude_of`](Self::amplitude_of).
     pub fn weights(&self, grid: &Grid<D>, points: &Points<D>) -> Vec<(usize, f64)> {
-        let mut weights = Vec::new();
-        for spot in &self.spots {
-            let share = spot.shape / self.squares;
-            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
-                weights.push((node, share * weight));
-            });
-        }
-        weights
+        self.shares(grid, points, |spot| spot.shape / self.squares)
     }
 
     /// Nodes that span the surface, with the weights of [`mean_of`](Self::mean_of).
     pub fn mean_weights(&self, grid: &Grid<D>, points: &Points<D>) -> Vec<(usize, f64)> {
-        let share = 1.0 / self.spots.len() as f64;
+        self.shares(grid, points, |_| 1.0 / self.spots.len() as f64)
+    }
+
+    fn shares(&self, grid: &Grid<D>, points: &Points<D>, share: impl Fn(&Spot) -> f64) -> Vec<(usize, f64)> {
         let mut weights = Vec::new();
-        for spot in &self.spots {
-            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
-                weights.push((node, share * weight));
-            });
-        }
+        self.visit(grid, points, |spot, node, weight| weights.push((node, share(spot) * weight)));
         weights
     }
 
@@ -193,22 +185,14 @@ impl<const D: usize> LoadedSurface<D> {
     /// shape: the mean under a uniform load, the amplitude of the cosine under a cosine.
     pub fn amplitude_of(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
         let mut sum = 0.0;
-        for spot in &self.spots {
-            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
-                sum += spot.shape * weight * field[node][D - 1];
-            });
-        }
+        self.visit(grid, points, |spot, node, weight| sum += spot.shape * weight * field[node][D - 1]);
         sum / self.squares
     }
 
     /// Mean over the surface of a nodal vector field's vertical component.
     pub fn mean_of(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
         let mut sum = 0.0;
-        for spot in &self.spots {
-            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
-                sum += weight * field[node][D - 1];
-            });
-        }
+        self.visit(grid, points, |_, node, weight| sum += weight * field[node][D - 1]);
         sum / self.spots.len() as f64
     }
 }

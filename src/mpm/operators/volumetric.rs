@@ -102,9 +102,12 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         for (site, place) in sites.iter().enumerate() {
             number[*place] = site;
         }
-        let porosity = |place: usize| match is_by_cells {
-            true => self.cells.porosity[place],
-            false => self.material.porosity_at(self.points.volume_ratio[place]),
+        let porosity = |place: usize| {
+            if is_by_cells {
+                self.cells.porosity[place]
+            } else {
+                self.material.porosity_at(self.points.volume_ratio[place])
+            }
         };
         let at = PointsInCells::of(&self.grid, &self.cells, &self.nodes, &self.points.position);
         let numbered = |row: Vec<(usize, f64)>| {

@@ -24,6 +24,12 @@ pub const fn power(base: usize, exponent: usize) -> usize {
     product
 }
 
+/// Index of the cell, in one direction, that holds a coordinate in cells.
+#[inline]
+pub fn cell_below(in_cells: f64) -> usize {
+    whole(in_cells + FACE_TOLERANCE)
+}
+
 /// A regular grid of square cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid<const D: usize> {
@@ -83,12 +89,6 @@ impl<const D: usize> Grid<D> {
         coordinate * self.inverse_cell_size + GHOST_LAYERS as f64
     }
 
-    /// Index of the cell, in one direction, that holds a coordinate in cells.
-    #[inline]
-    pub fn cell_below(&self, in_cells: f64) -> usize {
-        whole(in_cells + FACE_TOLERANCE)
-    }
-
     /// Whether a point lies in the grid or on its rim.
     pub fn holds(&self, position: &Vector<D>) -> bool {
         (0..D).all(|direction| {
@@ -113,7 +113,7 @@ impl<const D: usize> Grid<D> {
     #[inline]
     pub fn cell_at(&self, held_in_cells: &Vector<D>) -> [usize; D] {
         std::array::from_fn(|direction| {
-            self.cell_below(held_in_cells[direction]).min(self.cells[direction] + GHOST_LAYERS - 1)
+            cell_below(held_in_cells[direction]).min(self.cells[direction] + GHOST_LAYERS - 1)
         })
     }
 

@@ -60,7 +60,7 @@ pub enum RecoveryOperator<const D: usize> {
 
 impl<const D: usize> RecoveryOperator<D> {
     /// The operator of a method, with room for a grid and so many points.
-    pub fn of(method: &Method, grid: &Grid<D>, points: usize) -> Self {
+    pub fn of(method: Method, grid: &Grid<D>, points: usize) -> Self {
         match (method.pressure.is_by_cells(), method.recovery) {
             (false, Recovery::NullSpace) => Self::NullSpace(CellPlanes::with_cells(grid.cell_count())),
             (false, _) => Self::Own,
@@ -165,7 +165,7 @@ pub(crate) mod tests {
         let at = block.at();
         for name in ["GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GIMP-SRI-nodal", "GIMP-null-space"] {
             let method = Method::named(name).expect("a known method");
-            let mut operator = RecoveryOperator::of(&method, at.grid, at.positions.len());
+            let mut operator = RecoveryOperator::of(method, at.grid, at.positions.len());
             operator.build(at.grid, at.cells);
             let count = if method.pressure.is_by_cells() { at.grid.cell_count() } else { at.positions.len() };
             let sites: Vec<f64> = (0..count).map(|site| (2.3 * site as f64).cos()).collect();
