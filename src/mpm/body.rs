@@ -1,7 +1,8 @@
 //! The discretised body: points, nodes and the operators that join them.
 
 use crate::mpm::method::{Configuration, Method};
-use crate::mpm::operators::basis::{ShapeFunction, rows_at};
+pub use crate::mpm::operators::basis::ShapeFunction;
+use crate::mpm::operators::basis::rows_at;
 use crate::mpm::operators::recovery::RecoveryOperator;
 use crate::mpm::operators::stencil::{Stencils, visit_block};
 use crate::mpm::operators::strain_gradient::StrainOperator;

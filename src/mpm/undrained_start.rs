@@ -5,10 +5,9 @@
 //! which an explicit run has no waves.
 
 use crate::mpm::assembled::stiffness::NodeBlocks;
-use crate::mpm::body::Body;
+use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::implicit::banded::{Banded, BandedLu, Singular};
 use crate::mpm::method::Configuration;
-use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::soil::tensor::{Tensor, Vector};
 

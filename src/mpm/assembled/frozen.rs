@@ -2,9 +2,8 @@
 
 use crate::mpm::assembled::column::AssembledColumn;
 use crate::mpm::assembled::plane::AssembledPlane;
-use crate::mpm::body::Body;
+use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::explicit::ExplicitSettings;
-use crate::mpm::operators::basis::ShapeFunction;
 
 /// A frozen body with its step assembled.
 #[derive(Clone, Debug)]

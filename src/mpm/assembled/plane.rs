@@ -6,9 +6,8 @@
 //! their product would be five times as long.
 
 use crate::mpm::assembled::stiffness::NodeBlocks;
-use crate::mpm::body::Body;
+use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::explicit::ExplicitSettings;
-use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::soil::tensor::{Tensor, Vector};

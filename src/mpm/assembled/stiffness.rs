@@ -1,7 +1,6 @@
 //! Stiffness of a body as sparse blocks between nodes: what its forces do under displacements.
 
-use crate::mpm::body::Body;
-use crate::mpm::operators::basis::ShapeFunction;
+use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::soil::tensor::{Tensor, Vector};
 

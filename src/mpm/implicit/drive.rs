@@ -1,12 +1,11 @@
 //! A run by an implicit integrator: from output to output, with snapshots and history.
 
-use crate::mpm::body::Body;
+use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::implicit::linear::LinearMarch;
 use crate::mpm::implicit::march::{March, StepFailure};
 use crate::mpm::implicit::newton::NewtonMarch;
 use crate::mpm::implicit::steps::{StepLimit, steps_for};
 use crate::mpm::method::Configuration;
-use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::outcome::{Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes};
 use crate::mpm::run::physical_bounds::PhysicalBounds;

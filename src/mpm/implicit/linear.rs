@@ -8,12 +8,11 @@
 //! the storage, and an extrapolated state has the extrapolated residual: no product with `K` is
 //! ever taken.
 
-use crate::mpm::body::Body;
+use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::implicit::assembly::LinearSystem;
 use crate::mpm::implicit::banded::BandedLu;
 use crate::mpm::implicit::drive::Plan;
 use crate::mpm::implicit::march::{ERROR_SHARE, ErrorScales, March, StepFailure, Work};
-use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::outcome::FailureKind;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::soil::tensor::Vector;

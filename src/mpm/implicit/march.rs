@@ -1,11 +1,10 @@
 //! What every implicit integrator is to the run that drives it.
 
-use crate::mpm::body::Body;
+use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::implicit::assembly::Scales;
 use crate::mpm::implicit::drive::Plan;
 use crate::mpm::implicit::linear::SDIRK_GAMMA;
 use crate::mpm::implicit::unknowns::Unknowns;
-use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::outcome::FailureKind;
 
 /// Why a step could not be taken.

@@ -5,11 +5,10 @@
 //! number of cells. So the tangent is consistent with every law, configuration and continuity by
 //! construction: there is no second set of formulas that could disagree with the first.
 
-use crate::mpm::body::Body;
+use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::implicit::banded::Banded;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::PressureIntegration;
-use crate::mpm::operators::basis::ShapeFunction;
 
 /// Difference by which a scaled unknown is moved: the square root of the round-off leaves eight
 /// digits of a tangent whose unknowns are strains.

@@ -1,9 +1,8 @@
 //! The unknowns of an implicit step and their order: free components of the skeleton's
 //! displacement at the nodes, and pressures where the method takes them.
 
-use crate::mpm::body::Body;
+use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::method::PressureIntegration;
-use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::soil::tensor::Vector;
 

@@ -1,7 +1,6 @@
 //! The state of a body at one time, sampled at points, cell centres and nodes.
 
-use crate::mpm::body::Body;
-use crate::mpm::operators::basis::ShapeFunction;
+use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::state::points::Points;
 use crate::soil::tensor::Vector;
 use serde::{Deserialize, Serialize};

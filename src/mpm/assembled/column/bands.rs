@@ -1,8 +1,7 @@
 //! The bands of a frozen column, from the operators of its body.
 
 use crate::mpm::assembled::column::{BAND, NodeRow, REACH};
-use crate::mpm::body::Body;
-use crate::mpm::operators::basis::ShapeFunction;
+use crate::mpm::body::{Body, ShapeFunction};
 
 /// `K_σ = Σ V ∇N ⊗ E_oed G`, `K_p = Σ V ∇N ⊗ R Q D`, `P = M⁻¹ Σ N m ⊗ N`.
 pub(crate) fn assemble_bands<const D: usize, const W: usize, S: ShapeFunction<W>>(

@@ -17,9 +17,8 @@ pub mod blocks;
 
 use crate::mpm::assembled::column::bands::assemble_bands;
 use crate::mpm::assembled::column::blocks::{Blocks, LANES};
-use crate::mpm::body::Body;
+use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::explicit::ExplicitSettings;
-use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::profile::{Phase, enter};
 
 /// Nodes that couple to one side: basis (1) + patch (1) + centre or composite (1).
