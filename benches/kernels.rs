@@ -11,9 +11,9 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use oedometer::exact::consolidation;
 use oedometer::{
-    AssembledStep, Basis, Body, Column, Configuration, DomainEnds, EqualSteps, ExplicitSettings, Gimp, Hat,
-    IntegratorKind, Kernel as StepKernel, LinearStepper, Material, Method, Plan, Problem, SceneKind,
-    Schedule, ShapeFunction, Stepper, TimeStepRule, column_problem, predicted_critical_step,
+    AssembledStep, Body, Column, Configuration, EqualSteps, ExplicitSettings, Gimp, IntegratorKind,
+    Kernel as StepKernel, LinearStepper, Material, Method, Plan, Problem, SceneKind, Schedule, ShapeFunction,
+    Stepper, TimeStepRule, column_problem, predicted_critical_step, with_basis,
 };
 use std::time::Instant;
 
@@ -66,21 +66,10 @@ fn moving_step<const C: usize>(bencher: Bencher, method: &str) {
 fn build_operators<const C: usize>(bencher: Bencher, method: &str) {
     let problem = problem(method, C, Configuration::Updated);
     let bencher = bencher.counter(ItemsCount::new(problem.points.len()));
-    match problem.method.basis {
-        Basis::Hat => {
-            let mut body = Body::<1, 2, Hat>::new(problem);
-            bencher.bench_local(|| body.build_operators());
-        }
-        Basis::Ugimp | Basis::Cpgimp => {
-            let mut body = Body::<1, 3, Gimp>::new(problem);
-            bencher.bench_local(|| body.build_operators());
-        }
-        Basis::Cpdi => {
-            let mut body = Body::<1, 3, DomainEnds>::new(problem);
-            bencher.bench_local(|| body.build_operators());
-        }
-        Basis::Bspline2 | Basis::Bspline3 => unreachable!("no name has splines"),
-    }
+    with_basis!(problem.method.basis, W, S => {
+        let mut body = Body::<1, W, S>::new(problem);
+        bencher.bench_local(|| body.build_operators());
+    });
 }
 
 /// One step of SDIRK2 on the frozen column: two solves of a banded system. What bounds it is the
@@ -99,10 +88,8 @@ fn implicit_step<const C: usize>(bencher: Bencher, method: &str) {
         formulation: IntegratorKind::Implicit.default_formulation(),
     };
     let plan = Plan::of(&problem, &schedule);
-    let mut stepper = match problem.method.basis {
-        Basis::Hat => LinearStepper::new(Body::<1, 2, Hat>::new(problem), &plan),
-        _ => LinearStepper::new(Body::<1, 3, Gimp>::new(problem), &plan),
-    };
+    let mut stepper =
+        with_basis!(problem.method.basis, W, S => LinearStepper::new(Body::<1, W, S>::new(problem), &plan));
     let step = EqualSteps::first(0.0, 0.01, 1);
     bencher
         .counter(ItemsCount::new(C * POINTS_PER_CELL))
@@ -145,12 +132,7 @@ fn stepper(method: &str, cells: usize, kernel: Kernel) -> Box<dyn FnMut()> {
     let problem = problem(method, cells, configuration);
     let settings = ExplicitSettings::default();
     let dt = 0.5 * predicted_critical_step(&problem, &settings);
-    match problem.method.basis {
-        Basis::Hat => steps_of(Body::<1, 2, Hat>::new(problem), kernel, dt, settings),
-        Basis::Ugimp | Basis::Cpgimp => steps_of(Body::<1, 3, Gimp>::new(problem), kernel, dt, settings),
-        Basis::Cpdi => steps_of(Body::<1, 3, DomainEnds>::new(problem), kernel, dt, settings),
-        Basis::Bspline2 | Basis::Bspline3 => unreachable!("no name has splines"),
-    }
+    with_basis!(problem.method.basis, W, S => steps_of(Body::<1, W, S>::new(problem), kernel, dt, settings))
 }
 
 fn steps_of<const W: usize, S: ShapeFunction<W> + 'static>(
@@ -330,10 +312,8 @@ fn print_bound() {
 
 fn force_reach(method: &str, cells: usize) -> usize {
     let problem = problem(method, cells, Configuration::Frozen);
-    let column = match problem.method.basis {
-        Basis::Hat => AssembledStep::new(&Body::<1, 2, Hat>::new(problem)),
-        _ => AssembledStep::new(&Body::<1, 3, Gimp>::new(problem)),
-    };
+    let column =
+        with_basis!(problem.method.basis, W, S => AssembledStep::new(&Body::<1, W, S>::new(problem)));
     column.force_reach().expect("bands")
 }
 

@@ -121,11 +121,13 @@ pub use soil::material::Material;
 #[doc(hidden)]
 pub use mpm::assembled::step::AssembledStep;
 #[doc(hidden)]
-pub use mpm::body::{Body, DomainEnds, Gimp, Hat, Problem, ShapeFunction};
+pub use mpm::body::{Body, Problem};
 #[doc(hidden)]
 pub use mpm::critical_step::predicted::predicted_critical_step;
 #[doc(hidden)]
 pub use mpm::implicit::linear::LinearStepper;
+#[doc(hidden)]
+pub use mpm::operators::basis::{CubicSpline, DomainEnds, Gimp, Hat, QuadraticSpline, ShapeFunction};
 #[doc(hidden)]
 pub use mpm::run::{
     plan::Plan,

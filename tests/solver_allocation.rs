@@ -1,8 +1,8 @@
 //! A step allocates nothing, whatever the method, the configuration and the kernel.
 
 use oedometer::{
-    AssembledStep, Basis, Body, Column, Configuration, Continuity, DomainEnds, Drag, ExplicitSettings, Gimp,
-    Hat, Material, Method, Problem, SceneKind, ShapeFunction, column_problem, predicted_critical_step,
+    AssembledStep, Body, Column, Configuration, Continuity, Drag, ExplicitSettings, Material, Method,
+    Problem, SceneKind, ShapeFunction, column_problem, predicted_critical_step, with_basis,
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -67,16 +67,9 @@ fn a_step_allocates_nothing() {
                 let problem = problem(&name, configuration, continuity);
                 let dt = 0.5 * predicted_critical_step(&problem, &settings);
                 let what = format!("{name} {configuration:?} {settings:?} {continuity:?}");
-                match problem.method.basis {
-                    Basis::Hat => assert_no_allocation(Body::<1, 2, Hat>::new(problem), dt, &settings, &what),
-                    Basis::Ugimp | Basis::Cpgimp => {
-                        assert_no_allocation(Body::<1, 3, Gimp>::new(problem), dt, &settings, &what);
-                    }
-                    Basis::Cpdi => {
-                        assert_no_allocation(Body::<1, 3, DomainEnds>::new(problem), dt, &settings, &what);
-                    }
-                    Basis::Bspline2 | Basis::Bspline3 => unreachable!("no name has splines"),
-                }
+                with_basis!(problem.method.basis, W, S => {
+                    assert_no_allocation(Body::<1, W, S>::new(problem), dt, &settings, &what);
+                });
             }
         }
     }

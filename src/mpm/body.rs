@@ -1,13 +1,12 @@
 //! The discretised body: points, nodes and the operators that join them.
 
-use crate::mpm::method::{Basis, Configuration, Method, Recovery, StrainGradient};
-use crate::mpm::operators::recovery::Recovered;
-use crate::mpm::operators::recovery::patch::PatchRows;
-use crate::mpm::operators::shape;
-use crate::mpm::operators::shape::Row;
-use crate::mpm::operators::stencil::Stencils;
-use crate::mpm::operators::strain_gradient::ENDS_WIDTH;
-use crate::mpm::operators::surface_load::{LoadShape, LoadedSurface, visit_block};
+use crate::mpm::method::{Configuration, Method};
+pub use crate::mpm::operators::basis::ShapeFunction;
+use crate::mpm::operators::basis::rows_at;
+use crate::mpm::operators::recovery::RecoveryOperator;
+use crate::mpm::operators::stencil::{Stencils, visit_block};
+use crate::mpm::operators::strain_gradient::StrainOperator;
+use crate::mpm::operators::surface_load::{LoadShape, LoadedSurface};
 use crate::mpm::state::cell_memory::CellMemory;
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::Grid;
@@ -16,77 +15,7 @@ use crate::mpm::state::points::Points;
 use crate::soil::continuity::Continuity;
 use crate::soil::law::Stiffness;
 use crate::soil::material::Material;
-use crate::soil::tensor::{Tensor, Vector};
-
-/// A basis as the compiler sees it: rows of `W` nodes a direction.
-pub trait ShapeFunction<const W: usize>: Clone {
-    /// Whether nodes beyond a wall would have a share in what is inside it.
-    const PASSES_WALLS: bool = false;
-
-    /// The row at a place (in cells), in a cell, of a point with a domain of half-length (in
-    /// cells).
-    fn row(place: f64, cell: usize, half_length: f64) -> Row<W>;
-}
-
-/// Hat functions.
-#[derive(Clone, Copy, Debug)]
-pub struct Hat;
-
-impl ShapeFunction<2> for Hat {
-    #[inline]
-    fn row(place: f64, cell: usize, _half_length: f64) -> Row<2> {
-        shape::hat(place, cell)
-    }
-}
-
-/// GIMP functions.
-#[derive(Clone, Copy, Debug)]
-pub struct Gimp;
-
-impl ShapeFunction<3> for Gimp {
-    #[inline]
-    fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
-        // A domain wider than a cell would need a fourth node; it is cut there.
-        shape::gimp(place, half_length.min(0.5))
-    }
-}
-
-/// Hat functions at the ends of the domains.
-#[derive(Clone, Copy, Debug)]
-pub struct DomainEnds;
-
-impl ShapeFunction<3> for DomainEnds {
-    #[inline]
-    fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
-        shape::domain_ends(place, half_length.min(0.5))
-    }
-}
-
-/// Quadratic B-splines.
-#[derive(Clone, Copy, Debug)]
-pub struct QuadraticSpline;
-
-impl ShapeFunction<3> for QuadraticSpline {
-    const PASSES_WALLS: bool = true;
-
-    #[inline]
-    fn row(place: f64, _cell: usize, _half_length: f64) -> Row<3> {
-        shape::quadratic_spline(place)
-    }
-}
-
-/// Cubic B-splines.
-#[derive(Clone, Copy, Debug)]
-pub struct CubicSpline;
-
-impl ShapeFunction<4> for CubicSpline {
-    const PASSES_WALLS: bool = true;
-
-    #[inline]
-    fn row(place: f64, cell: usize, _half_length: f64) -> Row<4> {
-        shape::cubic_spline(place, cell)
-    }
-}
+use crate::soil::tensor::{Tensor, Vector, product};
 
 /// What is to be solved: geometry, material, load and initial state, and by which operators.
 #[derive(Clone, Debug)]
@@ -161,20 +90,21 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     pub surface: LoadedSurface<D>,
     /// `N` and `∇N` between points and nodes.
     pub basis: Stencils<D, W>,
-    /// `G` of the composite MPM.
-    pub composite: Stencils<D, 4>,
-    /// `G` of the composite MPM between the ends of the domains, and what carries the points then.
-    pub between_ends: Stencils<D, ENDS_WIDTH>,
+    /// `G` where it is not the gradient of the basis.
+    pub strain: StrainOperator<D>,
     /// What the cells remember.
     pub cell_memory: CellMemory<D>,
     /// Faces that are held.
     support: Support<D>,
     /// Whether the basis reaches beyond a surface that moves through the grid.
     splines_end_at_surface: bool,
-    /// `R` of the patch recovery.
-    pub patch: PatchRows<D>,
-    /// Values on their way from the sites of `D` to the points, where a method needs them kept.
-    pub recovered: Recovered<D>,
+    /// `R`, from the sites of the divergence to the points.
+    pub recovery: RecoveryOperator<D>,
+    /// Values at the sites on their way to the points: pressure increments, Pa, or rates of dilation, 1/s;
+    /// `[cell]` or `[point]`.
+    pub site_values: Vec<f64>,
+    /// The skeleton's volumetric rate at the points, 1/s, where the method is B-bar.
+    pub dilation_rates: Vec<f64>,
     /// Mixture that passed the surface since the start, `∫ v_s + n(v_w − v_s) dt`, m.
     pub surface_flux: f64,
     shape_function: std::marker::PhantomData<S>,
@@ -200,10 +130,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let solid_cell_mass = (0..D).map(|_| grid.cell_size).product::<f64>()
             * (1.0 - material.porosity)
             * material.grain_density;
-        let between_ends = method.strain == StrainGradient::CmpmEnds;
-        let composite_rows = if method.strain.is_composite() && !between_ends { count } else { 0 };
-        let ends_rows = if between_ends { count } else { 0 };
-        let patch_rows = if method.uses_patch() { count } else { 0 };
+        let sites = if method.pressure.is_by_cells() { grid.cell_count() } else { count };
         let mut body = Self {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
             cells: Cells::new(&grid, count),
@@ -213,13 +140,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 .spread_by(method.basis, support)
                 .stretching(configuration.moves_points() && !method.domains_follow()),
             basis: Stencils::with_points(count),
-            composite: Stencils::with_points(composite_rows),
-            between_ends: Stencils::with_points(ends_rows),
+            strain: StrainOperator::of(method.strain, count),
             cell_memory: CellMemory::new(&grid),
             support,
             splines_end_at_surface: S::PASSES_WALLS && configuration.moves_points(),
-            patch: PatchRows::with_points(patch_rows),
-            recovered: Recovered::of(&grid, count, &method),
+            recovery: RecoveryOperator::of(method, &grid, count),
+            site_values: vec![0.0; sites],
+            dilation_rates: vec![0.0; if method.strain.is_bbar() { count } else { 0 }],
             surface_flux: 0.0,
             grid,
             points,
@@ -290,7 +217,25 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         if !self.is_pushed_forward {
             return gradient;
         }
-        pushed_forward(&self.points.inverse_deformation[point], &gradient)
+        product(&gradient, &self.points.inverse_deformation[point])
+    }
+
+    /// Gradient of a nodal field at a point, from which the effective stress takes its strain.
+    #[inline]
+    pub fn strain_gradient(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
+        self.strain.blocks(&self.basis).gradient(self.grid.node_stride(), point, field)
+    }
+
+    /// Visits the nodes that a point's strain depends on, with their gradients, 1/m.
+    pub fn visit_strain(&self, point: usize, node_visitor: impl FnMut(usize, &Vector<D>)) {
+        self.strain.visit(&self.basis, self.grid.node_stride(), point, node_visitor);
+    }
+
+    /// What carries a point under a nodal velocity or displacement: the value of the basis, or the
+    /// mean of its domain's ends where those are what its strain is taken between.
+    #[inline]
+    pub fn carrying(&self, point: usize, field: &[Vector<D>], of_basis: Vector<D>) -> Vector<D> {
+        self.strain.carrier().map_or(of_basis, |ends| ends.value(self.grid.node_stride(), point, field))
     }
 
     /// Divergence of a nodal field at a point, on the present configuration.
@@ -335,10 +280,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             self.cells.end_at(&self.grid, self.support.outermost.unwrap_or(usize::MAX));
         }
         self.build_basis();
-        self.build_strain_gradients();
-        if self.method.uses_patch() {
-            self.patch.build(&self.grid, &self.cells);
-        }
+        self.strain.build(&self.grid, &self.cells, &self.points.half_length);
+        self.recovery.build(&self.grid, &self.cells);
         if self.is_pushed_forward {
             self.cells.average_deformation(&self.points);
         }
@@ -368,8 +311,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         value
     }
 
-    /// `v_s + n (v_w − v_s)` at the nodes, with the nodal porosity: what (4) takes the divergence
-    /// of.
+    /// `v_s + n (v_w − v_s)` at the nodes, with the nodal porosity: what docs/theory.md, Eq. 4
+    /// takes the divergence of.
     pub fn nodal_flux(&mut self) {
         let nodes = &mut self.nodes;
         for node in 0..nodes.len() {
@@ -389,7 +332,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         })
     }
 
-    /// Rate of the volume that the mixture gains, a cell centre or a point's divergence, 1/s.
+    /// Rate of the volume that the mixture gains, 1/s, from the divergence at a place: the bracket of
+    /// docs/theory.md, Eq. 4 or 4' (Zheng et al. Eq. 6).
     #[inline]
     pub fn volume_rate(&self, porosity: f64, divergence: impl Fn(&[Vector<D>]) -> f64) -> f64 {
         match self.material.continuity {
@@ -399,44 +343,5 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                     + porosity * divergence(&self.nodes.water_velocity)
             }
         }
-    }
-}
-
-/// `∇₀v F⁻¹`.
-#[inline]
-pub(crate) fn pushed_forward<const D: usize>(
-    inverse_deformation: &Tensor<D>,
-    gradient: &Tensor<D>,
-) -> Tensor<D> {
-    std::array::from_fn(|i| {
-        std::array::from_fn(|j| (0..D).map(|k| gradient[i][k] * inverse_deformation[k][j]).sum())
-    })
-}
-
-/// Rows of a basis at a place (in cells), for a domain of half-lengths (m), without nodes beyond held
-/// faces.
-#[inline]
-fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
-    grid: &Grid<D>,
-    support: &Support<D>,
-    place: &Vector<D>,
-    half_length: &Vector<D>,
-) -> [Row<W>; D] {
-    let (cell, per_cell) = (grid.cell_at(place), grid.inverse_cell_size());
-    std::array::from_fn(|d| {
-        let row = S::row(place[d], cell[d], half_length[d] * per_cell);
-        if S::PASSES_WALLS { support.folded(grid, d, row) } else { row }
-    })
-}
-
-impl Method {
-    /// Whether increments come back from the cells by a patch.
-    pub fn uses_patch(&self) -> bool {
-        self.pressure.is_by_cells() && self.recovery == Recovery::Patch
-    }
-
-    /// Whether the domains of the points follow the deformation.
-    pub fn domains_follow(&self) -> bool {
-        matches!(self.basis, Basis::Cpgimp | Basis::Cpdi)
     }
 }

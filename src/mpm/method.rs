@@ -165,6 +165,7 @@ impl Memory {
     pub const ALL: [Self; 2] = [Self::Points, Self::Cells];
 
     /// Whether it is the paper's.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     pub fn is_points(&self) -> bool {
         *self == Self::Points
     }
@@ -312,6 +313,16 @@ impl Method {
             Memory::Points => choices,
             Memory::Cells => format!("{choices}+{}", word(self.memory)),
         }
+    }
+
+    /// Whether increments come back from the cells by a patch.
+    pub fn uses_patch(&self) -> bool {
+        self.pressure.is_by_cells() && self.recovery == Recovery::Patch
+    }
+
+    /// Whether the domains of the points follow the deformation.
+    pub fn domains_follow(&self) -> bool {
+        matches!(self.basis, Basis::Cpgimp | Basis::Cpdi)
     }
 
     /// Whether the weights follow moving points, given the scene's own choice.

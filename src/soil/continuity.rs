@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 )]
 #[serde(rename_all = "kebab-case")]
 pub enum Continuity {
-    /// `dp/dt = −(K_w/n)[∇·v_s + ∇·(n(v_w − v_s))]`: conserves water.
+    /// Eq. 4, `dp/dt = −(K_w/n)[∇·v_s + ∇·(n(v_w − v_s))]`: conserves water.
     Conservative,
-    /// `dp/dt = −(K_w/n)[(1−n)∇·v_s + n∇·v_w]`: Zheng et al. Eq. 6 drops `(v_w − v_s)·∇n`.
+    /// Eq. 4', `dp/dt = −(K_w/n)[(1−n)∇·v_s + n∇·v_w]`: Zheng et al. Eq. 6 drops `(v_w − v_s)·∇n`.
     ConstantPorosityGradient,
 }
 

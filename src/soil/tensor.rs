@@ -1,7 +1,131 @@
-//! Vectors and tensors of a dimension: the last component is the vertical one.
+//! Vectors and tensors of a dimension, and their small algebra: the last component is the vertical one.
 
 /// A vector, `[component]`.
 pub type Vector<const D: usize> = [f64; D];
 
 /// A tensor of second order, `[row][column]`.
 pub type Tensor<const D: usize> = [[f64; D]; D];
+
+/// The unit tensor.
+pub fn identity<const D: usize>() -> Tensor<D> {
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }))
+}
+
+/// `a b`.
+#[inline]
+pub fn product<const D: usize>(a: &Tensor<D>, b: &Tensor<D>) -> Tensor<D> {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| a[i][k] * b[k][j]).sum()))
+}
+
+/// `a bᵀ`.
+#[inline]
+pub fn product_with_transpose<const D: usize>(a: &Tensor<D>, b: &Tensor<D>) -> Tensor<D> {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| a[i][k] * b[j][k]).sum()))
+}
+
+/// Solution `x` of `A x = b` for a symmetric matrix that is not indefinite, by elimination without
+/// pivoting; a component whose pivot `is_left_out` is zero.
+#[inline]
+pub fn solve_symmetric<const D: usize>(
+    matrix: &Tensor<D>,
+    right: &Vector<D>,
+    mut is_left_out: impl FnMut(usize, f64) -> bool,
+) -> Vector<D> {
+    let (mut matrix, mut solution) = (*matrix, *right);
+    for i in 0..D {
+        if is_left_out(i, matrix[i][i]) {
+            for row in &mut matrix {
+                row[i] = 0.0;
+            }
+            matrix[i] = [0.0; D];
+            matrix[i][i] = 1.0;
+            solution[i] = 0.0;
+        }
+        for j in i + 1..D {
+            let factor = matrix[j][i] / matrix[i][i];
+            for k in i..D {
+                matrix[j][k] -= factor * matrix[i][k];
+            }
+            solution[j] -= factor * solution[i];
+        }
+    }
+    for i in (0..D).rev() {
+        for j in i + 1..D {
+            solution[i] -= matrix[i][j] * solution[j];
+        }
+        solution[i] /= matrix[i][i];
+    }
+    solution
+}
+
+/// Inverse and determinant of a deformation gradient: near enough to the unit tensor to need no
+/// pivoting. Where it is singular, the numbers are not finite.
+pub fn inverse<const D: usize>(tensor: &Tensor<D>) -> (Tensor<D>, f64) {
+    let (mut rest, mut inverse, mut determinant) = (*tensor, identity::<D>(), 1.0);
+    for pivot in 0..D {
+        let per_pivot = 1.0 / rest[pivot][pivot];
+        determinant *= rest[pivot][pivot];
+        for j in 0..D {
+            rest[pivot][j] *= per_pivot;
+            inverse[pivot][j] *= per_pivot;
+        }
+        for i in (0..D).filter(|i| *i != pivot) {
+            let factor = rest[i][pivot];
+            for j in 0..D {
+                rest[i][j] -= factor * rest[pivot][j];
+                inverse[i][j] -= factor * inverse[pivot][j];
+            }
+        }
+    }
+    (inverse, determinant)
+}
+
+/// Strain between two deformation gradients: `2 (F₁ − F₀)(F₁ + F₀)⁻¹` (Hughes & Winget 1980), the
+/// logarithmic strain to third order in the increment, with its trace made the logarithm of the
+/// volume ratio. In one dimension it is the logarithmic strain.
+pub fn strain_between<const D: usize>(before: &Tensor<D>, after: &Tensor<D>, log_volume: f64) -> Tensor<D> {
+    let difference = std::array::from_fn(|i| std::array::from_fn(|j| after[i][j] - before[i][j]));
+    let mean = std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (after[i][j] + before[i][j])));
+    let mut strain = product(&difference, &inverse(&mean).0);
+    let trace: f64 = (0..D).map(|d| strain[d][d]).sum();
+    for d in 0..D {
+        strain[d][d] += (log_volume - trace) / D as f64;
+    }
+    strain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_inverse_undoes_and_a_determinant_is_the_volume() {
+        let tensor = [[0.9, 0.2], [-0.1, 0.8]];
+        let (inverse, determinant) = inverse(&tensor);
+        assert!((determinant - 0.74).abs() < 1e-15);
+        let unit = product(&tensor, &inverse);
+        for i in 0..2 {
+            for j in 0..2 {
+                assert!((unit[i][j] - if i == j { 1.0 } else { 0.0 }).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn a_component_left_out_is_zero_and_the_others_solve_what_is_left() {
+        let (matrix, right) = ([[4.0, 1.0], [1.0, 3.0]], [1.0, 2.0]);
+        let solved = solve_symmetric(&matrix, &right, |_, pivot| pivot <= 0.0);
+        assert!((solved[0] - 1.0 / 11.0).abs() < 1e-15 && (solved[1] - 7.0 / 11.0).abs() < 1e-15);
+        assert_eq!(solve_symmetric(&matrix, &right, |i, _| i == 1), [0.25, 0.0]);
+    }
+
+    #[test]
+    fn the_strain_is_logarithmic() {
+        let strain = strain_between(&[[0.9]], &[[0.8]], (0.8_f64 / 0.9).ln());
+        assert!((strain[0][0] - (0.8_f64 / 0.9).ln()).abs() < 1e-15);
+        // A rotation strains nothing.
+        let (sine, cosine) = 0.01_f64.sin_cos();
+        let turned = strain_between(&identity(), &[[cosine, -sine], [sine, cosine]], 0.0);
+        assert!(turned[0][0].abs() < 1e-15 && (turned[0][1] + turned[1][0]).abs() < 1e-15);
+    }
+}

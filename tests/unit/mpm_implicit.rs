@@ -1,10 +1,11 @@
 //! The implicit integrator against the explicit one, against itself and across dimensions.
 
-use crate::mpm::body::{Body, Gimp, Problem};
+use crate::mpm::body::{Body, Problem};
 use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::implicit::linear::LinearStepper;
 use crate::mpm::implicit::newton::NewtonStepper;
 use crate::mpm::method::{Configuration, Method};
+use crate::mpm::operators::basis::Gimp;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::outcome::{FailureKind, Outcome, RunStatus};
 use crate::mpm::run::plan::Plan;

@@ -181,8 +181,8 @@ pub fn pressure_stiffness<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mpm::body::Gimp;
     use crate::mpm::method::Method;
+    use crate::mpm::operators::basis::Gimp;
     use crate::scene::SceneKind;
     use crate::scene::column::{Column, column_problem};
     use crate::soil::material::Material;

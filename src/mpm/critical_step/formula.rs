@@ -5,7 +5,7 @@ use crate::mpm::explicit::Drag;
 use crate::soil::material::Material;
 
 /// Speed, m/s, of the fastest wave of the undamped two-phase column at a porosity: the
-/// out-of-phase wave, from the largest eigenvalue of `M⁻¹K` (theory, section 4).
+/// out-of-phase wave, from the largest eigenvalue of `M⁻¹K` (docs/theory.md, Eq. 9).
 pub fn fastest_wave_speed(soil: &Material, porosity: f64) -> f64 {
     let (n, coupling) = (porosity, soil.water_bulk_modulus / porosity);
     let (solid, water) = ((1.0 - n) * soil.grain_density, n * soil.water_density);
@@ -23,7 +23,7 @@ pub fn undrained_wave_speed(soil: &Material) -> f64 {
     ((soil.oedometric_modulus() + soil.coupling_modulus()) / density).sqrt()
 }
 
-/// Limit, s, of the explicit drag alone:
+/// Limit, s, of the explicit drag alone (docs/theory.md, Eq. 10):
 /// `2 / [(n² γ_w/k)(1/((1−n)ρ_s) + 1/(nρ_w))]`.
 pub fn drag_limit(soil: &Material) -> f64 {
     let n = soil.porosity;
@@ -31,7 +31,7 @@ pub fn drag_limit(soil: &Material) -> f64 {
     2.0 / (drag * (1.0 / ((1.0 - n) * soil.grain_density) + 1.0 / (n * soil.water_density)))
 }
 
-/// Limit, s, by formula, safe for every method: `Δt_w(√(1+z²) − z)` with `Δt_w = h/c` and
+/// Limit, s, by formula, safe for every method (docs/theory.md, Eq. 11): `Δt_w(√(1+z²) − z)` with `Δt_w = h/c` and
 /// `z = Δt_w/(2Δt_d)` where the drag is explicit.
 pub fn combined_limit(soil: &Material, cell_size: f64, drag: Drag) -> f64 {
     let wave = cell_size / fastest_wave_speed(soil, soil.porosity);

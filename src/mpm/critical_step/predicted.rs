@@ -1,12 +1,12 @@
 //! The critical time step of a problem, predicted from its own operators.
 
 use crate::mpm::assembled::step::AssembledStep;
-use crate::mpm::body::{Body, CubicSpline, DomainEnds, Gimp, Hat, Problem, QuadraticSpline};
+use crate::mpm::body::{Body, Problem};
 use crate::mpm::critical_step::spectral_radius::GROWTH_TOLERANCE;
 use crate::mpm::critical_step::{formula, spectral_radius};
 use crate::mpm::explicit::ExplicitSettings;
-use crate::mpm::method::Basis;
 use crate::mpm::state::grid::Grid;
+use crate::with_basis;
 
 /// Cells of the column on which the critical step of a run is computed.
 const FEW_CELLS: usize = 12;
@@ -52,13 +52,8 @@ pub fn predict<const D: usize>(
     let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
     let problem =
         if is_narrow { without_middle(problem, most_cells) } else { corner(problem, most_cells / 2) };
-    let assembled = match problem.method.basis {
-        Basis::Hat => AssembledStep::new(&Body::<D, 2, Hat>::new(problem)),
-        Basis::Ugimp | Basis::Cpgimp => AssembledStep::new(&Body::<D, 3, Gimp>::new(problem)),
-        Basis::Cpdi => AssembledStep::new(&Body::<D, 3, DomainEnds>::new(problem)),
-        Basis::Bspline2 => AssembledStep::new(&Body::<D, 3, QuadraticSpline>::new(problem)),
-        Basis::Bspline3 => AssembledStep::new(&Body::<D, 4, CubicSpline>::new(problem)),
-    };
+    let assembled =
+        with_basis!(problem.method.basis, W, S => AssembledStep::new(&Body::<D, W, S>::new(problem)));
     let critical_step = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE);
     Prediction { critical_step, assembled, settings: *settings }
 }

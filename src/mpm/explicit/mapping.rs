@@ -3,8 +3,9 @@
 //! Where points move, these passes are most of a step. Each takes a point's run of nodes as one
 //! slice, so that its bounds are checked once, and sums side by side what belongs to one node.
 
-use crate::mpm::body::{Body, ShapeFunction};
-use crate::soil::tensor::Tensor;
+use crate::mpm::body::Body;
+use crate::mpm::operators::basis::ShapeFunction;
+use crate::soil::tensor::product_with_transpose;
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Sums masses, volumes and drag of the points to the nodes.
@@ -106,7 +107,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             }
             let mut given = [mixture, water];
             if is_total {
-                given = given.map(|stress| pulled_back(&inverse_deformation[point], &stress));
+                // Gradients on the initial configuration meet `σ F⁻ᵀ`.
+                given = given.map(|stress| product_with_transpose(&stress, &inverse_deformation[point]));
             }
             basis.visit_runs(&stride, point, |first, _, gradients| {
                 for (node, gradient) in nodal_forces[first..first + W].iter_mut().zip(gradients) {
@@ -124,12 +126,4 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             [nodes.mixture_force[node], nodes.water_force[node]] = *forces;
         }
     }
-}
-
-/// A stress that meets gradients on the initial configuration, `σ F⁻ᵀ`.
-#[inline]
-fn pulled_back<const D: usize>(inverse_deformation: &Tensor<D>, stress: &Tensor<D>) -> Tensor<D> {
-    std::array::from_fn(|i| {
-        std::array::from_fn(|j| (0..D).map(|k| stress[i][k] * inverse_deformation[j][k]).sum())
-    })
 }

@@ -1,16 +1,19 @@
-//! The explicit integrator: the eight steps of Zheng et al. (2021), section 4.
+//! The explicit integrator: the eight steps of Zheng et al., section 4 (docs/theory.md, section 3).
+//!
+//! A body's step reads as the paper's list: [`kick_and_drift`](Body::kick_and_drift). Drag is part of step 2.
 
 pub mod mapping;
 pub mod scheme;
 
 use crate::elementary;
-use crate::mpm::body::{Body, ShapeFunction, pushed_forward};
+use crate::mpm::body::Body;
 use crate::mpm::explicit::scheme::Scheme;
-use crate::mpm::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
-use crate::mpm::operators::shape::SIXTH;
-use crate::mpm::operators::strain_gradient::StrainBlocks;
+use crate::mpm::method::{Configuration, Memory, PressureIntegration};
+use crate::mpm::operators::basis::ShapeFunction;
+use crate::mpm::operators::recovery::PointsInCells;
+use crate::mpm::operators::row::SIXTH;
 use crate::mpm::run::profile::{Phase, enter};
-use crate::soil::tensor::{Tensor, Vector};
+use crate::soil::tensor::{Tensor, Vector, product, product_with_transpose};
 use serde::{Deserialize, Serialize};
 
 /// Time level at which the drag between skeleton and water is taken.
@@ -70,26 +73,26 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
-        self.reset_grid(settings); // (1)
+        self.reset_grid(settings); // step 1
         enter(Phase::Forces);
-        self.nodal_accelerations(kick, settings.drag); // (2)
+        self.nodal_accelerations(kick, settings.drag); // step 2
         enter(Phase::Motion);
-        self.nodal_velocities(kick, dt); // (3)
-        self.advance_points(kick, dt, settings.flip); // (4)
+        self.nodal_velocities(kick, dt); // step 3
+        self.advance_points(kick, dt, settings.flip); // step 4
         if settings.mapping_back {
             enter(Phase::MapVelocities);
-            self.map_velocities(); // (5)
+            self.map_velocities(); // step 5
         }
         enter(Phase::Stresses);
-        self.update_effective_stress(dt); // (6)
+        self.update_effective_stress(dt); // step 6
         enter(Phase::Recovery);
-        self.update_pressure(dt); // (7), and (8) is the next step
-        if self.remembers_in_cells() {
-            self.remember_in_cells();
+        self.update_pressure(dt); // step 7, and step 8 is the next one
+        if self.method.memory == Memory::Cells && self.configuration.moves_points() {
+            self.cell_memory.spread_over_points(&self.grid, &self.cells, &mut self.points);
         }
     }
 
-    /// (1) Operators, masses and velocities on the points' places. Where nothing moves, the
+    /// Step 1: operators, masses and velocities on the points' places. Where nothing moves, the
     /// operators stand, and velocities mapped back by the last step are already there.
     fn reset_grid(&mut self, settings: &ExplicitSettings) {
         enter(Phase::BuildWeights);
@@ -103,7 +106,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// (2) Accelerations of the water, equation (1), then of the skeleton, equation (2).
+    /// Step 2: accelerations of the water (docs/theory.md, Eq. 1) and of the skeleton (Eq. 2), lumped at the
+    /// nodes, per component:
+    ///
+    /// ```text
+    /// ρ_w V a_w       = f_w − D (v_w − v_s)          D = n γ_w V/k
+    /// m_s a_s + m_w a_w = f
+    /// ```
+    ///
+    /// with the force `f` on the mixture and `f_w` of the pressure gradient on the water.
     fn nodal_accelerations(&mut self, kick: f64, drag: Drag) {
         self.map_forces();
         let water_density = self.material.water_density;
@@ -133,7 +144,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// (3) Nodal velocities by forward Euler.
+    /// Step 3: nodal velocities by forward Euler.
     fn nodal_velocities(&mut self, kick: f64, dt: f64) {
         let nodes = &mut self.nodes;
         for node in 0..nodes.len() {
@@ -145,7 +156,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// (4) Velocities and places of the points.
+    /// Step 4: velocities and places of the points.
     fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
         if flip < 1.0 {
             self.advance_points_by::<true>(kick, dt, flip);
@@ -159,8 +170,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     fn advance_points_by<const PIC: bool>(&mut self, kick: f64, dt: f64, flip: f64) {
         let moving = self.configuration.moves_points();
         let pic = 1.0 - flip;
-        let carried_by_ends =
-            (self.method.strain == StrainGradient::CmpmEnds).then(|| self.between_ends.blocks());
+        let carrier = self.strain.carrier();
         let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
         let nodes = &self.nodes;
         let (solid_field, solid_rates) = (&nodes.solid_velocity[..], &nodes.solid_acceleration[..]);
@@ -181,7 +191,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                     add_weighted(&mut water, &water_field[run], weights);
                 }
             });
-            let carrying = carried_by_ends.map_or(solid, |ends| ends.value(&stride, point, solid_field));
+            let carrying = carrier.map_or(solid, |ends| ends.value(&stride, point, solid_field));
             for d in 0..D {
                 let (solid_velocity, water_velocity) =
                     (&mut solid_velocity[point][d], &mut water_velocity[point][d]);
@@ -199,7 +209,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// (6) Effective stress by the method's strain gradient; at finite strain also volume and
+    /// Step 6: effective stress by the method's strain gradient; at finite strain also volume and
     /// domain.
     fn update_effective_stress(&mut self, dt: f64) {
         let (deforms, is_bbar) = (self.configuration.deforms(), self.method.strain.is_bbar());
@@ -207,9 +217,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             self.recover_dilation_rates();
         }
         let (following, is_total) = (self.following(), self.configuration == Configuration::Total);
-        let blocks = StrainBlocks::of(self.method.strain, &self.basis, &self.composite, &self.between_ends);
+        let blocks = self.strain.blocks(&self.basis);
         let stride = *self.grid.node_stride();
-        let (field, recovered) = (&self.nodes.solid_velocity[..], &self.recovered.at_points[..]);
+        let (field, dilation_rates) = (&self.nodes.solid_velocity[..], &self.dilation_rates[..]);
         let (law, stiffness) = (self.material.law, self.stiffness);
         let points = &mut self.points;
         let count = points.len();
@@ -220,7 +230,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         for point in 0..count {
             let mut gradient = blocks.gradient(&stride, point, field);
             if is_total {
-                gradient = pushed_forward(&inverse_deformation[point], &gradient);
+                gradient = product(&gradient, &inverse_deformation[point]);
             }
             let mut increment = gradient.map(|row| row.map(|rate| dt * rate));
             let before = volume_ratio[point];
@@ -232,7 +242,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             if is_bbar {
                 // Of the kinematics only the volume goes the way of the water's.
                 let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
-                let dilation = dt * (recovered[point] - trace);
+                let dilation = dt * (dilation_rates[point] - trace);
                 if deforms {
                     volume_ratio[point] *= stretch_of(dilation);
                 }
@@ -278,79 +288,24 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// (7) Pressure increments where the method takes the divergence, recovered to the points.
+    /// Step 7: pressure increments at the sites of the method's divergence, recovered to the points:
+    /// `Δp = −Δt (K_w/n) [∇·v_s + ∇·w]` (docs/theory.md, Eq. 8).
     fn update_pressure(&mut self, dt: f64) {
         self.nodal_flux();
         self.surface_flux += dt * self.surface.mean_of(&self.grid, &self.points, &self.nodes.flux);
-        match (self.method.pressure, self.method.recovery) {
-            (PressureIntegration::Points, Recovery::NullSpace) => {
-                for point in 0..self.points.len() {
-                    self.recovered.at_points[point] = dt * self.pressure_rate_at(point);
-                }
-                self.recover();
-                self.add_recovered_pressures();
+        self.evaluate_sites(|body, place, porosity| {
+            let rate = body.volume_rate(porosity, |field| body.divergence_at(place, field));
+            let bulk_modulus = body.material.water_bulk_modulus;
+            // The same product in two orders of rounding: those of the accepted values.
+            match body.method.pressure {
+                PressureIntegration::Points => dt * (-bulk_modulus / porosity * rate),
+                PressureIntegration::Sri | PressureIntegration::Mean => -dt * bulk_modulus / porosity * rate,
             }
-            (PressureIntegration::Points, _) => {
-                for point in 0..self.points.len() {
-                    self.points.pressure[point] += dt * self.pressure_rate_at(point);
-                }
-            }
-            (_, Recovery::Constant | Recovery::NullSpace) => {
-                self.pressure_increments_of_cells(dt);
-                for point in 0..self.points.len() {
-                    self.points.pressure[point] += self.cells.pressure_increment[self.cells.of_point[point]];
-                }
-            }
-            (_, Recovery::Nodal) => {
-                self.pressure_increments_of_cells(dt);
-                self.recover();
-                self.add_recovered_pressures();
-            }
-            (_, Recovery::Patch) => {
-                self.pressure_increments_of_cells(dt);
-                let increments = &self.cells.pressure_increment[..];
-                for (point, pressure) in self.points.pressure.iter_mut().enumerate() {
-                    *pressure += self.patch.value(&self.grid, point, increments);
-                }
-            }
-        }
-    }
-
-    /// Rate of a point's pressure by its own divergence, Pa/s.
-    #[inline]
-    fn pressure_rate_at(&self, point: usize) -> f64 {
-        let porosity = self.material.porosity_at(self.points.volume_ratio[point]);
-        let rate = self.volume_rate(porosity, |field| self.divergence_at_point(point, field));
-        -self.material.water_bulk_modulus / porosity * rate
-    }
-
-    fn add_recovered_pressures(&mut self) {
-        for (pressure, increment) in self.points.pressure.iter_mut().zip(&self.recovered.at_points) {
-            *pressure += increment;
-        }
-    }
-
-    fn pressure_increments_of_cells(&mut self, dt: f64) {
-        if self.method.pressure == PressureIntegration::Mean {
-            self.average_over_cells(|body, point| {
-                let porosity = body.cells.porosity[body.cells.of_point[point]];
-                let rate = body.volume_rate(porosity, |field| body.divergence_at_point(point, field));
-                -dt * body.material.water_bulk_modulus / porosity * rate
-            });
-        } else {
-            self.pressure_increments_at_centres(dt);
-        }
-    }
-
-    fn pressure_increments_at_centres(&mut self, dt: f64) {
-        for cell in 0..self.cells.pressure_increment.len() {
-            if self.cells.is_occupied(cell) {
-                let porosity = self.cells.porosity[cell];
-                let rate = self.volume_rate(porosity, |field| self.divergence_at_centre(cell, field));
-                self.cells.pressure_increment[cell] =
-                    -dt * self.material.water_bulk_modulus / porosity * rate;
-            }
-        }
+        });
+        let at = PointsInCells::of(&self.grid, &self.cells, &self.nodes, &self.points.position);
+        let pressures = &mut self.points.pressure;
+        self.recovery
+            .recover(&at, &self.site_values, pressures, |pressure, increment| *pressure += increment);
     }
 }
 
@@ -427,19 +382,14 @@ fn rotated<const D: usize>(stress: &Tensor<D>, increment: &Tensor<D>) -> Tensor<
             _ => cosine,
         })
     });
-    let once: Tensor<D> =
-        std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| turn[i][k] * stress[k][j]).sum()));
-    std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| once[i][k] * turn[j][k]).sum()))
+    product_with_transpose(&product(&turn, stress), &turn)
 }
 
 /// `F⁻¹ exp(−A)` for a step's strain `A`, to third order in it.
 #[inline]
 fn relaxed<const D: usize>(inverse: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
-    let times = |a: &Tensor<D>| -> Tensor<D> {
-        std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| a[i][k] * increment[k][j]).sum()))
-    };
-    let once = times(inverse);
-    let twice = times(&once);
+    let once = product(inverse, increment);
+    let twice = product(&once, increment);
     std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j] - once[i][j] + 0.5 * twice[i][j]))
 }
 

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scheme {
-    /// Zheng et al. (2021): velocities and stresses at the same times.
+    /// Zheng et al.: velocities and stresses at the same times.
     #[default]
     ForwardEuler,
     /// Velocities in the middle between the times of the stresses.
@@ -34,6 +34,7 @@ impl Scheme {
     }
 
     /// Whether this is the paper's; records of it say nothing of the scheme.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     pub fn is_paper(&self) -> bool {
         *self == Self::ForwardEuler
     }

@@ -9,7 +9,6 @@
 //! - `banded`, `deformation`: the algebra.
 
 pub mod banded;
-pub mod deformation;
 pub mod linear;
 pub mod linear_system;
 pub mod newton;

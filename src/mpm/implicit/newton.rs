@@ -1,11 +1,12 @@
 //! A Newton iteration a stage: for finite strain, and for bodies with inertia.
 
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::implicit::banded::{Banded, BandedLu};
 use crate::mpm::implicit::residual::{Balances, StageStart};
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::implicit::tangent::Pattern;
 use crate::mpm::implicit::trial::{Skeleton, Trial};
+use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::mpm::run::outcome::FailureKind;
 use crate::mpm::run::plan::Plan;

@@ -18,8 +18,7 @@ const DIFFERENCE: f64 = 1e-7;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Structure {
     basis: Vec<usize>,
-    composite: Vec<usize>,
-    between_ends: Vec<usize>,
+    strain: Vec<usize>,
     cells: Vec<usize>,
     /// Splines that end at the surface lose a node without any point's row beginning elsewhere.
     last_node: Option<usize>,
@@ -34,8 +33,7 @@ impl Structure {
     ) -> Self {
         Self {
             basis: body.basis.first.clone(),
-            composite: body.composite.first.clone(),
-            between_ends: body.between_ends.first.clone(),
+            strain: body.strain.first().to_vec(),
             cells: body.cells.of_point.clone(),
             last_node: body.last_spline_node(),
             numbers: unknowns.displacement.as_flattened().to_vec(),
@@ -83,8 +81,7 @@ impl Pattern {
     ) -> bool {
         let known = &self.structure;
         known.basis == body.basis.first
-            && known.composite == body.composite.first
-            && known.between_ends == body.between_ends.first
+            && known.strain == body.strain.first()
             && known.cells == body.cells.of_point
             && known.last_node == body.last_spline_node()
             && known.numbers == unknowns.displacement.as_flattened()

@@ -4,12 +4,13 @@
 //! pushed forward from there.
 
 use crate::elementary;
-use crate::mpm::body::{Body, ShapeFunction};
-use crate::mpm::implicit::deformation::{identity, inverse, strain_between};
+use crate::mpm::body::Body;
 use crate::mpm::implicit::unknowns::Unknowns;
+use crate::mpm::method::Memory;
+use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::integrator::Formulation;
 use crate::mpm::state::points::Points;
-use crate::soil::tensor::{Tensor, Vector};
+use crate::soil::tensor::{Tensor, Vector, identity, inverse, strain_between};
 
 /// Time level at which the effective stress acts in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,8 +164,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
             }
         }
         if moves_points {
-            if self.body.remembers_in_cells() {
-                self.body.remember_in_cells();
+            if self.body.method.memory == Memory::Cells {
+                let body = &mut self.body;
+                body.cell_memory.spread_over_points(&body.grid, &body.cells, &mut body.points);
             }
             self.body.build_operators();
             self.body.map_masses();

@@ -1,8 +1,9 @@
 //! The operators of a method, each sparse between points, nodes and cell centres: weights, strain gradient,
 //! divergence, recovery, surface load.
 
+pub mod basis;
 pub mod recovery;
-pub mod shape;
+pub mod row;
 pub mod sparse_rows;
 pub mod stencil;
 pub mod strain_gradient;

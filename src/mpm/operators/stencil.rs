@@ -1,6 +1,6 @@
 //! Sparse operators between points and nodes: one small tensor-product block of nodes a point.
 
-use crate::mpm::operators::shape::Row;
+use crate::mpm::operators::row::Row;
 use crate::mpm::state::grid::{Grid, power};
 use crate::soil::tensor::Vector;
 
@@ -197,17 +197,36 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     }
 }
 
+/// Visits the nodes of a tensor product of rows with their weights.
+#[inline]
+pub(crate) fn visit_block<const D: usize, const W: usize>(
+    grid: &Grid<D>,
+    rows: &[Row<W>; D],
+    mut node_visitor: impl FnMut(usize, f64),
+) {
+    for corner in 0..power(W, D) {
+        let (mut node, mut weight, mut rest) = (0, 1.0, corner);
+        for direction in 0..D {
+            let k = rest % W;
+            rest /= W;
+            node += (rows[direction].first + k) * grid.node_stride()[direction];
+            weight *= rows[direction].weights[k];
+        }
+        node_visitor(node, weight);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mpm::operators::shape;
+    use crate::mpm::operators::basis::{Gimp, ShapeFunction};
 
     #[test]
     fn a_block_in_two_dimensions_reproduces_a_linear_field_and_its_gradient() {
         let grid = Grid::new(0.5, [6, 5]);
         let position = [1.37, 0.81];
         let mut stencils = Stencils::<2, 3>::with_points(1);
-        let rows = position.map(|x| shape::gimp(grid.in_cells(x), 0.2));
+        let rows = position.map(|x| Gimp::row(grid.in_cells(x), 0, 0.2));
         stencils.set(&grid, 0, &rows);
         let field: Vec<Vector<2>> = (0..grid.node_count())
             .map(|node| {

@@ -1,22 +1,35 @@
-//! The strain gradient `G`: from nodal velocities to the strain of the effective stress, and what
-//! carries the points with it.
+//! The strain gradient `G`: from nodal velocities to the strain of the effective stress, and what carries the
+//! points with it.
+//!
+//! `∇v(x_p) = Σ_i v_i ⊗ ∇N_i(x_p)`, `[component][direction]`, with the gradients of the basis, of the Lagrange
+//! interpolant through the nodes of the cell and its neighbours (composite MPM), or of that interpolant between
+//! the ends of the point's domain.
 
-use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::method::StrainGradient;
-use crate::mpm::operators::shape;
-use crate::mpm::operators::shape::Row;
+use crate::mpm::operators::row::{Row, SIXTH};
 use crate::mpm::operators::stencil::{Blocks, Stencils};
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::Grid;
+use crate::mpm::state::grid::{Grid, cell_below};
 use crate::soil::tensor::{Tensor, Vector};
 
-/// Nodes a direction between the ends of a domain: four at either end, at most one cell apart.
+/// Nodes per direction between the ends of a domain: four at either end, at most one cell apart.
 pub const ENDS_WIDTH: usize = 5;
 /// Ends are looked up this far inside their domain, in cells: an end on a face belongs to its own
 /// domain's cell.
 const INSET: f64 = 1e-9;
 
-/// `G` of all points by the method's choice.
+/// `G` of a method, with its stencils where they are not those of the basis.
+#[derive(Clone, Debug)]
+pub enum StrainOperator<const D: usize> {
+    /// That of the basis.
+    Basis,
+    /// That of the composite MPM.
+    Composite(Stencils<D, 4>),
+    /// The same between the ends of the domains, and what carries the points then.
+    BetweenEnds(Stencils<D, ENDS_WIDTH>),
+}
+
+/// `G` of all points, borrowed once for a loop over them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum StrainBlocks<'a, const D: usize, const W: usize> {
     Basis(Blocks<'a, D, W>),
@@ -24,23 +37,95 @@ pub(crate) enum StrainBlocks<'a, const D: usize, const W: usize> {
     BetweenEnds(Blocks<'a, D, ENDS_WIDTH>),
 }
 
-impl<'a, const D: usize, const W: usize> StrainBlocks<'a, D, W> {
-    /// Those of a choice; only its own stencils are set.
-    #[inline]
-    pub(crate) fn of(
-        strain: StrainGradient,
-        basis: &'a Stencils<D, W>,
-        composite: &'a Stencils<D, 4>,
-        between_ends: &'a Stencils<D, ENDS_WIDTH>,
-    ) -> Self {
+impl<const D: usize> StrainOperator<D> {
+    /// The operator of a choice, with room for so many points.
+    pub fn of(strain: StrainGradient, points: usize) -> Self {
         match strain {
-            StrainGradient::Standard | StrainGradient::Bbar => Self::Basis(basis.blocks()),
-            StrainGradient::Cmpm | StrainGradient::CmpmBbar => Self::Composite(composite.blocks()),
-            StrainGradient::CmpmEnds => Self::BetweenEnds(between_ends.blocks()),
+            StrainGradient::Standard | StrainGradient::Bbar => Self::Basis,
+            StrainGradient::Cmpm | StrainGradient::CmpmBbar => Self::Composite(Stencils::with_points(points)),
+            StrainGradient::CmpmEnds => Self::BetweenEnds(Stencils::with_points(points)),
         }
     }
 
-    /// Gradient of a nodal field at a point.
+    /// Brings the stencils up to the points' places; half-lengths of the domains in m, `[point][direction]`.
+    pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>, half_length: &[Vector<D>]) {
+        let (places, per_cell) = (cells.place.iter().enumerate(), grid.inverse_cell_size());
+        match self {
+            Self::Basis => {}
+            Self::Composite(stencils) => {
+                for (point, place) in places {
+                    let cell = grid.cell_at(place);
+                    let rows =
+                        std::array::from_fn(|d| composite_row(grid, cells, &cell, d, place[d], cell[d]));
+                    stencils.set_gradients(grid, point, &rows);
+                }
+            }
+            Self::BetweenEnds(stencils) => {
+                for (point, place) in places {
+                    let cell = grid.cell_at(place);
+                    let rows = std::array::from_fn(|d| {
+                        let half = (half_length[point][d] * per_cell).min(0.5);
+                        let end = |side: f64| {
+                            let at = place[d] + side * half;
+                            let along = cell_below(at - side * INSET).clamp(cell[d] - 1, cell[d] + 1);
+                            composite_row(grid, cells, &cell, d, at, along)
+                        };
+                        Row::between(&end(-1.0), &end(1.0), 2.0 * half)
+                    });
+                    stencils.set(grid, point, &rows);
+                }
+            }
+        }
+    }
+
+    /// The blocks of all points.
+    #[inline]
+    pub(crate) fn blocks<'a, const W: usize>(&'a self, basis: &'a Stencils<D, W>) -> StrainBlocks<'a, D, W> {
+        match self {
+            Self::Basis => StrainBlocks::Basis(basis.blocks()),
+            Self::Composite(stencils) => StrainBlocks::Composite(stencils.blocks()),
+            Self::BetweenEnds(stencils) => StrainBlocks::BetweenEnds(stencils.blocks()),
+        }
+    }
+
+    /// Lowest node of each point's stencil, where it is not that of the basis.
+    pub fn first(&self) -> &[usize] {
+        match self {
+            Self::Basis => &[],
+            Self::Composite(stencils) => &stencils.first,
+            Self::BetweenEnds(stencils) => &stencils.first,
+        }
+    }
+
+    /// What carries the points under a nodal field where it is not the value of the basis: the mean of the ends
+    /// of their domains, where those are what the strain is taken between.
+    #[inline]
+    pub(crate) fn carrier(&self) -> Option<Blocks<'_, D, ENDS_WIDTH>> {
+        match self {
+            Self::BetweenEnds(stencils) => Some(stencils.blocks()),
+            Self::Basis | Self::Composite(_) => None,
+        }
+    }
+
+    /// Visits the nodes that a point's strain depends on, with their gradients, 1/m.
+    pub fn visit<const W: usize>(
+        &self,
+        basis: &Stencils<D, W>,
+        stride: &[usize; D],
+        point: usize,
+        mut node_visitor: impl FnMut(usize, &Vector<D>),
+    ) {
+        let visitor = |node: usize, _: f64, gradient: &Vector<D>| node_visitor(node, gradient);
+        match self {
+            Self::Basis => basis.visit(stride, point, visitor),
+            Self::Composite(stencils) => stencils.visit(stride, point, visitor),
+            Self::BetweenEnds(stencils) => stencils.visit(stride, point, visitor),
+        }
+    }
+}
+
+impl<const D: usize, const W: usize> StrainBlocks<'_, D, W> {
+    /// Gradient of a nodal field at a point, `[component][direction]`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub(crate) fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
@@ -48,72 +133,6 @@ impl<'a, const D: usize, const W: usize> StrainBlocks<'a, D, W> {
             Self::Basis(blocks) => blocks.gradient(stride, point, field),
             Self::Composite(blocks) => blocks.gradient(stride, point, field),
             Self::BetweenEnds(blocks) => blocks.gradient(stride, point, field),
-        }
-    }
-}
-
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
-    /// Gradient of a nodal field at a point, from which the effective stress takes its strain.
-    #[inline]
-    pub fn strain_gradient(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        StrainBlocks::of(self.method.strain, &self.basis, &self.composite, &self.between_ends).gradient(
-            self.grid.node_stride(),
-            point,
-            field,
-        )
-    }
-
-    /// Visits the nodes that a point's strain depends on, with their gradients, 1/m.
-    pub fn visit_strain(&self, point: usize, mut node_visitor: impl FnMut(usize, &Vector<D>)) {
-        let stride = self.grid.node_stride();
-        let visitor = |node: usize, _: f64, gradient: &Vector<D>| node_visitor(node, gradient);
-        match self.method.strain {
-            StrainGradient::Standard | StrainGradient::Bbar => self.basis.visit(stride, point, visitor),
-            StrainGradient::Cmpm | StrainGradient::CmpmBbar => self.composite.visit(stride, point, visitor),
-            StrainGradient::CmpmEnds => self.between_ends.visit(stride, point, visitor),
-        }
-    }
-
-    /// What carries a point under a nodal velocity or displacement: the value of the basis, or the
-    /// mean of its domain's ends where those are what its strain is taken between.
-    #[inline]
-    pub fn carrying(&self, point: usize, field: &[Vector<D>], of_basis: Vector<D>) -> Vector<D> {
-        match self.method.strain {
-            StrainGradient::CmpmEnds => self.between_ends.value(self.grid.node_stride(), point, field),
-            _ => of_basis,
-        }
-    }
-
-    /// Builds `G` of every point where it is not that of the basis.
-    pub(crate) fn build_strain_gradients(&mut self) {
-        match self.method.strain {
-            StrainGradient::Standard | StrainGradient::Bbar => {}
-            StrainGradient::Cmpm | StrainGradient::CmpmBbar => {
-                let (grid, cells) = (&self.grid, &self.cells);
-                for (point, place) in cells.place.iter().enumerate() {
-                    let cell = grid.cell_at(place);
-                    let rows =
-                        std::array::from_fn(|d| composite_row(grid, cells, &cell, d, place[d], cell[d]));
-                    self.composite.set_gradients(grid, point, &rows);
-                }
-            }
-            StrainGradient::CmpmEnds => {
-                let (grid, cells) = (&self.grid, &self.cells);
-                let per_cell = grid.inverse_cell_size();
-                for (point, place) in cells.place.iter().enumerate() {
-                    let cell = grid.cell_at(place);
-                    let rows = std::array::from_fn(|d| {
-                        let half = (self.points.half_length[point][d] * per_cell).min(0.5);
-                        let end = |side: f64| {
-                            let at = place[d] + side * half;
-                            let along = grid.cell_below(at - side * INSET).clamp(cell[d] - 1, cell[d] + 1);
-                            composite_row(grid, cells, &cell, d, at, along)
-                        };
-                        Row::between(&end(-1.0), &end(1.0), 2.0 * half)
-                    });
-                    self.between_ends.set(grid, point, &rows);
-                }
-            }
         }
     }
 }
@@ -134,5 +153,74 @@ fn composite_row<const D: usize>(
     let home = grid.flat_cell(&place);
     let stride = grid.cell_stride()[direction];
     let (lower, upper) = (cells.is_reached(home - stride), cells.is_reached(home + stride));
-    shape::composite(at, along, lower, upper)
+    composite(at, along, lower, upper)
+}
+
+/// Lagrange interpolation through the nodes of a cell and of its neighbours, for the composite
+/// MPM (González Acosta, Vardon & Hicks 2017): cubic with both neighbours, quadratic with one,
+/// linear with none. Always written as four weights from the node below the cell.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn composite(place: f64, cell: usize, has_lower: bool, has_upper: bool) -> Row<4> {
+    // Local coordinate with the cell's own nodes at 0 and 1.
+    let x = place - cell as f64;
+    let (weights, gradients) = match (has_lower, has_upper) {
+        (true, true) => (
+            [
+                -SIXTH * x * (x - 1.0) * (x - 2.0),
+                0.5 * (x + 1.0) * (x - 1.0) * (x - 2.0),
+                -0.5 * (x + 1.0) * x * (x - 2.0),
+                SIXTH * (x + 1.0) * x * (x - 1.0),
+            ],
+            [
+                x - 0.5 * x * x - 2.0 * SIXTH,
+                0.5 * (3.0 * x * x - 4.0 * x - 1.0),
+                -0.5 * (3.0 * x * x - 2.0 * x - 2.0),
+                0.5 * x * x - SIXTH,
+            ],
+        ),
+        (true, false) => (
+            [x * (x - 1.0) / 2.0, (1.0 + x) * (1.0 - x), x * (x + 1.0) / 2.0, 0.0],
+            [x - 0.5, -2.0 * x, x + 0.5, 0.0],
+        ),
+        (false, true) => (
+            [0.0, (x - 1.0) * (x - 2.0) / 2.0, x * (2.0 - x), x * (x - 1.0) / 2.0],
+            [0.0, x - 1.5, 2.0 - 2.0 * x, x - 0.5],
+        ),
+        (false, false) => ([0.0, 1.0 - x, x, 0.0], [0.0, -1.0, 1.0, 0.0]),
+    };
+    Row { first: cell - 1, weights, gradients }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mpm::operators::row::tests::moments;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_row_between_ends_adds_up_to_the_field(low in 3.0..8.0f64, length in 0.05..0.9f64) {
+            // Cubic fields are met exactly at both ends, so their difference is too.
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test range")]
+            let row_at = |x: f64| composite(x, x as usize, true, true);
+            let row = Row::between::<6>(&row_at(low), &row_at(low + length), length);
+            let cubic = |x: f64| x * x * x - 4.0 * x;
+            let (mean, slope) = moments(&row, cubic);
+            prop_assert!((mean - 0.5 * (cubic(low) + cubic(low + length))).abs() < 1e-10);
+            prop_assert!((slope - (cubic(low + length) - cubic(low)) / length).abs() < 1e-9);
+        }
+
+        #[test]
+        fn composite_gradient_is_exact_for_its_degree(x in 0.0..1.0f64, lower: bool, upper: bool) {
+            let row = composite(5.0 + x, 5, lower, upper);
+            let degree = 1 + i32::from(lower) + i32::from(upper);
+            for power in 0..=degree {
+                let (value, gradient) = moments(&row, |node| (node - 5.0).powi(power));
+                let exact = if power == 0 { 0.0 } else { f64::from(power) * x.powi(power - 1) };
+                prop_assert!((value - x.powi(power)).abs() < 1e-13);
+                prop_assert!((gradient - exact).abs() < 1e-12, "power {power}: {gradient} for {exact}");
+            }
+        }
+    }
 }

@@ -2,9 +2,7 @@
 
 use crate::elementary;
 use crate::mpm::method::Basis;
-use crate::mpm::operators::shape;
-use crate::mpm::operators::shape::Row;
-use crate::mpm::state::grid::{Grid, power};
+use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::{Nodes, Support};
 use crate::mpm::state::points::Points;
 use crate::soil::tensor::Vector;
@@ -68,9 +66,6 @@ struct Spot {
 /// Gauss points of an edge: exact for the hats times a line.
 const EDGE_SPOTS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
 
-/// A surface this near to a face, in cells, lies on it.
-const ON_A_FACE: f64 = 1e-9;
-
 impl<const D: usize> LoadedSurface<D> {
     /// The surface of a lattice: the highest points of the initial configuration.
     pub fn of(points: &Points<D>, load: f64) -> Self {
@@ -131,26 +126,12 @@ impl<const D: usize> LoadedSurface<D> {
         Self { basis, support, ..self }
     }
 
-    /// Visits the nodes that carry a place of the surface, with their weights.
+    /// Visits the nodes that carry each spot of the surface, with their weights.
     #[inline]
-    fn visit_nodes(&self, grid: &Grid<D>, place: &Vector<D>, node_visitor: impl FnMut(usize, f64)) {
-        let at = grid.held_in_cells(place);
-        let cell = grid.cell_at(&at);
-        match self.basis {
-            Basis::Hat | Basis::Ugimp | Basis::Cpgimp | Basis::Cpdi => {
-                let rows: [Row<2>; D] = std::array::from_fn(|d| shape::hat(at[d], cell[d]));
-                visit_block(grid, &rows, node_visitor);
-            }
-            Basis::Bspline2 => {
-                let row = |d: usize| self.support.folded(grid, d, shape::quadratic_spline(at[d]));
-                let rows: [Row<3>; D] = std::array::from_fn(row);
-                visit_block(grid, &rows, node_visitor);
-            }
-            Basis::Bspline3 => {
-                let row = |d: usize| self.support.folded(grid, d, shape::cubic_spline(at[d], cell[d]));
-                let rows: [Row<4>; D] = std::array::from_fn(row);
-                visit_block(grid, &rows, node_visitor);
-            }
+    fn visit(&self, grid: &Grid<D>, points: &Points<D>, mut visitor: impl FnMut(&Spot, usize, f64)) {
+        for spot in &self.spots {
+            let place = grid.held_in_cells(&self.place(points, spot));
+            self.basis.visit_surface(grid, &self.support, &place, |node, weight| visitor(spot, node, weight));
         }
     }
 
@@ -162,12 +143,7 @@ impl<const D: usize> LoadedSurface<D> {
     pub fn end_splines(&mut self, grid: &Grid<D>, points: &Points<D>) -> Support<D> {
         let height = |spot| grid.held_in_cells(&self.place(points, spot))[D - 1];
         let highest = self.spots.iter().map(height).fold(0.0, f64::max);
-        self.support.outermost = match self.basis {
-            Basis::Bspline2 => Some(shape::whole(highest + 0.5)),
-            // The upper node of the cell that the surface is in; one on a face is in the cell below.
-            Basis::Bspline3 => Some(shape::whole(highest - ON_A_FACE) + 1),
-            Basis::Hat | Basis::Ugimp | Basis::Cpgimp | Basis::Cpdi => None,
-        };
+        self.support.outermost = self.basis.outermost_node(highest);
         self.support
     }
 
@@ -182,37 +158,26 @@ impl<const D: usize> LoadedSurface<D> {
     pub fn apply(&self, grid: &Grid<D>, points: &Points<D>, nodes: &mut Nodes<D>) {
         nodes.external_force.fill([0.0; D]);
         let share = if D == 1 { 1.0 } else { 1.0 / EDGE_SPOTS.len() as f64 };
-        for spot in &self.spots {
+        self.visit(grid, points, |spot, node, weight| {
             let half_length = &points.half_length[spot.point];
             let width: f64 = half_length[..D - 1].iter().map(|half| 2.0 * half).product();
-            let force = -self.load * spot.shape * share * width;
-            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
-                nodes.external_force[node][D - 1] += weight * force;
-            });
-        }
+            nodes.external_force[node][D - 1] += weight * (-self.load * spot.shape * share * width);
+        });
     }
 
     /// Nodes that span the surface, with the weights of [`amplitude_of`](Self::amplitude_of).
     pub fn weights(&self, grid: &Grid<D>, points: &Points<D>) -> Vec<(usize, f64)> {
-        let mut weights = Vec::new();
-        for spot in &self.spots {
-            let share = spot.shape / self.squares;
-            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
-                weights.push((node, share * weight));
-            });
-        }
-        weights
+        self.shares(grid, points, |spot| spot.shape / self.squares)
     }
 
     /// Nodes that span the surface, with the weights of [`mean_of`](Self::mean_of).
     pub fn mean_weights(&self, grid: &Grid<D>, points: &Points<D>) -> Vec<(usize, f64)> {
-        let share = 1.0 / self.spots.len() as f64;
+        self.shares(grid, points, |_| 1.0 / self.spots.len() as f64)
+    }
+
+    fn shares(&self, grid: &Grid<D>, points: &Points<D>, share: impl Fn(&Spot) -> f64) -> Vec<(usize, f64)> {
         let mut weights = Vec::new();
-        for spot in &self.spots {
-            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
-                weights.push((node, share * weight));
-            });
-        }
+        self.visit(grid, points, |spot, node, weight| weights.push((node, share(spot) * weight)));
         weights
     }
 
@@ -220,42 +185,15 @@ impl<const D: usize> LoadedSurface<D> {
     /// shape: the mean under a uniform load, the amplitude of the cosine under a cosine.
     pub fn amplitude_of(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
         let mut sum = 0.0;
-        for spot in &self.spots {
-            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
-                sum += spot.shape * weight * field[node][D - 1];
-            });
-        }
+        self.visit(grid, points, |spot, node, weight| sum += spot.shape * weight * field[node][D - 1]);
         sum / self.squares
     }
 
     /// Mean over the surface of a nodal vector field's vertical component.
     pub fn mean_of(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
         let mut sum = 0.0;
-        for spot in &self.spots {
-            self.visit_nodes(grid, &self.place(points, spot), |node, weight| {
-                sum += weight * field[node][D - 1];
-            });
-        }
+        self.visit(grid, points, |_, node, weight| sum += weight * field[node][D - 1]);
         sum / self.spots.len() as f64
-    }
-}
-
-/// Visits the nodes of a tensor product of rows with their weights.
-#[inline]
-pub(crate) fn visit_block<const D: usize, const W: usize>(
-    grid: &Grid<D>,
-    rows: &[Row<W>; D],
-    mut node_visitor: impl FnMut(usize, f64),
-) {
-    for corner in 0..power(W, D) {
-        let (mut node, mut weight, mut rest) = (0, 1.0, corner);
-        for direction in 0..D {
-            let k = rest % W;
-            rest /= W;
-            node += (rows[direction].first + k) * grid.node_stride()[direction];
-            weight *= rows[direction].weights[k];
-        }
-        node_visitor(node, weight);
     }
 }
 

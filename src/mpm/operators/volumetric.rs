@@ -1,12 +1,13 @@
-//! The volumetric operators of a method as sparse rows: `D` from nodes to the sites of the
-//! dilation, `R` from the sites to the points.
+//! The volumetric operators of a method: `D` from nodes to the sites of the dilation, `R` from the sites to the
+//! points, in place and as sparse rows.
 //!
-//! The explicit step walks the grid instead; whoever assembles (the frozen step, the undrained
-//! start, implicit integrators) takes the rows.
+//! The explicit step works in place; whoever assembles (the frozen step, the undrained start, implicit
+//! integrators) takes the rows.
 
-use crate::mpm::body::{Body, ShapeFunction};
-use crate::mpm::method::{PressureIntegration, Recovery};
-use crate::mpm::operators::recovery::{filtered_rows, nodal_row};
+use crate::mpm::body::Body;
+use crate::mpm::method::PressureIntegration;
+use crate::mpm::operators::basis::ShapeFunction;
+use crate::mpm::operators::recovery::PointsInCells;
 use crate::soil::tensor::Vector;
 
 /// A linear functional of a nodal vector field: one vector of coefficients a node.
@@ -23,65 +24,122 @@ pub struct VolumetricRows<const D: usize> {
     pub recovery: Vec<Vec<(usize, f64)>>,
 }
 
+/// A place where a divergence is taken.
+#[derive(Clone, Copy, Debug)]
+pub enum Place {
+    /// Centre of a cell.
+    Centre(usize),
+    /// A point.
+    Point(usize),
+}
+
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
-    /// The volumetric rows of the body's method; gradients are those of small strain.
+    /// Divergence of a nodal field at a place, on the present configuration.
+    #[inline]
+    pub fn divergence_at(&self, place: Place, field: &[Vector<D>]) -> f64 {
+        match place {
+            Place::Centre(cell) => self.divergence_at_centre(cell, field),
+            Place::Point(point) => self.divergence_at_point(point, field),
+        }
+    }
+
+    /// Cell of a point, and the point's share of its volume.
+    #[inline]
+    fn share_of_cell(&self, point: usize) -> (usize, f64) {
+        let cell = self.cells.of_point[point];
+        (cell, self.points.volume(point) / self.cells.volume(cell))
+    }
+
+    /// `D` in place: fills `site_values` with what a function gives at each site from a place and the porosity
+    /// there. Sites are points, cells at their centres, or cells as means over their points, weighted with
+    /// volume.
+    pub fn evaluate_sites(&mut self, value: impl Fn(&Self, Place, f64) -> f64) {
+        let mut sites = std::mem::take(&mut self.site_values);
+        match self.method.pressure {
+            PressureIntegration::Points => {
+                for (point, site) in sites.iter_mut().enumerate() {
+                    let porosity = self.material.porosity_at(self.points.volume_ratio[point]);
+                    *site = value(self, Place::Point(point), porosity);
+                }
+            }
+            PressureIntegration::Sri => {
+                for (cell, site) in sites.iter_mut().enumerate() {
+                    let porosity = self.cells.porosity[cell];
+                    *site = if self.cells.is_occupied(cell) {
+                        value(self, Place::Centre(cell), porosity)
+                    } else {
+                        0.0
+                    };
+                }
+            }
+            PressureIntegration::Mean => {
+                sites.fill(0.0);
+                for point in 0..self.points.len() {
+                    let (cell, share) = self.share_of_cell(point);
+                    sites[cell] += share * value(self, Place::Point(point), self.cells.porosity[cell]);
+                }
+            }
+        }
+        self.site_values = sites;
+    }
+
+    /// The skeleton's volumetric rate at the points by the method's own `D` and `R`, 1/s: the trace that B-bar
+    /// takes.
+    pub fn recover_dilation_rates(&mut self) {
+        self.evaluate_sites(|body, place, _| body.divergence_at(place, &body.nodes.solid_velocity));
+        let at = PointsInCells::of(&self.grid, &self.cells, &self.nodes, &self.points.position);
+        self.recovery
+            .recover(&at, &self.site_values, &mut self.dilation_rates, |rate, recovered| *rate = recovered);
+    }
+
+    /// `D` and `R` of the body's method as rows; gradients are those of small strain.
     pub fn volumetric_rows(&self) -> VolumetricRows<D> {
-        if self.method.pressure.is_by_cells() { self.rows_of_cells() } else { self.rows_at_points() }
-    }
-
-    fn rows_at_points(&self) -> VolumetricRows<D> {
-        let count = self.points.len();
-        let stiffness = self.material.water_bulk_modulus;
-        let coupling = |point: usize| stiffness / self.material.porosity_at(self.points.volume_ratio[point]);
+        let is_by_cells = self.method.pressure.is_by_cells();
+        let places = if is_by_cells { self.grid.cell_count() } else { self.points.len() };
+        let sites: Vec<usize> =
+            if is_by_cells { self.cells.occupied().collect() } else { (0..places).collect() };
+        let mut number = vec![usize::MAX; places];
+        for (site, place) in sites.iter().enumerate() {
+            number[*place] = site;
+        }
+        let porosity = |place: usize| {
+            if is_by_cells {
+                self.cells.porosity[place]
+            } else {
+                self.material.porosity_at(self.points.volume_ratio[place])
+            }
+        };
+        let at = PointsInCells::of(&self.grid, &self.cells, &self.nodes, &self.points.position);
+        let numbered = |row: Vec<(usize, f64)>| {
+            let entries = row.into_iter().filter(|(_, weight)| *weight != 0.0);
+            entries.map(|(place, weight)| (number[place], weight)).collect()
+        };
         VolumetricRows {
-            divergence: (0..count).map(|point| self.basis.gradient_row(&self.grid, point)).collect(),
-            coupling: (0..count).map(coupling).collect(),
-            recovery: match self.method.recovery {
-                Recovery::NullSpace => filtered_rows(&self.grid, &self.cells, &self.nodes, &self.points),
-                Recovery::Constant | Recovery::Patch | Recovery::Nodal => {
-                    (0..count).map(|point| vec![(point, 1.0)]).collect()
-                }
-            },
+            divergence: self.divergence_rows(&sites, &number),
+            coupling: sites.iter().map(|place| self.material.water_bulk_modulus / porosity(*place)).collect(),
+            recovery: self.recovery.rows(&at).into_iter().map(numbered).collect(),
         }
     }
 
-    fn rows_of_cells(&self) -> VolumetricRows<D> {
-        let mut site = vec![usize::MAX; self.grid.cell_count()];
-        let mut rows = VolumetricRows::default();
-        for cell in self.cells.occupied() {
-            site[cell] = rows.divergence.len();
-            rows.divergence.push(Vec::new());
-            rows.coupling.push(self.material.water_bulk_modulus / self.cells.porosity[cell]);
-        }
-        if self.method.pressure == PressureIntegration::Mean {
-            for point in 0..self.points.len() {
-                let cell = self.cells.of_point[point];
-                let share = self.points.volume(point) / self.cells.volume(cell);
-                let row = &mut rows.divergence[site[cell]];
-                for (node, gradient) in self.basis.gradient_row(&self.grid, point) {
-                    accumulate(row, node, &gradient.map(|component| share * component));
+    fn divergence_rows(&self, sites: &[usize], number: &[usize]) -> Vec<VectorRow<D>> {
+        let at_point = |point: usize| self.basis.gradient_row(&self.grid, point);
+        match self.method.pressure {
+            PressureIntegration::Points => sites.iter().map(|point| at_point(*point)).collect(),
+            PressureIntegration::Sri => {
+                sites.iter().map(|cell| self.cells.centre_divergence_row(&self.grid, *cell)).collect()
+            }
+            PressureIntegration::Mean => {
+                let mut rows = vec![VectorRow::new(); sites.len()];
+                for point in 0..self.points.len() {
+                    let (cell, share) = self.share_of_cell(point);
+                    for (node, gradient) in at_point(point) {
+                        let coefficients = gradient.map(|component| share * component);
+                        accumulate(&mut rows[number[cell]], node, &coefficients);
+                    }
                 }
-            }
-        } else {
-            for cell in self.cells.occupied() {
-                let row = &mut rows.divergence[site[cell]];
-                self.cells.visit_centre_divergence(&self.grid, cell, |node, coefficients| {
-                    row.push((node, *coefficients));
-                });
+                rows
             }
         }
-        rows.recovery = (0..self.points.len())
-            .map(|point| {
-                let cells = match self.method.recovery {
-                    Recovery::Constant | Recovery::NullSpace => vec![(self.cells.of_point[point], 1.0)],
-                    Recovery::Patch => self.patch.entries(&self.grid, point).collect(),
-                    Recovery::Nodal => nodal_row(&self.grid, &self.cells, &self.points, point),
-                };
-                let cells = cells.into_iter().filter(|(_, weight)| *weight != 0.0);
-                cells.map(|(cell, weight)| (site[cell], weight)).collect()
-            })
-            .collect();
-        rows
     }
 }
 
@@ -107,9 +165,7 @@ impl<const D: usize> VolumetricRows<D> {
         let value = |row: &Vec<(usize, f64)>| row.iter().map(|(site, weight)| weight * sites[*site]).sum();
         self.recovery.iter().map(value).collect()
     }
-}
 
-impl<const D: usize> VolumetricRows<D> {
     /// The volumetric rate at a point as a functional of the field: `R D` without moduli.
     pub fn dilation_row(&self, point: usize) -> VectorRow<D> {
         let mut row = VectorRow::new();

@@ -1,10 +1,11 @@
 //! The door of the solver: where a basis, an integrator and a kernel become types.
 
-use crate::mpm::body::{Body, CubicSpline, DomainEnds, Gimp, Hat, Problem, QuadraticSpline, ShapeFunction};
+use crate::mpm::body::{Body, Problem};
 use crate::mpm::implicit::banded::Singular;
 use crate::mpm::implicit::linear::LinearStepper;
 use crate::mpm::implicit::newton::NewtonStepper;
-use crate::mpm::method::{Basis, Configuration};
+use crate::mpm::method::Configuration;
+use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::driver::Driver;
 use crate::mpm::run::explicit_stepper::ExplicitStepper;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
@@ -12,17 +13,12 @@ use crate::mpm::run::outcome::{Failure, FailureKind, Outcome};
 use crate::mpm::run::plan::Plan;
 use crate::mpm::run::schedule::{Observer, Schedule};
 use crate::mpm::run::stepper::Stepper;
+use crate::with_basis;
 
 /// Solves a problem. Never panics and never loops for ever: what goes wrong ends the run with a
 /// named status, and what was finished before stays.
 pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
-    match problem.method.basis {
-        Basis::Hat => solve(Body::<D, 2, Hat>::new, problem, schedule, observer),
-        Basis::Ugimp | Basis::Cpgimp => solve(Body::<D, 3, Gimp>::new, problem, schedule, observer),
-        Basis::Cpdi => solve(Body::<D, 3, DomainEnds>::new, problem, schedule, observer),
-        Basis::Bspline2 => solve(Body::<D, 3, QuadraticSpline>::new, problem, schedule, observer),
-        Basis::Bspline3 => solve(Body::<D, 4, CubicSpline>::new, problem, schedule, observer),
-    }
+    with_basis!(problem.method.basis, W, S => solve(Body::<D, W, S>::new, problem, schedule, observer))
 }
 
 fn solve<const D: usize, const W: usize, S: ShapeFunction<W> + 'static>(

@@ -8,8 +8,6 @@
 //! the points: conservative in each cell, exact for quadratic fields, idempotent while nothing moves.
 //! (The null space of the points-to-grid map is what Tran & Sołowski 2019 filter for stresses.)
 
-use crate::mpm::body::{Body, ShapeFunction};
-use crate::mpm::method::Memory;
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::Grid;
 use crate::mpm::state::points::Points;
@@ -130,36 +128,26 @@ impl<const D: usize> CellMemory<D> {
         }
         value
     }
-}
-
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
-    /// Whether points change place and the cells remember for them.
-    #[inline]
-    pub fn remembers_in_cells(&self) -> bool {
-        self.method.memory == Memory::Cells && self.configuration.moves_points()
-    }
 
     /// Spreads pressure, effective stress and volume ratio over the points of each cell by the
     /// parabolas through the cells' means.
-    pub fn remember_in_cells(&mut self) {
-        let (memory, cells, points) = (&mut self.cell_memory, &self.cells, &mut self.points);
-        memory.place(cells, points);
-        memory.fit(&self.grid, cells, &points.initial_volume, |point| points.pressure[point]);
+    pub fn spread_over_points(&mut self, grid: &Grid<D>, cells: &Cells<D>, points: &mut Points<D>) {
+        self.place(cells, points);
+        self.fit(grid, cells, &points.initial_volume, |point| points.pressure[point]);
         for point in 0..points.len() {
-            points.pressure[point] = memory.value(cells.of_point[point], &points.position[point]);
+            points.pressure[point] = self.value(cells.of_point[point], &points.position[point]);
         }
-        memory.fit(&self.grid, cells, &points.initial_volume, |point| points.volume_ratio[point]);
+        self.fit(grid, cells, &points.initial_volume, |point| points.volume_ratio[point]);
         for point in 0..points.len() {
-            let ratio = memory.value(cells.of_point[point], &points.position[point]);
+            let ratio = self.value(cells.of_point[point], &points.position[point]);
             // The domains still tile the material: what they fill does not change.
             points.stressed_share[point] *= points.volume_ratio[point] / ratio;
             points.volume_ratio[point] = ratio;
         }
         for (i, j) in (0..D).flat_map(|i| (i..D).map(move |j| (i, j))) {
-            memory
-                .fit(&self.grid, cells, &points.initial_volume, |point| points.effective_stress[point][i][j]);
+            self.fit(grid, cells, &points.initial_volume, |point| points.effective_stress[point][i][j]);
             for point in 0..points.len() {
-                let value = memory.value(cells.of_point[point], &points.position[point]);
+                let value = self.value(cells.of_point[point], &points.position[point]);
                 points.effective_stress[point][i][j] = value;
                 points.effective_stress[point][j][i] = value;
             }

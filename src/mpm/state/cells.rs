@@ -32,8 +32,6 @@ pub struct Cells<const D: usize> {
     /// Volume-weighted mean of the inverse deformation gradients of each occupied cell's points,
     /// where weights stay on the initial configuration.
     inverse_deformation: Vec<Tensor<D>>,
-    /// Increment of the pore pressure over the step, Pa.
-    pub pressure_increment: Vec<f64>,
 }
 
 impl<const D: usize> Cells<D> {
@@ -59,14 +57,12 @@ impl<const D: usize> Cells<D> {
             volume: vec![0.0; count],
             porosity: vec![0.0; count],
             inverse_deformation: vec![[[0.0; D]; D]; count],
-            pressure_increment: vec![0.0; count],
         }
     }
 
     /// Finds the cell of every point and sums volumes over each cell's points.
     pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, initial_porosity: f64) {
         self.point_count.fill(0);
-        self.pressure_increment.fill(0.0);
         let found = self.of_point.iter_mut().zip(&mut self.place);
         for (position, (of_point, place)) in points.position.iter().zip(found) {
             *place = grid.held_in_cells(position);
@@ -191,16 +187,11 @@ impl<const D: usize> Cells<D> {
         divergence * share_of_corner(grid)
     }
 
-    /// Visits the nodes of that divergence with their coefficients, 1/m.
-    pub fn visit_centre_divergence(
-        &self,
-        grid: &Grid<D>,
-        cell: usize,
-        mut node_visitor: impl FnMut(usize, &Vector<D>),
-    ) {
-        for (corner, node) in grid.corners(self.divergence_node[cell]).enumerate() {
-            node_visitor(node, &std::array::from_fn(|d| side(corner, d) * share_of_corner(grid)));
-        }
+    /// The nodes of that divergence with their coefficients, 1/m.
+    pub fn centre_divergence_row(&self, grid: &Grid<D>, cell: usize) -> Vec<(usize, Vector<D>)> {
+        let coefficients = |corner| std::array::from_fn(|d| side(corner, d) * share_of_corner(grid));
+        let corners = grid.corners(self.divergence_node[cell]).enumerate();
+        corners.map(|(corner, node)| (node, coefficients(corner))).collect()
     }
 
     /// The same on the deformed configuration, for a field on the initial one: its gradient there

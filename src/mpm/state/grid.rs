@@ -3,7 +3,7 @@
 //! Two layers of ghost nodes surround the grid, so that no stencil needs a bounds case. The last
 //! direction is vertical; a column is `D = 1`, plane strain `D = 2` with `x` first.
 
-use crate::mpm::operators::shape::whole;
+use crate::mpm::operators::row::whole;
 use crate::soil::tensor::Vector;
 
 /// Layers of nodes beyond the grid on every side.
@@ -22,6 +22,12 @@ pub const fn power(base: usize, exponent: usize) -> usize {
         factor += 1;
     }
     product
+}
+
+/// Index of the cell, in one direction, that holds a coordinate in cells.
+#[inline]
+pub fn cell_below(in_cells: f64) -> usize {
+    whole(in_cells + FACE_TOLERANCE)
 }
 
 /// A regular grid of square cells.
@@ -83,12 +89,6 @@ impl<const D: usize> Grid<D> {
         coordinate * self.inverse_cell_size + GHOST_LAYERS as f64
     }
 
-    /// Index of the cell, in one direction, that holds a coordinate in cells.
-    #[inline]
-    pub fn cell_below(&self, in_cells: f64) -> usize {
-        whole(in_cells + FACE_TOLERANCE)
-    }
-
     /// Whether a point lies in the grid or on its rim.
     pub fn holds(&self, position: &Vector<D>) -> bool {
         (0..D).all(|direction| {
@@ -113,7 +113,7 @@ impl<const D: usize> Grid<D> {
     #[inline]
     pub fn cell_at(&self, held_in_cells: &Vector<D>) -> [usize; D] {
         std::array::from_fn(|direction| {
-            self.cell_below(held_in_cells[direction]).min(self.cells[direction] + GHOST_LAYERS - 1)
+            cell_below(held_in_cells[direction]).min(self.cells[direction] + GHOST_LAYERS - 1)
         })
     }
 

@@ -1,6 +1,6 @@
 //! Nodal fields: lumped masses, forces, velocities and accelerations of both phases.
 
-use crate::mpm::operators::shape::Row;
+use crate::mpm::operators::row::Row;
 use crate::mpm::state::grid::{GHOST_LAYERS, Grid};
 use crate::soil::material::Material;
 use crate::soil::tensor::Vector;

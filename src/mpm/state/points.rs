@@ -1,6 +1,6 @@
 //! The material points: one layer that carries skeleton and water, moving with the skeleton.
 
-use crate::soil::tensor::{Tensor, Vector};
+use crate::soil::tensor::{Tensor, Vector, identity};
 
 /// State of the material points, structure of arrays; index = point.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -102,11 +102,6 @@ impl<const D: usize> Points<D> {
     pub fn volume(&self, point: usize) -> f64 {
         self.initial_volume[point] * self.volume_ratio[point]
     }
-}
-
-/// The unit tensor.
-fn identity<const D: usize>() -> Tensor<D> {
-    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }))
 }
 
 #[cfg(test)]

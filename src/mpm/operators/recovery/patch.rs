@@ -1,13 +1,14 @@
-//! Patch recovery (MLSA): a plane fitted to the cells around a point, evaluated at the point.
+//! Patch recovery (MLSA): the plane `a + b·(x − x_p)` fitted to the values of the `3^D` cells around a point by
+//! weighted least squares, evaluated at the point: `p_p = a`.
 //!
-//! Zienkiewicz & Zhu (1992); Zheng et al. (2021), section 3. The weight of a cell falls with its
+//! Zienkiewicz & Zhu (1992); Zheng et al. The weight of a cell falls with its
 //! distance: with equal weights the recovery's Fourier symbol `(1 + 2 cos θ)/3` turns negative
 //! beyond `2π/3`, a negative stiffness that no step survives.
 
-use crate::mpm::operators::shape::SIXTH;
+use crate::mpm::operators::row::SIXTH;
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::{Grid, power};
-use crate::soil::tensor::Vector;
+use crate::soil::tensor::{Vector, solve_symmetric};
 
 /// Cells along one direction of a patch.
 const BLOCK: usize = 3;
@@ -97,10 +98,10 @@ impl<const D: usize> PatchRows<D> {
     }
 
     /// The cells of a point's patch with their weights.
-    pub fn entries(&self, grid: &Grid<D>, point: usize) -> impl Iterator<Item = (usize, f64)> {
-        (0..Self::width()).map(move |block| {
-            (block_cell(grid, self.first[point], block).0, self.weights[point * Self::width() + block])
-        })
+    pub fn row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, f64)> {
+        let weights = self.weights[point * Self::width()..].iter();
+        let cells = (0..Self::width()).map(|block| block_cell(grid, self.first[point], block).0);
+        cells.zip(weights.copied()).collect()
     }
 }
 
@@ -228,39 +229,15 @@ impl<const D: usize> Patch<D> {
                 }
             }
         }
-        let mut slope = *mean;
-        for i in 0..D {
-            let first = self.offset[0][i];
-            if self.offset[..self.count].iter().all(|offset| (offset[i] - first).abs() < 0.5) {
-                covariance[i] = [0.0; D];
-                for row in &mut covariance {
-                    row[i] = 0.0;
-                }
-                covariance[i][i] = 1.0;
-                slope[i] = 0.0;
-            }
-        }
-        // Elimination without pivoting: the matrix is symmetric and not indefinite.
-        for i in 0..D {
-            let largest = covariance[i][i];
-            if largest <= 1e-12 {
-                return [0.0; D];
-            }
-            for j in i + 1..D {
-                let factor = covariance[j][i] / largest;
-                for k in i..D {
-                    covariance[j][k] -= factor * covariance[i][k];
-                }
-                slope[j] -= factor * slope[i];
-            }
-        }
-        for i in (0..D).rev() {
-            for j in i + 1..D {
-                slope[i] -= covariance[i][j] * slope[j];
-            }
-            slope[i] /= covariance[i][i];
-        }
-        slope
+        let offsets = &self.offset[..self.count];
+        let is_flat = |d: usize| offsets.iter().all(|offset| (offset[d] - offsets[0][d]).abs() < 0.5);
+        let mut is_on_a_line = false;
+        let slope = solve_symmetric(&covariance, mean, |d, pivot| {
+            let left_out = is_flat(d);
+            is_on_a_line |= !left_out && pivot <= 1e-12;
+            left_out
+        });
+        if is_on_a_line { [0.0; D] } else { slope }
     }
 }
 
