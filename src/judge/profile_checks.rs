@@ -7,7 +7,7 @@ use crate::convergence::uncertainty::ValueSeries;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::judge::paths::{Path, level_size};
 use crate::judge::verdict::Beside;
-use crate::measure::case_record::exact_samples;
+use crate::measure::exact_fields::exact_samples;
 use crate::measure::oscillation::oscillation;
 use crate::measure::plane_field::PlaneField;
 use crate::record::Record;

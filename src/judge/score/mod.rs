@@ -3,7 +3,6 @@
 pub mod completeness;
 pub mod coverage;
 pub mod diagnosis;
-pub mod fields;
 pub mod series;
 pub mod times;
 
@@ -13,17 +12,15 @@ use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::Finding;
-use crate::judge::score::fields::ExactFields;
-use crate::measure::case_record::{FieldError, resolution, settlement_error};
 use crate::measure::error_contributions::contributions;
+use crate::measure::exact_fields::{ExactFields, SamplePlaces};
+use crate::measure::field_errors::{FieldError, LONG_AFTER, resolution, settlement_error};
 use crate::record::ErrorRow;
 use std::collections::HashMap;
 
 /// Share of the height, and of the length, within which a sample counts as at the surface, and as
 /// under the crest.
 const RIM: f64 = 1e-6;
-/// Time factor by which every column is consolidated to round-off.
-const LONG_AFTER: f64 = 50.0;
 
 /// The place that carries most of a field's error.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -94,6 +91,13 @@ impl<'a> ErrorIndex<'a> {
     }
 }
 
+impl SampledState {
+    /// Where its samples are, in a column or layer of a height, m.
+    fn places(&self, height: f64) -> SamplePlaces<'_> {
+        SamplePlaces { height, heights: &self.initial_height, distances: &self.initial_distance }
+    }
+}
+
 /// Time factors of states.
 pub fn time_factors(parameters: &ColumnParameters, states: &[SampledState]) -> Vec<f64> {
     states.iter().map(|state| parameters.time_factor(state.time)).collect()
@@ -133,7 +137,7 @@ impl Score {
         sample: Sample,
         first: bool,
     ) -> Result<(), ExactError> {
-        let exact = ExactFields::of(reference, parameters, time_factor, state)?;
+        let exact = ExactFields::of(reference, time_factor, state.places(parameters.height))?;
         let is_plane = reference.is_plane();
         let settled =
             if is_plane { reference.settlement(LONG_AFTER)? } else { parameters.final_settlement() };
