@@ -1,4 +1,4 @@
-//! What expectations ask of a path of runs beside its errors: how much its finest profile wiggles,
+//! What expectations ask of a path of runs beside its errors: how much its finest profile oscillates,
 //! and how far a value without an exact one may be off.
 
 use crate::case::quantity::{Quantity, Sample};
@@ -37,7 +37,7 @@ impl Path<'_> {
         )
     }
 
-    /// Spurious wiggle of the profile at the level that a demand names, else at the finest.
+    /// Spurious oscillation of the profile at the level that a demand names, else at the finest.
     ///
     /// In a column, the variation beyond the net changes that the exact profile has too, over those; in
     /// a plane, the variation along all rows and columns of points over that of the exact field, less one.

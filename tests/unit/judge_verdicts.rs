@@ -217,13 +217,13 @@ fn an_expectation_of_nonsense_never_passes() {
         Expectation { floor: Some(FloorBand { above: 2.0, below: 1.0 }), ..second_order() },
         Expectation { oscillation_below: Some(f64::INFINITY), ..second_order() },
     ];
-    let without_wiggle = Beside { oscillation: Some(0.0), ..Beside::default() };
+    let without_oscillation = Beside { oscillation: Some(0.0), ..Beside::default() };
     for expectation in expectations {
         for error in [|h: f64| h * h, |h: f64| h] {
-            let found = judge(&expectation, &series(error), &Context::default(), &without_wiggle);
+            let found = judge(&expectation, &series(error), &Context::default(), &without_oscillation);
             assert!(!found.pass, "{expectation:?}: {found:?}");
             let marked = known(true, &expectation);
-            let found = judge(&marked, &series(error), &Context::default(), &without_wiggle);
+            let found = judge(&marked, &series(error), &Context::default(), &without_oscillation);
             assert!(!found.pass || expectation.xfail.is_some(), "{marked:?}: {found:?}");
         }
     }

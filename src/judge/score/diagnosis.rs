@@ -1,4 +1,4 @@
-//! What seems to be wrong with somebody else's numbers: mistakes that are seen in them.
+//! What seems to be wrong with an external result's numbers: mistakes that are seen in them.
 //!
 //! Each mistake is mended by way of trial, with nothing fitted but a gradient; it is named only where
 //! the mended numbers agree with the exact ones and the given ones do not. A solver that is merely

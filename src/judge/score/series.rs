@@ -1,4 +1,4 @@
-//! Orders and classes of somebody else's results on finer and finer meshes.
+//! Orders and classes of external results on finer and finer meshes.
 
 use crate::case::norm::Norm;
 use crate::convergence::class::classify::classify;
