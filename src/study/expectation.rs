@@ -3,7 +3,7 @@
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
-use crate::convergence::series_expectation::Expectation as Demand;
+use crate::convergence::series_expectation::SeriesDemand as Demand;
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::explicit::Drag;
 use crate::mpm::explicit::scheme::Scheme;

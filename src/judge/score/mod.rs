@@ -74,13 +74,13 @@ pub struct Unresolved {
 
 /// Errors by what they are of.
 pub struct ErrorIndex<'a> {
-    rows: HashMap<Key<'a>, &'a ErrorRow>,
+    rows: HashMap<ErrorKey<'a>, &'a ErrorRow>,
 }
 
 /// Time factor (its bits), quantity, sample, norm, reference.
-type Key<'a> = (u64, &'static str, &'static str, &'static str, &'a str);
+type ErrorKey<'a> = (u64, &'static str, &'static str, &'static str, &'a str);
 
-fn key(row: &ErrorRow) -> Key<'_> {
+fn key(row: &ErrorRow) -> ErrorKey<'_> {
     (row.time_factor.to_bits(), row.quantity.name(), row.sample.name(), row.norm.name(), &row.reference)
 }
 
