@@ -11,7 +11,7 @@ use crate::cli::run::{jobs_of, load_or_shipped};
 use crate::cli::stream::print_data;
 use crate::golden::tolerance::spread_by_group;
 use crate::golden::{GoldenFile, values_of};
-use crate::judge::scatter::{Spread, spread_of};
+use crate::judge::scatter::{ValueScatter, spread_of};
 use crate::mpm::run::Kernel;
 use crate::record::Record;
 use crate::record::store::RecordStore;
@@ -50,7 +50,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         refuse_without_origin()?;
     }
     let studies = load_or_shipped(&arguments.studies)?;
-    let mut spreads: Vec<Spread> = Vec::new();
+    let mut spreads: Vec<ValueScatter> = Vec::new();
     for study in &studies {
         let one = records_of(study, 1)?;
         if one.is_empty() {

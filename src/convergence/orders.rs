@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::convergence::series::{ErrorSeries, Level, Undefined};
+use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
 use crate::convergence::student::quantile_975;
 use crate::elementary;
 
@@ -54,7 +54,7 @@ pub struct FinestOrder {
 
 /// Orders between all neighbouring levels, from coarse to fine.
 pub fn pair_orders(series: &ErrorSeries) -> Vec<PairOrder> {
-    let pair = |levels: &[Level]| PairOrder {
+    let pair = |levels: &[SeriesLevel]| PairOrder {
         coarse: levels[0].size,
         fine: levels[1].size,
         order: pair_order(&levels[0], &levels[1]),
@@ -62,7 +62,7 @@ pub fn pair_orders(series: &ErrorSeries) -> Vec<PairOrder> {
     series.levels().windows(2).map(pair).collect()
 }
 
-fn pair_order(coarse: &Level, fine: &Level) -> Result<f64, Undefined> {
+fn pair_order(coarse: &SeriesLevel, fine: &SeriesLevel) -> Result<f64, Undefined> {
     ErrorSeries::new(vec![*coarse, *fine]).check_sizes()?;
     let (coarse_error, fine_error) = (coarse.positive_error()?, fine.positive_error()?);
     Ok(log_ratio(coarse_error, fine_error) / log_ratio(coarse.size, fine.size))

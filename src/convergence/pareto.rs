@@ -68,7 +68,7 @@ impl ParetoChange {}
 
 /// What one more level would cost and bring.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Prediction {
+pub struct LevelPrediction {
     /// Size of the level.
     pub size: f64,
     /// Its cost, from the slope of cost over the finest levels.
@@ -82,7 +82,11 @@ pub struct Prediction {
 
 /// Predicts one more level, finer by `ratio` than the finest; `None` for fewer than two levels, levels
 /// that are no numbers, or a ratio not above 1.
-pub fn predict_next(levels: &[CostLevel], classification: &Classification, ratio: f64) -> Option<Prediction> {
+pub fn predict_next(
+    levels: &[CostLevel],
+    classification: &Classification,
+    ratio: f64,
+) -> Option<LevelPrediction> {
     let levels = usable(levels)?;
     if !ratio.is_finite() || ratio <= 1.0 {
         return None;
@@ -103,7 +107,7 @@ pub fn predict_next(levels: &[CostLevel], classification: &Classification, ratio
         // A floor without a fitted order: the error stays where it is.
         None => classification.floor.as_ref().map(|_| finest.point.error),
     };
-    Some(Prediction {
+    Some(LevelPrediction {
         size: finest.size / ratio,
         cost,
         cost_exponent: -slope.order,

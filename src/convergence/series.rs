@@ -6,7 +6,7 @@ use thiserror::Error;
 
 /// One level of refinement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Level {
+pub struct SeriesLevel {
     /// What is refined: cell size in m, time step in s, or any length that falls with refinement.
     pub size: f64,
     /// The error at this level; `None` where the run is missing.
@@ -16,9 +16,9 @@ pub struct Level {
 
 /// Errors over levels of refinement, from coarse to fine.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(from = "Vec<Level>", into = "Vec<Level>")]
+#[serde(from = "Vec<SeriesLevel>", into = "Vec<SeriesLevel>")]
 pub struct ErrorSeries {
-    levels: Vec<Level>,
+    levels: Vec<SeriesLevel>,
 }
 
 /// Why an order or a fit has no value.
@@ -81,24 +81,24 @@ pub enum Undefined {
 
 impl ErrorSeries {
     /// A series of these levels, put in order from coarse to fine.
-    pub fn new(mut levels: Vec<Level>) -> Self {
+    pub fn new(mut levels: Vec<SeriesLevel>) -> Self {
         levels.sort_by(|a, b| b.size.total_cmp(&a.size));
         Self { levels }
     }
 
     /// A series without gaps from (size, error) pairs.
     pub fn of(pairs: &[(f64, f64)]) -> Self {
-        let level = |&(size, error): &(f64, f64)| Level { size, error: Some(error) };
+        let level = |&(size, error): &(f64, f64)| SeriesLevel { size, error: Some(error) };
         Self::new(pairs.iter().map(level).collect())
     }
 
     /// The levels from coarse to fine.
-    pub fn levels(&self) -> &[Level] {
+    pub fn levels(&self) -> &[SeriesLevel] {
         &self.levels
     }
 
     /// The level of this size, within a relative 1e-9.
-    pub fn at(&self, size: f64) -> Option<&Level> {
+    pub fn at(&self, size: f64) -> Option<&SeriesLevel> {
         self.levels.iter().find(|level| (level.size - size).abs() <= 1e-9 * size.abs())
     }
 
@@ -125,7 +125,7 @@ impl ErrorSeries {
     }
 }
 
-impl Level {
+impl SeriesLevel {
     /// The error as a positive normal number.
     ///
     /// # Errors
@@ -146,13 +146,13 @@ fn is_size(size: f64) -> bool {
     size.is_normal() && size > 0.0
 }
 
-impl From<Vec<Level>> for ErrorSeries {
-    fn from(levels: Vec<Level>) -> Self {
+impl From<Vec<SeriesLevel>> for ErrorSeries {
+    fn from(levels: Vec<SeriesLevel>) -> Self {
         Self::new(levels)
     }
 }
 
-impl From<ErrorSeries> for Vec<Level> {
+impl From<ErrorSeries> for Vec<SeriesLevel> {
     fn from(series: ErrorSeries) -> Self {
         series.levels
     }
@@ -214,19 +214,19 @@ mod tests {
         }
         let same = ErrorSeries::of(&[(0.5, 1.0), (0.5, 2.0)]);
         assert_eq!(same.points(), Err(Undefined::SameSize { size: 0.5 }));
-        let gap = ErrorSeries::new(vec![Level { size: 1.0, error: None }]);
+        let gap = ErrorSeries::new(vec![SeriesLevel { size: 1.0, error: None }]);
         assert_eq!(gap.points(), Err(Undefined::Missing { size: 1.0 }));
     }
 
     #[test]
     fn a_record_tells_a_missing_error_from_one_that_is_not_finite() {
-        let level = |error| Level { size: 1.0, error };
+        let level = |error| SeriesLevel { size: 1.0, error };
         let errors = [None, Some(f64::INFINITY), Some(f64::NEG_INFINITY), Some(0.1)];
         let series = ErrorSeries::new(errors.map(level).to_vec());
         let json = serde_json::to_string(&series).unwrap();
         assert_eq!(serde_json::from_str::<ErrorSeries>(&json).unwrap(), series, "{json}");
         let text = serde_json::to_string(&level(Some(f64::NAN))).unwrap();
         assert_eq!(text, r#"{"size":1.0,"error":"NaN"}"#);
-        assert!(serde_json::from_str::<Level>(&text).unwrap().error.unwrap().is_nan());
+        assert!(serde_json::from_str::<SeriesLevel>(&text).unwrap().error.unwrap().is_nan());
     }
 }

@@ -7,7 +7,7 @@ use crate::convergence::class::Class;
 /// A two-sided band about an order: an order that is too high is no better than one too low.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Band {
+pub struct OrderBand {
     /// The order expected.
     pub value: f64,
     /// How far below it may lie.
@@ -53,9 +53,9 @@ pub struct KnownFailure {
 /// What is expected of one series; everything asked is judged.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Expectation {
+pub struct SeriesDemand {
     /// Order on the finest window.
-    pub order: Option<Band>,
+    pub order: Option<OrderBand>,
     /// Error at a named level.
     pub at: Option<ErrorBound>,
     /// Class of the series; asymptotic where an order is expected and no class is named.
@@ -72,7 +72,7 @@ pub struct Expectation {
     pub xfail: Option<KnownFailure>,
 }
 
-impl Band {
+impl OrderBand {
     /// Whether an order lies in the band, ends included.
     pub fn contains(&self, order: f64) -> bool {
         (self.value - self.minus..=self.value + self.plus).contains(&order)
@@ -86,7 +86,7 @@ impl FloorBand {
     }
 }
 
-impl Expectation {
+impl SeriesDemand {
     /// The class that must be found, if any.
     pub fn expected_class(&self) -> Option<Class> {
         self.class.or_else(|| self.order.map(|_| Class::Asymptotic))

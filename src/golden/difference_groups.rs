@@ -23,17 +23,17 @@ pub struct DifferenceGroup {
 }
 
 /// Words of a value's name, each marked with the side it stands on.
-fn words(name: &str) -> BTreeSet<(Side, &str)> {
+fn words(name: &str) -> BTreeSet<(NameSide, &str)> {
     let (case, measure) = parts(name);
     // Variants stand in brackets behind the label: `(u-p, implicit drag)`.
     let (label, variants) = case.split_once(" (").unwrap_or((case, ""));
     let variants = variants.trim_end_matches(')').split(", ").filter(|variant| !variant.is_empty());
-    let of_case = label.split_whitespace().chain(variants).map(|word| (Side::Case, word));
-    of_case.chain(measure.split_whitespace().map(|word| (Side::Measure, word))).collect()
+    let of_case = label.split_whitespace().chain(variants).map(|word| (NameSide::Case, word));
+    of_case.chain(measure.split_whitespace().map(|word| (NameSide::Measure, word))).collect()
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Side {
+enum NameSide {
     Case,
     Measure,
 }
@@ -44,7 +44,7 @@ pub fn groups_of<'a>(
     differences: &[Difference],
     all: impl IntoIterator<Item = &'a str>,
 ) -> Vec<DifferenceGroup> {
-    let mut everywhere: BTreeMap<(Side, &str), usize> = BTreeMap::new();
+    let mut everywhere: BTreeMap<(NameSide, &str), usize> = BTreeMap::new();
     let mut number = 0;
     for name in all {
         number += 1;
@@ -66,8 +66,8 @@ pub fn groups_of<'a>(
             change: worst.change,
             values: of_kind.len(),
             cases: of_kind.iter().map(|one| parts(&one.name).0).collect::<BTreeSet<_>>().len(),
-            shared_by_cases: of(Side::Case),
-            shared_by_measures: of(Side::Measure),
+            shared_by_cases: of(NameSide::Case),
+            shared_by_measures: of(NameSide::Measure),
             worst: worst.clone(),
         });
     }

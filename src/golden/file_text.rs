@@ -11,6 +11,9 @@ const LABELS: [&str; 2] = ["case", "T_v"];
 /// What stands before the quantity of a column of spreads.
 const SPREAD_MARK: &str = "spread of ";
 
+/// Numbers of a row, by whether they are spreads, and by measure.
+type TableRow<'a> = BTreeMap<(bool, &'a str), f64>;
+
 /// Where a value stands: its row by case and time factor, its column by measure.
 struct TablePlace<'a> {
     row: (&'a str, &'a str),
@@ -57,7 +60,7 @@ impl GoldenFile {
         let values = self.values.iter().map(|(name, value)| (name, false, *value));
         let spreads = self.spread.iter().map(|(group, spread)| (group, true, *spread));
         let mut columns = BTreeSet::new();
-        let mut rows: BTreeMap<(&str, &str), BTreeMap<(bool, &str), f64>> = BTreeMap::new();
+        let mut rows: BTreeMap<(&str, &str), TableRow<'_>> = BTreeMap::new();
         for (name, is_spread, value) in values.chain(spreads) {
             let place = TablePlace::of(name);
             let column = (is_spread, place.measure);

@@ -1,4 +1,4 @@
-//! Why somebody else's result cannot be taken, in sentences.
+//! Why an external result cannot be taken, in sentences.
 
 use std::path::PathBuf;
 

@@ -1,7 +1,9 @@
 //! The declared meaning of a file's columns.
 
 use crate::case::quantity::Sample;
-use crate::import::units::{Configuration, Direction, LengthUnit, Side, StressSign, StressUnit, TimeUnit};
+use crate::import::units::{
+    HorizontalSense, LengthUnit, StatedPlace, StressSign, StressUnit, TimeUnit, VerticalSense,
+};
 use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
 use serde::Deserialize;
@@ -75,7 +77,7 @@ pub struct Mapping {
     #[serde(default)]
     pub whole_volume: Option<f64>,
     /// Names of the columns, as the header spells them.
-    pub columns: Columns,
+    pub columns: ColumnNames,
     /// Units of the columns.
     pub units: Units,
     /// Directions that count as positive; of x and y with the end from which they count.
@@ -90,7 +92,7 @@ pub struct Mapping {
     pub time: Time,
     /// Layout of the file.
     #[serde(default)]
-    pub csv: Layout,
+    pub csv: TableLayout,
     /// Whether nobody declared it: a layer's horizontal displacement then may be missing.
     #[serde(skip)]
     pub is_convention: bool,
@@ -103,7 +105,7 @@ fn points() -> Sample {
 /// Names of columns as the header spells them.
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Columns {
+pub struct ColumnNames {
     /// Time.
     pub t: Option<String>,
     /// Distance along a layer.
@@ -142,15 +144,15 @@ pub struct Units {
 pub struct Signs {
     /// `right` from the scene's `x = 0` (the crest of a layer's load), or `left` from its other end;
     /// where `x` is a column.
-    pub x: Option<Side>,
+    pub x: Option<HorizontalSense>,
     /// `up` from the base, or `down` from the initial surface.
-    pub y: Direction,
+    pub y: VerticalSense,
     /// Sign of the pore pressure, where it is a column.
     pub p: Option<StressSign>,
     /// Sign of the horizontal displacement, where it is a column.
-    pub u_x: Option<Side>,
+    pub u_x: Option<HorizontalSense>,
     /// Sign of the vertical displacement, where it is a column.
-    pub u_y: Option<Direction>,
+    pub u_y: Option<VerticalSense>,
     /// Sign of the effective stress, where it is a column.
     pub effective_stress: Option<StressSign>,
 }
@@ -160,7 +162,7 @@ pub struct Signs {
 #[serde(deny_unknown_fields)]
 pub struct Position {
     /// Initial places, or present ones; of `x` as of `y`.
-    pub y: Configuration,
+    pub y: StatedPlace,
 }
 
 /// Where the scene begins in the file's coordinates and their unit: what the file writes at the end
@@ -186,14 +188,14 @@ pub struct Time {
 /// Layout of a file.
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct Layout {
+pub struct TableLayout {
     /// What parts the columns.
     pub delimiter: char,
     /// What begins a line that is no row.
     pub comment: Option<char>,
 }
 
-impl Default for Layout {
+impl Default for TableLayout {
     fn default() -> Self {
         Self { delimiter: ',', comment: Some('#') }
     }
@@ -296,7 +298,7 @@ impl Mapping {
                 "name `p`, `u_y`, `u_x` or `effective_stress` in [columns]".to_owned(),
             ));
         }
-        let is_current = self.position.y == Configuration::Current;
+        let is_current = self.position.y == StatedPlace::Current;
         for (place, given, component, has_component) in [
             ("y", true, "u_y", columns.u_y.is_some()),
             ("x", columns.x.is_some(), "u_x", columns.u_x.is_some()),
@@ -344,7 +346,7 @@ mod tests {
             let mapping = Mapping::convention(is_plane).expect("a constant");
             assert_eq!(mapping.columns.u_y.as_deref(), Some("u_y"));
             assert_eq!(mapping.columns.x.is_some(), is_plane);
-            assert_eq!(mapping.position.y, Configuration::Reference);
+            assert_eq!(mapping.position.y, StatedPlace::Reference);
         }
     }
 

@@ -2,8 +2,8 @@
 
 use crate::import::error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::table::Frame;
-use crate::import::units::{Configuration, Direction, Side, StressSign, StressUnit};
+use crate::import::table::SolvedBody;
+use crate::import::units::{HorizontalSense, StatedPlace, StressSign, StressUnit, VerticalSense};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use std::path::Path;
 const RIM: f64 = 1e-6;
 
 /// One row in SI.
-pub struct Row {
+pub struct SampleRow {
     pub time: f64,
     pub initial_distance: Option<f64>,
     pub initial_height: f64,
@@ -94,7 +94,7 @@ impl Places {
 ///
 /// # Errors
 /// What cannot be read or taken, with its line.
-pub fn rows_of(path: &Path, mapping: &Mapping, frame: Frame) -> Result<Vec<Row>, ImportError> {
+pub fn rows_of(path: &Path, mapping: &Mapping, frame: SolvedBody) -> Result<Vec<SampleRow>, ImportError> {
     let file =
         std::fs::File::open(path).map_err(|source| ImportError::Io { path: path.to_owned(), source })?;
     let as_byte = |mark: char| u8::try_from(mark).unwrap_or(b',');
@@ -166,28 +166,36 @@ impl RowReader<'_> {
     }
 
     /// The row in SI with the signs of this program.
-    fn row(&self, places: &Places, mapping: &Mapping, frame: Frame, time: f64) -> Result<Row, ImportError> {
+    fn row(
+        &self,
+        places: &Places,
+        mapping: &Mapping,
+        frame: SolvedBody,
+        time: f64,
+    ) -> Result<SampleRow, ImportError> {
         let (units, sign) = (&mapping.units, &mapping.sign);
         let scaled = |place: Option<usize>, factor: f64| {
             place.map(|place| Ok(self.number(place)? * factor)).transpose()
         };
         let stress = units.stress.map_or(1.0, StressUnit::pascals);
         let length = units.displacement.unwrap_or(units.length).metres();
-        let upward =
-            |direction: Option<Direction>| if direction == Some(Direction::Down) { -1.0 } else { 1.0 };
+        let upward = |direction: Option<VerticalSense>| {
+            if direction == Some(VerticalSense::Down) { -1.0 } else { 1.0 }
+        };
         let compressive =
             |sign: Option<StressSign>| if sign == Some(StressSign::TensionPositive) { -1.0 } else { 1.0 };
-        let rightward = |side: Option<Side>| if side == Some(Side::Left) { -1.0 } else { 1.0 };
+        let rightward =
+            |side: Option<HorizontalSense>| if side == Some(HorizontalSense::Left) { -1.0 } else { 1.0 };
         let displacement = scaled(places.displacement, length * upward(sign.u_y))?;
         let horizontal = scaled(places.horizontal_displacement, length * rightward(sign.u_x))?;
         let y = (self.number(places.height)? - mapping.origin.y) * units.length.metres();
         let height = match sign.y {
-            Direction::Up => y,
-            Direction::Down => frame.height - y,
+            VerticalSense::Up => y,
+            VerticalSense::Down => frame.height - y,
         };
         let initial_height = match mapping.position.y {
-            Configuration::Reference => height,
-            Configuration::Current => height - displacement.unwrap_or(0.0),
+            StatedPlace::Reference => height,
+            StatedPlace::Current => height - displacement.unwrap_or(0.0),
         };
         if !(-RIM * frame.height..=(1.0 + RIM) * frame.height).contains(&initial_height) {
             return Err(ImportError::Outside {
@@ -205,7 +213,7 @@ impl RowReader<'_> {
             None => None,
         };
         let volume = scaled(places.volume, 1.0)?.unwrap_or(1.0);
-        Ok(Row {
+        Ok(SampleRow {
             time: self.not_negative(units.time.seconds(time, frame.seconds_per_time_factor), "the time")?,
             initial_distance: distance,
             initial_height: initial_height.clamp(0.0, frame.height),
@@ -223,17 +231,17 @@ impl RowReader<'_> {
         &self,
         x: f64,
         mapping: &Mapping,
-        frame: Frame,
+        frame: SolvedBody,
         displacement: f64,
     ) -> Result<f64, ImportError> {
         let length = frame.length.unwrap_or(0.0);
         let distance = match mapping.sign.x {
-            Some(Side::Left) => length - x,
+            Some(HorizontalSense::Left) => length - x,
             _ => x,
         };
         let initial = match mapping.position.y {
-            Configuration::Reference => distance,
-            Configuration::Current => distance - displacement,
+            StatedPlace::Reference => distance,
+            StatedPlace::Current => distance - displacement,
         };
         if frame.length.is_some() && !(-RIM * length..=(1.0 + RIM) * length).contains(&initial) {
             return Err(ImportError::Beyond {

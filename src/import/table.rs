@@ -2,7 +2,7 @@
 
 use crate::import::error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::row::{Row, rows_of};
+use crate::import::row::{SampleRow, rows_of};
 use std::path::PathBuf;
 
 /// Rows closer than this share of their time are of one time.
@@ -35,7 +35,7 @@ pub struct SampledState {
 
 /// What was solved, as far as it takes to read a result of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct SolvedBody {
     /// Height, m.
     pub height: f64,
     /// Length along a layer, m; a column has none.
@@ -51,7 +51,7 @@ pub struct Frame {
 pub fn states_of(
     paths: &[PathBuf],
     mapping: &Mapping,
-    frame: Frame,
+    frame: SolvedBody,
 ) -> Result<Vec<SampledState>, ImportError> {
     let mut rows = Vec::new();
     for path in paths {
@@ -63,7 +63,7 @@ pub fn states_of(
     {
         return Err(ImportError::NotInAll { name: "u_x" });
     }
-    let distance = |row: &Row| row.initial_distance.unwrap_or_default();
+    let distance = |row: &SampleRow| row.initial_distance.unwrap_or_default();
     rows.sort_by(|a, b| {
         (a.time.total_cmp(&b.time))
             .then(a.initial_height.total_cmp(&b.initial_height))
@@ -71,7 +71,7 @@ pub fn states_of(
             .then(a.others.cmp(&b.others))
     });
     let mut states: Vec<SampledState> = Vec::new();
-    let mut last: Option<&Row> = None;
+    let mut last: Option<&SampleRow> = None;
     for row in &rows {
         let is_new = states.last().is_none_or(|state| row.time - state.time > SAME_TIME * row.time);
         if is_new {
@@ -92,7 +92,7 @@ pub fn states_of(
     Ok(states)
 }
 
-impl Row {
+impl SampleRow {
     /// Whether another row stands at its place, and no column tells the two apart.
     fn is_place_of(&self, other: &Self) -> bool {
         (self.initial_height, self.initial_distance, self.others)
@@ -134,7 +134,7 @@ delimiter = ";"
         let folder = tempfile::TempDir::new().expect("a folder");
         let path = folder.path().join("result.csv");
         std::fs::write(&path, text).expect("a file");
-        let frame = Frame {
+        let frame = SolvedBody {
             height: 1.0,
             length: mapping.columns.x.is_some().then_some(2.0),
             seconds_per_time_factor: 81.75,

@@ -51,7 +51,7 @@ pub enum StressUnit {
 /// A vertical direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum Direction {
+pub enum VerticalSense {
     /// Against gravity.
     Up,
     /// With gravity.
@@ -61,7 +61,7 @@ pub enum Direction {
 /// A horizontal direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum Side {
+pub enum HorizontalSense {
     /// Away from the scene's `x = 0`: the crest of a layer's load.
     Right,
     /// Towards it.
@@ -81,7 +81,7 @@ pub enum StressSign {
 /// A configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum Configuration {
+pub enum StatedPlace {
     /// Places before the load came.
     Reference,
     /// Places at the time of the row.

@@ -2,7 +2,7 @@
 
 use crate::convergence::class::{Class, Classification};
 use crate::judge::paths::Judgement;
-use crate::judge::verdict::{Check, Outcome, Verdict};
+use crate::judge::verdict::{Check, Verdict, VerdictOutcome};
 use crate::record::{Record, Status};
 use crate::study::case_expectation::{CaseDemand, CaseExpectation, ErrorRange};
 use crate::wording::typed;
@@ -33,7 +33,7 @@ impl CaseExpectation {
             order: None,
             floor: None,
         };
-        let outcome = if pass { Outcome::Passed } else { Outcome::Failed };
+        let outcome = if pass { VerdictOutcome::Passed } else { VerdictOutcome::Failed };
         let verdict = Verdict { pass, outcome, reason: told.join("; "), classification, checks };
         Judgement { line: self.line, subject, verdict, uncertainty: None }
     }

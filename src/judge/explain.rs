@@ -5,14 +5,14 @@ use crate::case::Case;
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::classify::classify;
-use crate::convergence::series::{ErrorSeries, Level};
+use crate::convergence::series::{ErrorSeries, SeriesLevel};
 use crate::exact::error::ExactError;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::golden::compare::{Difference, compare};
 use crate::golden::{GoldenFile, measure_name, values_of};
 use crate::judge::paths::{level_size, paths};
-use crate::measure::case_record::exact_samples;
 use crate::measure::error_contributions::contributions;
+use crate::measure::exact_fields::exact_samples;
 use crate::mpm::run::snapshot::Samples;
 use crate::record::{ErrorRow, Record};
 use crate::scene::column::column_parameters;
@@ -28,12 +28,12 @@ pub struct Carrier {
     /// Largest error at the same output.
     pub linf: Option<f64>,
     /// The place that carries most of it; none where the quantity has one place only.
-    pub place: Option<Place>,
+    pub place: Option<ErrorPlace>,
 }
 
 /// A place with what stands there.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct Place {
+pub struct ErrorPlace {
     /// Initial depth over the height.
     pub zeta: f64,
     /// Share of the squared L2 error.
@@ -132,7 +132,7 @@ fn carriers_of(record: &Record) -> Result<Vec<Carrier>, ExactError> {
 }
 
 /// The place that carries most of an error.
-fn place_of(record: &Record, row: &ErrorRow) -> Result<Option<Place>, ExactError> {
+fn place_of(record: &Record, row: &ErrorRow) -> Result<Option<ErrorPlace>, ExactError> {
     let case = &record.case;
     let index = case.time_factors.iter().position(|factor| *factor == row.time_factor);
     let Some(snapshot) = index.and_then(|index| record.snapshots.get(index)) else { return Ok(None) };
@@ -154,7 +154,7 @@ fn place_of(record: &Record, row: &ErrorRow) -> Result<Option<Place>, ExactError
     };
     let (computed, exact) = (field(samples), field(&exact));
     let worst = contributions(&computed, &exact, &samples.volume).first().copied();
-    Ok(worst.map(|worst| Place {
+    Ok(worst.map(|worst| ErrorPlace {
         zeta: 1.0 - samples.initial_height[worst.index] / case.column.height,
         share: worst.share,
         computed: computed[worst.index],
@@ -189,8 +189,10 @@ fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &Err
         };
         let errors: Vec<Option<f64>> = path.records.iter().map(error).collect();
         let known = path.records.iter().zip(&errors).filter(|(_, error)| error.is_some());
-        let level =
-            |(other, error): (&&Record, &Option<f64>)| Level { size: level_size(other, axis), error: *error };
+        let level = |(other, error): (&&Record, &Option<f64>)| SeriesLevel {
+            size: level_size(other, axis),
+            error: *error,
+        };
         let found = classify(
             &ErrorSeries::new(known.map(level).collect()),
             &crate::convergence::class::Context::default(),

@@ -5,7 +5,7 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::limiter::{Limiter, LimiterKind};
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::judge::paths::Path;
-use crate::measure::case_record::exact_samples;
+use crate::measure::exact_fields::exact_samples;
 use crate::measure::norms::relative_error;
 use crate::mpm::explicit::Drag;
 use crate::mpm::explicit::scheme::Scheme;

@@ -7,8 +7,8 @@ use crate::case::{Case, step_label};
 use crate::convergence::class::classify::classify;
 use crate::convergence::class::{Classification, Context};
 use crate::convergence::orders::{FinestOrder, PairOrder, SlopeFit, finest_order, pair_orders, slope};
-use crate::convergence::series::{ErrorSeries, Level, Undefined};
-use crate::convergence::series_expectation::Expectation as Demand;
+use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
+use crate::convergence::series_expectation::SeriesDemand as Demand;
 use crate::convergence::uncertainty::NumericalUncertainty;
 use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::measure::norms::relative_error;
@@ -132,7 +132,7 @@ impl<'a> Path<'a> {
         }
         let asked = |record: &&&Record| record.case.time_factors.contains(&measure.time_factor);
         let records: Vec<&Record> = self.records.iter().filter(asked).copied().collect();
-        let level = |record: &Record, error| Level { size: level_size(record, self.axis), error };
+        let level = |record: &Record, error| SeriesLevel { size: level_size(record, self.axis), error };
         let levels = if measure.reference == NEXT_FINER {
             let neighbours = records.windows(2);
             neighbours.map(|pair| level(pair[0], difference_of(pair[0], pair[1], measure))).collect()

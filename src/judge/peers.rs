@@ -1,24 +1,21 @@
-//! Other programs on the seed column, as they were measured: what users would run instead.
-//!
-//! Errors are relative L2 of the pore pressure against Terzaghi's solution for incompressible water,
-//! where each program samples best; times are CPU seconds of one thread of one machine under load.
+//! Other programs on the seed column, as they were measured: `peers.csv`, which says of what and how.
 
+use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::reference::ReferenceKind;
 use crate::judge::work_precision::TimedRun;
-
-use crate::case::norm::Norm;
+use std::sync::LazyLock;
 
 /// Time factors of the comparison.
 pub const TIME_FACTORS: [f64; 3] = [0.05, 0.2, 1.0];
 
 /// Another program.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Peer {
     /// Its name.
-    pub name: &'static str,
+    pub name: String,
     /// What it is.
-    pub kind: &'static str,
+    pub kind: String,
     /// Errors at the time factors, where they were measured.
     pub errors: [Option<f64>; 3],
     /// Seconds, where the run ended.
@@ -26,50 +23,18 @@ pub struct Peer {
 }
 
 /// The programs that were measured.
-pub const PEERS: [Peer; 7] = [
-    Peer {
-        name: "geomechanics/mpm",
-        kind: "explicit two-phase MPM, cell centres; T_v = 1 not reached in 590 s",
-        errors: [Some(2.6e-3), Some(9e-4), None],
-        seconds: None,
-    },
-    Peer {
-        name: "geomechanics/mpm, semi-implicit",
-        kind: "projection, smoothing",
-        errors: [Some(7.8e-2), Some(4.5e-2), Some(1.8e-1)],
-        seconds: Some(16.6),
-    },
-    Peer {
-        name: "GeoTaichi",
-        kind: "explicit two-phase GIMP, 20 cells, to T_v = 0.05",
-        errors: [Some(3.0e-2), None, None],
-        seconds: Some(186.0),
-    },
-    Peer {
-        name: "Kratos Geo",
-        kind: "implicit FE, Q2–Q1, 10 cells",
-        errors: [Some(2.123e-3), Some(1.577e-3), Some(2.67e-4)],
-        seconds: Some(2.57),
-    },
-    Peer {
-        name: "OpenGeoSys",
-        kind: "implicit FE, Q2–Q1, 10 cells",
-        errors: [Some(2.123e-3), Some(1.577e-3), Some(2.67e-4)],
-        seconds: Some(1.67),
-    },
-    Peer {
-        name: "scikit-fem",
-        kind: "implicit FE, Q2–Q1, 10 cells",
-        errors: [Some(2.123e-3), Some(1.577e-3), Some(2.67e-4)],
-        seconds: Some(0.05),
-    },
-    Peer {
-        name: "OpenSees quadUP",
-        kind: "implicit FE",
-        errors: [Some(5.0e-3), Some(3.4e-3), Some(4.6e-3)],
-        seconds: Some(0.5),
-    },
-];
+static PEERS: LazyLock<Vec<Peer>> =
+    LazyLock::new(|| read(include_str!("peers.csv")).expect("a test reads the table of the sources"));
+
+fn read(text: &str) -> Result<Vec<Peer>, csv::Error> {
+    type Columns = (String, String, Option<f64>, Option<f64>, Option<f64>, Option<f64>);
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
+    let peer = |columns: Result<Columns, csv::Error>| {
+        let (name, kind, early, middle, late, seconds) = columns?;
+        Ok(Peer { name, kind, errors: [early, middle, late], seconds })
+    };
+    reader.deserialize().map(peer).collect()
+}
 
 /// Errors of a run as the peers' were measured, where it has them.
 pub fn comparable_errors(run: &TimedRun<'_>) -> [Option<f64>; 3] {
@@ -89,7 +54,7 @@ pub fn solve_their_column(runs: &[TimedRun<'_>]) -> bool {
 #[derive(Clone, Debug)]
 pub struct Comparison<'a, 'b> {
     /// The peer.
-    pub peer: Peer,
+    pub peer: &'static Peer,
     /// The run, and its errors; none where every run is somewhere worse.
     pub ahead: Option<(&'b TimedRun<'a>, [Option<f64>; 3])>,
 }
@@ -106,7 +71,7 @@ pub fn compare<'a, 'b>(runs: &'b [TimedRun<'a>]) -> Vec<Comparison<'a, 'b>> {
                     (Some(_), None) => false,
                 })
             });
-            Comparison { peer: *peer, ahead }
+            Comparison { peer, ahead }
         })
         .collect()
 }
@@ -136,6 +101,18 @@ mod tests {
             record.wall = vec![WallSample { seconds, alone: true }; 2];
         }
         records
+    }
+
+    #[test]
+    fn the_table_is_read_and_a_broken_one_is_refused_with_its_line() {
+        assert_eq!(PEERS.len(), 7);
+        let errors = |name: &str| PEERS.iter().find(|peer| peer.name == name).expect("a peer").errors;
+        assert_eq!(errors("GeoTaichi"), [Some(0.03), None, None]);
+        assert!(
+            PEERS.iter().all(|peer| peer.errors.iter().flatten().all(|error| (0.0..1.0).contains(error)))
+        );
+        let broken = read("# a note\na,b,c,d,e,f\nx,y,many,,,\n").expect_err("no number").to_string();
+        assert!(broken.contains("line: 3"), "{broken}");
     }
 
     #[test]

@@ -1,13 +1,13 @@
-//! What expectations ask of a path of runs beside its errors: how much its finest profile wiggles,
+//! What expectations ask of a path of runs beside its errors: how much its finest profile oscillates,
 //! and how far a value without an exact one may be off.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::series_expectation::Expectation as Demand;
+use crate::convergence::series_expectation::SeriesDemand as Demand;
 use crate::convergence::uncertainty::ValueSeries;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::judge::paths::{Path, level_size};
 use crate::judge::verdict::Beside;
-use crate::measure::case_record::exact_samples;
+use crate::measure::exact_fields::exact_samples;
 use crate::measure::oscillation::oscillation;
 use crate::measure::plane_field::PlaneField;
 use crate::record::Record;
@@ -37,7 +37,7 @@ impl Path<'_> {
         )
     }
 
-    /// Spurious wiggle of the profile at the level that a demand names, else at the finest.
+    /// Spurious oscillation of the profile at the level that a demand names, else at the finest.
     ///
     /// In a column, the variation beyond the net changes that the exact profile has too, over those; in
     /// a plane, the variation along all rows and columns of points over that of the exact field, less one.

@@ -8,7 +8,7 @@ const ROUND_OFF: f64 = 1e-12;
 
 /// The largest differences between two sets of values.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct Spread {
+pub struct ValueScatter {
     /// Study.
     pub study: String,
     /// What was varied.
@@ -28,7 +28,7 @@ pub struct Spread {
     pub place: Option<String>,
 }
 
-impl Spread {
+impl ValueScatter {
     /// A relative tolerance that this spread allows, ten times as wide.
     pub fn tolerance(&self) -> f64 {
         ROOM * self.relative
@@ -41,8 +41,8 @@ pub fn spread_of(
     source: &str,
     one: &BTreeMap<String, f64>,
     other: &BTreeMap<String, f64>,
-) -> Spread {
-    let mut spread = Spread {
+) -> ValueScatter {
+    let mut spread = ValueScatter {
         study: study.to_owned(),
         source: source.to_owned(),
         values: 0,

@@ -17,14 +17,14 @@ const LEAST_VALUES: usize = 3;
 
 /// What makes a soil hard to compress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stiffness {
+pub enum SweptStiffness {
     /// The water, by `K_w/E`.
     Water,
     /// The skeleton, by Poisson's ratio.
     Skeleton,
 }
 
-impl Stiffness {
+impl SweptStiffness {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Water, Self::Skeleton];
 
@@ -79,7 +79,7 @@ pub struct SweepRow {
 #[derive(Clone, Debug, PartialEq)]
 pub struct StiffnessSweep {
     /// What varies.
-    pub stiffness: Stiffness,
+    pub stiffness: SweptStiffness,
     /// Cells over the height.
     pub cells: usize,
     /// Values, ascending.
@@ -96,7 +96,11 @@ impl StiffnessSweep {
     ///
     /// # Errors
     /// When a reference refuses a case.
-    pub fn of(study: &Study, records: &[Record], stiffness: Stiffness) -> Result<Option<Self>, ExactError> {
+    pub fn of(
+        study: &Study,
+        records: &[Record],
+        stiffness: SweptStiffness,
+    ) -> Result<Option<Self>, ExactError> {
         let swept: Vec<&Record> = records
             .iter()
             .filter(|record| {

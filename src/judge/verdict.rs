@@ -11,14 +11,14 @@ use crate::convergence::class::{Class, Classification, Context};
 use crate::convergence::fit::bending_order::{Bend, explain};
 use crate::convergence::fit::floor::fit_floor;
 use crate::convergence::series::{ErrorSeries, Undefined};
-use crate::convergence::series_expectation::{Band, ErrorBound, Expectation, FloorBand};
+use crate::convergence::series_expectation::{ErrorBound, FloorBand, OrderBand, SeriesDemand};
 use crate::convergence::uncertainty::NumericalUncertainty;
 use crate::wording::{order, short};
 
 /// How a verdict came out, the known failures told apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Outcome {
+pub enum VerdictOutcome {
     /// Everything expected was found.
     Passed,
     /// Something was not.
@@ -48,7 +48,7 @@ pub struct Verdict {
     /// Whether a gate lets it through.
     pub pass: bool,
     /// How it came out.
-    pub outcome: Outcome,
+    pub outcome: VerdictOutcome,
     /// One sentence: what failed and why, or what was found.
     pub reason: String,
     /// The class, its reason, and the order where the class allows one.
@@ -67,7 +67,12 @@ pub struct Beside {
 }
 
 /// Judges a series. Where the context names no formal order, the order expected serves as one.
-pub fn judge(expectation: &Expectation, series: &ErrorSeries, context: &Context, beside: &Beside) -> Verdict {
+pub fn judge(
+    expectation: &SeriesDemand,
+    series: &ErrorSeries,
+    context: &Context,
+    beside: &Beside,
+) -> Verdict {
     let formal_order = context.formal_order.or(expectation.order.map(|band| band.value));
     let context = Context { formal_order, ..context.clone() };
     let classification = classify(series, &context);
@@ -90,16 +95,16 @@ pub fn judge(expectation: &Expectation, series: &ErrorSeries, context: &Context,
         expectation.uncertainty_below.map(|bound| uncertainty_found(bound, beside.uncertainty.as_ref())),
     );
     let (outcome, reason) = conclude(expectation, &classification, &checks, problems.is_empty());
-    let pass = matches!(outcome, Outcome::Passed | Outcome::KnownFailure);
+    let pass = matches!(outcome, VerdictOutcome::Passed | VerdictOutcome::KnownFailure);
     Verdict { pass, outcome, reason, classification, checks }
 }
 
 fn conclude(
-    expectation: &Expectation,
+    expectation: &SeriesDemand,
     classification: &Classification,
     checks: &[Check],
     sound: bool,
-) -> (Outcome, String) {
+) -> (VerdictOutcome, String) {
     let failed: Vec<_> = checks.iter().filter(|check| !check.pass).collect();
     let sentence =
         |checks: &[&Check]| checks.iter().map(|check| check.reason.as_str()).collect::<Vec<_>>().join("; ");
@@ -109,14 +114,14 @@ fn conclude(
     match (&expectation.xfail, failed.is_empty()) {
         (Some(known), false) if sound && !absent => {
             let why = sentence(&failed);
-            (Outcome::KnownFailure, format!("known failure ({}): {why}", known.reason))
+            (VerdictOutcome::KnownFailure, format!("known failure ({}): {why}", known.reason))
         }
         (Some(known), true) if known.strict => (
-            Outcome::UnexpectedPass,
+            VerdictOutcome::UnexpectedPass,
             format!("passes, though marked as a known failure ({}): remove the mark", known.reason),
         ),
-        (_, true) => (Outcome::Passed, sentence(&checks.iter().collect::<Vec<_>>())),
-        (_, false) => (Outcome::Failed, sentence(&failed)),
+        (_, true) => (VerdictOutcome::Passed, sentence(&checks.iter().collect::<Vec<_>>())),
+        (_, false) => (VerdictOutcome::Failed, sentence(&failed)),
     }
 }
 
@@ -152,7 +157,7 @@ fn class_found(wanted: Class, found: &Classification) -> Check {
     check("class", pass, None, reason)
 }
 
-fn order_found(band: Band, class: Option<Class>, found: &Classification) -> Check {
+fn order_found(band: OrderBand, class: Option<Class>, found: &Classification) -> Check {
     let limits = format!("{} … {}", order(band.value - band.minus), order(band.value + band.plus));
     match found.order {
         Some(measured) if class == Some(found.class) => {

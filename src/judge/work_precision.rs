@@ -1,9 +1,9 @@
 //! What an error costs: timed runs on one scale of error and wall time.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::pareto::{CostLevel, CostPoint, Prediction, front, predict_next};
+use crate::convergence::pareto::{CostLevel, CostPoint, LevelPrediction, front, predict_next};
 use crate::judge::paths::{Path, first_norm, paths};
-use crate::measure::wall_times::{Spread, noise_floor, paired_ratio, spread};
+use crate::measure::wall_times::{WallSpread, noise_floor, paired_ratio, spread};
 use crate::record::{Record, Status};
 use crate::study::expectation::{Axis, Measure};
 
@@ -20,7 +20,7 @@ pub struct TimedRun<'a> {
     /// Error of the pore pressure at the points, the worst of all outputs.
     pub error: f64,
     /// Wall time over the repeats, s.
-    pub wall: Spread,
+    pub wall: WallSpread,
     /// Whether no other run is both cheaper and better.
     pub on_front: bool,
 }
@@ -42,9 +42,9 @@ pub struct NextLevel {
     /// Wall time, s, and error of its finest level.
     pub finest: CostPoint,
     /// Wall time and error of the next.
-    pub next: Prediction,
+    pub next: LevelPrediction,
     /// The finest level as the coarser ones predict it: how far such predictions are to be trusted.
-    pub finest_predicted: Option<Prediction>,
+    pub finest_predicted: Option<LevelPrediction>,
 }
 
 /// Timed runs of one study.

@@ -1,7 +1,11 @@
 //! From the outcome of a run to its record: errors against references, balances, oscillation, checks.
 
+pub mod balances;
 pub mod case_record;
+pub mod dimensionless_groups;
 pub mod error_contributions;
+pub mod exact_fields;
+pub mod field_errors;
 pub mod norms;
 pub mod oscillation;
 pub mod plane_field;

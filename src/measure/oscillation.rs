@@ -1,4 +1,4 @@
-//! How much of a computed profile is spurious wiggle.
+//! How much of a computed profile is spurious oscillation.
 //!
 //! An error norm sees a checkerboard and a smooth offset of the same size as one and the same
 //! number. Two measures tell them apart: the variation of the profile beyond that of the exact
@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::elementary;
 
-/// Measures of the wiggle of one profile.
+/// Measures of the oscillation of one profile.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Oscillation {
     /// `TV(x) / TV(x̂) − 1`: total variation of the computed profile over that of the exact one at
@@ -34,7 +34,7 @@ pub struct Oscillation {
 /// Why the oscillation of a profile has no value.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 pub enum UndefinedOscillation {
-    /// Fewer than three samples have no wiggle.
+    /// Fewer than three samples have no oscillation.
     #[error("{samples} samples are too few: a wiggle needs three")]
     TooFewSamples {
         /// Number of samples given.
@@ -62,7 +62,7 @@ pub enum UndefinedOscillation {
 /// Reversals of the exact profile smaller than this share of its range are round-off, not turns.
 const TURN_TOLERANCE: f64 = 1e-9;
 
-/// Measures the wiggle of `computed` against `exact`, both along one line in order of place and
+/// Measures the oscillation of `computed` against `exact`, both along one line in order of place and
 /// nearly equally spaced, with `samples_per_cell` samples to a grid cell.
 ///
 /// # Errors

@@ -2,7 +2,7 @@
 
 use crate::exact::error::ExactError;
 use crate::exact::reference::Reference;
-use crate::measure::case_record::exact_samples;
+use crate::measure::exact_fields::exact_samples;
 use crate::measure::oscillation::total_variation;
 use crate::record::Record;
 use crate::scene::column::column_parameters;

@@ -39,7 +39,7 @@ pub enum UndefinedStatistic {
 
 /// A list of samples in a few numbers, in their unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Spread {
+pub struct WallSpread {
     /// Number of samples.
     pub count: usize,
     /// Median.
@@ -57,7 +57,7 @@ pub struct Spread {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PairedRatio {
     /// Spread of the ratios first over second, round by round.
-    pub ratios: Spread,
+    pub ratios: WallSpread,
     /// Distribution-free interval of the median of at least 95 % (order statistics); `None` below
     /// six rounds.
     pub interval: Option<(f64, f64)>,
@@ -75,11 +75,11 @@ pub fn median(samples: &[f64]) -> Result<f64, UndefinedStatistic> {
 ///
 /// # Errors
 /// [`UndefinedStatistic`] when there are none, or one is not finite.
-pub fn spread(samples: &[f64]) -> Result<Spread, UndefinedStatistic> {
+pub fn spread(samples: &[f64]) -> Result<WallSpread, UndefinedStatistic> {
     let ordered = sorted(samples)?;
     let median = middle(&ordered);
     let deviations: Vec<_> = ordered.iter().map(|sample| (sample - median).abs()).collect();
-    Ok(Spread {
+    Ok(WallSpread {
         count: ordered.len(),
         median,
         deviation: 1.4826 * middle(&sorted(&deviations)?),

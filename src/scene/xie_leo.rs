@@ -1,7 +1,6 @@
 //! A column loaded at once or over a time and drained at its top, at large strain, from the undrained
 //! equilibrium.
 
-use crate::exact::error::ExactError;
 use crate::exact::large_strain::law::LargeStrainModel;
 use crate::exact::reference::ReferenceKind;
 use crate::scene::column::Column;
@@ -36,7 +35,7 @@ pub(crate) static XIE_LEO: SceneDefinition = SceneDefinition {
     // Xie & Leo's load acts at once.
     load: SceneLoad::SuddenOrGrowing(&[LARGE_STRAIN]),
     has_waves: false,
-    start: SceneStart::OverDepth(undrained),
+    start: SceneStart::OverDepth(|column, soil| Ok(undrained(column, soil))),
     start_pressure: StartPressure::OfReference,
 };
 
@@ -45,9 +44,9 @@ const MOST_CORRECTIONS: usize = 60;
 
 /// The undrained equilibrium at finite strain, `p(J) − σ'(J) = q` with `J − 1` the displacement gradient;
 /// a load that grows finds the soil at rest without stress.
-fn undrained(column: &Column, soil: &Material) -> Result<ColumnStart, ExactError> {
+fn undrained(column: &Column, soil: &Material) -> ColumnStart {
     if column.loading_time > 0.0 {
-        return Ok(ColumnStart::unloaded());
+        return ColumnStart::unloaded();
     }
     let modulus = soil.oedometric_modulus();
     let carried =
@@ -63,7 +62,7 @@ fn undrained(column: &Column, soil: &Material) -> Result<ColumnStart, ExactError
     }
     let stress = modulus * soil.law.uniaxial_stress_ratio(strain);
     let fields = StartFields::at_rest(soil, soil.undrained_pressure_at(strain), stress);
-    Ok(ColumnStart::uniform(strain, fields))
+    ColumnStart::uniform(strain, fields)
 }
 
 #[cfg(test)]
@@ -75,7 +74,7 @@ mod tests {
         for law in Law::ALL {
             for (load, stiffness) in [(1.0, 2.2e9), (2e5, 2.2e9), (2e5, 2e7), (2e5, 2e6)] {
                 let soil = Material { law, water_bulk_modulus: stiffness, ..Material::default() };
-                let start = undrained(&Column { load, ..Column::default() }, &soil).expect("a start");
+                let start = undrained(&Column { load, ..Column::default() }, &soil);
                 assert!(start.vertical_gradient < 0.0 && start.vertical_gradient > -0.1);
                 let fields = (start.fields)(0.5).expect("inside");
                 let total = fields.pressure - fields.vertical_stress;

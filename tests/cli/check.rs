@@ -284,22 +284,22 @@ fn an_expectation_that_is_not_met_fails_everywhere_it_is_told() {
 }
 
 #[test]
-fn a_wiggle_is_measured_where_a_study_bounds_it() {
+fn an_oscillation_is_measured_where_a_study_bounds_it() {
     let asked = |bound: &str| {
         let study = STUDY.replace("at = {", &format!("oscillation = {{ below = {bound} }}\nat = {{"));
         Place::golden(&study, |_| {}).check(&["--format", "json"])
     };
     let told = asked("1e-6");
-    assert_eq!(told.code, 0, "constant recovery makes a staircase and no wiggle: {}", told.out);
+    assert_eq!(told.code, 0, "constant recovery makes a staircase and no oscillation: {}", told.out);
     let json: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
     let checks = json[0]["judgements"][0]["verdict"]["checks"].as_array().expect("checks");
-    let wiggle = checks.iter().find(|check| check["name"] == "oscillation").expect("it is judged");
-    assert_eq!(wiggle["measured"], 0.0, "{wiggle}");
+    let found = checks.iter().find(|check| check["name"] == "oscillation").expect("it is judged");
+    assert_eq!(found["measured"], 0.0, "{found}");
     assert_eq!(asked("-1.0").code, 1, "and a bound that cannot be met is not");
 }
 
 #[test]
-fn the_wiggle_of_a_plane_is_measured_along_its_rows_and_columns() {
+fn the_oscillation_of_a_plane_is_measured_along_its_rows_and_columns() {
     let study = |method: &str, bound: &str| {
         let text = format!(
             "title = \"A layer\"\nscene = \"cosine-layer\"\noutput.time_factors = [0]\n\n[[sweep]]\nmethod = [\"{method}\"]\n\

@@ -3,7 +3,7 @@
 use crate::convergence::class::classify::classify;
 use crate::convergence::class::{Class, Classification, Context};
 use crate::convergence::limiter::{Limiter, LimiterKind};
-use crate::convergence::series::{ErrorSeries, Level};
+use crate::convergence::series::{ErrorSeries, SeriesLevel};
 use proptest::prelude::*;
 
 const SIZES: [f64; 6] = [1.0 / 5.0, 1.0 / 10.0, 1.0 / 20.0, 1.0 / 40.0, 1.0 / 80.0, 1.0 / 160.0];
@@ -360,11 +360,11 @@ fn any_error() -> impl Strategy<Value = Option<f64>> {
     ]
 }
 
-fn never_wrong(found: &Classification, levels: &[Level]) -> Result<(), TestCaseError> {
+fn never_wrong(found: &Classification, levels: &[SeriesLevel]) -> Result<(), TestCaseError> {
     prop_assert!(!found.reason.is_empty());
     if found.class == Class::Asymptotic {
         // Counted anew, apart from the code: steady positive orders on sound finest levels.
-        let order = |pair: &[Level]| {
+        let order = |pair: &[SeriesLevel]| {
             let (a, b) = (pair[0].error.unwrap(), pair[1].error.unwrap());
             (a.ln() - b.ln()) / (pair[0].size / pair[1].size).ln()
         };
@@ -393,7 +393,7 @@ proptest! {
         let mut size = 1.0;
         let levels: Vec<_> = errors.iter().zip(&ratios).map(|(error, ratio)| {
             size /= ratio;
-            Level { size, error: *error }
+            SeriesLevel { size, error: *error }
         }).collect();
         let context = Context { formal_order, round_off, ..Context::default() };
         let series = ErrorSeries::new(levels);

@@ -1,27 +1,27 @@
 //! Expectations are judged in full, and nothing passes by absence or nonsense.
 
 use crate::convergence::class::{Class, Context};
-use crate::convergence::series::{ErrorSeries, Level};
-use crate::convergence::series_expectation::{Band, ErrorBound, Expectation, FloorBand, KnownFailure};
-use crate::judge::verdict::{Beside, Outcome, Verdict, judge};
+use crate::convergence::series::{ErrorSeries, SeriesLevel};
+use crate::convergence::series_expectation::{ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand};
+use crate::judge::verdict::{Beside, Verdict, VerdictOutcome, judge};
 
 fn series(error: impl Fn(f64) -> f64) -> ErrorSeries {
     let sizes = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0].map(|cells| 1.0 / cells);
     ErrorSeries::of(&sizes.map(|size| (size, error(size))))
 }
 
-fn second_order() -> Expectation {
-    let order = Some(Band { value: 2.0, minus: 0.1, plus: 0.15 });
-    Expectation { order, ..Expectation::default() }
+fn second_order() -> SeriesDemand {
+    let order = Some(OrderBand { value: 2.0, minus: 0.1, plus: 0.15 });
+    SeriesDemand { order, ..SeriesDemand::default() }
 }
 
-fn verdict(expectation: &Expectation, series: &ErrorSeries) -> Verdict {
+fn verdict(expectation: &SeriesDemand, series: &ErrorSeries) -> Verdict {
     judge(expectation, series, &Context::default(), &Beside::default())
 }
 
-fn known(strict: bool, expectation: &Expectation) -> Expectation {
+fn known(strict: bool, expectation: &SeriesDemand) -> SeriesDemand {
     let xfail = Some(KnownFailure { strict, reason: "issue 7".to_owned() });
-    Expectation { xfail, ..expectation.clone() }
+    SeriesDemand { xfail, ..expectation.clone() }
 }
 
 #[test]
@@ -38,10 +38,10 @@ fn only_the_expected_class_passes() {
         [|h| h * h + 0.05 * h, |h| h * h + 2e-4, |h| 1.0 / h, |h| h.powi(3), |_| 0.1];
     for error in failing {
         let found = verdict(&second_order(), &series(error));
-        assert!(!found.pass && found.outcome == Outcome::Failed, "{found:?}");
+        assert!(!found.pass && found.outcome == VerdictOutcome::Failed, "{found:?}");
         assert!(found.reason.contains("instead of asymptotic"), "{}", found.reason);
         for class in Class::ALL {
-            let expectation = Expectation { class: Some(class), ..Expectation::default() };
+            let expectation = SeriesDemand { class: Some(class), ..SeriesDemand::default() };
             let context = Context { formal_order: Some(2.0), ..Context::default() };
             let named = judge(&expectation, &series(error), &context, &Beside::default());
             assert_eq!(named.pass, class == found.classification.class, "{class}: {named:?}");
@@ -52,8 +52,8 @@ fn only_the_expected_class_passes() {
 #[test]
 fn no_order_is_measured_in_another_class() {
     // Its finest-window order, 1.21, would lie in this band.
-    let order = Some(Band { value: 2.0, minus: 1.0, plus: 0.5 });
-    let expectation = Expectation { order, ..Expectation::default() };
+    let order = Some(OrderBand { value: 2.0, minus: 1.0, plus: 0.5 });
+    let expectation = SeriesDemand { order, ..SeriesDemand::default() };
     let found = verdict(&expectation, &series(|h| h * h + 0.05 * h));
     let order = found.checks.iter().find(|check| check.name == "order").unwrap();
     assert!(!order.pass && order.measured.is_none(), "{order:?}");
@@ -76,7 +76,7 @@ fn nonsense_never_passes_an_order() {
 #[test]
 fn a_missing_row_is_a_failure_even_where_only_another_is_asked_for() {
     let at = Some(ErrorBound { size: 0.2, below: 1.0, above: 0.0 });
-    let bounded = Expectation { at, ..Expectation::default() };
+    let bounded = SeriesDemand { at, ..SeriesDemand::default() };
     let full = series(|h| h * h);
     assert!(verdict(&bounded, &full).pass);
     let mut levels = full.levels().to_vec();
@@ -86,26 +86,26 @@ fn a_missing_row_is_a_failure_even_where_only_another_is_asked_for() {
     assert!(!verdict(&second_order(), &ErrorSeries::new(levels)).pass);
     assert!(!verdict(&bounded, &ErrorSeries::default()).pass);
     let elsewhere = Some(ErrorBound { size: 0.3, below: 1.0, above: 0.0 });
-    let nowhere = verdict(&Expectation { at: elsewhere, ..Expectation::default() }, &full);
+    let nowhere = verdict(&SeriesDemand { at: elsewhere, ..SeriesDemand::default() }, &full);
     assert!(!nowhere.pass && nowhere.reason.contains("no level of size 0.3"));
 }
 
 #[test]
 fn a_doubled_constant_keeps_the_order_and_fails_the_level() {
     let at = Some(ErrorBound { size: 0.1, below: 1.2e-2, above: 0.0 });
-    let expectation = Expectation { at, ..second_order() };
+    let expectation = SeriesDemand { at, ..second_order() };
     assert!(verdict(&expectation, &series(|h| h * h)).pass);
     let doubled = verdict(&expectation, &series(|h| 2.0 * h * h));
     assert!(!doubled.pass && doubled.reason == "error 0.02 at size 0.1 not below 0.012", "{doubled:?}");
-    let single = ErrorSeries::new(vec![Level { size: 0.1, error: Some(1e-2) }]);
-    assert!(verdict(&Expectation { at, ..Expectation::default() }, &single).pass);
+    let single = ErrorSeries::new(vec![SeriesLevel { size: 0.1, error: Some(1e-2) }]);
+    assert!(verdict(&SeriesDemand { at, ..SeriesDemand::default() }, &single).pass);
 }
 
 #[test]
 fn a_result_that_is_too_good_fails_the_level() {
-    let at = |above, below| Expectation {
+    let at = |above, below| SeriesDemand {
         at: Some(ErrorBound { size: 0.1, below, above }),
-        ..Expectation::default()
+        ..SeriesDemand::default()
     };
     let squares = series(|h| h * h);
     let error = squares.at(0.1).and_then(|level| level.error).expect("a level");
@@ -125,9 +125,9 @@ fn a_result_that_is_too_good_fails_the_level() {
 
 #[test]
 fn a_spread_counts_the_levels_from_its_size_on() {
-    let spread = |size, below| Expectation {
+    let spread = |size, below| SeriesDemand {
         spread: Some(ErrorBound { size, below, above: 0.0 }),
-        ..Expectation::default()
+        ..SeriesDemand::default()
     };
     // 0.2, 0.1, 0.05, …: apart by 50 % at the coarsest, by 1 % from 0.1 on.
     let settled = series(|h| if h > 0.15 { 1.5 } else { 1.0 + 0.1 * h });
@@ -139,7 +139,7 @@ fn a_spread_counts_the_levels_from_its_size_on() {
 
 #[test]
 fn three_levels_have_no_floor_to_judge() {
-    let floor = Expectation { floor: Some(FloorBand { above: 0.0, below: 1.0 }), ..Expectation::default() };
+    let floor = SeriesDemand { floor: Some(FloorBand { above: 0.0, below: 1.0 }), ..SeriesDemand::default() };
     let levels = series(|h| h * h).levels().to_vec();
     let three = verdict(&floor, &ErrorSeries::new(levels[..3].to_vec()));
     assert!(!three.pass && three.reason.contains("3 levels cannot tell one from none"), "{three:?}");
@@ -149,7 +149,7 @@ fn three_levels_have_no_floor_to_judge() {
 #[test]
 fn a_floor_is_held_between_its_bounds() {
     let floor =
-        |above, below| Expectation { floor: Some(FloorBand { above, below }), ..Expectation::default() };
+        |above, below| SeriesDemand { floor: Some(FloorBand { above, below }), ..SeriesDemand::default() };
     let model = series(|h| h * h + 1.4e-4);
     assert!(verdict(&floor(1.2e-4, 1.6e-4), &model).pass);
     assert!(!verdict(&floor(0.0, 2e-5), &model).pass);
@@ -168,22 +168,22 @@ fn a_floor_is_held_between_its_bounds() {
 fn a_strict_known_failure_must_fail() {
     let (good, bad) = (series(|h| h * h), series(|h| h));
     let strict = known(true, &second_order());
-    assert_eq!(verdict(&strict, &bad).outcome, Outcome::KnownFailure);
+    assert_eq!(verdict(&strict, &bad).outcome, VerdictOutcome::KnownFailure);
     assert!(verdict(&strict, &bad).pass);
     let surprise = verdict(&strict, &good);
-    assert_eq!(surprise.outcome, Outcome::UnexpectedPass);
+    assert_eq!(surprise.outcome, VerdictOutcome::UnexpectedPass);
     assert!(!surprise.pass && surprise.reason.contains("issue 7"));
     let lax = known(false, &second_order());
     assert!(verdict(&lax, &bad).pass && verdict(&lax, &good).pass);
     // A crash is not the failure that was known.
     let mut levels = bad.levels().to_vec();
     levels[5].error = None;
-    assert_eq!(verdict(&strict, &ErrorSeries::new(levels)).outcome, Outcome::Failed);
+    assert_eq!(verdict(&strict, &ErrorSeries::new(levels)).outcome, VerdictOutcome::Failed);
 }
 
 #[test]
 fn oscillation_is_judged_where_asked() {
-    let expectation = Expectation { oscillation_below: Some(0.05), ..second_order() };
+    let expectation = SeriesDemand { oscillation_below: Some(0.05), ..second_order() };
     let of = |oscillation| {
         let beside = Beside { oscillation, ..Beside::default() };
         judge(&expectation, &series(|h| h * h), &Context::default(), &beside).pass
@@ -194,18 +194,18 @@ fn oscillation_is_judged_where_asked() {
 
 #[test]
 fn an_expectation_of_nonsense_never_passes() {
-    let band = |value, minus, plus| Expectation {
-        order: Some(Band { value, minus, plus }),
-        ..Expectation::default()
+    let band = |value, minus, plus| SeriesDemand {
+        order: Some(OrderBand { value, minus, plus }),
+        ..SeriesDemand::default()
     };
-    let at = |size, below| Expectation {
+    let at = |size, below| SeriesDemand {
         at: Some(ErrorBound { size, below, above: 0.0 }),
-        ..Expectation::default()
+        ..SeriesDemand::default()
     };
     let unexplained =
-        Expectation { xfail: Some(KnownFailure { strict: true, reason: " ".to_owned() }), ..second_order() };
+        SeriesDemand { xfail: Some(KnownFailure { strict: true, reason: " ".to_owned() }), ..second_order() };
     let expectations = [
-        Expectation::default(),
+        SeriesDemand::default(),
         unexplained,
         band(f64::NAN, 0.1, 0.1),
         band(2.0, -0.5, 0.1),
@@ -214,16 +214,16 @@ fn an_expectation_of_nonsense_never_passes() {
         at(0.1, f64::NAN),
         at(0.1, f64::INFINITY),
         at(f64::NAN, 1.0),
-        Expectation { floor: Some(FloorBand { above: 2.0, below: 1.0 }), ..second_order() },
-        Expectation { oscillation_below: Some(f64::INFINITY), ..second_order() },
+        SeriesDemand { floor: Some(FloorBand { above: 2.0, below: 1.0 }), ..second_order() },
+        SeriesDemand { oscillation_below: Some(f64::INFINITY), ..second_order() },
     ];
-    let without_wiggle = Beside { oscillation: Some(0.0), ..Beside::default() };
+    let without_oscillation = Beside { oscillation: Some(0.0), ..Beside::default() };
     for expectation in expectations {
         for error in [|h: f64| h * h, |h: f64| h] {
-            let found = judge(&expectation, &series(error), &Context::default(), &without_wiggle);
+            let found = judge(&expectation, &series(error), &Context::default(), &without_oscillation);
             assert!(!found.pass, "{expectation:?}: {found:?}");
             let marked = known(true, &expectation);
-            let found = judge(&marked, &series(error), &Context::default(), &without_wiggle);
+            let found = judge(&marked, &series(error), &Context::default(), &without_oscillation);
             assert!(!found.pass || expectation.xfail.is_some(), "{marked:?}: {found:?}");
         }
     }
@@ -231,7 +231,7 @@ fn an_expectation_of_nonsense_never_passes() {
 
 #[test]
 fn exactness_can_be_expected() {
-    let expectation = Expectation { class: Some(Class::Exact), ..Expectation::default() };
+    let expectation = SeriesDemand { class: Some(Class::Exact), ..SeriesDemand::default() };
     assert!(verdict(&expectation, &series(|_| 0.0)).pass);
     assert!(!verdict(&expectation, &series(|h| h * h)).pass);
     assert!(!verdict(&expectation, &series(|_| f64::NAN)).pass);

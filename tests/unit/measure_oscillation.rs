@@ -62,11 +62,11 @@ fn an_offset_counts_as_smooth_with_its_full_energy() {
 }
 
 #[test]
-fn round_off_in_a_flat_stretch_does_not_hide_a_wiggle() {
+fn round_off_in_a_flat_stretch_does_not_hide_a_oscillation() {
     // Early in time the exact profile is 1 to round-off away from the drained end.
     for end in [0.2, 1.8] {
-        let profile = |wiggle: f64| -> Vec<f64> {
-            (0..20).map(|i| if i == 0 { end } else { 1.0 + wiggle * sign(i) }).collect()
+        let profile = |oscillation: f64| -> Vec<f64> {
+            (0..20).map(|i| if i == 0 { end } else { 1.0 + oscillation * sign(i) }).collect()
         };
         let found = oscillation(&profile(0.1), &profile(2e-16), 2.0).unwrap();
         assert!(found.reversal.unwrap() > 1.0, "{found:?}");
@@ -74,7 +74,7 @@ fn round_off_in_a_flat_stretch_does_not_hide_a_wiggle() {
 }
 
 #[test]
-fn turns_of_the_exact_profile_are_no_wiggle() {
+fn turns_of_the_exact_profile_are_no_oscillation() {
     let exact: Vec<f64> = (0..60).map(|i| (f64::from(i) * PI / 20.0).cos()).collect();
     assert_eq!(turning_points(&exact), vec![20, 40]);
     let computed: Vec<f64> = exact.iter().map(|value| 1.2 * value).collect();

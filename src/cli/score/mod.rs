@@ -1,4 +1,4 @@
-//! `oedometer score`: hold somebody else's result against the references of a scene.
+//! `oedometer score`: hold an external result against the references of a scene.
 
 pub mod gate;
 pub mod results;

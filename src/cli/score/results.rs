@@ -6,7 +6,7 @@ use crate::cli::exit::{Ended, Exit};
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::ReferenceKind;
 use crate::import::mapping::Mapping;
-use crate::import::table::{Frame, SampledState, states_of};
+use crate::import::table::{SampledState, SolvedBody, states_of};
 use crate::judge::score::completeness::{Whole, missing_times, uneven_meshes};
 use crate::judge::score::diagnosis::diagnosis;
 use crate::judge::score::series::{ScoredSeries, series_of};
@@ -144,7 +144,7 @@ impl Results {
 impl Read {
     fn of(files: Vec<PathBuf>, cells: Option<usize>, held: &Held) -> anyhow::Result<Self> {
         let column = &held.case.column;
-        let frame = Frame {
+        let frame = SolvedBody {
             height: column.height,
             length: held.case.scene.has_plane_fields().then_some(column.horizontal_extent),
             seconds_per_time_factor: held.case.seconds_per_time_factor(),

@@ -13,7 +13,7 @@
 //! Last, evidence of a reference no better than the smallest error makes a class of step 4, or a
 //! `pre-asymptotic` one, `not-evaluable`.
 
-use crate::convergence::class::evaluable_series::{Case, FLOOR_LEVELS, advised, plain};
+use crate::convergence::class::evaluable_series::{EvaluableSeries, FLOOR_LEVELS, advised, plain};
 use crate::convergence::class::finest_window::judge_window;
 use crate::convergence::class::{Class, Classification, Context};
 use crate::convergence::fit::approach_to_limit::{Limit, limit_of};
@@ -46,7 +46,7 @@ pub fn classify(series: &ErrorSeries, context: &Context) -> Classification {
         return found;
     }
     let evaluated = series.points().and_then(|points| {
-        let case = Case::of(&points, context)?;
+        let case = EvaluableSeries::of(&points, context)?;
         Ok(case.classify(context))
     });
     evaluated.unwrap_or_else(|undefined| plain(Class::NotEvaluable, undefined.to_string()))
@@ -131,7 +131,7 @@ fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
     Some(plain(Class::NotEvaluable, reason))
 }
 
-impl Case<'_> {
+impl EvaluableSeries<'_> {
     fn classify(&self, context: &Context) -> Classification {
         let found = self
             .round_off(context)

@@ -11,7 +11,7 @@ use crate::elementary;
 use crate::wording::{order, short};
 
 /// A series that can be evaluated, with what the checks share.
-pub(crate) struct Case<'a> {
+pub(crate) struct EvaluableSeries<'a> {
     /// Sizes and errors from coarse to fine, all positive.
     pub(crate) points: &'a [(f64, f64)],
     /// The same with the errors' signs, where they have one.
@@ -57,7 +57,7 @@ fn put_down_to(limiter: Option<&Limiter>) -> String {
     }
 }
 
-impl<'a> Case<'a> {
+impl<'a> EvaluableSeries<'a> {
     pub(crate) fn of(points: &'a [(f64, f64)], context: &Context) -> Result<Self, Undefined> {
         let pair = |pair: &[(f64, f64)]| log_ratio(pair[0].1, pair[1].1) / log_ratio(pair[0].0, pair[1].0);
         let mut limiters = context.limiters.clone();

@@ -1,6 +1,6 @@
 //! The class of a steadily falling error, judged on its finest window.
 
-use crate::convergence::class::evaluable_series::{Case, FLOOR_LEVELS, plain};
+use crate::convergence::class::evaluable_series::{EvaluableSeries, FLOOR_LEVELS, plain};
 use crate::convergence::class::{Class, Classification};
 use crate::convergence::fit::bending_order::{Bend, explain};
 use crate::wording::{order, orders, short};
@@ -18,7 +18,7 @@ const GOVERNS: f64 = 0.2;
 const ABSURD: f64 = 6.0;
 
 /// Judges a series that falls steadily.
-pub(crate) fn judge_window(case: &Case) -> Classification {
+pub(crate) fn judge_window(case: &EvaluableSeries) -> Classification {
     let [.., coarse, fine] = *case.pairs.as_slice() else {
         return plain(Class::NotEvaluable, "fewer than two pairs of levels".to_owned());
     };
@@ -30,7 +30,7 @@ pub(crate) fn judge_window(case: &Case) -> Classification {
     if counts { Classification { order: Some(case.order), ..found } } else { found }
 }
 
-fn with_formal(case: &Case, formal: f64, coarse: f64, fine: f64) -> Classification {
+fn with_formal(case: &EvaluableSeries, formal: f64, coarse: f64, fine: f64) -> Classification {
     let window = format!("order {} on the finest window ({})", order(case.order), orders(&[coarse, fine]));
     let wanted = order(formal);
     let drift = fine - coarse;
@@ -67,7 +67,7 @@ fn with_formal(case: &Case, formal: f64, coarse: f64, fine: f64) -> Classificati
     unsettled(format!("{window}: not settled at the formal {wanted}"))
 }
 
-fn without_formal(case: &Case, coarse: f64, fine: f64) -> Classification {
+fn without_formal(case: &EvaluableSeries, coarse: f64, fine: f64) -> Classification {
     let window = format!("order {} on the finest window ({})", order(case.order), orders(&[coarse, fine]));
     if case.order > ABSURD {
         let reason = format!("{window}: no method here has an order above {ABSURD}");
@@ -92,7 +92,7 @@ fn without_formal(case: &Case, coarse: f64, fine: f64) -> Classification {
 }
 
 /// The class where a second term governs the finest level.
-fn governed(case: &Case, bend: &Bend, window: &str) -> Option<Classification> {
+fn governed(case: &EvaluableSeries, bend: &Bend, window: &str) -> Option<Classification> {
     let size = case.finest().0;
     let terms = bend.terms();
     let share = terms.low_share(size);

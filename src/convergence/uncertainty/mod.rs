@@ -7,7 +7,7 @@
 pub mod eca_hoekstra;
 pub mod grid_convergence;
 
-use crate::convergence::series::{ErrorSeries, Level, Undefined};
+use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
 use crate::convergence::uncertainty::eca_hoekstra::{LeastSquaresUncertainty, least_squares_uncertainty};
 use crate::convergence::uncertainty::grid_convergence::{Behaviour, SAFETY_ASSUMED, ThreeGrids, three_grids};
 use serde::{Deserialize, Serialize};
@@ -64,7 +64,7 @@ impl ValueSeries {
     pub fn differences(&self) -> ErrorSeries {
         let difference = |pair: &[(f64, Option<f64>)]| {
             let error = pair[0].1.zip(pair[1].1).map(|(coarse, fine)| (coarse - fine).abs());
-            Level { size: pair[0].0, error }
+            SeriesLevel { size: pair[0].0, error }
         };
         ErrorSeries::new(self.levels.windows(2).map(difference).collect())
     }

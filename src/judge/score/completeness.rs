@@ -1,4 +1,4 @@
-//! Whether somebody else's result is whole: what is missing makes an error small.
+//! Whether an external result is whole: what is missing makes an error small.
 
 use crate::elementary::ln;
 use crate::exact::error::ExactError;

@@ -1,4 +1,4 @@
-//! What seems to be wrong with somebody else's numbers: mistakes that are seen in them.
+//! What seems to be wrong with an external result's numbers: mistakes that are seen in them.
 //!
 //! Each mistake is mended by way of trial, with nothing fitted but a gradient; it is named only where
 //! the mended numbers agree with the exact ones and the given ones do not. A solver that is merely
@@ -13,7 +13,7 @@ use crate::import::mapping::Mapping;
 use crate::import::table::SampledState;
 use crate::import::units::{LengthUnit, StressUnit, TimeUnit};
 use crate::judge::score::completeness::short;
-use crate::judge::score::fields::ExactFields;
+use crate::measure::exact_fields::ExactFields;
 
 /// Relative errors below this are an inaccurate solver's, and no mistake in a file.
 const INACCURATE: f64 = 0.1;
@@ -110,7 +110,9 @@ fn exact_of(
     times: &[f64],
     states: &[&SampledState],
 ) -> Result<Vec<ExactFields>, ExactError> {
-    let of = |(time, state): (&f64, &&SampledState)| ExactFields::of(solution, parameters, *time, state);
+    let of = |(time, state): (&f64, &&SampledState)| {
+        ExactFields::of(solution, *time, state.places(parameters.height))
+    };
     times.iter().zip(states).map(of).collect()
 }
 

@@ -1,9 +1,8 @@
-//! Somebody else's result held against the references of a scene.
+//! An external result held against the references of a scene.
 
 pub mod completeness;
 pub mod coverage;
 pub mod diagnosis;
-pub mod fields;
 pub mod series;
 pub mod times;
 
@@ -13,17 +12,15 @@ use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::Finding;
-use crate::judge::score::fields::ExactFields;
-use crate::measure::case_record::{FieldError, resolution, settlement_error};
 use crate::measure::error_contributions::contributions;
+use crate::measure::exact_fields::{ExactFields, SamplePlaces};
+use crate::measure::field_errors::{FieldError, LONG_AFTER, resolution, settlement_error};
 use crate::record::ErrorRow;
 use std::collections::HashMap;
 
 /// Share of the height, and of the length, within which a sample counts as at the surface, and as
 /// under the crest.
 const RIM: f64 = 1e-6;
-/// Time factor by which every column is consolidated to round-off.
-const LONG_AFTER: f64 = 50.0;
 
 /// The place that carries most of a field's error.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -77,13 +74,13 @@ pub struct Unresolved {
 
 /// Errors by what they are of.
 pub struct ErrorIndex<'a> {
-    rows: HashMap<Key<'a>, &'a ErrorRow>,
+    rows: HashMap<ErrorKey<'a>, &'a ErrorRow>,
 }
 
 /// Time factor (its bits), quantity, sample, norm, reference.
-type Key<'a> = (u64, &'static str, &'static str, &'static str, &'a str);
+type ErrorKey<'a> = (u64, &'static str, &'static str, &'static str, &'a str);
 
-fn key(row: &ErrorRow) -> Key<'_> {
+fn key(row: &ErrorRow) -> ErrorKey<'_> {
     (row.time_factor.to_bits(), row.quantity.name(), row.sample.name(), row.norm.name(), &row.reference)
 }
 
@@ -91,6 +88,13 @@ impl<'a> ErrorIndex<'a> {
     /// The error of a kind at its time, where it is defined.
     pub fn find(&self, like: &ErrorRow) -> Option<&'a ErrorRow> {
         self.rows.get(&key(like)).copied()
+    }
+}
+
+impl SampledState {
+    /// Where its samples are, in a column or layer of a height, m.
+    fn places(&self, height: f64) -> SamplePlaces<'_> {
+        SamplePlaces { height, heights: &self.initial_height, distances: &self.initial_distance }
     }
 }
 
@@ -116,33 +120,39 @@ pub fn score(
     for (state, time_factor) in states.iter().zip(times) {
         score.samples.push((time_factor, state.initial_height.len()));
         for (place, reference) in references.iter().enumerate() {
-            score.add(parameters, reference, state, time_factor, sample, place == 0)?;
+            let compared = ScoredState { parameters, reference, state, time_factor, sample };
+            score.add(&compared, place == 0)?;
         }
     }
     Ok(score)
 }
 
+/// One state beside one reference.
+struct ScoredState<'a> {
+    parameters: &'a ColumnParameters,
+    reference: &'a Reference,
+    state: &'a SampledState,
+    time_factor: f64,
+    sample: Sample,
+}
+
 impl Score {
-    /// Adds the errors of one state against one reference.
-    fn add(
-        &mut self,
-        parameters: &ColumnParameters,
-        reference: &Reference,
-        state: &SampledState,
-        time_factor: f64,
-        sample: Sample,
-        first: bool,
-    ) -> Result<(), ExactError> {
-        let exact = ExactFields::of(reference, parameters, time_factor, state)?;
-        let is_plane = reference.is_plane();
-        let settled =
-            if is_plane { reference.settlement(LONG_AFTER)? } else { parameters.final_settlement() };
+    /// Adds the errors of a state against a reference, of the first reference the worst places too.
+    fn add(&mut self, compared: &ScoredState<'_>, is_first: bool) -> Result<(), ExactError> {
+        let ScoredState { parameters, reference, state, time_factor, sample } = *compared;
+        let exact = ExactFields::of(reference, time_factor, state.places(parameters.height))?;
+        let settled = if reference.is_plane() {
+            reference.settlement(LONG_AFTER)?
+        } else {
+            parameters.final_settlement()
+        };
         // The components one after the other: the L2 norm of the list is that of the vectors.
-        let components = state.displacement.iter().chain(&state.horizontal_displacement);
-        let displacement: Vec<f64> = components.copied().collect();
-        let exact_components = (exact.displacement.iter().take(state.displacement.len()))
-            .chain(exact.horizontal_displacement.iter().take(state.horizontal_displacement.len()));
-        let exact_displacement: Vec<f64> = exact_components.copied().collect();
+        let displacement = [&*state.displacement, &*state.horizontal_displacement].concat();
+        let exact_displacement = [
+            &exact.displacement[..state.displacement.len()],
+            &exact.horizontal_displacement[..state.horizontal_displacement.len()],
+        ]
+        .concat();
         let volumes = state.volume.repeat(2);
         for (quantity, computed, exact, scale) in [
             (Quantity::Pressure, &state.pressure, &exact.pressure, parameters.load),
@@ -153,44 +163,22 @@ impl Score {
                 continue;
             }
             let volumes = &volumes[..computed.len()];
-            let field = FieldError {
-                time_factor,
-                quantity,
-                sample,
-                reference: reference.name(),
-                scale,
-                resolution: resolution(reference, time_factor),
-            };
+            let resolution = resolution(reference, time_factor);
+            let name = reference.name();
+            let field = FieldError { time_factor, quantity, sample, reference: name, scale, resolution };
             let known = self.errors.len();
             self.errors.extend(field.rows(computed, exact, volumes));
             if self.errors.len() == known {
-                let reference = reference.name().to_owned();
-                self.unresolved.push(Unresolved { time_factor, quantity, sample, reference });
+                self.unresolved.push(compared.unresolved(quantity, sample));
             }
-            let worst = contributions(computed, exact, volumes).first().copied();
-            if let Some(worst) = worst.filter(|_| first) {
-                let place = worst.index % state.initial_height.len();
-                let height = state.initial_height[place];
-                self.worst.push(WorstPlace {
-                    time_factor,
-                    quantity,
-                    zeta: (1.0 - height / parameters.height).clamp(0.0, 1.0),
-                    x: is_plane.then(|| state.initial_distance[place] / parameters.length),
-                    computed: computed[worst.index],
-                    exact: exact[worst.index],
-                    share: worst.share,
-                });
+            if is_first {
+                self.worst.extend(compared.worst_place(quantity, computed, exact, volumes));
             }
         }
-        if let Some(displacement) = displacement_of_surface(parameters, is_plane, state) {
+        if let Some(displacement) = compared.displacement_of_surface() {
             match settlement_error(reference, time_factor, -displacement, settled)? {
                 Some(row) => self.errors.push(row),
-                None => self.unresolved.push(Unresolved {
-                    time_factor,
-                    quantity: Quantity::Settlement,
-                    sample: Sample::Surface,
-                    reference: reference.name().to_owned(),
-                }),
+                None => self.unresolved.push(compared.unresolved(Quantity::Settlement, Sample::Surface)),
             }
         }
         Ok(())
@@ -202,19 +190,45 @@ impl Score {
     }
 }
 
-/// Vertical displacement of the surface, of a layer under the crest of its load, where a sample lies
-/// there.
-fn displacement_of_surface(
-    parameters: &ColumnParameters,
-    is_plane: bool,
-    state: &SampledState,
-) -> Option<f64> {
-    let is_at_surface = |place: &usize| {
-        state.initial_height[*place] > (1.0 - RIM) * parameters.height
-            && (!is_plane || state.initial_distance[*place] < RIM * parameters.length)
-    };
-    let place = (0..state.initial_height.len()).find(is_at_surface)?;
-    state.displacement.get(place).copied()
+impl ScoredState<'_> {
+    fn unresolved(&self, quantity: Quantity, sample: Sample) -> Unresolved {
+        let reference = self.reference.name().to_owned();
+        Unresolved { time_factor: self.time_factor, quantity, sample, reference }
+    }
+
+    /// The sample that carries most of a field's error.
+    fn worst_place(
+        &self,
+        quantity: Quantity,
+        computed: &[f64],
+        exact: &[f64],
+        volumes: &[f64],
+    ) -> Option<WorstPlace> {
+        let worst = *contributions(computed, exact, volumes).first()?;
+        let place = worst.index % self.state.initial_height.len();
+        let distance = || self.state.initial_distance[place] / self.parameters.length;
+        Some(WorstPlace {
+            time_factor: self.time_factor,
+            quantity,
+            zeta: (1.0 - self.state.initial_height[place] / self.parameters.height).clamp(0.0, 1.0),
+            x: self.reference.is_plane().then(distance),
+            computed: computed[worst.index],
+            exact: exact[worst.index],
+            share: worst.share,
+        })
+    }
+
+    /// Vertical displacement of the surface, of a layer under the crest of its load, where a sample lies
+    /// there.
+    fn displacement_of_surface(&self) -> Option<f64> {
+        let (state, parameters) = (self.state, self.parameters);
+        let is_at_surface = |place: &usize| {
+            state.initial_height[*place] > (1.0 - RIM) * parameters.height
+                && (!self.reference.is_plane() || state.initial_distance[*place] < RIM * parameters.length)
+        };
+        let place = (0..state.initial_height.len()).find(is_at_surface)?;
+        state.displacement.get(place).copied()
+    }
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
-//! Orders and classes of somebody else's results on finer and finer meshes.
+//! Orders and classes of external results on finer and finer meshes.
 
 use crate::case::norm::Norm;
 use crate::convergence::class::classify::classify;
 use crate::convergence::class::{Classification, Context};
-use crate::convergence::series::{ErrorSeries, Level};
+use crate::convergence::series::{ErrorSeries, SeriesLevel};
 use crate::judge::score::Score;
 use crate::judge::score::times::TimeGroups;
 use crate::record::ErrorRow;
@@ -26,14 +26,14 @@ pub struct ScoredSeries {
 }
 
 /// What a series is of: the group of its times, quantity, sample, norm and reference.
-type Key = (usize, &'static str, &'static str, &'static str, String);
+type SeriesKey = (usize, &'static str, &'static str, &'static str, String);
 
 /// The series over results with numbers of cells over the height, coarsest first, the main norm of
 /// each quantity; `times` groups the times of the results in the same order. An error that a level
 /// lacks leaves a hole, and a series with a hole is not evaluable.
 pub fn series_of(levels: &[(usize, &Score)], times: &TimeGroups, height: f64) -> Vec<ScoredSeries> {
-    let mut order: Vec<Key> = Vec::new();
-    let mut found: HashMap<Key, Vec<Option<&ErrorRow>>> = HashMap::new();
+    let mut order: Vec<SeriesKey> = Vec::new();
+    let mut found: HashMap<SeriesKey, Vec<Option<&ErrorRow>>> = HashMap::new();
     for (place, (_, score)) in levels.iter().enumerate() {
         let group_of: HashMap<u64, usize> = (score.samples.iter().zip(&times.groups[place]))
             .filter_map(|((time, _), group)| Some((time.to_bits(), (*group)?)))
@@ -70,7 +70,7 @@ fn one_series(
     height: f64,
 ) -> Option<ScoredSeries> {
     let first = rows.iter().flatten().next()?;
-    let level = |(row, cells): (Option<&ErrorRow>, &usize)| Level {
+    let level = |(row, cells): (Option<&ErrorRow>, &usize)| SeriesLevel {
         size: height / *cells as f64,
         error: row.map(|row| row.value.abs()),
     };

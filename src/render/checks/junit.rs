@@ -3,7 +3,7 @@
 
 use crate::judge::paths::Judgement;
 use crate::judge::study_check::{CaseNote, StudyCheck};
-use crate::judge::verdict::Outcome;
+use crate::judge::verdict::VerdictOutcome;
 use crate::render::tables::golden_changes::sentence;
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::collections::BTreeMap;
@@ -59,7 +59,7 @@ fn cases_of(check: &StudyCheck, judgement: &Judgement) -> Vec<TestCase> {
         .checks
         .iter()
         .map(|measured| {
-            let status = if !measured.pass && verdict.outcome == Outcome::KnownFailure {
+            let status = if !measured.pass && verdict.outcome == VerdictOutcome::KnownFailure {
                 let mut skipped = TestCaseStatus::skipped();
                 skipped.set_message(verdict.reason.clone());
                 skipped
@@ -74,7 +74,7 @@ fn cases_of(check: &StudyCheck, judgement: &Judgement) -> Vec<TestCase> {
             case
         })
         .collect();
-    if verdict.outcome == Outcome::UnexpectedPass {
+    if verdict.outcome == VerdictOutcome::UnexpectedPass {
         let name = format!("{}/{subject}/known failure", check.study);
         cases.push(TestCase::new(name, status(false, &verdict.reason)));
     }

@@ -3,7 +3,7 @@
 use crate::golden::compare::Change;
 use crate::judge::paths::Judgement;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
-use crate::judge::verdict::Outcome;
+use crate::judge::verdict::VerdictOutcome;
 use crate::render::checks::failures;
 use crate::render::render_error::RenderError;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
@@ -147,15 +147,15 @@ pub fn judgements_table(title: &str, judgements: &[&Judgement]) -> Table {
     let rows = judgements.iter().map(|judgement| {
         let verdict = &judgement.verdict;
         let mood = match (verdict.pass, verdict.outcome) {
-            (true, Outcome::KnownFailure) => Mood::Note,
+            (true, VerdictOutcome::KnownFailure) => Mood::Note,
             (true, _) => Mood::Pass,
             (false, _) => Mood::Fail,
         };
         let outcome = match verdict.outcome {
-            Outcome::Passed => "pass",
-            Outcome::Failed => "fail",
-            Outcome::KnownFailure => "known failure",
-            Outcome::UnexpectedPass => "unexpected pass",
+            VerdictOutcome::Passed => "pass",
+            VerdictOutcome::Failed => "fail",
+            VerdictOutcome::KnownFailure => "known failure",
+            VerdictOutcome::UnexpectedPass => "unexpected pass",
         };
         vec![
             Cell::Verdict(mood, outcome.to_owned()),

@@ -2,7 +2,7 @@
 //! consolidation.
 
 use crate::exact::error::ExactError;
-use crate::judge::stiffness_sweep::{Showing, Stiffness, StiffnessSweep};
+use crate::judge::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
 use crate::render::chart::describe::{Chart, ChartAxis, ChartDirection, Rule, Series, Size, Style};
 use crate::render::page::{Block, Figure, slug};
 use crate::render::report::StudyResults;
@@ -11,7 +11,7 @@ use crate::render::table::{Cell, Table, TableColumn, columns};
 /// Figures of the last output and, behind a click, every number.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     let mut blocks = Vec::new();
-    for stiffness in Stiffness::ALL {
+    for stiffness in SweptStiffness::ALL {
         let Some(sweep) = StiffnessSweep::of(results.study, results.records, stiffness)? else { continue };
         let Some(last) = sweep.time_factors.last().copied() else { continue };
         blocks.push(Block::Heading(heading(stiffness).to_owned()));
@@ -33,10 +33,10 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     Ok(blocks)
 }
 
-fn heading(stiffness: Stiffness) -> &'static str {
+fn heading(stiffness: SweptStiffness) -> &'static str {
     match stiffness {
-        Stiffness::Water => "Stiff water, through consolidation",
-        Stiffness::Skeleton => "A skeleton that hardly compresses, through consolidation",
+        SweptStiffness::Water => "Stiff water, through consolidation",
+        SweptStiffness::Skeleton => "A skeleton that hardly compresses, through consolidation",
     }
 }
 
@@ -54,17 +54,17 @@ fn drawn(showing: Showing, found: f64) -> f64 {
 }
 
 /// The abscissa of a value: harder to compress from left to right.
-fn place(stiffness: Stiffness, value: f64) -> f64 {
+fn place(stiffness: SweptStiffness, value: f64) -> f64 {
     match stiffness {
-        Stiffness::Water => value,
-        Stiffness::Skeleton => 1.0 - 2.0 * value,
+        SweptStiffness::Water => value,
+        SweptStiffness::Skeleton => 1.0 - 2.0 * value,
     }
 }
 
 fn figure(results: &StudyResults<'_>, sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Figure {
     let x = match sweep.stiffness {
-        Stiffness::Water => ChartAxis::log10("K_w/E (–)"),
-        Stiffness::Skeleton => ChartAxis::log10("1 − 2ν (–)").inverted(),
+        SweptStiffness::Water => ChartAxis::log10("K_w/E (–)"),
+        SweptStiffness::Skeleton => ChartAxis::log10("1 − 2ν (–)").inverted(),
     };
     let title = format!("{}, T_v = {time_factor}", subject(showing));
     let label = match showing {
@@ -95,17 +95,17 @@ fn word(showing: Showing) -> &'static str {
     }
 }
 
-fn axis_word(stiffness: Stiffness) -> &'static str {
+fn axis_word(stiffness: SweptStiffness) -> &'static str {
     match stiffness {
-        Stiffness::Water => "water",
-        Stiffness::Skeleton => "skeleton",
+        SweptStiffness::Water => "water",
+        SweptStiffness::Skeleton => "skeleton",
     }
 }
 
 fn table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
     let header = |value: &f64| match sweep.stiffness {
-        Stiffness::Water => format!("K_w/E = {value}"),
-        Stiffness::Skeleton => format!("ν = {value}"),
+        SweptStiffness::Water => format!("K_w/E = {value}"),
+        SweptStiffness::Skeleton => format!("ν = {value}"),
     };
     let mut columns = columns("method");
     columns.extend(sweep.values.iter().map(|value| TableColumn::number(header(value))));

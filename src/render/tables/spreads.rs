@@ -1,10 +1,10 @@
 //! The table of measured spreads.
 
-use crate::judge::scatter::Spread;
+use crate::judge::scatter::ValueScatter;
 use crate::render::table::{Cell, Table, columns};
 
 /// One row a study and source.
-pub fn table_of(spreads: &[Spread]) -> Table {
+pub fn table_of(spreads: &[ValueScatter]) -> Table {
     let rows = spreads.iter().map(|spread| {
         vec![
             spread.study.as_str().into(),

@@ -6,7 +6,7 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
 use crate::case::{Case, Task};
 use crate::convergence::series_expectation::{
-    Band, ErrorBound, Expectation as Demand, FloorBand, KnownFailure,
+    ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand as Demand,
 };
 use crate::exact::reference::ReferenceKind;
 use crate::scene::SceneKind;
@@ -47,7 +47,7 @@ impl Checker<'_> {
         self.oscillation_is_measured(table, scene, quantity, sample);
         let height = self.column_height?;
         let demand = Demand {
-            order: table.order.as_ref().map(|order| Band {
+            order: table.order.as_ref().map(|order| OrderBand {
                 value: *order.get_ref().value.get_ref(),
                 minus: order.get_ref().minus.as_ref().map_or(DEFAULT_BAND, |typed| *typed.get_ref()),
                 plus: order.get_ref().plus.as_ref().map_or(DEFAULT_BAND, |typed| *typed.get_ref()),

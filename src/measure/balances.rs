@@ -1,0 +1,111 @@
+//! What a run keeps: the state at its start, masses, forces, and its settlement curve.
+
+use crate::case::Case;
+use crate::elementary;
+use crate::exact::error::ExactError;
+use crate::exact::reference::Reference;
+use crate::mpm::run::snapshot::Snapshot;
+use crate::record::{Balance, HistoryRow, StartChecks};
+
+/// The start against what the scene expects of it.
+///
+/// # Errors
+/// When the scene's own reference, the first, refuses a depth.
+pub fn start_checks(
+    case: &Case,
+    references: &[Reference],
+    start: &Snapshot,
+) -> Result<StartChecks, ExactError> {
+    let soil = &case.material;
+    let load = case.column.load;
+    let found = (&*start.points.initial_height, &*start.points.pressure);
+    let expected = case.scene.expected_start_pressures(&case.column, soil, references.first(), found)?;
+    let off = found.1.iter().zip(&expected).map(|(pressure, expected)| (pressure - expected).abs() / load);
+    Ok(StartChecks {
+        points: start.points.pressure.len(),
+        points_expected: case.expected_points(),
+        volume_error: start.totals.volume / case.column.volume() - 1.0,
+        undrained_pressure_error: off.fold(0.0, f64::max),
+        unbalanced_force: start.totals.unbalanced_force / load,
+    })
+}
+
+/// Masses and forces at an output against those of the start.
+pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) -> Balance {
+    let load = case.column.load;
+    let applied = if case.scene.is_loaded() { load } else { 0.0 };
+    let stresses = now.points.effective_stress.iter().zip(&now.points.pressure);
+    let squares: f64 =
+        stresses.map(|(stress, pressure)| elementary::powi((stress - pressure + applied) / load, 2)).sum();
+    // What the load presses out in the end: of what leaves up to now nothing may be left, as at the start
+    // or under a cosine.
+    let pressed_out = load / case.material.oedometric_modulus() * case.column.height;
+    let surface = case.column.volume() / case.column.height;
+    let excess = now.totals.surface_flux - now.totals.water_expansion / surface;
+    Balance {
+        time_factor,
+        solid_mass_drift: now.totals.solid_mass / start.totals.solid_mass - 1.0,
+        water_imbalance: excess / pressed_out,
+        internal_force_imbalance: now.totals.internal_force_imbalance,
+        // Above one dimension the vertical stress alone is in no balance with the load: the nodes are.
+        equilibrium_residual: if case.scene.needs_two_dimensions() {
+            now.totals.unbalanced_force / (load * case.cell_size())
+        } else {
+            (squares / now.points.pressure.len() as f64).sqrt()
+        },
+        settlement_curve_gap: 0.0,
+    }
+}
+
+/// How far the settlement at an output lies from the settlement curve, beyond what interpolation
+/// explains: the curve is taken cubic in `ln T_v` through its four nearest rows, and allowed its
+/// distance from the straight line.
+pub fn curve_gap(curve: &[HistoryRow], time_factor: f64, degree: f64) -> f64 {
+    let after = curve.partition_point(|row| row.time_factor <= time_factor);
+    if after == 0 || after == curve.len() {
+        return 0.0;
+    }
+    let through = |rows: &[HistoryRow]| -> f64 {
+        let at = |row: &HistoryRow| elementary::ln(row.time_factor / time_factor);
+        let lagrange = |row: &HistoryRow| -> f64 {
+            let others = rows.iter().filter(|other| other.time_factor != row.time_factor);
+            others.map(|other| at(other) / (at(other) - at(row))).product()
+        };
+        rows.iter().map(|row| row.degree_of_consolidation * lagrange(row)).sum()
+    };
+    let straight = through(&curve[after - 1..=after]);
+    let cubic = through(&curve[after.saturating_sub(2)..(after + 2).min(curve.len())]);
+    ((degree - cubic).abs() - (cubic - straight).abs()).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `U = a √T_v` at seven rows from 0.01 to 0.64.
+    fn curve() -> Vec<HistoryRow> {
+        let row = |step: i32| {
+            let time_factor = 0.01 * 2_f64.powi(step);
+            HistoryRow { time_factor, degree_of_consolidation: time_factor.sqrt() }
+        };
+        (0..7).map(row).collect()
+    }
+
+    #[test]
+    fn a_settlement_off_its_curve_has_a_gap_on_either_side() {
+        let curve = curve();
+        for time_factor in [0.015, 0.03, 0.1, 0.5] {
+            let on_curve = f64::sqrt(time_factor);
+            assert_eq!(curve_gap(&curve, time_factor, on_curve), 0.0, "{time_factor}");
+            for off in [0.1, -0.1] {
+                let gap = curve_gap(&curve, time_factor, on_curve + off);
+                // What interpolation explains, the cubic's distance from the straight line, is let go.
+                assert!(gap > 0.075 && gap <= 0.1 + 1e-3, "{gap} at {time_factor} for {off}");
+            }
+        }
+        // At a row of the curve nothing is left to interpolation.
+        assert!((curve_gap(&curve, 0.04, 0.2 + 0.01) - 0.01).abs() < 1e-9);
+        assert_eq!(curve_gap(&curve, 0.005, 5.0), 0.0, "before the first row there is no curve");
+        assert_eq!(curve_gap(&curve, 0.9, 5.0), 0.0, "nor beyond the last");
+    }
+}

@@ -1,0 +1,130 @@
+//! The exact fields at the places of samples.
+
+use crate::case::Case;
+use crate::exact::cosine_layer::{LayerFields, LayerState};
+use crate::exact::error::ExactError;
+use crate::exact::reference::{FieldValues, Reference};
+use crate::mpm::run::snapshot::{PlaneSamples, Samples};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+/// Exact fields, `[sample]`; SI, signs as in [`Samples`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ExactFields {
+    /// Pore pressure, Pa.
+    pub pressure: Vec<f64>,
+    /// Vertical effective stress, Pa.
+    pub effective_stress: Vec<f64>,
+    /// Vertical displacement, m.
+    pub displacement: Vec<f64>,
+    /// Horizontal displacement, m.
+    pub horizontal_displacement: Vec<f64>,
+}
+
+/// Places over the height and along a layer.
+#[derive(Clone, Copy, Debug)]
+pub struct SamplePlaces<'a> {
+    /// Height of the column or layer, m.
+    pub height: f64,
+    /// Initial height of each sample, m.
+    pub heights: &'a [f64],
+    /// Initial distance of each sample along a layer, m; empty in a column.
+    pub distances: &'a [f64],
+}
+
+impl ExactFields {
+    /// The fields of a reference at places: one evaluation per height, for a grid of samples has few.
+    ///
+    /// # Errors
+    /// When the reference refuses the time factor.
+    pub fn of(reference: &Reference, time_factor: f64, places: SamplePlaces<'_>) -> Result<Self, ExactError> {
+        match reference.plane_state(time_factor)? {
+            Some(layer) if !places.distances.is_empty() => Self::along_layer(&layer, places),
+            _ => Self::over_height(reference, time_factor, places),
+        }
+    }
+
+    fn over_height(
+        reference: &Reference,
+        time_factor: f64,
+        places: SamplePlaces<'_>,
+    ) -> Result<Self, ExactError> {
+        let mut known: HashMap<u64, FieldValues> = HashMap::new();
+        let mut exact = Self::default();
+        for height in places.heights {
+            let fields = match known.entry(height.to_bits()) {
+                Entry::Occupied(found) => *found.get(),
+                Entry::Vacant(new) => {
+                    let depth = (1.0 - height / places.height).clamp(0.0, 1.0);
+                    *new.insert(reference.fields(time_factor, depth)?)
+                }
+            };
+            exact.pressure.push(fields.pressure);
+            exact.effective_stress.push(fields.effective_stress);
+            exact.displacement.push(fields.displacement);
+            // A column strains vertically only.
+            exact.horizontal_displacement.push(0.0);
+        }
+        Ok(exact)
+    }
+
+    fn along_layer(layer: &LayerState, places: SamplePlaces<'_>) -> Result<Self, ExactError> {
+        let mut known: HashMap<u64, LayerFields> = HashMap::new();
+        let mut exact = Self::default();
+        for (distance, height) in places.distances.iter().zip(places.heights) {
+            let amplitudes = match known.entry(height.to_bits()) {
+                Entry::Occupied(found) => *found.get(),
+                Entry::Vacant(new) => *new.insert(layer.amplitudes(height.clamp(0.0, places.height))?),
+            };
+            let fields = amplitudes.at(layer.wave_number() * distance);
+            exact.pressure.push(fields.pressure);
+            exact.effective_stress.push(fields.effective_stress[1]);
+            let [horizontal, vertical] = fields.displacement;
+            exact.displacement.push(vertical);
+            exact.horizontal_displacement.push(horizontal);
+        }
+        Ok(exact)
+    }
+}
+
+/// The exact fields at the Lagrangian places of a run's samples.
+///
+/// # Errors
+/// When the reference refuses the time factor.
+pub fn exact_samples(
+    case: &Case,
+    reference: &Reference,
+    time_factor: f64,
+    samples: &Samples,
+) -> Result<Samples, ExactError> {
+    let plane = samples.plane.as_ref();
+    let own = SamplePlaces {
+        height: case.column.height,
+        heights: &samples.initial_height,
+        distances: plane.map_or(&[], |plane| &plane.initial_distance),
+    };
+    let mut exact = ExactFields::of(reference, time_factor, own)?;
+    let heights = samples.displacement_height.as_deref();
+    let distances = plane.and_then(|plane| plane.displacement_distance.as_deref());
+    if heights.is_some() || distances.is_some() {
+        let displaced = SamplePlaces {
+            heights: heights.unwrap_or(own.heights),
+            distances: distances.unwrap_or(own.distances),
+            ..own
+        };
+        let there = ExactFields::of(reference, time_factor, displaced)?;
+        exact.displacement = there.displacement;
+        exact.horizontal_displacement = there.horizontal_displacement;
+    }
+    Ok(Samples {
+        initial_height: samples.initial_height.clone(),
+        pressure: exact.pressure,
+        effective_stress: exact.effective_stress,
+        displacement: exact.displacement,
+        plane: plane.map(|plane| PlaneSamples {
+            horizontal_displacement: exact.horizontal_displacement,
+            ..plane.clone()
+        }),
+        ..Samples::default()
+    })
+}

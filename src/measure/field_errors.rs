@@ -1,0 +1,183 @@
+//! Errors of a snapshot's fields and settlement against a reference.
+
+use crate::case::Case;
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::exact::error::ExactError;
+use crate::exact::reference::Reference;
+use crate::measure::exact_fields::exact_samples;
+use crate::measure::norms;
+use crate::mpm::run::snapshot::{Samples, Snapshot};
+use crate::record::ErrorRow;
+
+/// Norms of a field's error.
+const FIELD_NORMS: [Norm; 3] = [Norm::L1, Norm::L2, Norm::Linf];
+
+/// Time factor by which every column is consolidated to round-off.
+pub const LONG_AFTER: f64 = 50.0;
+
+/// Which field of which sample is held against which reference.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldError<'a> {
+    /// Time factor.
+    pub time_factor: f64,
+    /// Quantity.
+    pub quantity: Quantity,
+    /// Where.
+    pub sample: Sample,
+    /// Name of the reference.
+    pub reference: &'a str,
+    /// What absolute errors are divided by, in the unit of the field.
+    pub scale: f64,
+    /// Share of the scale down to which the reference tells a field from zero: see [`resolution`].
+    pub resolution: f64,
+}
+
+/// Exact values below this share of their scale are lost in the round-off of a run, whose pressures
+/// and displacements are of the size of the scale: an error relative to them means nothing.
+pub const UNRESOLVED: f64 = 1e4 * f64::EPSILON;
+
+/// Share of the load, or of the final settlement, below which a reference has no value to hold an
+/// error against: its own accuracy at that time, and round-off at least.
+pub fn resolution(reference: &Reference, time_factor: f64) -> f64 {
+    let accuracy = reference.accuracy(time_factor).map_or(0.0, |accuracy| accuracy.tail_bound);
+    accuracy.max(UNRESOLVED)
+}
+
+impl FieldError<'_> {
+    /// The error in every norm of fields in which it is defined; in none where the exact field is zero
+    /// or too small to be told from it.
+    pub fn rows(self, computed: &[f64], exact: &[f64], volume: &[f64]) -> impl Iterator<Item = ErrorRow> {
+        let largest = exact.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let is_lost = largest <= self.resolution * self.scale.abs();
+        FIELD_NORMS.into_iter().filter(move |_| !is_lost).filter_map(move |norm| {
+            Some(ErrorRow {
+                time_factor: self.time_factor,
+                quantity: self.quantity,
+                sample: self.sample,
+                norm,
+                reference: self.reference.to_owned(),
+                value: norms::relative_error(norm, computed, exact, volume).ok()?,
+                absolute: norms::absolute_error(norm, computed, exact, volume).ok()? / self.scale,
+            })
+        })
+    }
+}
+
+/// The signed error of a settlement, m, where it is defined and the exact one is no round-off;
+/// absolute over a scale, m.
+///
+/// # Errors
+/// When the reference refuses the time factor.
+pub fn settlement_error(
+    reference: &Reference,
+    time_factor: f64,
+    settlement: f64,
+    scale: f64,
+) -> Result<Option<ErrorRow>, ExactError> {
+    let exact = reference.settlement(time_factor)?;
+    if exact.abs() <= resolution(reference, time_factor) * scale.abs() {
+        return Ok(None);
+    }
+    let value = settlement / exact - 1.0;
+    Ok(value.is_finite().then(|| ErrorRow {
+        time_factor,
+        quantity: Quantity::Settlement,
+        sample: Sample::Surface,
+        norm: Norm::Relative,
+        reference: reference.name().to_owned(),
+        value,
+        absolute: (settlement - exact) / scale,
+    }))
+}
+
+/// Every error of a snapshot against a reference; where a relative error is not defined, for the
+/// exact field is zero or below round-off, there is no row.
+///
+/// # Errors
+/// When the reference refuses the time factor.
+pub fn snapshot_errors(
+    case: &Case,
+    reference: &Reference,
+    time_factor: f64,
+    snapshot: &Snapshot,
+) -> Result<Vec<ErrorRow>, ExactError> {
+    let load = case.column.load;
+    let final_settlement = reference.settlement(LONG_AFTER)?;
+    let resolution = resolution(reference, time_factor);
+    let mut rows = Vec::new();
+    for (sample, samples) in [
+        (Sample::Points, &snapshot.points),
+        (Sample::Centres, &snapshot.centres),
+        (Sample::Nodes, &snapshot.nodes),
+    ] {
+        let exact = exact_samples(case, reference, time_factor, samples)?;
+        let displacements = (displacement_components(samples), displacement_components(&exact));
+        let volumes = samples.volume.repeat(if samples.plane.is_some() { 2 } else { 1 });
+        for (quantity, computed, exact, volume, scale) in [
+            (Quantity::Pressure, &samples.pressure, &exact.pressure, &samples.volume, load),
+            (
+                Quantity::EffectiveStress,
+                &samples.effective_stress,
+                &exact.effective_stress,
+                &samples.volume,
+                load,
+            ),
+            (Quantity::Displacement, &displacements.0, &displacements.1, &volumes, final_settlement),
+        ] {
+            let reference = reference.name();
+            let field = FieldError { time_factor, quantity, sample, reference, scale, resolution };
+            rows.extend(field.rows(computed, exact, volume));
+        }
+    }
+    rows.extend(settlement_error(reference, time_factor, snapshot.settlement, final_settlement)?);
+    Ok(rows)
+}
+
+/// Every component of the displacement in one list: its L2 norm is that of the vectors.
+fn displacement_components(samples: &Samples) -> Vec<f64> {
+    let mut components = samples.displacement.clone();
+    if let Some(plane) = &samples.plane {
+        components.extend(&plane.horizontal_displacement);
+    }
+    components
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::parameters::ColumnParameters;
+    use crate::exact::reference::ReferenceKind;
+
+    fn field(scale: f64, resolution: f64) -> FieldError<'static> {
+        let (quantity, sample) = (Quantity::Pressure, Sample::Points);
+        FieldError { time_factor: 1.0, quantity, sample, reference: "terzaghi", scale, resolution }
+    }
+
+    #[test]
+    fn an_exact_field_below_the_resolution_has_no_relative_error() {
+        let rows = |exact: f64, resolution: f64| {
+            field(100.0, resolution).rows(&[1e-11, 2e-11], &[exact, 0.5 * exact], &[1.0, 1.0]).count()
+        };
+        assert_eq!(rows(1e-50, UNRESOLVED), 0);
+        assert_eq!(rows(0.9 * 100.0 * UNRESOLVED, UNRESOLVED), 0);
+        assert_eq!(rows(1.1 * 100.0 * UNRESOLVED, UNRESOLVED), FIELD_NORMS.len());
+        // A reference that is good to 1e-6 of the load resolves no pressure of 1e-7 of it.
+        assert_eq!(rows(1e-5, 1e-6), 0);
+        assert_eq!(rows(1e-3, 1e-6), FIELD_NORMS.len());
+    }
+
+    #[test]
+    fn long_after_the_end_pressures_have_no_error_and_the_settlement_has() {
+        let column = ColumnParameters::default();
+        let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[50.0]).expect("the seed column");
+        assert_eq!(resolution(&reference, 50.0), UNRESOLVED);
+        assert!(reference.fields(50.0, 1.0).expect("inside").pressure < 1e-40 * column.load);
+        let settled = column.final_settlement();
+        let row = settlement_error(&reference, 50.0, 1.01 * settled, settled).expect("a time");
+        assert!((row.expect("an error").value - 0.01).abs() < 1e-9);
+        // A settlement that round-off could have made has none.
+        let nothing = settlement_error(&reference, 50.0, settled, 1e13 * settled).expect("a time");
+        assert_eq!(nothing, None);
+    }
+}
