@@ -130,7 +130,7 @@ pub use mpm::implicit::linear::LinearStepper;
 pub use mpm::operators::basis::{CubicSpline, DomainEnds, Gimp, Hat, QuadraticSpline, ShapeFunction};
 #[doc(hidden)]
 pub use mpm::run::{
-    plan::Plan,
+    run_plan::Plan,
     stepper::{EqualSteps, Stepper},
 };
 

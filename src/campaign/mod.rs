@@ -6,7 +6,7 @@ use crate::campaign::deadline::Deadline;
 use crate::case::tier::Tier;
 use crate::case::{Case, Task};
 use crate::elementary;
-use crate::exact::error::{ExactError, normal};
+use crate::exact::exact_error::{ExactError, normal};
 use crate::exact::reference::ReferenceKind;
 use crate::measure::case_record::{record_of, record_of_critical_step, record_of_stopped_search};
 use crate::mpm::critical_step::formula;

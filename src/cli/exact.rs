@@ -59,7 +59,7 @@ pub struct Arguments {
 
 /// One printed row.
 #[derive(serde::Serialize)]
-struct Row {
+struct PrintedRow {
     time_factor: f64,
     zeta: f64,
     pressure_ratio: f64,
@@ -158,7 +158,7 @@ struct Truncation {
 #[derive(serde::Serialize)]
 struct ExactJson<'a> {
     reference: &'a str,
-    rows: &'a [Row],
+    rows: &'a [PrintedRow],
     accuracy: &'a [Truncation],
 }
 
@@ -185,7 +185,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     for time_factor in time_factors {
         let settlement = reference.settlement(time_factor)?;
         let degree = reference.degree_of_consolidation(time_factor)?;
-        let row = |zeta: f64, pressure: f64, plane: Option<PlaneColumns>| Row {
+        let row = |zeta: f64, pressure: f64, plane: Option<PlaneColumns>| PrintedRow {
             time_factor,
             zeta,
             pressure_ratio: pressure / parameters.load,
@@ -277,7 +277,7 @@ fn time_factors_of(
     degrees.iter().map(one).collect()
 }
 
-fn csv_of(rows: &[Row], distances: Option<&Distances>) -> anyhow::Result<String> {
+fn csv_of(rows: &[PrintedRow], distances: Option<&Distances>) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut names =
         vec!["time_factor", "zeta", "pressure_ratio", "settlement_ratio", "degree_of_consolidation"];

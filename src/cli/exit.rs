@@ -1,7 +1,7 @@
 //! Exit codes, decided in one place.
 
-use crate::exact::error::ExactError;
-use crate::import::error::ImportError;
+use crate::exact::exact_error::ExactError;
+use crate::import::import_error::ImportError;
 use crate::study::diagnostic::StudyError;
 use std::process::ExitCode;
 

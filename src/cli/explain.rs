@@ -9,7 +9,7 @@ use crate::cli::output::{TableFormat, json_of, print_tables};
 use crate::cli::run::{DEFAULT_RESULTS, load_or_shipped};
 use crate::cli::stream::{print_data, say};
 use crate::golden::{GoldenError, GoldenFile};
-use crate::judge::explain::explain;
+use crate::judge::explanation::explain;
 use crate::mpm::run::Kernel;
 use crate::record::Record;
 use crate::record::store::RecordStore;

@@ -18,7 +18,7 @@ use clap::ValueEnum;
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+pub enum SolveFormat {
     /// For people.
     Table,
     /// One row a measure or case.
@@ -66,8 +66,8 @@ pub struct Arguments {
     #[arg(long)]
     profile: bool,
     /// Output format
-    #[arg(long, value_enum, default_value_t = Format::Table)]
-    format: Format,
+    #[arg(long, value_enum, default_value_t = SolveFormat::Table)]
+    format: SolveFormat,
 }
 
 /// Solves and prints.
@@ -83,16 +83,18 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let (record, phases) = if arguments.profile { profiled(solve) } else { (solve(), Vec::new()) };
     let record = record?;
     match arguments.format {
-        Format::Csv => print_data(&csv_of(&record)?)?,
-        Format::Json => print_data(&json_of(&SolveJson::of(&record, &phases))?)?,
-        Format::Table => print_data(&measures::table_of(&record)?)?,
+        SolveFormat::Csv => print_data(&csv_of(&record)?)?,
+        SolveFormat::Json => print_data(&json_of(&SolveJson::of(&record, &phases))?)?,
+        SolveFormat::Table => print_data(&measures::table_of(&record)?)?,
     }
     // A CSV is of one kind of row; its profile goes where notes go.
     match arguments.format {
-        Format::Table if arguments.profile => {
+        SolveFormat::Table if arguments.profile => {
             print_data(&format!("\n{}", phases_table(&phases, &record).to_text()?))?;
         }
-        Format::Csv if arguments.profile => say!("{}", phases_table(&phases, &record).to_text()?.trim_end()),
+        SolveFormat::Csv if arguments.profile => {
+            say!("{}", phases_table(&phases, &record).to_text()?.trim_end())
+        }
         _ => {}
     }
     for complaint in soundness::complaints(&record).iter().filter(|_| record.status == Status::Ok) {

@@ -7,7 +7,7 @@ use crate::cli::output::json_of;
 use crate::cli::overrides;
 use crate::cli::overrides::StudyLines;
 use crate::cli::run::jobs_of;
-use crate::cli::solve::Format;
+use crate::cli::solve::SolveFormat;
 use crate::cli::stream::print_data;
 use crate::mpm::critical_step::observed::CriticalStep;
 use crate::record::{Record, Status};
@@ -37,8 +37,8 @@ pub struct Arguments {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     assignments: Vec<String>,
     /// Output format
-    #[arg(long, value_enum, default_value_t = Format::Table)]
-    format: Format,
+    #[arg(long, value_enum, default_value_t = SolveFormat::Table)]
+    format: SolveFormat,
 }
 
 /// Predicts, observes and prints; the verdict is that both agree within 2 %, that 0.97 of the
@@ -64,9 +64,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Err(error.into());
     }
     match arguments.format {
-        Format::Table => print_data(&(critical_steps::table_of(&report.records).to_text()? + "\n"))?,
-        Format::Csv => print_data(&csv_of(&report.records)?)?,
-        Format::Json => {
+        SolveFormat::Table => print_data(&(critical_steps::table_of(&report.records).to_text()? + "\n"))?,
+        SolveFormat::Csv => print_data(&csv_of(&report.records)?)?,
+        SolveFormat::Json => {
             let rows: Vec<_> = report.records.iter().map(StabilityJson::of).collect();
             print_data(&json_of(&rows)?)?;
         }

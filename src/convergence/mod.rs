@@ -7,6 +7,6 @@ pub mod limiter;
 pub mod orders;
 pub mod pareto;
 pub mod series;
-pub mod series_expectation;
+pub mod series_demand;
 pub mod student;
 pub mod uncertainty;

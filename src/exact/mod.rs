@@ -20,7 +20,7 @@
 pub mod consolidation;
 pub mod cosine_layer;
 pub mod dynamic_column;
-pub(crate) mod error;
+pub(crate) mod exact_error;
 pub mod large_strain;
 pub(crate) mod parameters;
 pub(crate) mod quadrature;
@@ -29,6 +29,6 @@ pub mod single_mode;
 pub mod terzaghi;
 pub mod xie_leo;
 
-pub use crate::exact::error::{ExactError, normal};
+pub use crate::exact::exact_error::{ExactError, normal};
 pub use crate::exact::parameters::ColumnParameters;
 pub use crate::exact::reference::{Accuracy, FieldValues, Reference, ReferenceKind};

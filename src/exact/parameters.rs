@@ -1,7 +1,7 @@
 //! The column and its material, as plain SI numbers.
 
 use crate::exact::cosine_layer::Base;
-use crate::exact::error::{ExactError, normal, positive};
+use crate::exact::exact_error::{ExactError, normal, positive};
 
 /// A saturated column of soil on an impermeable base, drained and loaded at its top.
 ///

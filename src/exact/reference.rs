@@ -5,9 +5,9 @@ use core::str::FromStr;
 
 use crate::exact::cosine_layer::{CosineLayer, LayerState};
 use crate::exact::dynamic_column::{DynamicColumn, Start};
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::large_strain::LargeStrain;
-use crate::exact::large_strain::law::{LargeStrainModel, Water};
+use crate::exact::large_strain::diffusion::{LargeStrainModel, Water};
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::single_mode::SingleMode;
 use crate::exact::terzaghi::Terzaghi;
@@ -166,7 +166,7 @@ impl Reference {
         time_factors: &[f64],
     ) -> Result<Self, ExactError> {
         for &time_factor in time_factors {
-            crate::exact::error::checked_time_factor(time_factor)?;
+            crate::exact::exact_error::checked_time_factor(time_factor)?;
         }
         let layer = |water| CosineLayer::new(parameters, parameters.length, parameters.base, water);
         let solution = match kind {

@@ -3,7 +3,7 @@
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
 use crate::elementary;
-use crate::exact::error::{ExactError, checked_depth, checked_time_factor};
+use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor};
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Accuracy, FieldValues};
 

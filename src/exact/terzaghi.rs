@@ -1,7 +1,7 @@
 //! Terzaghi's column under a suddenly applied load, with and without the water's compressibility.
 
 use crate::exact::consolidation::{consolidated_below, isochrone};
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Accuracy, FieldValues};
 

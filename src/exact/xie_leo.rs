@@ -2,7 +2,7 @@
 
 use crate::elementary;
 use crate::exact::consolidation::{consolidated_below, isochrone};
-use crate::exact::error::{ExactError, positive};
+use crate::exact::exact_error::{ExactError, positive};
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Accuracy, FieldValues};
 

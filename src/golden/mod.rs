@@ -33,7 +33,7 @@ mod file_text;
 pub mod references;
 pub mod tolerance;
 
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::golden::references::{REFERENCES, perturbed_reference_values, reference_values};
 use crate::golden::tolerance::spread_by_group;
 use crate::record::provenance::Provenance;

@@ -4,8 +4,8 @@
 use crate::elementary;
 use crate::exact::cosine_layer::{Base, CosineLayer};
 use crate::exact::dynamic_column::{DynamicColumn, Start};
-use crate::exact::error::ExactError;
-use crate::exact::large_strain::law::Water;
+use crate::exact::exact_error::ExactError;
+use crate::exact::large_strain::diffusion::Water;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::exact::xie_leo::{Drainage, XieLeo};

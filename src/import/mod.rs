@@ -3,8 +3,8 @@
 //! Programs differ in units, signs, the origins of their coordinates and the place where they keep
 //! the time; a mapping file declares all of these, and nothing is guessed from the numbers.
 
-pub mod error;
+pub mod import_error;
 pub mod mapping;
-pub mod row;
+pub mod sample_row;
 pub mod table;
 pub mod units;

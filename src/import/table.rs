@@ -1,8 +1,8 @@
 //! From the rows of files to states of a column or a layer.
 
-use crate::import::error::ImportError;
+use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::row::{SampleRow, rows_of};
+use crate::import::sample_row::{SampleRow, rows_of};
 use std::path::PathBuf;
 
 /// Rows closer than this share of their time are of one time.

@@ -4,7 +4,7 @@
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::Class;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::judge::paths::paths;
 use crate::measure::plane_field::PlaneField;
 use crate::measure::wall_times::median;

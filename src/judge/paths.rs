@@ -8,7 +8,7 @@ use crate::convergence::class::classify::classify;
 use crate::convergence::class::{Classification, Context};
 use crate::convergence::orders::{FinestOrder, PairOrder, SlopeFit, finest_order, pair_orders, slope};
 use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
-use crate::convergence::series_expectation::SeriesDemand as Demand;
+use crate::convergence::series_demand::SeriesDemand as Demand;
 use crate::convergence::uncertainty::NumericalUncertainty;
 use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::measure::norms::relative_error;

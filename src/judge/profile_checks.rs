@@ -2,7 +2,7 @@
 //! and how far a value without an exact one may be off.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::series_expectation::SeriesDemand as Demand;
+use crate::convergence::series_demand::SeriesDemand as Demand;
 use crate::convergence::uncertainty::ValueSeries;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::judge::paths::{Path, level_size};

@@ -4,7 +4,7 @@
 use crate::case::Case;
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::measure::plane_field::PlaneField;
 use crate::mpm::method::Method;
 use crate::mpm::run::integrator::IntegratorKind;

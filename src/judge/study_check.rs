@@ -2,7 +2,7 @@
 
 use crate::campaign::RunError;
 use crate::case::tier::Tier;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::golden::case_changes::{CaseChange, case_changes};
 use crate::golden::compare::{Change, Difference, compare};
 use crate::golden::difference_groups::{DifferenceGroup, groups_of};

@@ -11,7 +11,7 @@ use crate::convergence::class::{Class, Classification, Context};
 use crate::convergence::fit::bending_order::{Bend, explain};
 use crate::convergence::fit::floor::fit_floor;
 use crate::convergence::series::{ErrorSeries, Undefined};
-use crate::convergence::series_expectation::{ErrorBound, FloorBand, OrderBand, SeriesDemand};
+use crate::convergence::series_demand::{ErrorBound, FloorBand, OrderBand, SeriesDemand};
 use crate::convergence::uncertainty::NumericalUncertainty;
 use crate::wording::{order, short};
 

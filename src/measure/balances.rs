@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::elementary;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::reference::Reference;
 use crate::mpm::run::snapshot::Snapshot;
 use crate::record::{Balance, HistoryRow, StartChecks};

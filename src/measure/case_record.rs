@@ -1,7 +1,7 @@
 //! From a run to its record.
 
 use crate::case::Case;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::measure::balances::{balance, curve_gap, start_checks};
 use crate::measure::dimensionless_groups::{groups, inertia_rules};

@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::exact::cosine_layer::{LayerFields, LayerState};
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::reference::{FieldValues, Reference};
 use crate::mpm::run::snapshot::{PlaneSamples, Samples};
 use std::collections::HashMap;

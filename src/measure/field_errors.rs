@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::reference::Reference;
 use crate::measure::exact_fields::exact_samples;
 use crate::measure::norms;

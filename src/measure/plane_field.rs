@@ -1,6 +1,6 @@
 //! The pressure of a plane run on the lattice of its points, beside the exact one.
 
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::reference::Reference;
 use crate::measure::exact_fields::exact_samples;
 use crate::measure::oscillation::total_variation;

@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::elementary;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::record::Record;
 use crate::scene::column::column_parameters;

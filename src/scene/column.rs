@@ -1,7 +1,7 @@
 //! Columns and layers drained at their top: the lattice of points and its start.
 
 use crate::exact::cosine_layer::Base;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::parameters::ColumnParameters;
 use crate::mpm::body::Problem;
 use crate::mpm::method::Method;

@@ -1,6 +1,6 @@
 //! What makes a scene: one table per scene, each in the scene's own file.
 
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::state::points::Points;
 use crate::scene::column::Column;

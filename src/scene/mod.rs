@@ -14,7 +14,7 @@ mod standing_wave;
 mod terzaghi;
 mod xie_leo;
 
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::mpm::method::Configuration;
 use crate::scene::column::Column;

@@ -1,7 +1,7 @@
 //! A scene's problem in the dimension that its case asks for: where one `match` turns a number into
 //! a type.
 
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::mpm::body::Problem;
 use crate::mpm::critical_step::observed::{CriticalStep, Stopped, critical_step};
 use crate::mpm::explicit::ExplicitSettings;

@@ -1,6 +1,6 @@
 //! The slowest mode of an unloaded column: smooth in space and time.
 
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::reference::ReferenceKind;
 use crate::exact::single_mode::SingleMode;
 use crate::scene::column::{Column, column_parameters};

@@ -1,7 +1,7 @@
 //! A column loaded at once or over a time and drained at its top, at large strain, from the undrained
 //! equilibrium.
 
-use crate::exact::large_strain::law::LargeStrainModel;
+use crate::exact::large_strain::diffusion::LargeStrainModel;
 use crate::exact::reference::ReferenceKind;
 use crate::scene::column::Column;
 use crate::scene::definition::{

@@ -5,7 +5,7 @@ use crate::case::keys::{Key, Value};
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
-use crate::convergence::series_expectation::SeriesDemand as Demand;
+use crate::convergence::series_demand::SeriesDemand as Demand;
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::method::Method;
 use crate::wording::typed;

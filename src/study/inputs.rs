@@ -63,7 +63,7 @@ pub trait OwnKeys {
 }
 
 /// What an input holds in a table: one value, or a list.
-pub trait Held: Sized {
+pub trait HeldKey: Sized {
     /// Reads values of a type.
     fn read<'de, T: Deserialize<'de>, A: MapAccess<'de>>(
         map: &mut A,
@@ -111,7 +111,7 @@ fn placed<T>(value: Spanned<T>, typed: fn(T) -> TypedInput) -> One {
     Spanned::new(value.span(), typed(value.into_inner()))
 }
 
-impl Held for One {
+impl HeldKey for One {
     fn read<'de, T: Deserialize<'de>, A: MapAccess<'de>>(
         map: &mut A,
         typed: fn(T) -> TypedInput,
@@ -123,7 +123,7 @@ impl Held for One {
     }
 }
 
-impl Held for List {
+impl HeldKey for List {
     fn read<'de, T: Deserialize<'de>, A: MapAccess<'de>>(
         map: &mut A,
         typed: fn(T) -> TypedInput,
@@ -138,7 +138,7 @@ impl Held for List {
 }
 
 /// Reads the value of a key.
-fn read<'de, H: Held, A: MapAccess<'de>>(key: &Key, map: &mut A) -> Result<H, A::Error> {
+fn read<'de, H: HeldKey, A: MapAccess<'de>>(key: &Key, map: &mut A) -> Result<H, A::Error> {
     match key.kind {
         Kind::Method => H::read(map, TypedInput::Method),
         Kind::TimeStep => H::read(map, TypedInput::TimeStep),
@@ -149,7 +149,7 @@ fn read<'de, H: Held, A: MapAccess<'de>>(key: &Key, map: &mut A) -> Result<H, A:
     }
 }
 
-impl<'de, H: Held, Own: Deserialize<'de> + OwnKeys> Deserialize<'de> for InputTable<H, Own> {
+impl<'de, H: HeldKey, Own: Deserialize<'de> + OwnKeys> Deserialize<'de> for InputTable<H, Own> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut inputs = Vec::new();
         let own = Own::deserialize(Parted { inner: deserializer, table: Own::TABLE, inputs: &mut inputs })?;
@@ -164,7 +164,7 @@ struct Parted<'a, T, V> {
     inputs: &'a mut Vec<(&'static Key, V)>,
 }
 
-impl<'de, D: Deserializer<'de>, H: Held> Deserializer<'de> for Parted<'_, D, H> {
+impl<'de, D: Deserializer<'de>, H: HeldKey> Deserializer<'de> for Parted<'_, D, H> {
     type Error = D::Error;
 
     fn deserialize_struct<W: Visitor<'de>>(
@@ -187,7 +187,7 @@ impl<'de, D: Deserializer<'de>, H: Held> Deserializer<'de> for Parted<'_, D, H> 
     }
 }
 
-impl<'de, W: Visitor<'de>, H: Held> Visitor<'de> for Parted<'_, (W, &'static [&'static str]), H> {
+impl<'de, W: Visitor<'de>, H: HeldKey> Visitor<'de> for Parted<'_, (W, &'static [&'static str]), H> {
     type Value = W::Value;
 
     fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -200,7 +200,7 @@ impl<'de, W: Visitor<'de>, H: Held> Visitor<'de> for Parted<'_, (W, &'static [&'
     }
 }
 
-impl<'de, A: MapAccess<'de>, H: Held> MapAccess<'de> for Parted<'_, (A, &'static [&'static str]), H> {
+impl<'de, A: MapAccess<'de>, H: HeldKey> MapAccess<'de> for Parted<'_, (A, &'static [&'static str]), H> {
     type Error = A::Error;
 
     fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, A::Error> {
@@ -209,8 +209,8 @@ impl<'de, A: MapAccess<'de>, H: Held> MapAccess<'de> for Parted<'_, (A, &'static
         loop {
             match map.next_key_seed(AnyKey { table: self.table, own, seed })? {
                 None => return Ok(None),
-                Some(Found::Own(key)) => return Ok(Some(key)),
-                Some(Found::Input(key, unused)) => {
+                Some(FoundInput::Own(key)) => return Ok(Some(key)),
+                Some(FoundInput::Input(key, unused)) => {
                     self.inputs.push((key, read(key, map)?));
                     seed = unused;
                 }
@@ -230,20 +230,20 @@ struct AnyKey<'a, K> {
     seed: K,
 }
 
-enum Found<T, K> {
+enum FoundInput<T, K> {
     Own(T),
     Input(&'static Key, K),
 }
 
 impl<'de, K: DeserializeSeed<'de>> DeserializeSeed<'de> for AnyKey<'_, K> {
-    type Value = Found<K::Value, K>;
+    type Value = FoundInput<K::Value, K>;
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
         deserializer.deserialize_identifier(self)
     }
 }
 
 impl<'de, K: DeserializeSeed<'de>> Visitor<'de> for AnyKey<'_, K> {
-    type Value = Found<K::Value, K>;
+    type Value = FoundInput<K::Value, K>;
 
     fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.write_str("a key")
@@ -251,10 +251,10 @@ impl<'de, K: DeserializeSeed<'de>> Visitor<'de> for AnyKey<'_, K> {
 
     fn visit_str<E: Error>(self, name: &str) -> Result<Self::Value, E> {
         if let Some(key) = Key::named(name, self.table) {
-            return Ok(Found::Input(key, self.seed));
+            return Ok(FoundInput::Input(key, self.seed));
         }
         if self.own.contains(&name) {
-            return self.seed.deserialize(StrDeserializer::new(name)).map(Found::Own);
+            return self.seed.deserialize(StrDeserializer::new(name)).map(FoundInput::Own);
         }
         let known = Key::of(self.table).map(|key| key.name).chain(self.own.iter().copied());
         let known: Vec<String> = known.map(|name| format!("`{name}`")).collect();
@@ -264,8 +264,8 @@ impl<'de, K: DeserializeSeed<'de>> Visitor<'de> for AnyKey<'_, K> {
 
 impl<'de> Deserialize<'de> for MethodEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Entry;
-        impl<'de> Visitor<'de> for Entry {
+        struct TypedEntry;
+        impl<'de> Visitor<'de> for TypedEntry {
             type Value = MethodEntry;
             fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
                 out.write_str("the name of a method or a table of its choices")
@@ -278,7 +278,7 @@ impl<'de> Deserialize<'de> for MethodEntry {
                     .map(|table| MethodEntry::Choices(Box::new(table)))
             }
         }
-        deserializer.deserialize_any(Entry)
+        deserializer.deserialize_any(TypedEntry)
     }
 }
 
@@ -300,7 +300,7 @@ impl<T: Choice> JsonSchema for Named<T> {
     }
 }
 
-impl<H: Held, Own: JsonSchema + OwnKeys> JsonSchema for InputTable<H, Own> {
+impl<H: HeldKey, Own: JsonSchema + OwnKeys> JsonSchema for InputTable<H, Own> {
     fn schema_name() -> Cow<'static, str> {
         Own::schema_name()
     }

@@ -86,7 +86,7 @@ fn every_folder_has_a_row_and_no_two_import_each_other() {
 
 #[test]
 fn a_planted_arrow_is_named() {
-    let planted = "use crate::exact::Reference;\nfn f() { crate::judge::explain::explain() }\n";
+    let planted = "use crate::exact::Reference;\nfn f() { crate::judge::explanation::explain() }\n";
     assert_eq!(forbidden("mpm", "elementary soil", planted), ["mpm → exact", "mpm → judge"]);
     let in_a_test = "fn f() {}\n\n#[cfg(test)]\nmod tests {\n    use crate::scene::SceneKind;\n}\n";
     assert!(forbidden("mpm", "elementary soil", in_a_test).is_empty());

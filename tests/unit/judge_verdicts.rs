@@ -2,7 +2,7 @@
 
 use crate::convergence::class::{Class, Context};
 use crate::convergence::series::{ErrorSeries, SeriesLevel};
-use crate::convergence::series_expectation::{ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand};
+use crate::convergence::series_demand::{ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand};
 use crate::judge::verdict::{Beside, Verdict, VerdictOutcome, judge};
 
 fn series(error: impl Fn(f64) -> f64) -> ErrorSeries {

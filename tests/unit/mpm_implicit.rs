@@ -8,7 +8,7 @@ use crate::mpm::method::{Configuration, Method};
 use crate::mpm::operators::basis::Gimp;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::outcome::{FailureKind, Outcome, RunStatus};
-use crate::mpm::run::plan::Plan;
+use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::stepper::{EqualSteps, Stepper};
 use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};
 use crate::mpm::state::grid::Grid;

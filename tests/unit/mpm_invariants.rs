@@ -210,7 +210,7 @@ proptest! {
     ) {
         let mut setup = Setup::of(name);
         setup.column = Column { height, load, ..setup.column };
-        setup.soil = Material { porosity, youngs_modulus, poissons_ratio, ..setup.soil };
+        setup.soil = Material { youngs_modulus, poissons_ratio, porosity, ..setup.soil };
         (setup.cells, setup.points_per_cell, setup.time_factors) = (cells, points_per_cell, vec![0.0]);
         let start = setup.end();
         let undrained = load / (1.0 + porosity * setup.soil.oedometric_modulus() / setup.soil.water_bulk_modulus);

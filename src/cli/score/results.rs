@@ -9,7 +9,7 @@ use crate::import::mapping::Mapping;
 use crate::import::table::{SampledState, SolvedBody, states_of};
 use crate::judge::score::completeness::{Whole, missing_times, uneven_meshes};
 use crate::judge::score::diagnosis::diagnosis;
-use crate::judge::score::series::{ScoredSeries, series_of};
+use crate::judge::score::score_series::{ScoredSeries, series_of};
 use crate::judge::score::times::TimeGroups;
 use crate::judge::score::{Score, score, time_factors};
 use crate::scene::column::column_parameters;

@@ -13,7 +13,7 @@ use core::f64::consts::FRAC_2_SQRT_PI;
 use crate::elementary;
 
 use crate::exact::consolidation::SWITCH;
-use crate::exact::consolidation::series::eigenvalue;
+use crate::exact::consolidation::sine_series::eigenvalue;
 
 /// Exponents of `exp` beyond which nothing is left of 1.
 const NOTHING_LEFT: f64 = 42.0;

@@ -3,8 +3,8 @@
 use core::f64::consts::PI;
 
 use crate::elementary;
-use crate::exact::consolidation::{SWITCH, images, series};
-use crate::exact::error::ExactError;
+use crate::exact::consolidation::{SWITCH, images, sine_series};
+use crate::exact::exact_error::ExactError;
 
 /// Newton's iteration converges quadratically from both starts; this is far more than it takes.
 const MOST_STEPS: usize = 60;
@@ -53,8 +53,8 @@ fn early(degree: f64) -> f64 {
 fn late(remaining: f64) -> f64 {
     let mut time_factor = (-4.0 / (PI * PI) * elementary::ln(remaining * PI * PI / 8.0)).max(SWITCH / 2.0);
     for _ in 0..MOST_STEPS {
-        let value = series::isochrone_integral(0.0, time_factor).value;
-        let step = value * elementary::ln(value / remaining) / series::consolidation_rate(time_factor);
+        let value = sine_series::isochrone_integral(0.0, time_factor).value;
+        let step = value * elementary::ln(value / remaining) / sine_series::consolidation_rate(time_factor);
         time_factor += step;
         if step.abs() <= f64::EPSILON * time_factor {
             break;

@@ -15,12 +15,12 @@
 pub(crate) mod elapsed;
 pub(crate) mod images;
 pub(crate) mod inverse;
-pub(crate) mod series;
+pub(crate) mod sine_series;
 
 pub use crate::exact::consolidation::inverse::time_factor_for_degree;
-pub use crate::exact::consolidation::series::eigenvalue;
+pub use crate::exact::consolidation::sine_series::eigenvalue;
 
-use crate::exact::error::{ExactError, checked_depth, checked_time_factor};
+use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor};
 
 /// Time factor below which the images are summed, above which the modes.
 pub const SWITCH: f64 = 0.2;
@@ -54,7 +54,7 @@ pub fn isochrone(zeta: f64, time_factor: f64) -> Result<SeriesValue, ExactError>
     } else if time_factor < SWITCH {
         images::isochrone(zeta, time_factor)
     } else {
-        series::isochrone(zeta, time_factor)
+        sine_series::isochrone(zeta, time_factor)
     })
 }
 
@@ -68,7 +68,7 @@ pub fn isochrone_integral(zeta: f64, time_factor: f64) -> Result<SeriesValue, Ex
         let consolidated = images::consolidated_below(zeta, time_factor);
         SeriesValue { value: 1.0 - zeta - consolidated.value, ..consolidated }
     } else {
-        series::isochrone_integral(zeta, time_factor)
+        sine_series::isochrone_integral(zeta, time_factor)
     })
 }
 
@@ -83,7 +83,7 @@ pub fn consolidated_below(zeta: f64, time_factor: f64) -> Result<SeriesValue, Ex
     Ok(if time_factor < SWITCH {
         images::consolidated_below(zeta, time_factor)
     } else {
-        let integral = series::isochrone_integral(zeta, time_factor);
+        let integral = sine_series::isochrone_integral(zeta, time_factor);
         SeriesValue { value: 1.0 - zeta - integral.value, ..integral }
     })
 }

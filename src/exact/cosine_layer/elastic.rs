@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::elementary;
 use crate::exact::cosine_layer::Base;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 
 /// Elastic and hydraulic constants of the layer, SI.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +58,7 @@ pub struct Local {
 /// each in `exp(±βy)` and `exp(±αy)`, `α² = β² + s/c`, measured from the boundary they decay from:
 /// the six by six system stays well conditioned however thin the boundary layers are.
 #[derive(Clone, Debug)]
-pub struct Solution {
+pub struct ElasticSolution {
     constants: Constants,
     theta: f64,
     omega: f64,
@@ -74,7 +74,7 @@ enum Side {
     Base,
 }
 
-impl Solution {
+impl ElasticSolution {
     /// Solves a regime under the unit load `cos βx` on the top.
     ///
     /// # Errors

@@ -8,9 +8,9 @@ use core::f64::consts::PI;
 use nalgebra::Complex;
 
 use crate::elementary;
-use crate::exact::cosine_layer::elastic::{Constants, Local, Regime, Solution};
-use crate::exact::error::{ExactError, checked_depth, checked_time_factor, positive};
-use crate::exact::large_strain::law::Water;
+use crate::exact::cosine_layer::elastic::{Constants, ElasticSolution, Local, Regime};
+use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
+use crate::exact::large_strain::diffusion::Water;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Accuracy, FieldValues};
 
@@ -73,7 +73,7 @@ pub struct LayerState {
     constants: Constants,
     load: f64,
     /// Solutions and the complex weights of their sum's real part.
-    parts: Vec<(Solution, Complex<f64>)>,
+    parts: Vec<(ElasticSolution, Complex<f64>)>,
 }
 
 /// Fields of the layer at one point.
@@ -135,7 +135,7 @@ impl CosineLayer {
         Ok(LayerState {
             constants: self.constants,
             load: self.parameters.load,
-            parts: vec![(Solution::new(self.constants, regime)?, Complex::new(1.0, 0.0))],
+            parts: vec![(ElasticSolution::new(self.constants, regime)?, Complex::new(1.0, 0.0))],
         })
     }
 
@@ -180,7 +180,7 @@ impl CosineLayer {
         let parts = talbot::contour(nodes)
             .map(|(z, weight)| {
                 let regime = Regime::Transformed(z / time);
-                Ok((Solution::new(self.constants, regime)?, weight / z))
+                Ok((ElasticSolution::new(self.constants, regime)?, weight / z))
             })
             .collect::<Result<_, ExactError>>()?;
         Ok(LayerState { constants: self.constants, load: self.parameters.load, parts })
@@ -279,7 +279,7 @@ impl LayerState {
     }
 
     /// Amplitudes of one node of the contour.
-    fn real_part(&self, solution: &Solution, local: &Local, weight: Complex<f64>) -> LayerFields {
+    fn real_part(&self, solution: &ElasticSolution, local: &Local, weight: Complex<f64>) -> LayerFields {
         let real = |value: Complex<f64>| self.load * (value * weight).re;
         let (lame, shear) = (self.constants.lame, self.constants.shear);
         let beta = self.constants.wave_number;

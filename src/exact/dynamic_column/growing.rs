@@ -8,11 +8,11 @@
 use crate::elementary;
 
 use crate::exact::consolidation;
-use crate::exact::consolidation::series::eigenvalue;
+use crate::exact::consolidation::sine_series::eigenvalue;
 use crate::exact::dynamic_column::DynamicColumn;
 use crate::exact::dynamic_column::modes::{Amplitude, Growth, Mode};
 use crate::exact::dynamic_column::steady::Steady;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 
 /// Whether a load that has grown over `duration` is so long past that the modes alone converge.
 pub fn is_past(duration: f64, time: f64) -> bool {

@@ -9,10 +9,10 @@ pub(crate) mod summation;
 use std::borrow::Cow;
 
 use crate::elementary;
-use crate::exact::consolidation::series::eigenvalue;
+use crate::exact::consolidation::sine_series::eigenvalue;
 use crate::exact::dynamic_column::steady::Steady;
-use crate::exact::dynamic_column::summation::Snapshot;
-use crate::exact::error::{ExactError, checked_depth, checked_time_factor, positive};
+use crate::exact::dynamic_column::summation::ModeState;
+use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Accuracy, FieldValues};
 use crate::exact::single_mode::PhaseVelocities;
@@ -58,7 +58,7 @@ pub struct DynamicColumn {
     parameters: ColumnParameters,
     start: Start,
     /// Modal coefficients at the times that were asked for in advance.
-    prepared: Vec<Snapshot>,
+    prepared: Vec<ModeState>,
 }
 
 /// Both phases' fields at one depth and time.
@@ -95,7 +95,7 @@ impl DynamicColumn {
     }
 
     /// The modes at a time factor: the prepared ones, or summed afresh.
-    fn modes_at(&self, time_factor: f64) -> Cow<'_, Snapshot> {
+    fn modes_at(&self, time_factor: f64) -> Cow<'_, ModeState> {
         self.prepared
             .iter()
             .find(|snapshot| snapshot.time_factor == time_factor)

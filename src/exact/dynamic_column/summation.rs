@@ -1,6 +1,6 @@
 //! How many modes are summed, and what the others may add.
 
-use crate::exact::consolidation::series::eigenvalue;
+use crate::exact::consolidation::sine_series::eigenvalue;
 use crate::exact::dynamic_column::modes::{Amplitude, Drive, Growth, InitialState, Mode};
 use crate::exact::dynamic_column::{DynamicColumn, Start};
 
@@ -11,7 +11,7 @@ const RELATIVE_TAIL: f64 = 1e-18;
 
 /// Modal coefficients of the departure at one time.
 #[derive(Clone, Debug)]
-pub struct Snapshot {
+pub struct ModeState {
     pub time_factor: f64,
     pub amplitudes: Vec<Amplitude>,
     /// Bound on the omitted modes' pressure and stress, Pa.
@@ -64,9 +64,9 @@ impl DynamicColumn {
     }
 
     /// Sums as many modes as matter at a time factor.
-    pub(crate) fn snapshot(&self, time_factor: f64) -> Snapshot {
+    pub(crate) fn snapshot(&self, time_factor: f64) -> ModeState {
         let time = self.parameters.time(time_factor);
-        let mut snapshot = Snapshot { time_factor, amplitudes: Vec::new(), tail: 0.0 };
+        let mut snapshot = ModeState { time_factor, amplitudes: Vec::new(), tail: 0.0 };
         if self.start.is_release() {
             snapshot.amplitudes.push(self.amplitude(0, time));
             return snapshot;

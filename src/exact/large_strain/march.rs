@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::exact::large_strain::chebyshev;
-use crate::exact::large_strain::grid::EvenGrid;
-use crate::exact::large_strain::law::Diffusion;
+use crate::exact::large_strain::diffusion::Diffusion;
+use crate::exact::large_strain::graded_grid::EvenGrid;
 use crate::exact::large_strain::loading::{LoadAt, Loading};
 use crate::exact::large_strain::radau::{POINTS, STAGES, weights};
 use crate::exact::large_strain::similarity::{Front, with_slopes};

@@ -1,17 +1,17 @@
 //! Large-strain consolidation for any soil law, by a spectral method to round-off.
 
 pub(crate) mod chebyshev;
-pub(crate) mod grid;
-pub(crate) mod law;
+pub(crate) mod diffusion;
+pub(crate) mod graded_grid;
 pub(crate) mod loading;
 pub(crate) mod march;
 pub(crate) mod radau;
 pub(crate) mod similarity;
 
-pub use crate::exact::large_strain::law::{LargeStrainModel, Water};
+pub use crate::exact::large_strain::diffusion::{LargeStrainModel, Water};
 
-use crate::exact::error::{ExactError, checked_depth, checked_time_factor};
-use crate::exact::large_strain::law::Diffusion;
+use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor};
+use crate::exact::large_strain::diffusion::Diffusion;
 use crate::exact::large_strain::loading::Loading;
 use crate::exact::large_strain::march::{March, Profile, State};
 use crate::exact::large_strain::similarity::Front;

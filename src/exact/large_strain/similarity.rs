@@ -3,9 +3,9 @@
 use nalgebra::DVector;
 
 use crate::elementary;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::large_strain::chebyshev;
-use crate::exact::large_strain::law::Diffusion;
+use crate::exact::large_strain::diffusion::Diffusion;
 
 /// Front in `η = ζ/(2√T)`: `f'' − G f'² + 2ηβ f' = 0`, `f(0) = 0`, `f(∞) = r_0`.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! Whether an external result is whole: what is missing makes an error small.
 
 use crate::elementary::ln;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;

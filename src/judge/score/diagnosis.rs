@@ -6,7 +6,7 @@
 
 use crate::case::quantity::Quantity;
 use crate::elementary::powi;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::mapping::Mapping;

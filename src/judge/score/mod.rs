@@ -3,11 +3,11 @@
 pub mod completeness;
 pub mod coverage;
 pub mod diagnosis;
-pub mod series;
+pub mod score_series;
 pub mod times;
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;

@@ -1,7 +1,7 @@
 //! The frozen step: accelerations, kick and drift.
 
 use crate::mpm::assembled::operators::{FrozenOperators, NodeConstants};
-use crate::mpm::assembled::rows::banded::BandsWithin;
+use crate::mpm::assembled::rows::banded_rows::BandsWithin;
 use crate::mpm::assembled::rows::{LANES, Lanes, MARGIN, REACH, RowStorage, Rows};
 use crate::mpm::assembled::state::{FrozenState, SOLID, WATER, lanes, set_lanes};
 use crate::mpm::body::{Body, ShapeFunction};

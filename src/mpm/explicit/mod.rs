@@ -2,7 +2,7 @@
 //!
 //! A body's step reads as the paper's list: [`kick_and_drift`](Body::kick_and_drift). Drag is part of step 2.
 
-pub mod mapping;
+pub mod points_to_nodes;
 pub mod scheme;
 
 use crate::elementary;

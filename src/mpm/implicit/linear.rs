@@ -10,15 +10,15 @@ use crate::mpm::implicit::linear_system::{LinearOperators, LinearSystem};
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::mpm::run::outcome::FailureKind;
-use crate::mpm::run::plan::Plan;
 use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
 use crate::soil::tensor::Vector;
 
 /// What a linear run has changed of its body.
 #[derive(Clone, Debug, Default)]
-pub struct Change<const D: usize> {
+pub struct StateChange<const D: usize> {
     /// Displacement of the nodes since the start, m.
     displacement: Vec<Vector<D>>,
     /// Velocity of the skeleton at the nodes, m/s.
@@ -32,11 +32,23 @@ pub struct Change<const D: usize> {
 /// A frozen body at its start, whatever its basis.
 pub trait FrozenStart<const D: usize> {
     /// The body after a change, at a time, s, with a settlement, m.
-    fn changed(&self, rows: &VolumetricRows<D>, change: Change<D>, time: f64, settlement: f64) -> Snapshot;
+    fn changed(
+        &self,
+        rows: &VolumetricRows<D>,
+        change: StateChange<D>,
+        time: f64,
+        settlement: f64,
+    ) -> Snapshot;
 }
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> FrozenStart<D> for Body<D, W, S> {
-    fn changed(&self, rows: &VolumetricRows<D>, change: Change<D>, time: f64, settlement: f64) -> Snapshot {
+    fn changed(
+        &self,
+        rows: &VolumetricRows<D>,
+        change: StateChange<D>,
+        time: f64,
+        settlement: f64,
+    ) -> Snapshot {
         let mut body = self.clone();
         body.change_points(rows, &change.displacement, &change.pressures, &change.displacement);
         body.nodes.solid_velocity = change.velocity;
@@ -199,7 +211,7 @@ impl<const D: usize> Stepper for LinearStepper<D> {
             unknowns.displacement.iter().map(|node| node.map(component)).collect()
         };
         let pressure = |unknown: &usize| scales.pressure * self.state[*unknown];
-        let change = Change {
+        let change = StateChange {
             displacement: nodal(&self.state, scales.length),
             velocity: nodal(&self.increment, self.rate_scale * scales.length),
             pressures: unknowns.pressure.iter().map(pressure).collect(),

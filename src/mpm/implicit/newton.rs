@@ -9,8 +9,8 @@ use crate::mpm::implicit::trial::{Skeleton, Trial};
 use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::mpm::run::outcome::FailureKind;
-use crate::mpm::run::plan::Plan;
 use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
 

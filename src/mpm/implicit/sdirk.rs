@@ -4,7 +4,7 @@
 //! each and end at `x_i = x̂_i + z_i`; the step ends at `x_2`.
 
 use crate::mpm::implicit::unknowns::{Scales, Unknowns};
-use crate::mpm::run::plan::Plan;
+use crate::mpm::run::run_plan::Plan;
 
 /// `γ = 1 − 1/√2`: both stages have the same matrix and the method is L-stable.
 pub const SDIRK_GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;

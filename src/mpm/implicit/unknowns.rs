@@ -55,7 +55,7 @@ pub struct Unknowns<const D: usize> {
 
 /// What an unknown stands for, while they are sorted.
 #[derive(Clone, Copy)]
-enum Kind {
+enum UnknownKind {
     Displacement { node: usize, direction: usize },
     Pressure { site: usize },
 }
@@ -93,13 +93,13 @@ impl<const D: usize> Unknowns<D> {
             PressureIntegration::Points => points.position[sites[site]],
             PressureIntegration::Sri | PressureIntegration::Mean => grid.cell_centre(sites[site]),
         };
-        let mut sorted: Vec<(Vector<D>, Kind)> = Vec::new();
+        let mut sorted: Vec<(Vector<D>, UnknownKind)> = Vec::new();
         for node in 0..nodes.len() {
             for direction in (0..D).filter(|d| nodes.free[node][*d] > 0.0) {
-                sorted.push((grid.node_position(node), Kind::Displacement { node, direction }));
+                sorted.push((grid.node_position(node), UnknownKind::Displacement { node, direction }));
             }
         }
-        sorted.extend((0..sites.len()).map(|site| (site_position(site), Kind::Pressure { site })));
+        sorted.extend((0..sites.len()).map(|site| (site_position(site), UnknownKind::Pressure { site })));
         let slowest = (0..D).max_by_key(|d| grid.cells[*d]).unwrap_or(0);
         let key = |place: &Vector<D>| {
             let mut key = *place;
@@ -118,8 +118,10 @@ impl<const D: usize> Unknowns<D> {
         self.pressure = vec![0; sites.len()];
         for (number, (_, kind)) in sorted.iter().enumerate() {
             match *kind {
-                Kind::Displacement { node, direction } => self.displacement[node][direction] = Some(number),
-                Kind::Pressure { site } => self.pressure[site] = number,
+                UnknownKind::Displacement { node, direction } => {
+                    self.displacement[node][direction] = Some(number)
+                }
+                UnknownKind::Pressure { site } => self.pressure[site] = number,
             }
         }
         (self.sites, self.site_of_place) = (sites, site_of_place);

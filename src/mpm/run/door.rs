@@ -10,7 +10,7 @@ use crate::mpm::run::driver::Driver;
 use crate::mpm::run::explicit_stepper::ExplicitStepper;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::outcome::{Failure, FailureKind, Outcome};
-use crate::mpm::run::plan::Plan;
+use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::schedule::{Observer, Schedule};
 use crate::mpm::run::stepper::Stepper;
 use crate::with_basis;

@@ -2,8 +2,8 @@
 
 use crate::mpm::run::history::{History, Settled};
 use crate::mpm::run::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
-use crate::mpm::run::plan::Plan;
 use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::schedule::Observer;
 use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::step_limit::{StepLimit, steps_for};

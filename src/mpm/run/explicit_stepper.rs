@@ -6,7 +6,7 @@ use crate::mpm::critical_step::formula;
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::explicit::scheme::Rhythm;
 use crate::mpm::method::Configuration;
-use crate::mpm::run::plan::Plan;
+use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::schedule::Kernel;
 use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper};

@@ -4,7 +4,7 @@ use crate::elementary;
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::mpm::run::outcome::{FailureKind, StepSizes};
-use crate::mpm::run::plan::Plan;
+use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::stepper::{StepFailure, Stepper};
 
 /// Velocities beyond this multiple of their scale have left.

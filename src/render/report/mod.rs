@@ -16,7 +16,7 @@ pub mod theory_lines;
 pub mod worst_checks;
 
 use crate::case::tier::Tier;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::judge::paths::{Judgement, judge_study};
 use crate::judge::soundness;
 use crate::record::{Record, Status};

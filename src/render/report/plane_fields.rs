@@ -1,7 +1,7 @@
 //! What a plane layer shows: pressure fields beside the exact one, and the ranking of the methods.
 
 use crate::convergence::class::Class;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::judge::locking::{Standing, standings};
 use crate::measure::plane_field::PlaneField;
 use crate::record::{Record, Status};

@@ -1,7 +1,7 @@
 //! Errors and oscillation against the stiffness of the water and of the skeleton, through
 //! consolidation.
 
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::judge::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
 use crate::render::chart::describe::{Chart, ChartAxis, ChartDirection, Rule, Series, Size, Style};
 use crate::render::page::{Block, Figure, slug};

@@ -1,6 +1,6 @@
 //! The section of one study: what it asks, what was expected, figures, tables, checks.
 
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::render::checks::verdicts::judgements_table;
 use crate::render::page::{Block, Section};
 use crate::render::report::{

@@ -2,7 +2,7 @@
 
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::measure::theory_curves::{
     computed_consolidation, computed_isochrone, constant_recovery_error, theory_consolidation, theory_degree,
     theory_isochrone,

@@ -1,7 +1,7 @@
 //! The tables of an explained case.
 
 use crate::case::quantity::Quantity;
-use crate::judge::explain::{Carrier, Explanation, LevelSeries};
+use crate::judge::explanation::{Carrier, Explanation, LevelSeries};
 use crate::record::{Record, Status};
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};

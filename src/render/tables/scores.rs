@@ -2,7 +2,7 @@
 
 use crate::case::norm::Norm;
 use crate::case::quantity::Quantity;
-use crate::judge::score::series::ScoredSeries;
+use crate::judge::score::score_series::ScoredSeries;
 use crate::judge::score::{Score, WorstPlace};
 use crate::record::ErrorRow;
 use crate::render::table::{Cell, Table, TableColumn, columns};

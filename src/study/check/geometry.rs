@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::case::keys::{Key, Value};
 use crate::elementary;
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::xie_leo::XieLeo;
 use crate::scene::column::column_parameters;
 use crate::study::check::Checker;

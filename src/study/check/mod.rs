@@ -1,12 +1,12 @@
 //! From what was typed to what will run: every value judged, every complaint at its place.
 
-pub mod case_expectation;
+pub mod check_case_expectation;
+pub mod check_material;
+pub mod check_method;
+pub mod check_series_expectation;
+pub mod check_sweep;
 pub mod geometry;
-pub mod material;
-pub mod method;
-pub mod series_expectation;
 pub mod step_rule;
-pub mod sweep;
 pub mod value;
 
 use crate::case::keys::{Key, Value};
@@ -18,7 +18,7 @@ use crate::record::Record;
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::study::case_expectation::CaseExpectation;
-use crate::study::check::sweep::Common;
+use crate::study::check::check_sweep::Common;
 use crate::study::diagnostic::{Diagnostic, StudyError};
 use crate::study::expectation::SeriesExpectation;
 use crate::study::file::{OutputTable, StudyFile, StudySource};

@@ -11,7 +11,7 @@ use std::ops::RangeInclusive;
 use toml::Spanned;
 
 /// A place in the text.
-type Span = std::ops::Range<usize>;
+type TextSpan = std::ops::Range<usize>;
 
 impl Checker<'_> {
     /// The value of an input, called by its name in the file; `seed` has the values to compare it with.
@@ -71,7 +71,7 @@ impl Checker<'_> {
         self.word_at(typed.span(), typed.get_ref(), name, choices)
     }
 
-    fn word_at(&mut self, span: Span, word: &str, name: &str, choices: &[&str]) -> Option<usize> {
+    fn word_at(&mut self, span: TextSpan, word: &str, name: &str, choices: &[&str]) -> Option<usize> {
         let index = choices.iter().position(|choice| *choice == word);
         if index.is_none() {
             self.complain(span, format!("no {name} is called `{word}`"), one_of(word, choices));
@@ -80,7 +80,7 @@ impl Checker<'_> {
     }
 
     /// Whether a scene takes a word where it is a law.
-    fn law_fits(&mut self, word: &str, span: Span, key: &Key, scene: SceneKind) -> bool {
+    fn law_fits(&mut self, word: &str, span: TextSpan, key: &Key, scene: SceneKind) -> bool {
         let refused = |law: &Law| scene.refuses_law(*law);
         let law = Law::ALL.into_iter().find(|law| key.name == "law" && law.name() == word);
         let Some(why) = law.as_ref().and_then(refused) else { return true };
@@ -128,7 +128,7 @@ impl Checker<'_> {
     fn number(
         &mut self,
         value: f64,
-        span: Span,
+        span: TextSpan,
         name: &str,
         range: Range,
         usual: &str,

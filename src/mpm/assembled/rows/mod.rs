@@ -4,12 +4,12 @@
 //! nodes, and the projection of velocities onto them. `banded` is for rows that reach only their
 //! nearest neighbours, as those of a column do; `sparse` is for all others.
 
-pub mod banded;
-pub mod sparse;
+pub mod banded_rows;
+pub mod padded_rows;
 
 use crate::mpm::assembled::operators::FrozenOperators;
-use crate::mpm::assembled::rows::banded::BandedStorage;
-use crate::mpm::assembled::rows::sparse::SparseStorage;
+use crate::mpm::assembled::rows::banded_rows::BandedStorage;
+use crate::mpm::assembled::rows::padded_rows::SparseStorage;
 use crate::mpm::assembled::state::FrozenState;
 use crate::soil::tensor::Vector;
 

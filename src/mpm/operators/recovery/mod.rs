@@ -129,14 +129,14 @@ pub(crate) mod tests {
     use crate::mpm::state::points::Points;
 
     /// A lattice of points in free cells.
-    pub(crate) struct Block {
+    pub(crate) struct SiteBlock {
         grid: Grid<2>,
         pub(crate) cells: Cells<2>,
         pub(crate) nodes: Nodes<2>,
         points: Points<2>,
     }
 
-    impl Block {
+    impl SiteBlock {
         pub(crate) fn new(cell_size: f64, extent: [usize; 2], per_cell: usize) -> Self {
             let grid = Grid::new(cell_size, extent);
             let points = Points::lattice(cell_size, extent, per_cell);
@@ -161,7 +161,7 @@ pub(crate) mod tests {
 
     #[test]
     fn every_way_is_one_in_place_and_as_rows() {
-        let block = Block::new(0.25, [4, 3], 2);
+        let block = SiteBlock::new(0.25, [4, 3], 2);
         let at = block.at();
         for name in ["GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GIMP-SRI-nodal", "GIMP-null-space"] {
             let method = Method::named(name).expect("a known method");

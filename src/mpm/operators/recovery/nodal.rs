@@ -91,12 +91,12 @@ fn hats<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mpm::operators::recovery::tests::{Block, applied};
+    use crate::mpm::operators::recovery::tests::{SiteBlock, applied};
     use crate::soil::tensor::Vector;
 
     #[test]
     fn nodal_means_reproduce_a_plane_inside_and_constants_everywhere() {
-        let block = Block::new(0.25, [4, 4], 2);
+        let block = SiteBlock::new(0.25, [4, 4], 2);
         let at = block.at();
         let field = |x: &Vector<2>| 2.0 + 3.0 * x[0] - x[1];
         let sites: Vec<f64> =

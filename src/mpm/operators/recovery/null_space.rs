@@ -128,7 +128,7 @@ fn felt_slopes<const D: usize>(at: &PointsInCells<'_, D>, cell: usize) -> [bool;
 mod tests {
     use super::*;
     use crate::mpm::operators::basis::{Hat, ShapeFunction};
-    use crate::mpm::operators::recovery::tests::{Block, applied};
+    use crate::mpm::operators::recovery::tests::{SiteBlock, applied};
     use crate::mpm::operators::row::Row;
 
     /// Forces `Σ V p ∇N` of pressures at the points on a corner of a cell.
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn the_filter_keeps_what_forces_feel_and_nothing_else() {
-        let mut block = Block::new(0.5, [2, 2], 3);
+        let mut block = SiteBlock::new(0.5, [2, 2], 3);
         let at = block.at();
         let rows = rows(&at);
         let values: Vec<f64> = (0..at.positions.len()).map(|point| (1.7 * point as f64).sin()).collect();

@@ -5,13 +5,13 @@ use crate::render::chart::layout::clip::PixelFrame;
 use crate::render::chart::layout::scale::{Reason, Ruler};
 
 /// The places of the points of each series, and what is to be said about those without one.
-pub(crate) struct Placed {
+pub(crate) struct PlacedNote {
     pub points: Vec<Vec<Option<Px>>>,
     pub notes: Vec<String>,
 }
 
 /// Puts every point of every series in its place.
-pub(crate) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &PixelFrame) -> Placed {
+pub(crate) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &PixelFrame) -> PlacedNote {
     let mut lost: Vec<(Reason, usize, Vec<&str>)> = Vec::new();
     let mut lose = |reason: Reason, name| {
         let i = lost.iter().position(|(r, ..)| *r == reason).unwrap_or_else(|| {
@@ -52,7 +52,7 @@ pub(crate) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &PixelFrame) -> 
         (_, 1) => Some("1 cell without a value is grey.".to_owned()),
         (_, n) => Some(format!("{n} cells without a value are grey.")),
     }));
-    Placed { points, notes }
+    PlacedNote { points, notes }
 }
 
 fn sentence(lost: &[(Reason, usize, Vec<&str>)]) -> Option<String> {

@@ -2,7 +2,7 @@
 //! (docs/theory.md, Eq. 15).
 
 use crate::elementary;
-use crate::exact::error::{ExactError, positive};
+use crate::exact::exact_error::{ExactError, positive};
 use crate::exact::parameters::ColumnParameters;
 use crate::soil::continuity::Continuity;
 use crate::soil::law::Law;

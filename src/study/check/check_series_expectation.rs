@@ -5,7 +5,7 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
 use crate::case::{Case, Task};
-use crate::convergence::series_expectation::{
+use crate::convergence::series_demand::{
     ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand as Demand,
 };
 use crate::exact::reference::ReferenceKind;

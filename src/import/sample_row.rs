@@ -1,6 +1,6 @@
 //! One file's rows in SI, with the signs of this program.
 
-use crate::import::error::ImportError;
+use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::table::SolvedBody;
 use crate::import::units::{HorizontalSense, StatedPlace, StressSign, StressUnit, VerticalSense};

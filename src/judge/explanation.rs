@@ -6,7 +6,7 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::classify::classify;
 use crate::convergence::series::{ErrorSeries, SeriesLevel};
-use crate::exact::error::ExactError;
+use crate::exact::exact_error::ExactError;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::golden::compare::{Difference, compare};
 use crate::golden::{GoldenFile, measure_name, values_of};
