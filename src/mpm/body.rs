@@ -51,6 +51,7 @@ pub struct Problem<const D: usize> {
 impl<const D: usize> Problem<D> {
     /// The same problem with all loads, stresses and motions of its start times a factor.
     #[must_use]
+    #[inline]
     pub fn scaled(mut self, factor: f64) -> Self {
         self.load *= factor;
         self.pressure_scale *= factor;
@@ -165,6 +166,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Displaces points and nodes by a uniform gradient; where strains are finite, the points take
     /// their volumes with them, and where they move, their places and domains.
+    #[inline]
     fn displace(&mut self, gradient: &Tensor<D>) {
         let moved = |place: &Vector<D>| -> Vector<D> {
             std::array::from_fn(|d| (0..D).map(|e| gradient[d][e] * place[e]).sum())
@@ -194,6 +196,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Brings operators and masses up to the points' places and volumes: all of them where points
     /// move, what follows the volumes where weights stay on the initial configuration.
+    #[inline]
     pub fn follow_points(&mut self) {
         self.follow_places();
         if self.configuration.deforms() {
@@ -202,6 +205,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// Brings the operators alone up to the points' places and volumes.
+    #[inline]
     pub(crate) fn follow_places(&mut self) {
         if self.is_pushed_forward {
             self.cells.sum_volumes(&self.points, self.material.porosity);
@@ -227,6 +231,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// Visits the nodes that a point's strain depends on, with their gradients, 1/m.
+    #[inline]
     pub fn visit_strain(&self, point: usize, node_visitor: impl FnMut(usize, &Vector<D>)) {
         self.strain.visit(&self.basis, self.grid.node_stride(), point, node_visitor);
     }
@@ -259,6 +264,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// Builds `N` and `∇N` of every point.
+    #[inline]
     fn build_basis(&mut self) {
         let grid = &self.grid;
         let places = self.cells.place.iter().zip(&self.points.half_length);
@@ -270,6 +276,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Builds every operator of the method on the points' present places, and puts the load on
     /// the surface there.
+    #[inline]
     pub fn build_operators(&mut self) {
         self.cells.locate(&self.grid, &self.points, self.material.porosity);
         if self.method.strain.is_composite() {
@@ -289,12 +296,14 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// Last node of splines that end at a surface on its way through the grid.
+    #[inline]
     pub fn last_spline_node(&self) -> Option<usize> {
         self.support.outermost
     }
 
     /// Displacement of the skeleton at the place of a node, m: that of the node itself, but for splines,
     /// whose coefficients are no values.
+    #[inline]
     pub fn displacement_at_node(&self, node: usize) -> Vector<D> {
         if !S::PASSES_WALLS {
             return self.nodes.displacement[node];
@@ -313,6 +322,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// `v_s + n (v_w − v_s)` at the nodes, with the nodal porosity: what docs/theory.md, Eq. 4
     /// takes the divergence of.
+    #[inline]
     pub fn nodal_flux(&mut self) {
         let nodes = &mut self.nodes;
         for node in 0..nodes.len() {
@@ -325,6 +335,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// Largest nodal velocity of either phase, m/s; infinite where one is not finite.
+    #[inline]
     pub fn largest_velocity(&self) -> f64 {
         let both = self.nodes.solid_velocity.iter().chain(&self.nodes.water_velocity);
         both.flatten().fold(0.0, |largest: f64, velocity| {

@@ -19,6 +19,7 @@ impl Continuity {
     pub const ALL: [Self; 2] = [Self::Conservative, Self::ConstantPorosityGradient];
 
     /// Name in study files.
+    #[inline]
     pub fn name(self) -> &'static str {
         match self {
             Self::Conservative => "conservative",

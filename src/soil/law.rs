@@ -29,6 +29,7 @@ impl Law {
     pub const ALL: [Self; 4] = [Self::Linear, Self::LogLinear, Self::PorosityDependent, Self::Engineering];
 
     /// Name in study files.
+    #[inline]
     pub fn name(self) -> &'static str {
         match self {
             Self::Linear => "linear",
@@ -51,6 +52,7 @@ impl Law {
 
     /// Vertical effective stress over the oedometric modulus of a uniaxial compression to the
     /// engineering strain `J − 1`, which may be tiny: the integral of the rate form.
+    #[inline]
     pub fn uniaxial_stress_ratio(self, strain: f64) -> f64 {
         match self {
             Self::Linear | Self::LogLinear | Self::Engineering => elementary::ln_1p(strain),
@@ -59,6 +61,7 @@ impl Law {
     }
     /// What a uniaxial compression `−σ'/E_oed` takes of the volume, `1 − J`; the linear law's at small
     /// strain.
+    #[inline]
     pub fn shrinkage(self, compression: f64) -> f64 {
         match self {
             Self::LogLinear | Self::Engineering => -elementary::exp_m1(-compression),

@@ -32,6 +32,7 @@ pub struct Material {
 
 impl Default for Material {
     /// The seed column of Zheng et al. (2021).
+    #[inline]
     fn default() -> Self {
         Self {
             law: Law::Linear,
@@ -50,22 +51,26 @@ impl Default for Material {
 
 impl Material {
     /// `E_oed = E(1−ν)/((1+ν)(1−2ν))`, Pa.
+    #[inline]
     pub fn oedometric_modulus(&self) -> f64 {
         let nu = self.poissons_ratio;
         self.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
     }
 
     /// Coupling modulus `Q = K_w/n_0`, Pa.
+    #[inline]
     pub fn coupling_modulus(&self) -> f64 {
         self.water_bulk_modulus / self.porosity
     }
 
     /// Unit weight of water `γ_w`, N/m³.
+    #[inline]
     pub fn unit_weight_of_water(&self) -> f64 {
         self.water_density * self.gravity
     }
 
     /// `c_v = k_0 E_oed/γ_w`, m²/s.
+    #[inline]
     pub fn coefficient_of_consolidation(&self) -> f64 {
         self.hydraulic_conductivity * self.oedometric_modulus() / self.unit_weight_of_water()
     }
@@ -84,11 +89,13 @@ impl Material {
 
     /// Pore pressure, Pa, of the undrained water at the engineering strain `J − 1`:
     /// `ṗ = −(K_w/n) J̇/J` with `nJ = J − (1 − n_0)` integrates to `−K_w ln(nJ/n_0)`.
+    #[inline]
     pub fn undrained_pressure_at(&self, strain: f64) -> f64 {
         -self.water_bulk_modulus * elementary::ln_1p(strain / self.porosity)
     }
 
     /// The skeleton's stiffness as the stress update uses it.
+    #[inline]
     pub fn stiffness(&self) -> Stiffness {
         let shear = self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio));
         Stiffness { lame: self.oedometric_modulus() - 2.0 * shear, shear }

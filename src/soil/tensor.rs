@@ -7,6 +7,7 @@ pub type Vector<const D: usize> = [f64; D];
 pub type Tensor<const D: usize> = [[f64; D]; D];
 
 /// The unit tensor.
+#[inline]
 pub fn identity<const D: usize>() -> Tensor<D> {
     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }))
 }
@@ -60,6 +61,7 @@ pub fn solve_symmetric<const D: usize>(
 
 /// Inverse and determinant of a deformation gradient: near enough to the unit tensor to need no
 /// pivoting. Where it is singular, the numbers are not finite.
+#[inline]
 pub fn inverse<const D: usize>(tensor: &Tensor<D>) -> (Tensor<D>, f64) {
     let (mut rest, mut inverse, mut determinant) = (*tensor, identity::<D>(), 1.0);
     for pivot in 0..D {
@@ -83,6 +85,7 @@ pub fn inverse<const D: usize>(tensor: &Tensor<D>) -> (Tensor<D>, f64) {
 /// Strain between two deformation gradients: `2 (F₁ − F₀)(F₁ + F₀)⁻¹` (Hughes & Winget 1980), the
 /// logarithmic strain to third order in the increment, with its trace made the logarithm of the
 /// volume ratio. In one dimension it is the logarithmic strain.
+#[inline]
 pub fn strain_between<const D: usize>(before: &Tensor<D>, after: &Tensor<D>, log_volume: f64) -> Tensor<D> {
     let difference = std::array::from_fn(|i| std::array::from_fn(|j| after[i][j] - before[i][j]));
     let mean = std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (after[i][j] + before[i][j])));

@@ -33,6 +33,7 @@ impl Drag {
     pub const ALL: [Self; 3] = [Self::Explicit, Self::Implicit, Self::Centred];
 
     /// Name in study files.
+    #[inline]
     pub fn name(self) -> &'static str {
         match self {
             Self::Explicit => "explicit",
@@ -60,6 +61,7 @@ pub struct ExplicitSettings {
 
 impl Default for ExplicitSettings {
     /// The paper's: forward Euler, explicit drag, pure FLIP, mapping back.
+    #[inline]
     fn default() -> Self {
         Self { scheme: Scheme::ForwardEuler, drag: Drag::Explicit, flip: 1.0, mapping_back: true }
     }
@@ -67,11 +69,13 @@ impl Default for ExplicitSettings {
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// One explicit step of `dt` seconds, as the paper has it.
+    #[inline]
     pub fn explicit_step(&mut self, dt: f64, settings: &ExplicitSettings) {
         self.kick_and_drift(dt, dt, settings);
     }
 
     /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
+    #[inline]
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         self.reset_grid(settings); // step 1
         enter(Phase::Forces);
@@ -94,6 +98,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Step 1: operators, masses and velocities on the points' places. Where nothing moves, the
     /// operators stand, and velocities mapped back by the last step are already there.
+    #[inline]
     fn reset_grid(&mut self, settings: &ExplicitSettings) {
         enter(Phase::BuildWeights);
         self.follow_places();
@@ -115,6 +120,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// ```
     ///
     /// with the force `f` on the mixture and `f_w` of the pressure gradient on the water.
+    #[inline]
     fn nodal_accelerations(&mut self, kick: f64, drag: Drag) {
         self.map_forces();
         let water_density = self.material.water_density;
@@ -145,6 +151,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// Step 3: nodal velocities by forward Euler.
+    #[inline]
     fn nodal_velocities(&mut self, kick: f64, dt: f64) {
         let nodes = &mut self.nodes;
         for node in 0..nodes.len() {
@@ -157,6 +164,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// Step 4: velocities and places of the points.
+    #[inline]
     fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
         if flip < 1.0 {
             self.advance_points_by::<true>(kick, dt, flip);
@@ -211,6 +219,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Step 6: effective stress by the method's strain gradient; at finite strain also volume and
     /// domain.
+    #[inline]
     fn update_effective_stress(&mut self, dt: f64) {
         let (deforms, is_bbar) = (self.configuration.deforms(), self.method.strain.is_bbar());
         if is_bbar {
@@ -290,6 +299,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Step 7: pressure increments at the sites of the method's divergence, recovered to the points:
     /// `Δp = −Δt (K_w/n) [∇·v_s + ∇·w]` (docs/theory.md, Eq. 8).
+    #[inline]
     fn update_pressure(&mut self, dt: f64) {
         self.nodal_flux();
         self.surface_flux += dt * self.surface.mean_of(&self.grid, &self.points, &self.nodes.flux);

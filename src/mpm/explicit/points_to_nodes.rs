@@ -9,16 +9,19 @@ use crate::soil::tensor::product_with_transpose;
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Sums masses, volumes and drag of the points to the nodes.
+    #[inline]
     pub fn map_masses(&mut self) {
         self.map_points::<true, false>();
     }
 
     /// Maps the velocities of both phases from the points to the nodes, weighted with mass.
+    #[inline]
     pub fn map_velocities(&mut self) {
         self.map_points::<false, true>();
     }
 
     /// Both in one pass.
+    #[inline]
     pub fn map_masses_and_velocities(&mut self) {
         self.map_points::<true, true>();
     }
@@ -82,6 +85,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Forces on the mixture and on the water from the points' stresses (weak form, drained
     /// surface natural).
+    #[inline]
     pub fn map_forces(&mut self) {
         let (nodes, points) = (&mut self.nodes, &self.points);
         for (forces, external) in nodes.sums.forces.iter_mut().zip(&nodes.external_force) {

@@ -26,6 +26,7 @@ impl Scheme {
     pub const ALL: [Self; 2] = [Self::ForwardEuler, Self::Leapfrog];
 
     /// Name in study files.
+    #[inline]
     pub fn name(self) -> &'static str {
         match self {
             Self::ForwardEuler => "forward-euler",
@@ -35,6 +36,7 @@ impl Scheme {
 
     /// Whether this is the paper's; records of it say nothing of the scheme.
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+    #[inline]
     pub fn is_paper(&self) -> bool {
         *self == Self::ForwardEuler
     }

@@ -70,6 +70,7 @@ impl Basis {
     }
 
     /// Last node that a surface at a height (in cells) leaves a spline to stand alone on; none without splines.
+    #[inline]
     pub fn outermost_node(self, height: f64) -> Option<usize> {
         match self {
             Self::Bspline2 => Some(whole(height + 0.5)),

@@ -9,6 +9,7 @@ pub struct SparseRows<T> {
 
 impl<T: Copy> SparseRows<T> {
     /// The operator of some rows.
+    #[inline]
     pub fn of(rows: impl IntoIterator<Item = Vec<(usize, T)>>) -> Self {
         let (mut starts, mut entries) = (vec![0], Vec::new());
         for row in rows {

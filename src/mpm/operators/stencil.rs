@@ -20,6 +20,7 @@ pub struct Stencils<const D: usize, const W: usize> {
 
 impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Room for `points` points, all rows zero.
+    #[inline]
     pub fn with_points(points: usize) -> Self {
         Self {
             first: vec![0; points],
@@ -89,6 +90,7 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
 
     /// The nodes of a point's block with their gradients (1/m), where they are not zero: the
     /// divergence at the point as a functional of a nodal field.
+    #[inline]
     pub fn gradient_row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, Vector<D>)> {
         let mut row = Vec::with_capacity(power(W, D));
         self.visit(grid.node_stride(), point, |node, _, gradient| {

@@ -39,6 +39,7 @@ pub(crate) enum StrainBlocks<'a, const D: usize, const W: usize> {
 
 impl<const D: usize> StrainOperator<D> {
     /// The operator of a choice, with room for so many points.
+    #[inline]
     pub fn of(strain: StrainGradient, points: usize) -> Self {
         match strain {
             StrainGradient::Standard | StrainGradient::Bbar => Self::Basis,
@@ -48,6 +49,7 @@ impl<const D: usize> StrainOperator<D> {
     }
 
     /// Brings the stencils up to the points' places; half-lengths of the domains in m, `[point][direction]`.
+    #[inline]
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>, half_length: &[Vector<D>]) {
         let (places, per_cell) = (cells.place.iter().enumerate(), grid.inverse_cell_size());
         match self {
@@ -89,6 +91,7 @@ impl<const D: usize> StrainOperator<D> {
     }
 
     /// Lowest node of each point's stencil, where it is not that of the basis.
+    #[inline]
     pub fn first(&self) -> &[usize] {
         match self {
             Self::Basis => &[],
@@ -108,6 +111,7 @@ impl<const D: usize> StrainOperator<D> {
     }
 
     /// Visits the nodes that a point's strain depends on, with their gradients, 1/m.
+    #[inline]
     pub fn visit<const W: usize>(
         &self,
         basis: &Stencils<D, W>,

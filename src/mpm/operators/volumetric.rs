@@ -53,6 +53,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// `D` in place: fills `site_values` with what a function gives at each site from a place and the porosity
     /// there. Sites are points, cells at their centres, or cells as means over their points, weighted with
     /// volume.
+    #[inline]
     pub fn evaluate_sites(&mut self, value: impl Fn(&Self, Place, f64) -> f64) {
         let mut sites = std::mem::take(&mut self.site_values);
         match self.method.pressure {
@@ -85,6 +86,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// The skeleton's volumetric rate at the points by the method's own `D` and `R`, 1/s: the trace that B-bar
     /// takes.
+    #[inline]
     pub fn recover_dilation_rates(&mut self) {
         self.evaluate_sites(|body, place, _| body.divergence_at(place, &body.nodes.solid_velocity));
         let at = PointsInCells::of(&self.grid, &self.cells, &self.nodes, &self.points.position);
@@ -93,6 +95,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// `D` and `R` of the body's method as rows; gradients are those of small strain.
+    #[inline]
     pub fn volumetric_rows(&self) -> VolumetricRows<D> {
         let is_by_cells = self.method.pressure.is_by_cells();
         let places = if is_by_cells { self.grid.cell_count() } else { self.points.len() };
@@ -121,6 +124,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
+    #[inline]
     fn divergence_rows(&self, sites: &[usize], number: &[usize]) -> Vec<VectorRow<D>> {
         let at_point = |point: usize| self.basis.gradient_row(&self.grid, point);
         match self.method.pressure {
@@ -144,6 +148,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 }
 
 /// Adds to a node's coefficients in a short row.
+#[inline]
 fn accumulate<const D: usize>(row: &mut VectorRow<D>, node: usize, coefficients: &Vector<D>) {
     let place = row.iter().position(|entry| entry.0 == node).unwrap_or_else(|| {
         row.push((node, [0.0; D]));
@@ -156,17 +161,20 @@ fn accumulate<const D: usize>(row: &mut VectorRow<D>, node: usize, coefficients:
 
 impl<const D: usize> VolumetricRows<D> {
     /// Divergence of a nodal field at every site.
+    #[inline]
     pub fn at_sites(&self, field: &[Vector<D>]) -> Vec<f64> {
         self.divergence.iter().map(|row| applied(row, field)).collect()
     }
 
     /// Values at the points from those at the sites.
+    #[inline]
     pub fn at_points(&self, sites: &[f64]) -> Vec<f64> {
         let value = |row: &Vec<(usize, f64)>| row.iter().map(|(site, weight)| weight * sites[*site]).sum();
         self.recovery.iter().map(value).collect()
     }
 
     /// The volumetric rate at a point as a functional of the field: `R D` without moduli.
+    #[inline]
     pub fn dilation_row(&self, point: usize) -> VectorRow<D> {
         let mut row = VectorRow::new();
         for (site, weight) in &self.recovery[point] {
@@ -179,6 +187,7 @@ impl<const D: usize> VolumetricRows<D> {
 }
 
 /// A functional applied to a field.
+#[inline]
 pub fn applied<const D: usize>(row: &VectorRow<D>, field: &[Vector<D>]) -> f64 {
     let mut sum = 0.0;
     for (node, coefficients) in row {

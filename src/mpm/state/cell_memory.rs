@@ -46,6 +46,7 @@ impl<const D: usize> CellMemory<D> {
     }
 
     /// Takes the places of the points in the cells that they were last located in.
+    #[inline]
     fn place(&mut self, cells: &Cells<D>, points: &Points<D>) {
         self.weight.fill(0.0);
         self.centre.fill([0.0; D]);
@@ -71,6 +72,7 @@ impl<const D: usize> CellMemory<D> {
     }
 
     /// Fits the parabolas to a field of the points.
+    #[inline]
     fn fit(
         &mut self,
         grid: &Grid<D>,
@@ -96,6 +98,7 @@ impl<const D: usize> CellMemory<D> {
 
     /// Slope and half the second derivative of the parabola through a cell's mean and two others':
     /// those of both neighbours, or of two on one side; with one neighbour, a line.
+    #[inline]
     fn parabola(&self, grid: &Grid<D>, cells: &Cells<D>, cell: usize, d: usize) -> (f64, f64) {
         let stride = grid.cell_stride()[d];
         let [lower, upper] = [cell - stride, cell + stride];
@@ -131,6 +134,7 @@ impl<const D: usize> CellMemory<D> {
 
     /// Spreads pressure, effective stress and volume ratio over the points of each cell by the
     /// parabolas through the cells' means.
+    #[inline]
     pub fn spread_over_points(&mut self, grid: &Grid<D>, cells: &Cells<D>, points: &mut Points<D>) {
         self.place(cells, points);
         self.fit(grid, cells, &points.initial_volume, |point| points.pressure[point]);

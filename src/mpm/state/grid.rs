@@ -56,11 +56,13 @@ impl<const D: usize> Grid<D> {
     }
 
     /// Number of nodes, ghosts included.
+    #[inline]
     pub fn node_count(&self) -> usize {
         self.node_stride[D - 1] * (self.cells[D - 1] + 2 * GHOST_LAYERS + 1)
     }
 
     /// Number of cells, ghosts included.
+    #[inline]
     pub fn cell_count(&self) -> usize {
         self.cell_stride[D - 1] * (self.cells[D - 1] + 2 * GHOST_LAYERS)
     }
@@ -90,6 +92,7 @@ impl<const D: usize> Grid<D> {
     }
 
     /// Whether a point lies in the grid or on its rim.
+    #[inline]
     pub fn holds(&self, position: &Vector<D>) -> bool {
         (0..D).all(|direction| {
             let cells = position[direction] * self.inverse_cell_size;
@@ -145,6 +148,7 @@ impl<const D: usize> Grid<D> {
     }
 
     /// Place of a node, m.
+    #[inline]
     pub fn node_position(&self, flat: usize) -> Vector<D> {
         let mut rest = flat;
         let mut position = [0.0; D];
@@ -157,6 +161,7 @@ impl<const D: usize> Grid<D> {
     }
 
     /// Centre of a cell, m.
+    #[inline]
     pub fn cell_centre(&self, flat: usize) -> Vector<D> {
         let mut rest = flat;
         let mut centre = [0.0; D];

@@ -33,6 +33,7 @@ pub struct PointsInCells<'a, const D: usize> {
 
 impl<'a, const D: usize> PointsInCells<'a, D> {
     /// The parts of a body.
+    #[inline]
     pub fn of(
         grid: &'a Grid<D>,
         cells: &'a Cells<D>,
@@ -60,6 +61,7 @@ pub enum RecoveryOperator<const D: usize> {
 
 impl<const D: usize> RecoveryOperator<D> {
     /// The operator of a method, with room for a grid and so many points.
+    #[inline]
     pub fn of(method: Method, grid: &Grid<D>, points: usize) -> Self {
         match (method.pressure.is_by_cells(), method.recovery) {
             (false, Recovery::NullSpace) => Self::NullSpace(CellPlanes::with_cells(grid.cell_count())),
@@ -71,6 +73,7 @@ impl<const D: usize> RecoveryOperator<D> {
     }
 
     /// Brings the operator up to the points' places.
+    #[inline]
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
         if let Self::Patch(rows) = self {
             rows.build(grid, cells);
@@ -102,6 +105,7 @@ impl<const D: usize> RecoveryOperator<D> {
     }
 
     /// The same as rows, `[point][entry]` of site and weight.
+    #[inline]
     pub fn rows(&self, at: &PointsInCells<'_, D>) -> Vec<Vec<(usize, f64)>> {
         let points = 0..at.positions.len();
         match self {
@@ -148,6 +152,7 @@ pub(crate) mod tests {
             Self { grid, cells, nodes, points }
         }
 
+        #[inline]
         pub(crate) fn at(&self) -> PointsInCells<'_, 2> {
             let Self { grid, cells, nodes, points } = self;
             PointsInCells::of(grid, cells, nodes, &points.position)
@@ -155,11 +160,13 @@ pub(crate) mod tests {
     }
 
     /// A row applied to values.
+    #[inline]
     pub(crate) fn applied(row: &[(usize, f64)], values: &[f64]) -> f64 {
         row.iter().map(|(place, weight)| weight * values[*place]).sum()
     }
 
     #[test]
+    #[inline]
     fn every_way_is_one_in_place_and_as_rows() {
         let block = SiteBlock::new(0.25, [4, 3], 2);
         let at = block.at();

@@ -47,11 +47,13 @@ impl<const D: usize> Plane<D> {
 
 impl<const D: usize> CellPlanes<D> {
     /// Room for so many cells.
+    #[inline]
     pub fn with_cells(count: usize) -> Self {
         Self { planes: vec![Plane::EMPTY; count] }
     }
 
     /// Fits the planes to the values of the points.
+    #[inline]
     pub fn fit(&mut self, at: &PointsInCells<'_, D>, value: impl Fn(usize) -> f64) {
         self.planes.fill(Plane::EMPTY);
         for (point, place) in at.positions.iter().enumerate() {
@@ -91,6 +93,7 @@ impl<const D: usize> CellPlanes<D> {
 }
 
 /// The same as rows: what each point keeps of the values of its cell's points.
+#[inline]
 pub fn rows<const D: usize>(at: &PointsInCells<'_, D>) -> Vec<Vec<(usize, f64)>> {
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); at.grid.cell_count()];
     for (point, cell) in at.cells.of_point.iter().enumerate() {
@@ -114,6 +117,7 @@ pub fn rows<const D: usize>(at: &PointsInCells<'_, D>) -> Vec<Vec<(usize, f64)>>
 /// Directions along which a slope of the pressure changes a force on the corners of a cell: forces along one
 /// direction feel the slopes along all others, where a corner is free to follow them. Between two rollers none
 /// is, and a cell of a plane is one of a column.
+#[inline]
 fn felt_slopes<const D: usize>(at: &PointsInCells<'_, D>, cell: usize) -> [bool; D] {
     let nodes = at.nodes;
     let follows: [bool; D] = std::array::from_fn(|d| {
