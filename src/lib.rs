@@ -22,6 +22,38 @@
 //! | `judge/` | verdicts on studies, scores of external results, comparisons of methods |
 //! | `render/` | tables, charts, pages; sees records and verdicts, and never a solver |
 //! | `cli/` | one file per subcommand |
+//! # The equations
+//!
+//! Numbers are those of `docs/theory.md`; the paper is Zheng et al. (2021).
+//!
+//! | equation | what it is | place |
+//! | :-- | :-- | :-- |
+//! | 1, 2 (Zheng et al. Eqs 1, 2) | accelerations of water and mixture | `src/mpm/explicit/mod.rs:nodal_accelerations`; of frozen bodies `src/mpm/assembled/step.rs:accelerate` |
+//! | 3, 5 | porosity | `src/soil/material.rs:porosity_at` |
+//! | 4, 4' (Zheng et al. Eq. 6) | rate of the pressure | `src/mpm/body.rs:volume_rate` |
+//! | 6, 7 (Zheng et al. Eqs 7, 8) | stress–strain laws and conductivity | `src/soil/law.rs:uniaxial_stress_ratio`, `src/soil/law.rs:conductivity` |
+//! | 8 | selective reduced integration | `src/mpm/explicit/mod.rs:update_pressure` |
+//! | 9, 10, 11 | time-step limits by formula | `src/mpm/critical_step/formula.rs:fastest_wave_speed`, `src/mpm/critical_step/formula.rs:combined_limit` |
+//! | 12 | consolidation | `src/exact/consolidation/mod.rs:isochrone` |
+//! | 13 | Xie & Leo's column | `src/exact/xie_leo.rs:fields` |
+//! | 14 | modes of the dynamic column | `src/exact/dynamic_column/modes.rs:amplitude` |
+//! | 15 | large strain in general | `src/exact/large_strain/diffusion.rs:coefficients` |
+//!
+//! # The step
+//!
+//! Section 4 of the paper, read in `src/mpm/explicit/mod.rs:kick_and_drift`.
+//!
+//! | step | place |
+//! | :-- | :-- |
+//! | 1, grid | `src/mpm/explicit/mod.rs:reset_grid`, `src/mpm/explicit/points_to_nodes.rs:map_masses_and_velocities` |
+//! | 2, accelerations | `src/mpm/explicit/points_to_nodes.rs:map_forces`, `src/mpm/explicit/mod.rs:nodal_accelerations` |
+//! | 3, nodal velocities | `src/mpm/explicit/mod.rs:nodal_velocities` |
+//! | 4, points | `src/mpm/explicit/mod.rs:advance_points` |
+//! | 5, mapping back | `src/mpm/explicit/points_to_nodes.rs:map_velocities` |
+//! | 6, effective stress | `src/mpm/explicit/mod.rs:update_effective_stress` |
+//! | 7, pressure | `src/mpm/explicit/mod.rs:update_pressure`, `src/mpm/operators/recovery/mod.rs:recover` |
+//! | 8, next step | `src/mpm/run/driver.rs:solve` |
+//!
 //! # A study from Rust
 //!
 //! What `oedometer check` does with a file, on a text: run its cases, judge what it expects.
@@ -82,6 +114,7 @@ mod wording;
 
 // What a study is, and how it is run and judged.
 pub use campaign::{RunOptions, Selected, run_case, run_studies, run_study};
+pub use case::norm::Norm;
 pub use case::quantity::{Quantity, Sample};
 pub use case::tier::Tier;
 pub use case::{Case, Task};
@@ -89,6 +122,8 @@ pub use cli::main;
 pub use golden::compare::compare;
 pub use golden::tolerance::spread_by_group;
 pub use golden::{GoldenError, GoldenFile, values_of};
+pub use import::table::SampledState;
+pub use judge::score::score;
 pub use judge::soundness;
 pub use judge::study_check::{CheckEnd, StudyCheck};
 pub use measure::record_checks::{balance_checks, start_checks};

@@ -352,6 +352,24 @@ fn named_if_late(mut record: Record, seconds: f64) -> Record {
 
 /// Runs one case; `alone` says whether nothing else competes for the cores meanwhile.
 ///
+/// ```
+/// use oedometer::exact::ReferenceKind;
+/// use oedometer::{Kernel, Norm, Quantity, Sample, Study, StudySource, run_case};
+///
+/// let text = r#"
+/// title = "One column"
+/// scene = "terzaghi"
+/// output = { time_factors = [0.1] }
+/// sweep = [{ method = ["GC-SRI-patch"], integrator = ["implicit"], cells = [20] }]
+/// "#;
+/// let source = StudySource { name: "one.toml".to_owned(), text: text.to_owned() };
+/// let planned = &Study::check(&source).expect("a sound study").planned[0];
+/// let record = run_case(&planned.case, &[ReferenceKind::Terzaghi], Kernel::Fastest, true, &|_, _| true)?;
+/// let error = record.error(Quantity::Pressure, Sample::Centres, Norm::L2, "terzaghi", 0.1);
+/// assert!(error.expect("measured").value < 1e-2);
+/// # Ok::<(), oedometer::exact::ExactError>(())
+/// ```
+///
 /// # Errors
 /// When the exact solutions refuse the case's parameters.
 pub fn run_case(

@@ -2,29 +2,19 @@
 //!
 //! Data goes to standard output, everything else to standard error.
 
-pub mod accept;
-pub mod check;
-pub mod completions;
+pub mod commands;
 pub mod destination;
-pub mod exact;
 pub mod exit;
-pub mod explain;
-pub mod list;
-pub mod merge;
 pub mod output;
 pub mod overrides;
-pub mod plan;
 pub mod progress;
-pub mod report;
-pub mod run;
-pub mod schema;
-pub mod score;
-pub mod solve;
-pub mod spread;
-pub mod stability;
 pub mod stream;
 pub mod study_files;
 
+use crate::cli::commands::{
+    accept, check, completions, exact, explain, list, merge, plan, report, run, schema, score, solve, spread,
+    stability,
+};
 use crate::cli::exit::Exit;
 use crate::cli::stream::{say, written};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};

@@ -95,7 +95,7 @@ impl StudyLines {
         self.lines.push("[[sweep]]".to_owned());
         self.lines.extend(sweep);
         let text = self.lines.join("\n") + "\n";
-        crate::cli::run::checked(&StudySource { name: "command line".to_owned(), text }, purpose)
+        crate::cli::commands::run::checked(&StudySource { name: "command line".to_owned(), text }, purpose)
     }
 }
 

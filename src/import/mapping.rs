@@ -242,6 +242,11 @@ impl Mapping {
 
     /// A column that lacks a declaration, and how to give it.
     fn undeclared(&self) -> Option<(String, String)> {
+        self.undeclared_column().or_else(|| self.undeclared_place()).or_else(|| self.undeclared_layout())
+    }
+
+    /// A column without its unit, sign or end; or no column at all.
+    fn undeclared_column(&self) -> Option<(String, String)> {
         let (columns, units, sign) = (&self.columns, &self.units, &self.sign);
         let has_stress = units.stress.is_some();
         let has_displacement = units.displacement.is_some();
@@ -292,12 +297,17 @@ impl Mapping {
                     .to_owned(),
             ));
         }
-        if rows.iter().all(|(_, given, ..)| !given) {
-            return Some((
+        rows.iter().all(|(_, given, ..)| !given).then(|| {
+            (
                 "no column to score is named".to_owned(),
                 "name `p`, `u_y`, `u_x` or `effective_stress` in [columns]".to_owned(),
-            ));
-        }
+            )
+        })
+    }
+
+    /// Places, volumes and times that cannot be found.
+    fn undeclared_place(&self) -> Option<(String, String)> {
+        let columns = &self.columns;
         let is_current = self.position.y == StatedPlace::Current;
         for (place, given, component, has_component) in [
             ("y", true, "u_y", columns.u_y.is_some()),
@@ -319,12 +329,16 @@ impl Mapping {
                 "give what the volumes of all samples add up to".to_owned(),
             ));
         }
-        if columns.t.is_none() && self.time.files.is_empty() {
-            return Some((
+        (columns.t.is_none() && self.time.files.is_empty()).then(|| {
+            (
                 "no time is declared".to_owned(),
                 "name the column `t`, or give [time] files = { \"step_10.csv\" = 8.175 }".to_owned(),
-            ));
-        }
+            )
+        })
+    }
+
+    /// Marks of the file that no file can have.
+    fn undeclared_layout(&self) -> Option<(String, String)> {
         (!self.csv.delimiter.is_ascii() || !self.csv.comment.is_none_or(|mark| mark.is_ascii())).then(|| {
             ("a delimiter or comment mark is no ASCII character".to_owned(), "use \",\" or \";\"".to_owned())
         })

@@ -91,3 +91,21 @@ fn a_planted_arrow_is_named() {
     let in_a_test = "fn f() {}\n\n#[cfg(test)]\nmod tests {\n    use crate::scene::SceneKind;\n}\n";
     assert!(forbidden("mpm", "elementary soil", in_a_test).is_empty());
 }
+
+/// The tables of equations and steps on the crate's front page name functions that are there.
+#[test]
+fn every_equation_and_step_has_its_function() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = fs::read_to_string(root.join("src/lib.rs")).expect("lib.rs");
+    let places: Vec<(&str, &str)> = page
+        .lines()
+        .filter(|line| line.starts_with("//! |"))
+        .flat_map(|line| line.split('`').skip(1).step_by(2))
+        .filter_map(|code| code.split_once(".rs:"))
+        .collect();
+    assert!(places.len() > 20, "{} places", places.len());
+    for (file, function) in places {
+        let source = fs::read_to_string(root.join(format!("{file}.rs"))).expect(file);
+        assert!(source.contains(&format!("fn {function}")), "{file}.rs has no function {function}");
+    }
+}

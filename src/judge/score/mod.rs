@@ -105,6 +105,28 @@ pub fn time_factors(parameters: &ColumnParameters, states: &[SampledState]) -> V
 
 /// Holds states against references.
 ///
+/// ```
+/// use oedometer::exact::{ColumnParameters, Reference, ReferenceKind};
+/// use oedometer::{Sample, SampledState, score};
+///
+/// let column = ColumnParameters::default();
+/// let exact = Reference::new(ReferenceKind::Terzaghi, &column, &[0.1])?;
+/// // An external result whose pressure is one per cent too large everywhere.
+/// let depths = [0.1, 0.3, 0.5, 0.7, 0.9];
+/// let pressure = |zeta: &f64| exact.fields(0.1, *zeta).map(|fields| 1.01 * fields.pressure);
+/// let state = SampledState {
+///     time: 0.1 / column.time_factor(1.0),
+///     initial_height: depths.iter().map(|zeta| (1.0 - zeta) * column.height).collect(),
+///     volume: vec![0.2; depths.len()],
+///     pressure: depths.iter().map(pressure).collect::<Result<_, _>>()?,
+///     ..SampledState::default()
+/// };
+/// let score = score(&column, &[ReferenceKind::Terzaghi], &[state], Sample::Points)?;
+/// assert!(!score.errors.is_empty());
+/// assert!(score.errors.iter().all(|row| (row.value.abs() - 0.01).abs() < 1e-6));
+/// # Ok::<(), oedometer::exact::ExactError>(())
+/// ```
+///
 /// # Errors
 /// When a reference refuses the column or a time.
 pub fn score(

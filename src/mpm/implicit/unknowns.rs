@@ -119,7 +119,7 @@ impl<const D: usize> Unknowns<D> {
         for (number, (_, kind)) in sorted.iter().enumerate() {
             match *kind {
                 UnknownKind::Displacement { node, direction } => {
-                    self.displacement[node][direction] = Some(number)
+                    self.displacement[node][direction] = Some(number);
                 }
                 UnknownKind::Pressure { site } => self.pressure[site] = number,
             }

@@ -20,7 +20,6 @@ pub struct Row<const W: usize> {
     clippy::cast_sign_loss,
     reason = "coordinates in cells are positive, the ghost layers see to it"
 )]
-#[inline]
 pub(crate) fn whole(in_cells: f64) -> usize {
     in_cells as u32 as usize
 }

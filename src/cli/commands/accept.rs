@@ -1,10 +1,10 @@
 //! `oedometer accept`: the present values of a study become its golden values.
 
 use crate::case::tier::Tier;
-use crate::cli::check::run_quietly;
+use crate::cli::commands::check::run_quietly;
+use crate::cli::commands::run::{jobs_of, load};
 use crate::cli::destination::is_on;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::run::{jobs_of, load};
 use crate::cli::stream::say;
 use crate::golden::tolerance::spread_by_group;
 use crate::golden::{GoldenFile, values_of};
@@ -32,7 +32,7 @@ pub struct Arguments {
     #[arg(long, value_name = "TEXT")]
     reason: String,
     /// Folder of the golden values
-    #[arg(long, value_name = "DIR", default_value = crate::cli::check::GOLDEN)]
+    #[arg(long, value_name = "DIR", default_value = crate::cli::commands::check::GOLDEN)]
     golden: PathBuf,
     /// Cases at the same time; all cores where not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]

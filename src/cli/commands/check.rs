@@ -2,11 +2,11 @@
 
 use crate::campaign::{RunOptions, RunReport, Selected, run_studies};
 use crate::case::tier::Tier;
+use crate::cli::commands::run::{jobs_of, load_or_shipped};
 use crate::cli::destination::{append, is_on, path_in, write_document};
 use crate::cli::exit::{Ended, Exit, sentence};
 use crate::cli::output::{TableFormat, coloured, json_of};
 use crate::cli::progress::StudyBar;
-use crate::cli::run::{jobs_of, load_or_shipped};
 use crate::cli::stream::{print_data, say};
 use crate::golden::GoldenFile;
 use crate::golden::case_changes::CaseChange;

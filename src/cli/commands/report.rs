@@ -2,8 +2,8 @@
 
 use crate::campaign::RunOptions;
 use crate::case::tier::Tier;
+use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
 use crate::cli::exit::Exit;
-use crate::cli::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
 use crate::cli::stream::say;
 use crate::record::whole_file::write_whole;
 use crate::render::page::{figures, render_html, render_markdown};

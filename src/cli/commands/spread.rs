@@ -3,11 +3,11 @@
 
 use crate::campaign::run_case;
 use crate::case::tier::Tier;
-use crate::cli::accept::refuse_without_origin;
-use crate::cli::check::run_quietly;
+use crate::cli::commands::accept::refuse_without_origin;
+use crate::cli::commands::check::run_quietly;
+use crate::cli::commands::run::{jobs_of, load_or_shipped};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
-use crate::cli::run::{jobs_of, load_or_shipped};
 use crate::cli::stream::print_data;
 use crate::golden::tolerance::spread_by_group;
 use crate::golden::{GoldenFile, values_of};

@@ -93,7 +93,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             print_data(&format!("\n{}", phases_table(&phases, &record).to_text()?))?;
         }
         SolveFormat::Csv if arguments.profile => {
-            say!("{}", phases_table(&phases, &record).to_text()?.trim_end())
+            say!("{}", phases_table(&phases, &record).to_text()?.trim_end());
         }
         _ => {}
     }

@@ -4,9 +4,9 @@
 use crate::campaign::run_case;
 use crate::case::Case;
 use crate::case::tier::Tier;
+use crate::cli::commands::run::{DEFAULT_RESULTS, load_or_shipped};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
-use crate::cli::run::{DEFAULT_RESULTS, load_or_shipped};
 use crate::cli::stream::{print_data, say};
 use crate::golden::{GoldenError, GoldenFile};
 use crate::judge::explanation::explain;
@@ -32,7 +32,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
     /// Folder of the golden values
-    #[arg(long, value_name = "DIR", default_value = crate::cli::check::GOLDEN)]
+    #[arg(long, value_name = "DIR", default_value = crate::cli::commands::check::GOLDEN)]
     golden: PathBuf,
     /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]

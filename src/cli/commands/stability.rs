@@ -2,12 +2,12 @@
 
 use crate::campaign::{RunOptions, run_study};
 use crate::case::tier::Tier;
+use crate::cli::commands::run::jobs_of;
+use crate::cli::commands::solve::SolveFormat;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::json_of;
 use crate::cli::overrides;
 use crate::cli::overrides::StudyLines;
-use crate::cli::run::jobs_of;
-use crate::cli::solve::SolveFormat;
 use crate::cli::stream::print_data;
 use crate::mpm::critical_step::observed::CriticalStep;
 use crate::record::{Record, Status};

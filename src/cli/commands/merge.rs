@@ -1,8 +1,8 @@
 //! `oedometer merge`: the records of shards into one folder, with the whole table of each study.
 
 use crate::case::Case;
+use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped, write_table};
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped, write_table};
 use crate::cli::stream::say;
 use crate::record::Record;
 use crate::record::origins::Origins;

@@ -2,8 +2,8 @@
 
 use crate::case::norm::Norm;
 use crate::case::quantity::Quantity;
+use crate::cli::commands::score::results::{Read, Results};
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::score::results::{Read, Results};
 use crate::cli::stream::say;
 use crate::exact::reference::ReferenceKind;
 use crate::wording::typed;

@@ -4,11 +4,11 @@ pub mod gate;
 pub mod results;
 
 use crate::case::Case;
+use crate::cli::commands::score::results::{Held, Results};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
 use crate::cli::overrides;
 use crate::cli::overrides::StudyLines;
-use crate::cli::score::results::{Held, Results};
 use crate::cli::stream::{print_data, say};
 use crate::import::mapping::{CONVENTION, Mapping, PLANE_CONVENTION};
 use crate::judge::score::Score;

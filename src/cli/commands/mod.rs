@@ -1,0 +1,17 @@
+//! The subcommands, one file each.
+
+pub mod accept;
+pub mod check;
+pub mod completions;
+pub mod exact;
+pub mod explain;
+pub mod list;
+pub mod merge;
+pub mod plan;
+pub mod report;
+pub mod run;
+pub mod schema;
+pub mod score;
+pub mod solve;
+pub mod spread;
+pub mod stability;
