@@ -463,7 +463,8 @@ fn every_place_in_the_code_that_contributing_names_exists() {
         let is_path = |c: char| c.is_alphanumeric() || "_-./".contains(c);
         if code.contains('/')
             && code.chars().all(is_path)
-            && (code.ends_with(".rs") || ["src/", "tests/", "studies/"].iter().any(|of| code.starts_with(of)))
+            && (Path::new(code).extension().is_some_and(|extension| extension == "rs")
+                || ["src/", "tests/", "studies/"].iter().any(|of| code.starts_with(of)))
         {
             assert!(root().join(code).exists(), "CONTRIBUTING.md names {code}");
             named += 1;
