@@ -4,7 +4,7 @@
 //! selections of expectations, the JSON Schema and the columns of tables follow from it.
 
 use crate::case::{Case, step_label};
-use crate::exact::cosine_layer::Base;
+use crate::exact::parameters::Base;
 use crate::mpm::explicit::Drag;
 use crate::mpm::explicit::scheme::Scheme;
 use crate::mpm::method::Method;

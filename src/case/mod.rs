@@ -285,7 +285,7 @@ pub fn step_label(rule: &TimeStepRule) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::cosine_layer::Base;
+    use crate::exact::parameters::Base;
     use crate::mpm::explicit::scheme::Scheme;
     use crate::soil::law::Law;
 

@@ -21,6 +21,7 @@ pub mod consolidation;
 pub mod cosine_layer;
 pub mod dynamic_column;
 pub(crate) mod exact_error;
+pub(crate) mod field_values;
 pub mod large_strain;
 pub(crate) mod parameters;
 pub(crate) mod quadrature;
@@ -30,5 +31,6 @@ pub mod terzaghi;
 pub mod xie_leo;
 
 pub use crate::exact::exact_error::{ExactError, normal};
-pub use crate::exact::parameters::ColumnParameters;
-pub use crate::exact::reference::{Accuracy, FieldValues, Reference, ReferenceKind};
+pub use crate::exact::field_values::{Accuracy, FieldValues};
+pub use crate::exact::parameters::{Base, ColumnParameters};
+pub use crate::exact::reference::{Reference, ReferenceKind};

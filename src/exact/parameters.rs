@@ -1,7 +1,43 @@
 //! The column and its material, as plain SI numbers.
 
-use crate::exact::cosine_layer::Base;
 use crate::exact::exact_error::{ExactError, normal, positive};
+
+/// How a layer rests on its impermeable base.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Default,
+    serde::Serialize,
+    serde::Deserialize,
+    schemars::JsonSchema,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum Base {
+    /// No displacement.
+    #[default]
+    Rough,
+    /// No vertical displacement and no shear.
+    Smooth,
+}
+
+impl Base {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Rough, Self::Smooth];
+
+    /// Name in study files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rough => "rough",
+            Self::Smooth => "smooth",
+        }
+    }
+}
 
 /// A saturated column of soil on an impermeable base, drained and loaded at its top.
 ///

@@ -6,6 +6,7 @@ use core::str::FromStr;
 use crate::exact::cosine_layer::{CosineLayer, LayerState};
 use crate::exact::dynamic_column::{DynamicColumn, Start};
 use crate::exact::exact_error::ExactError;
+use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::large_strain::LargeStrain;
 use crate::exact::large_strain::diffusion::{LargeStrainModel, Water};
 use crate::exact::parameters::ColumnParameters;
@@ -98,27 +99,6 @@ impl FromStr for ReferenceKind {
             .find(|kind| kind.name() == name)
             .ok_or_else(|| ExactError::UnknownReference(name.to_owned()))
     }
-}
-
-/// Fields at one depth and time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FieldValues {
-    /// Excess pore pressure, compression positive, Pa.
-    pub pressure: f64,
-    /// Vertical effective (Cauchy) stress, *tension positive*: `p − q` under a load, Pa.
-    pub effective_stress: f64,
-    /// Displacement of the solid, upward positive, from the unloaded state before `t = 0`
-    /// (single mode: from the state at `t = 0`), m.
-    pub displacement: f64,
-}
-
-/// How far a reference itself can be trusted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Accuracy {
-    /// Number of terms (modes, images, unknowns) used.
-    pub terms: usize,
-    /// Bound on the truncation error of the pressure over the load, the worst over the depth.
-    pub tail_bound: f64,
 }
 
 /// An exact solution for one set of parameters.

@@ -4,8 +4,8 @@ use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
 use crate::elementary;
 use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor};
+use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::parameters::ColumnParameters;
-use crate::exact::reference::{Accuracy, FieldValues};
 
 /// Decay of `p = σ' = p_0 sin(M_0 ζ)`, `M_0 = π/2`, without any load.
 ///

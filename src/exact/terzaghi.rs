@@ -2,8 +2,8 @@
 
 use crate::exact::consolidation::{consolidated_below, isochrone};
 use crate::exact::exact_error::ExactError;
+use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::parameters::ColumnParameters;
-use crate::exact::reference::{Accuracy, FieldValues};
 
 /// Small-strain consolidation of a column that drains at its top (Terzaghi 1943).
 ///

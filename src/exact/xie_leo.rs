@@ -3,8 +3,8 @@
 use crate::elementary;
 use crate::exact::consolidation::{consolidated_below, isochrone};
 use crate::exact::exact_error::{ExactError, positive};
+use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::parameters::ColumnParameters;
-use crate::exact::reference::{Accuracy, FieldValues};
 
 /// Xie & Leo (2004): consolidation at large strain of a soil with constant
 /// `m_vl = −(1/(1 + e)) de/dσ'` and `k = k_0 J²`, incompressible water.

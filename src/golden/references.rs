@@ -2,10 +2,11 @@
 //! in one shows at its own numbers, and not only in the errors of those scenes that happen to use it.
 
 use crate::elementary;
-use crate::exact::cosine_layer::{Base, CosineLayer};
+use crate::exact::cosine_layer::CosineLayer;
 use crate::exact::dynamic_column::{DynamicColumn, Start};
 use crate::exact::exact_error::ExactError;
 use crate::exact::large_strain::diffusion::Water;
+use crate::exact::parameters::Base;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::exact::xie_leo::{Drainage, XieLeo};

@@ -3,7 +3,8 @@
 use crate::case::Case;
 use crate::exact::cosine_layer::{LayerFields, LayerState};
 use crate::exact::exact_error::ExactError;
-use crate::exact::reference::{FieldValues, Reference};
+use crate::exact::field_values::FieldValues;
+use crate::exact::reference::Reference;
 use crate::mpm::run::snapshot::{PlaneSamples, Samples};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;

@@ -1,16 +1,25 @@
-//! A scene's problem in the dimension that its case asks for: where one `match` turns a number into
-//! a type.
+//! A scene's problem for the solver: grid, lattice of points, start and load. One `match` turns the number
+//! of dimensions into a type.
 
 use crate::exact::exact_error::ExactError;
+use crate::exact::parameters::Base;
 use crate::mpm::body::Problem;
 use crate::mpm::critical_step::observed::{CriticalStep, Stopped, critical_step};
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::method::Method;
+use crate::mpm::operators::surface_load::LoadShape;
 use crate::mpm::run::outcome::Outcome;
 use crate::mpm::run::{Observer, Schedule, run};
+use crate::mpm::state::grid::Grid;
+use crate::mpm::state::nodes::Support;
+use crate::mpm::state::points::Points;
 use crate::scene::SceneKind;
-use crate::scene::column::{Column, column_problem};
+use crate::scene::column::Column;
+use crate::scene::definition::{SceneLoad, SceneStart};
 use crate::soil::material::Material;
+
+/// Cells above the column, so that a surface that rises stays on the grid.
+const HEADROOM: usize = 1;
 
 /// A problem of one or of two dimensions.
 #[derive(Clone, Debug)]
@@ -67,4 +76,54 @@ impl SceneProblem {
             Self::Plane(problem) => run(problem, schedule, observer),
         }
     }
+}
+
+/// The scene's problem on `cells` cells over the height with `points_per_cell` points each, in the
+/// dimension that is asked for.
+///
+/// # Errors
+/// When the parameters are impossible.
+pub fn column_problem<const D: usize>(
+    scene: SceneKind,
+    column: &Column,
+    soil: &Material,
+    method: Method,
+    cells: usize,
+    points_per_cell: usize,
+) -> Result<Problem<D>, ExactError> {
+    let cell_size = column.points.cell_size(column.height, cells);
+    let mut extent = [column.cells_across(cells).unwrap_or(1); D];
+    extent[D - 1] = cells;
+    let mut points = Points::lattice(cell_size, extent, points_per_cell);
+    column.points.arrange(&mut points, cell_size, cells);
+    let definition = scene.definition();
+    let mut initial_gradient = [[0.0; D]; D];
+    if let SceneStart::OverDepth(start) = &definition.start {
+        let start = start(column, soil)?;
+        start.apply(&mut points, column.height)?;
+        initial_gradient[D - 1][D - 1] = start.vertical_gradient;
+    }
+    extent[D - 1] += HEADROOM;
+    let support = match column.base {
+        Some(Base::Rough) => Support::oedometer().on_rough_base(),
+        Some(Base::Smooth) | None => Support::oedometer(),
+    };
+    Ok(Problem {
+        grid: Grid::new(cell_size, extent),
+        support,
+        points,
+        material: *soil,
+        method,
+        configuration: method.configuration_or(scene.configuration()),
+        load: if scene.is_loaded() { column.load } else { 0.0 },
+        load_shape: match definition.load {
+            SceneLoad::Cosine => LoadShape::Cosine { length: column.horizontal_extent },
+            SceneLoad::None | SceneLoad::Sudden | SceneLoad::SuddenOrGrowing(_) => LoadShape::Uniform,
+        },
+        undrained_start: scene.start_is_solved(),
+        loading_time: column.loading_time,
+        initial_gradient,
+        pressure_scale: column.load.abs(),
+        is_bounded: true,
+    })
 }

@@ -7,7 +7,8 @@ use crate::mpm::run::outcome::{Outcome, RunStatus};
 use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};
 use crate::scene::SceneKind;
-use crate::scene::column::{Column, column_problem};
+use crate::scene::column::Column;
+use crate::scene::problem::column_problem;
 use crate::soil::material::Material;
 use proptest::prelude::*;
 

@@ -1,7 +1,7 @@
 //! The paper's grid, 0.1 m × 1.0 m and one cell wide, against its column: one problem, two
 //! dimensions, one result.
 
-use crate::exact::cosine_layer::Base;
+use crate::exact::parameters::Base;
 use crate::mpm::body::Problem;
 use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::method::{Basis, Method};
@@ -10,7 +10,8 @@ use crate::mpm::run::outcome::{Outcome, RunStatus};
 use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};
 use crate::scene::SceneKind;
-use crate::scene::column::{Column, column_problem};
+use crate::scene::column::Column;
+use crate::scene::problem::column_problem;
 use crate::soil::material::Material;
 
 const CELLS: usize = 10;

@@ -7,7 +7,7 @@
 use crate::case::keys::{Key, Kind, Value};
 use crate::case::tier::Tier;
 use crate::case::{Case, Task};
-use crate::exact::cosine_layer::Base;
+use crate::exact::parameters::Base;
 use crate::mpm::method::{Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient};
 use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::IntegratorKind;

@@ -7,7 +7,7 @@
 use core::f64::consts::FRAC_2_SQRT_PI;
 
 use crate::elementary;
-use crate::exact::consolidation::SeriesValue;
+use crate::exact::consolidation::series_value::SeriesValue;
 
 /// Terms below this are left out: a tenth of the round-off of 1.
 const ABSOLUTE_TAIL: f64 = 2.2e-17;

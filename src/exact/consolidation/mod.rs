@@ -15,33 +15,17 @@
 pub(crate) mod elapsed;
 pub(crate) mod images;
 pub(crate) mod inverse;
+pub(crate) mod series_value;
 pub(crate) mod sine_series;
 
 pub use crate::exact::consolidation::inverse::time_factor_for_degree;
+pub use crate::exact::consolidation::series_value::SeriesValue;
 pub use crate::exact::consolidation::sine_series::eigenvalue;
 
 use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor};
 
 /// Time factor below which the images are summed, above which the modes.
 pub const SWITCH: f64 = 0.2;
-
-/// A truncated sum, with what was left out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeriesValue {
-    /// The sum.
-    pub value: f64,
-    /// Number of terms in it.
-    pub terms: usize,
-    /// Rigorous bound on the absolute value of the omitted terms' sum.
-    pub tail_bound: f64,
-}
-
-impl SeriesValue {
-    /// A value that needs no sum.
-    fn closed_form(value: f64) -> Self {
-        Self { value, terms: 0, tail_bound: 0.0 }
-    }
-}
 
 /// Isochrone `W(ζ, T)`: 1 at the start, 0 at the drained surface `ζ = 0`.
 ///

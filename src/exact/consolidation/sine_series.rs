@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use crate::elementary;
-use crate::exact::consolidation::SeriesValue;
+use crate::exact::consolidation::series_value::SeriesValue;
 
 /// Terms below this share of the first are left out: a quarter of `f64`'s round-off.
 const RELATIVE_TAIL: f64 = 2.8e-17;

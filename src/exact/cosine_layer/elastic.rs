@@ -3,8 +3,8 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::elementary;
-use crate::exact::cosine_layer::Base;
 use crate::exact::exact_error::ExactError;
+use crate::exact::parameters::Base;
 
 /// Elastic and hydraulic constants of the layer, SI.
 #[derive(Clone, Copy, Debug)]

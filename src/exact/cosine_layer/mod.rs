@@ -10,50 +10,13 @@ use nalgebra::Complex;
 use crate::elementary;
 use crate::exact::cosine_layer::elastic::{Constants, ElasticSolution, Local, Regime};
 use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
+use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::large_strain::diffusion::Water;
-use crate::exact::parameters::ColumnParameters;
-use crate::exact::reference::{Accuracy, FieldValues};
+use crate::exact::parameters::{Base, ColumnParameters};
 
 /// `B T_v` from which on the slowest mode is below round-off, and the contour so near the origin
 /// that flow and stress can hardly be told apart.
 const ENDED: f64 = 100.0;
-
-/// How the layer rests on its impermeable base.
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    PartialEq,
-    Eq,
-    Hash,
-    PartialOrd,
-    Ord,
-    Default,
-    serde::Serialize,
-    serde::Deserialize,
-    schemars::JsonSchema,
-)]
-#[serde(rename_all = "lowercase")]
-pub enum Base {
-    /// No displacement.
-    #[default]
-    Rough,
-    /// No vertical displacement and no shear.
-    Smooth,
-}
-
-impl Base {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Rough, Self::Smooth];
-
-    /// Name in study files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rough => "rough",
-            Self::Smooth => "smooth",
-        }
-    }
-}
 
 /// Layer `0 < x < L`, `0 < y < H` in plane strain, drained at its top under `q cos(πx/L)`, on
 /// rollers at both sides, on an impermeable base (Biot 1941).

@@ -10,11 +10,11 @@ use std::borrow::Cow;
 
 use crate::elementary;
 use crate::exact::consolidation::sine_series::eigenvalue;
+use crate::exact::dynamic_column::modes::ModeState;
 use crate::exact::dynamic_column::steady::Steady;
-use crate::exact::dynamic_column::summation::ModeState;
 use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
+use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::parameters::ColumnParameters;
-use crate::exact::reference::{Accuracy, FieldValues};
 use crate::exact::single_mode::PhaseVelocities;
 
 /// How the column is set in motion.

@@ -277,6 +277,15 @@ impl Mode {
     }
 }
 
+/// Modal coefficients of the departure at one time.
+#[derive(Clone, Debug)]
+pub struct ModeState {
+    pub time_factor: f64,
+    pub amplitudes: Vec<Amplitude>,
+    /// Bound on the omitted modes' pressure and stress, Pa.
+    pub tail: f64,
+}
+
 #[cfg(test)]
 #[path = "../../../tests/unit/exact_dynamic_column_modes.rs"]
 mod tests;

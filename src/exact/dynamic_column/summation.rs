@@ -1,22 +1,13 @@
 //! How many modes are summed, and what the others may add.
 
 use crate::exact::consolidation::sine_series::eigenvalue;
-use crate::exact::dynamic_column::modes::{Amplitude, Drive, Growth, InitialState, Mode};
+use crate::exact::dynamic_column::modes::{Amplitude, Drive, Growth, InitialState, Mode, ModeState};
 use crate::exact::dynamic_column::{DynamicColumn, Start};
 
 /// More modes are not summed: beyond, a wave front is still sharp and the sum's tail says so.
 const MOST_MODES: usize = 4096;
 /// Modes below this share of the load are left out.
 const RELATIVE_TAIL: f64 = 1e-18;
-
-/// Modal coefficients of the departure at one time.
-#[derive(Clone, Debug)]
-pub struct ModeState {
-    pub time_factor: f64,
-    pub amplitudes: Vec<Amplitude>,
-    /// Bound on the omitted modes' pressure and stress, Pa.
-    pub tail: f64,
-}
 
 impl DynamicColumn {
     /// Wave number `M_j/H`, 1/m.

@@ -11,12 +11,12 @@ pub(crate) mod similarity;
 pub use crate::exact::large_strain::diffusion::{LargeStrainModel, Water};
 
 use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor};
+use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::large_strain::diffusion::Diffusion;
 use crate::exact::large_strain::loading::Loading;
 use crate::exact::large_strain::march::{March, Profile, State};
 use crate::exact::large_strain::similarity::Front;
 use crate::exact::parameters::ColumnParameters;
-use crate::exact::reference::{Accuracy, FieldValues};
 
 /// Resolutions: points in depth and growth of the time step. Each is held against the one before.
 const RESOLUTIONS: [(usize, f64); 5] = [(14, 0.45), (20, 0.3), (30, 0.22), (44, 0.15), (64, 0.1)];

@@ -184,7 +184,8 @@ mod tests {
     use crate::mpm::method::Method;
     use crate::mpm::operators::basis::Gimp;
     use crate::scene::SceneKind;
-    use crate::scene::column::{Column, column_problem};
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
     use crate::soil::material::Material;
 
     #[test]

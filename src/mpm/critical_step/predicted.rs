@@ -111,7 +111,8 @@ mod tests {
     use crate::mpm::method::Method;
     use crate::scene::SceneKind;
     use crate::scene::arrangement::Arrangement;
-    use crate::scene::column::{Column, column_problem};
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
     use crate::soil::material::Material;
 
     #[test]

@@ -66,7 +66,8 @@ mod tests {
     use crate::mpm::run::schedule::Kernel;
     use crate::mpm::run::time_step_rule::TimeStepRule;
     use crate::scene::SceneKind;
-    use crate::scene::column::{Column, column_problem};
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
     use crate::soil::material::Material;
 
     fn problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {

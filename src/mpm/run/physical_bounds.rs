@@ -88,7 +88,8 @@ mod tests {
     use super::*;
     use crate::mpm::method::Method;
     use crate::scene::SceneKind;
-    use crate::scene::column::{Column, column_problem};
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
     use crate::soil::material::Material;
 
     fn bounds_of(scene: SceneKind, column: &Column, soil: &Material) -> PhysicalBounds {

@@ -1,0 +1,22 @@
+//! What every solution answers: the fields at a place and time, and how far they can be trusted.
+
+/// Fields at one depth and time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldValues {
+    /// Excess pore pressure, compression positive, Pa.
+    pub pressure: f64,
+    /// Vertical effective (Cauchy) stress, *tension positive*: `p − q` under a load, Pa.
+    pub effective_stress: f64,
+    /// Displacement of the solid, upward positive, from the unloaded state before `t = 0`
+    /// (single mode: from the state at `t = 0`), m.
+    pub displacement: f64,
+}
+
+/// How far a reference itself can be trusted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Number of terms (modes, images, unknowns) used.
+    pub terms: usize,
+    /// Bound on the truncation error of the pressure over the load, the worst over the depth.
+    pub tail_bound: f64,
+}
