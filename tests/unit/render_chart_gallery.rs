@@ -1,9 +1,10 @@
 //! Figures of every kind from made-up data.
 use crate::render::chart::describe::{
-    Chart, ChartAxis, ChartDirection, PointLabel, Range, Rule, Scale, Series, ShadedBand, Size,
-    SlopeTriangle, Style, TrianglePlace,
+    Chart, ChartAxis, ChartDirection, PointLabel, Rule, Series, ShadedBand, Size, SlopeTriangle, Style,
+    TrianglePlace,
 };
 use crate::render::chart::field::{ColourField, Colours};
+use crate::render::chart::layout::scale::{Range, Scale};
 use std::f64::consts::PI;
 
 /// Terzaghi's series, good enough for a picture.

@@ -1,7 +1,9 @@
 //! A whole report of made-up content, written to the temporary folder to be looked at.
 use crate::elementary;
 use crate::render::chart::gallery::gallery;
-use crate::render::page::{Block, Figure, Page, Section, figures, render_html, render_markdown};
+use crate::render::page::html_page::render_html;
+use crate::render::page::markdown_page::render_markdown;
+use crate::render::page::{Block, Figure, Page, Section, figures};
 use crate::render::table::{Cell, Mood, Table, TableColumn};
 
 fn orders() -> Table {

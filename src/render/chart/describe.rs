@@ -1,5 +1,6 @@
 //! What a figure shows, as plain data.
 use crate::render::chart::field::ColourField;
+use crate::render::chart::layout::scale::{Range, Scale};
 
 /// A figure: axes, what is drawn between them, and what is said about it.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,24 +124,6 @@ impl ChartAxis {
         self.ticks = Some(ticks);
         self
     }
-}
-
-/// How an axis or a colour bar spreads its values.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scale {
-    /// Evenly.
-    Linear,
-    /// Evenly in the decimal logarithm.
-    Log10,
-}
-
-/// What an axis or a colour bar shows.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Range {
-    /// All of the data.
-    Auto,
-    /// From the first value to the second, whatever the data.
-    Fixed(f64, f64),
 }
 
 /// Points that belong together.

@@ -1,9 +1,10 @@
 //! Puts a figure together, from the back to the front.
 use crate::elementary;
 use crate::render::chart::canvas::{Canvas, Hold, Px, Type};
-use crate::render::chart::describe::{Chart, Scale, Series, Style};
+use crate::render::chart::describe::{Chart, Series, Style};
 use crate::render::chart::layout::clip::{PixelFrame, pieces};
 use crate::render::chart::layout::missing::place;
+use crate::render::chart::layout::scale::Scale;
 use crate::render::chart::layout::space::Space;
 use crate::render::chart::layout::{ChartLayout, LegendSide, lay_out};
 use crate::render::chart::palette::{DARK, QUIET, WHITE, marker};

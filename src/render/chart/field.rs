@@ -1,7 +1,6 @@
 //! Cells coloured by a value: fields over a body, maps over two parameters.
 use crate::render::chart::canvas::Rgb;
-use crate::render::chart::describe::{Range, Scale};
-use crate::render::chart::layout::scale::{Span, drawable};
+use crate::render::chart::layout::scale::{Range, Scale, Span, drawable};
 
 /// A value a cell, on a grid of straight lines.
 #[derive(Debug, Clone, PartialEq)]

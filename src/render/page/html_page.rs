@@ -1,8 +1,9 @@
 //! Pages as one HTML file. What stands around the sections is in `page.html` and `page.css`.
 use crate::render::escape;
 use crate::render::page::marked_text::{paragraphs, to_html};
-use crate::render::page::{Block, Figure, Mood, Page};
+use crate::render::page::{Block, Figure, Page, check};
 use crate::render::render_error::RenderError;
+use crate::render::table::Mood;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::{Environment, Value, context};
 use std::fmt::Write as _;
@@ -10,7 +11,12 @@ use std::fmt::Write as _;
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 
-pub(crate) fn write(page: &Page) -> Result<String, RenderError> {
+/// The page as one HTML file that needs nothing else.
+///
+/// # Errors
+/// If a name is unusable or used twice, a table is ragged, or a figure cannot be drawn.
+pub fn render_html(page: &Page) -> Result<String, RenderError> {
+    check(page)?;
     let fail =
         |e: minijinja::Error| RenderError::Template { title: page.title.clone(), reason: e.to_string() };
     let mut sections = Vec::new();

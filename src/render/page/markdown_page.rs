@@ -1,10 +1,16 @@
 //! Pages in GitHub's Markdown.
 use crate::render::escape;
 use crate::render::page::marked_text::{paragraphs, to_markdown};
-use crate::render::page::{Block, Figure, Mood, Page};
+use crate::render::page::{Block, Figure, Page, check};
 use crate::render::render_error::RenderError;
+use crate::render::table::Mood;
 
-pub(crate) fn write(page: &Page) -> Result<String, RenderError> {
+/// The page as Markdown. Its figures are at `figures/NAME.svg`, as `figures` lists them.
+///
+/// # Errors
+/// If a name is unusable or used twice, or a table is ragged.
+pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
+    check(page)?;
     let mut out = vec![format!("# {}", escape::markdown(&page.title))];
     out.extend(paragraphs(&page.lead).iter().map(|p| to_markdown(p)));
     if page.sections.len() > 2 {

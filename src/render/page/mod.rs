@@ -92,37 +92,19 @@ impl Figure {
         Self { name: name.into(), picture: Picture::Chart(Box::new(chart)), caption: caption.into() }
     }
 
-    fn svg(&self) -> Result<String, RenderError> {
+    pub(crate) fn svg(&self) -> Result<String, RenderError> {
         match &self.picture {
             Picture::Chart(chart) => chart.svg(),
             Picture::Svg(text) => Ok(text.clone()),
         }
     }
 
-    fn title(&self) -> &str {
+    pub(crate) fn title(&self) -> &str {
         match &self.picture {
             Picture::Chart(chart) => &chart.title,
             Picture::Svg(_) => &self.name,
         }
     }
-}
-
-/// The page as one HTML file that needs nothing else.
-///
-/// # Errors
-/// If a name is unusable or used twice, a table is ragged, or a figure cannot be drawn.
-pub fn render_html(page: &Page) -> Result<String, RenderError> {
-    check(page)?;
-    html_page::write(page)
-}
-
-/// The page as Markdown. Its figures are at `figures/NAME.svg`, as [`figures`] lists them.
-///
-/// # Errors
-/// If a name is unusable or used twice, or a table is ragged.
-pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
-    check(page)?;
-    markdown_page::write(page)
 }
 
 /// The figures of a page: file name (without a folder) and SVG.
@@ -152,7 +134,7 @@ pub(crate) fn all_figures(page: &Page) -> Vec<&Figure> {
 }
 
 /// Names become files and anchors: they must be safe, and each its own.
-fn check(page: &Page) -> Result<(), RenderError> {
+pub(crate) fn check(page: &Page) -> Result<(), RenderError> {
     let ids: Vec<&str> = page.sections.iter().map(|s| s.id.as_str()).collect();
     let names: Vec<&str> = all_figures(page).iter().map(|f| f.name.as_str()).collect();
     for list in [&ids, &names] {

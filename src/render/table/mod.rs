@@ -62,7 +62,7 @@ impl TableColumn {
     }
 
     /// Header and unit on one line.
-    fn heading(&self) -> String {
+    pub(crate) fn heading(&self) -> String {
         match &self.unit {
             Some(unit) => format!("{} ({unit})", self.header),
             None => self.header.clone(),
@@ -190,44 +190,8 @@ impl Table {
         self
     }
 
-    /// For a terminal.
-    ///
-    /// # Errors
-    /// If a row has too few or too many cells.
-    pub fn to_text(&self) -> Result<String, RenderError> {
-        self.check()?;
-        Ok(text_table::write(self))
-    }
-
-    /// For GitHub's Markdown.
-    ///
-    /// # Errors
-    /// If a row has too few or too many cells.
-    pub fn to_markdown(&self) -> Result<String, RenderError> {
-        self.check()?;
-        Ok(markdown_table::write(self))
-    }
-
-    /// A fragment of HTML.
-    ///
-    /// # Errors
-    /// If a row has too few or too many cells.
-    pub fn to_html(&self) -> Result<String, RenderError> {
-        self.check()?;
-        Ok(html_table::write(self))
-    }
-
-    /// For machines: numbers with all of their digits, shares as shares, times in seconds, an empty
-    /// field for what is missing; an order's interval has a column of its own.
-    ///
-    /// # Errors
-    /// If a row has too few or too many cells.
-    pub fn to_csv(&self) -> Result<String, RenderError> {
-        self.check()?;
-        csv_table::write(self)
-    }
-
-    fn check(&self) -> Result<(), RenderError> {
+    /// Refuses a row with too few or too many cells.
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
         let expected = self.columns.len();
         match self.rows.iter().position(|row| row.len() != expected) {
             None => Ok(()),
@@ -241,7 +205,7 @@ impl Table {
     }
 
     /// The reasons for what is missing, each once, in the order of their first appearance.
-    fn footnotes(&self) -> Vec<&str> {
+    pub(crate) fn footnotes(&self) -> Vec<&str> {
         let mut reasons: Vec<&str> = Vec::new();
         for cell in self.rows.iter().flatten() {
             if let Cell::Missing(reason) = cell
@@ -256,7 +220,7 @@ impl Table {
 }
 
 /// The mark of a footnote: a, b, … z, then numbers.
-fn mark(i: usize) -> String {
+pub(crate) fn mark(i: usize) -> String {
     match u8::try_from(i) {
         Ok(n) if n < 26 => char::from(b'a' + n).to_string(),
         _ => (i + 1).to_string(),
@@ -264,7 +228,7 @@ fn mark(i: usize) -> String {
 }
 
 /// What a cell says with the mark of its footnote, if it has one.
-fn marked(cell: &Cell, footnotes: &[&str]) -> (String, Option<String>) {
+pub(crate) fn marked(cell: &Cell, footnotes: &[&str]) -> (String, Option<String>) {
     let place = match cell {
         Cell::Missing(reason) => footnotes.iter().position(|f| f == reason),
         _ => None,

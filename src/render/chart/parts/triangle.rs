@@ -1,10 +1,10 @@
 //! Triangles that show what an order looks like.
 use crate::elementary;
 use crate::render::chart::canvas::{Canvas, Ink, Px};
-use crate::render::chart::describe::{Chart, Scale, TrianglePlace};
+use crate::render::chart::describe::{Chart, TrianglePlace};
 use crate::render::chart::layout::ChartLayout;
 use crate::render::chart::layout::clip::PixelFrame;
-use crate::render::chart::layout::scale::Ruler;
+use crate::render::chart::layout::scale::{Ruler, Scale};
 use crate::render::chart::layout::space::{Offer, Space};
 use crate::render::chart::palette::{DARK, QUIET};
 use crate::render::chart::parts::words::write;
