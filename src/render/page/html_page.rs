@@ -102,16 +102,13 @@ fn write_block(block: &Block, out: &mut String, number: &mut usize) -> Result<()
             }
             out.push_str("</details>\n");
         }
-        Block::Code(text) => {
-            let _ = writeln!(out, "<pre><code>{}</code></pre>", escape::plain_html(text.trim_end()));
-        }
     }
     Ok(())
 }
 
 fn write_figure(figure: &Figure, out: &mut String, number: &mut usize) -> Result<(), RenderError> {
     *number += 1;
-    let svg = figure.svg()?;
+    let svg = figure.chart.svg()?;
     // No screen makes a figure larger than it was meant to be.
     let own = natural_width(&svg).map_or(String::new(), |w| format!(" style=\"--own: {w}px\""));
     let caption = paragraphs(&figure.caption).iter().map(|p| to_html(p)).collect::<Vec<_>>().join("<br>");

@@ -63,20 +63,11 @@ fn write_block(block: &Block) -> Result<String, RenderError> {
             let inside = blocks.iter().map(write_block).collect::<Result<Vec<_>, _>>()?.join("\n\n");
             format!("<details>\n<summary>{}</summary>\n\n{inside}\n\n</details>", escape::html(summary))
         }
-        Block::Code(text) => {
-            let fence = "`".repeat(longest_quotes(text).max(2) + 1);
-            format!("{fence}text\n{}\n{fence}", text.trim_end())
-        }
     })
 }
 
 fn write_figure(figure: &Figure) -> String {
-    let image = format!("![{}](figures/{}.svg)", escape::markdown(figure.title()), figure.name);
+    let image = format!("![{}](figures/{}.svg)", escape::markdown(&figure.chart.title), figure.name);
     let caption: Vec<String> = paragraphs(&figure.caption).iter().map(|p| to_markdown(p)).collect();
     if caption.is_empty() { image } else { format!("{image}\n\n{}", caption.join("\n\n")) }
-}
-
-/// The longest row of back quotes, which the fence has to outdo.
-fn longest_quotes(text: &str) -> usize {
-    text.split(|c| c != '`').map(str::len).max().unwrap_or(0)
 }

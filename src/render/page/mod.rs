@@ -62,8 +62,6 @@ pub enum Block {
         /// What it opens.
         blocks: Vec<Block>,
     },
-    /// Text as it is typed.
-    Code(String),
 }
 
 /// A figure on a page.
@@ -71,39 +69,16 @@ pub enum Block {
 pub struct Figure {
     /// Name of its file, without an ending: lower-case letters, digits, `-`, `_` and `.`.
     pub name: String,
-    /// What it shows.
-    pub picture: Picture,
+    /// What it shows, drawn when the page is written.
+    pub chart: Box<Chart>,
     /// What is said below it, lightly marked.
     pub caption: String,
-}
-
-/// What a figure shows.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Picture {
-    /// A chart, drawn when the page is written.
-    Chart(Box<Chart>),
-    /// An SVG document, taken as it is: it must come from a trusted hand.
-    Svg(String),
 }
 
 impl Figure {
     /// A figure of a chart.
     pub fn new(name: impl Into<String>, chart: Chart, caption: impl Into<String>) -> Self {
-        Self { name: name.into(), picture: Picture::Chart(Box::new(chart)), caption: caption.into() }
-    }
-
-    pub(crate) fn svg(&self) -> Result<String, RenderError> {
-        match &self.picture {
-            Picture::Chart(chart) => chart.svg(),
-            Picture::Svg(text) => Ok(text.clone()),
-        }
-    }
-
-    pub(crate) fn title(&self) -> &str {
-        match &self.picture {
-            Picture::Chart(chart) => &chart.title,
-            Picture::Svg(_) => &self.name,
-        }
+        Self { name: name.into(), chart: Box::new(chart), caption: caption.into() }
     }
 }
 
@@ -113,7 +88,10 @@ impl Figure {
 /// If a name is unusable or used twice, or a figure cannot be drawn.
 pub fn figures(page: &Page) -> Result<Vec<(String, String)>, RenderError> {
     check(page)?;
-    all_figures(page).into_iter().map(|figure| Ok((format!("{}.svg", figure.name), figure.svg()?))).collect()
+    all_figures(page)
+        .into_iter()
+        .map(|figure| Ok((format!("{}.svg", figure.name), figure.chart.svg()?)))
+        .collect()
 }
 
 /// Every figure of a page, in order.

@@ -32,7 +32,7 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
         };
         let y = if most > WIDE * least { ChartAxis::log10(label) } else { ChartAxis::linear(label) };
         let mut chart = Chart::new(format!("Critical step, {}", map.shared), x, y);
-        chart.size = Size { width: 560.0, ..Size::default() };
+        chart.size = Size::PANEL;
         for (slot, curve) in map.curves.iter().enumerate() {
             let predicted = curve.points.iter().map(|point| (point.at, point.predicted)).collect();
             let observed =

@@ -6,8 +6,7 @@ use crate::judge::locking::{Standing, standings};
 use crate::measure::plane_field::PlaneField;
 use crate::record::{Record, Status};
 use crate::render::chart::describe::{Chart, ChartAxis, Size};
-use crate::render::chart::field::{ColourField, Colours};
-use crate::render::chart::layout::scale::{Range, Scale};
+use crate::render::chart::field::ColourField;
 use crate::render::number;
 use crate::render::page::{Block, Figure, slug};
 use crate::render::report::{StudyResults, stiffness_sweeps};
@@ -85,9 +84,6 @@ fn figure(
         x_edges: field.x_edges.clone(),
         y_edges: field.y_edges.clone(),
         values: values.to_vec(),
-        colours: Colours::Diverging(0.0),
-        scale: Scale::Linear,
-        range: Range::Auto,
     });
     chart.size = Size { width: 380.0, plot_height: 240.0, equal_units: true };
     let caption = match oscillation {

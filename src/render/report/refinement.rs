@@ -5,9 +5,7 @@ use crate::case::step_label;
 use crate::convergence::orders::WINDOW;
 use crate::exact::reference::ReferenceKind;
 use crate::judge::paths::{Path, SeriesSummary, first_norm, paths};
-use crate::render::chart::describe::{
-    Chart, ChartAxis, ChartDirection, Rule, Series, Size, SlopeTriangle, Style, TrianglePlace,
-};
+use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::page::{Block, Figure, slug};
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
@@ -37,9 +35,6 @@ fn drawn<'a, 'b>(all: &'b [Path<'a>]) -> Vec<Path<'a>> {
     let plain: Vec<Path<'a>> = all.iter().filter(is_plain).cloned().collect();
     if all.len() > MOST_SERIES && !plain.is_empty() { plain } else { all.to_vec() }
 }
-
-/// Width of a figure that has a neighbour.
-const PANEL_WIDTH: f64 = 560.0;
 
 /// Figures and tables of a study along an axis; none where nothing was refined on it.
 pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
@@ -147,11 +142,11 @@ fn figure(
     let labels = labels::path_labels(all);
     let shared = if labels.shared.is_empty() { String::new() } else { format!("; {}", labels.shared) };
     chart.subtitle = Some(format!("T_v = {time_factor}, against {reference}{shared}"));
-    chart.size = Size { width: PANEL_WIDTH, ..Size::default() };
+    chart.size = Size::PANEL;
     for (summary, label) in summaries.iter().zip(&labels.each) {
         let points =
             summary.series.levels().iter().filter_map(|level| Some((level.size, level.error?))).collect();
-        chart.series.push(Series::new(label.clone(), points).style(Style::LineAndMarkers));
+        chart.series.push(Series::new(label.clone(), points));
     }
     if shows_orders(axis, reference) {
         add_triangles(&mut chart, &summaries, &labels.each);
@@ -164,7 +159,7 @@ fn figure(
             results.study.scene.model_difference(kind, &summaries[0].path.records[0].case.material)
         });
         let cause = cause.map_or_else(String::new, |cause| format!(": {cause}"));
-        chart.rules.push(Rule { axis: ChartDirection::Y, at, label: format!("floor of {whose}{cause}") });
+        chart.rules.push(Rule { at, label: format!("floor of {whose}{cause}") });
     }
     let name = slug(&format!(
         "{}-{}-{}-{}-{reference}",
@@ -216,7 +211,7 @@ fn add_triangles(chart: &mut Chart, summaries: &[SeriesSummary<'_>], labels: &[S
             summary.finest.as_ref().is_ok_and(|finest| (finest.order - slope).abs() < 0.3)
         });
         if let Some((_, label)) = near {
-            chart.triangles.push(SlopeTriangle { slope, place: TrianglePlace::Beside(label.clone()) });
+            chart.triangles.push(SlopeTriangle { slope, beside: label.clone() });
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::exact::exact_error::ExactError;
 use crate::judge::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
-use crate::render::chart::describe::{Chart, ChartAxis, ChartDirection, Rule, Series, Size, Style};
+use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size};
 use crate::render::page::{Block, Figure, slug};
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, TableColumn, columns};
@@ -72,15 +72,15 @@ fn figure(results: &StudyResults<'_>, sweep: &StiffnessSweep, time_factor: f64, 
         Showing::Oscillation => "total variation over the exact one's (–)",
     };
     let mut chart = Chart::new(title.clone(), x, ChartAxis::log10(label));
-    chart.size = Size { width: 560.0, ..Size::default() };
+    chart.size = Size::PANEL;
     for row in sweep.at(time_factor) {
         let points = sweep.values.iter().zip(&row.found).filter_map(|(value, found)| {
             Some((place(sweep.stiffness, *value), drawn(showing, found[showing as usize]?)))
         });
-        chart.series.push(Series::new(row.method.to_string(), points.collect()).style(Style::LineAndMarkers));
+        chart.series.push(Series::new(row.method.to_string(), points.collect()));
     }
     if showing == Showing::Oscillation {
-        chart.rules.push(Rule { axis: ChartDirection::Y, at: 1.0, label: "theory".to_owned() });
+        chart.rules.push(Rule { at: 1.0, label: "theory".to_owned() });
     }
     let name = slug(&format!("{}-{}-{}", results.study.name, word(showing), axis_word(sweep.stiffness)));
     Figure::new(name, chart, format!("{title}."))

@@ -84,7 +84,7 @@ fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, Exa
         },
         ChartAxis::linear("depth below the surface (H − Y)/H (–)").between(0.0, 1.0).inverted(),
     );
-    chart.size = Size { width: 560.0, ..Size::default() };
+    chart.size = Size::PANEL;
     for (slot, time_factor) in record.case.time_factors.iter().enumerate() {
         chart
             .series
@@ -116,7 +116,7 @@ fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Figure
         ChartAxis::log10("time factor T_v (–)"),
         ChartAxis::linear("degree of consolidation by settlement U (–)").between(0.0, 1.0).inverted(),
     );
-    chart.size = Size { width: 560.0, ..Size::default() };
+    chart.size = Size::PANEL;
     chart.series.push(Series::theory(own.name(), theory_consolidation(case, own, end)?));
     for (slot, record) in shown.iter().enumerate() {
         chart.series.push(

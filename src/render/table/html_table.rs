@@ -47,7 +47,6 @@ impl Table {
 fn class(align: Align) -> &'static str {
     match align {
         Align::Left => "l",
-        Align::Centre => "c",
         Align::Right => "r",
     }
 }

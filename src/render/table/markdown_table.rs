@@ -22,7 +22,6 @@ impl Table {
             .iter()
             .map(|c| match c.align {
                 Align::Left => ":---",
-                Align::Centre => ":---:",
                 Align::Right => "---:",
             })
             .collect();

@@ -37,8 +37,6 @@ pub struct TableColumn {
 pub enum Align {
     /// At the left: words.
     Left,
-    /// In the middle.
-    Centre,
     /// At the right: numbers.
     Right,
 }

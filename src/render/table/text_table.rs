@@ -24,7 +24,6 @@ impl Table {
         for (i, column) in self.columns.iter().enumerate() {
             let align = match column.align {
                 Align::Left => CellAlignment::Left,
-                Align::Centre => CellAlignment::Center,
                 Align::Right => CellAlignment::Right,
             };
             if let Some(c) = grid.column_mut(i) {
