@@ -30,6 +30,19 @@ pub fn print_tables(tables: &[Table], format: TableFormat) -> anyhow::Result<()>
     print_data(&if format == TableFormat::Table { coloured(&text) } else { text })
 }
 
+/// A CSV of a header and rows.
+pub fn csv_of<F: AsRef<[u8]>>(
+    header: impl IntoIterator<Item = F>,
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header)?;
+    for row in rows {
+        writer.write_record(row)?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}
+
 /// A value as JSON for programs, with an end of line.
 pub fn json_of(value: &impl serde::Serialize) -> anyhow::Result<String> {
     Ok(serde_json::to_string_pretty(value)? + "\n")

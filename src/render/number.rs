@@ -7,7 +7,7 @@ pub fn error(value: f64) -> String {
 
 /// A number with so many decimals, with a proper minus and no sign at zero.
 pub fn fixed(value: f64, decimals: usize) -> String {
-    finite(value, |v| unsigned_zero(format!("{v:.decimals$}")).replace('-', "−"))
+    finite(value, |v| minus(format!("{v:.decimals$}")))
 }
 
 /// An order: two decimals.
@@ -101,6 +101,11 @@ fn three_digits(v: f64) -> String {
         a if a >= 9.995 => format!("{v:.1}"),
         _ => format!("{v:.2}"),
     }
+}
+
+/// The typographic minus, and no minus before a zero.
+pub(crate) fn minus(text: String) -> String {
+    unsigned_zero(text).replacen('-', "−", 1)
 }
 
 fn unsigned_zero(text: String) -> String {

@@ -1,7 +1,7 @@
 //! Pages in GitHub's Markdown.
 use crate::render::escape;
 use crate::render::page::marked_text::{paragraphs, to_markdown};
-use crate::render::page::{Block, Figure, Page, check};
+use crate::render::page::{Block, Figure, Page, Section, check};
 use crate::render::render_error::RenderError;
 use crate::render::table::Mood;
 
@@ -12,36 +12,41 @@ use crate::render::table::Mood;
 pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
     check(page)?;
     let mut out = vec![format!("# {}", escape::markdown(&page.title))];
-    out.extend(paragraphs(&page.lead).iter().map(|p| to_markdown(p)));
+    out.extend(running(&page.lead));
     if page.sections.len() > 2 {
-        let entries = page.sections.iter().map(|s| {
-            let mark = s.mood.map(|m| format!(" {}", m.mark())).unwrap_or_default();
-            format!("- [{}](#{}){mark}", escape::markdown(&s.heading), s.id)
-        });
+        let entry = |s: &Section| format!("- [{}](#{}){}", escape::markdown(&s.heading), s.id, mark_of(s));
+        let entries = page.sections.iter().map(entry);
         out.push(entries.collect::<Vec<_>>().join("\n"));
     }
     for section in &page.sections {
         // An anchor of our own: those made from headings change with every word.
-        let mark = section.mood.map(|m| format!(" {}", m.mark())).unwrap_or_default();
         out.push(format!("<a id=\"{}\"></a>", section.id));
-        out.push(format!("## {}{mark}", escape::markdown(&section.heading)));
+        out.push(format!("## {}{}", escape::markdown(&section.heading), mark_of(section)));
         for block in &section.blocks {
             out.push(write_block(block)?);
         }
     }
     if !page.footer.is_empty() {
         out.push("---".to_owned());
-        out.extend(paragraphs(&page.footer).iter().map(|p| to_markdown(p)));
+        out.extend(running(&page.footer));
     }
     out.retain(|part| !part.is_empty());
     Ok(format!("{}\n", out.join("\n\n")))
 }
 
+/// How a section ended, as the end of its heading.
+fn mark_of(section: &Section) -> String {
+    section.mood.map(|mood| format!(" {}", mood.mark())).unwrap_or_default()
+}
+
+/// The paragraphs of a text.
+fn running(text: &str) -> Vec<String> {
+    paragraphs(text).iter().map(|p| to_markdown(p)).collect()
+}
+
 fn write_block(block: &Block) -> Result<String, RenderError> {
     Ok(match block {
-        Block::Paragraph(text) => {
-            paragraphs(text).iter().map(|p| to_markdown(p)).collect::<Vec<_>>().join("\n\n")
-        }
+        Block::Paragraph(text) => running(text).join("\n\n"),
         Block::Heading(text) => format!("### {}", escape::markdown(text)),
         Block::List(points) => {
             let point = |p: &String| format!("- {}", to_markdown(&paragraphs(p).join(" ")));
@@ -56,7 +61,7 @@ fn write_block(block: &Block) -> Result<String, RenderError> {
                 Mood::Fail => "CAUTION",
                 Mood::Note => "NOTE",
             };
-            let lines = paragraphs(text).iter().map(|p| format!("> {}", to_markdown(p))).collect::<Vec<_>>();
+            let lines: Vec<String> = running(text).iter().map(|p| format!("> {p}")).collect();
             format!("> [!{kind}]\n{}", lines.join("\n>\n"))
         }
         Block::Details { summary, blocks } => {
@@ -68,6 +73,6 @@ fn write_block(block: &Block) -> Result<String, RenderError> {
 
 fn write_figure(figure: &Figure) -> String {
     let image = format!("![{}](figures/{}.svg)", escape::markdown(&figure.chart.title), figure.name);
-    let caption: Vec<String> = paragraphs(&figure.caption).iter().map(|p| to_markdown(p)).collect();
+    let caption = running(&figure.caption);
     if caption.is_empty() { image } else { format!("{image}\n\n{}", caption.join("\n\n")) }
 }

@@ -19,6 +19,8 @@ use crate::case::tier::Tier;
 use crate::judge::paths::{Judgement, judge_study};
 use crate::judge::soundness;
 use crate::record::{Record, Status};
+use crate::render::chart::describe::Chart;
+use crate::render::page::{Figure, slug};
 use crate::study::check::Study;
 
 /// A study with its records and the judgements on them.
@@ -48,6 +50,16 @@ impl<'a> StudyResults<'a> {
         self.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
     }
 
+    /// How many of its expectations are met.
+    pub(crate) fn met(&self) -> usize {
+        self.judgements.iter().filter(|judgement| judgement.verdict.pass).count()
+    }
+
+    /// A figure whose name begins with that of the study.
+    pub(crate) fn figure(&self, name: &str, chart: Chart, caption: impl Into<String>) -> Figure {
+        Figure::new(slug(&format!("{}-{name}", self.study.name)), chart, caption)
+    }
+
     /// What runs the study again.
     pub(crate) fn run_command(&self) -> String {
         format!("oedometer run studies/{}.toml", self.study.name)
@@ -55,6 +67,6 @@ impl<'a> StudyResults<'a> {
 
     /// Whether every expectation is met, by records that are sound.
     pub(crate) fn passes(&self) -> bool {
-        self.unsound.is_empty() && self.judgements.iter().all(|judgement| judgement.verdict.pass)
+        self.unsound.is_empty() && self.met() == self.judgements.len()
     }
 }

@@ -69,12 +69,10 @@ fn section(heading: &str, id: &str, blocks: Vec<Block>) -> Section {
 /// One row per study: how many of its expectations are met, and what runs it.
 fn studies_table(results: &[StudyResults<'_>]) -> Table {
     let rows = results.iter().map(|one| {
-        let met = one.judgements.iter().filter(|judgement| judgement.verdict.pass).count();
-        let mood = if one.passes() { Mood::Pass } else { Mood::Fail };
         vec![
             one.study.title.as_str().into(),
             Cell::Count(one.records.len() as u64),
-            Cell::Verdict(mood, format!("{met} of {}", one.judgements.len())),
+            Cell::Verdict(Mood::of(one.passes()), format!("{} of {}", one.met(), one.judgements.len())),
             Cell::Code(one.run_command()),
         ]
     });

@@ -4,7 +4,7 @@
 use crate::exact::exact_error::ExactError;
 use crate::judge::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
 use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size};
-use crate::render::page::{Block, Figure, slug};
+use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, TableColumn, columns};
 
@@ -82,8 +82,8 @@ fn figure(results: &StudyResults<'_>, sweep: &StiffnessSweep, time_factor: f64, 
     if showing == Showing::Oscillation {
         chart.rules.push(Rule { at: 1.0, label: "theory".to_owned() });
     }
-    let name = slug(&format!("{}-{}-{}", results.study.name, word(showing), axis_word(sweep.stiffness)));
-    Figure::new(name, chart, format!("{title}."))
+    let name = format!("{}-{}", word(showing), axis_word(sweep.stiffness));
+    results.figure(&name, chart, format!("{title}."))
 }
 
 /// The same in one word, for the name of a file.
@@ -110,7 +110,7 @@ fn table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
     let mut columns = columns("method");
     columns.extend(sweep.values.iter().map(|value| TableColumn::number(header(value))));
     let cell = |value: Option<f64>| match (value, showing) {
-        (None, _) => Cell::Missing("not run".to_owned()),
+        (None, _) => Cell::missing("not run"),
         (Some(value), Showing::Oscillation) => Cell::Number(value),
         (Some(value), _) => Cell::Error(value),
     };

@@ -120,6 +120,11 @@ pub enum Mood {
 }
 
 impl Mood {
+    /// What a judgement that is met or not means.
+    pub fn of(is_met: bool) -> Self {
+        if is_met { Self::Pass } else { Self::Fail }
+    }
+
     /// A mark that reads without colours.
     pub(crate) fn mark(self) -> &'static str {
         match self {
@@ -145,6 +150,16 @@ impl From<&str> for Cell {
 }
 
 impl Cell {
+    /// Nothing, and why.
+    pub fn missing(why: &str) -> Self {
+        Self::Missing(why.to_owned())
+    }
+
+    /// A value where there is one, else why there is none.
+    pub fn of(value: Option<f64>, kind: fn(f64) -> Self, why: &str) -> Self {
+        value.map_or_else(|| Self::missing(why), kind)
+    }
+
     /// What the cell says; why something is missing is left to the footnotes.
     fn show(&self) -> String {
         match self {

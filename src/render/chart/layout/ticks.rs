@@ -1,7 +1,8 @@
 //! Where an axis has ticks and what they say.
 use crate::elementary;
-use crate::render::chart::label::{decimals, minus, power, whole};
+use crate::render::chart::label::{decimals, power, whole};
 use crate::render::chart::layout::scale::{Ruler, Scale, Span, drawable};
+use crate::render::number::minus;
 use crate::render::script::{exponent, width};
 
 /// A tick; without a label it is a minor one.
