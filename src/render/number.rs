@@ -19,10 +19,7 @@ pub fn order(value: f64) -> String {
 pub fn percent(share: f64) -> String {
     finite(share * 100.0, |v| {
         let text = match v.abs() {
-            0.0 => "0".to_owned(),
-            a if a >= 99.95 => format!("{v:.0}"),
-            a if a >= 9.995 => format!("{v:.1}"),
-            a if a >= 0.0995 => format!("{v:.2}"),
+            a if a == 0.0 || a >= 0.0995 => three_digits(v),
             a if a >= 0.000_995 => format!("{v:.4}"),
             _ => format!("{v:.2e}"),
         };

@@ -14,7 +14,7 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     for stiffness in SweptStiffness::ALL {
         let Some(sweep) = StiffnessSweep::of(results.study, results.records, stiffness)? else { continue };
         let Some(last) = sweep.time_factors.last().copied() else { continue };
-        blocks.push(Block::Heading(heading(stiffness).to_owned()));
+        blocks.push(Block::Heading(words_of(stiffness).0.to_owned()));
         blocks.push(Block::Paragraph(format!(
             "{} cells over the height, T_v = {last}; what a method does not feel is a level line. Methods that agree hide \
              one another; the tables have them all.",
@@ -33,18 +33,20 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     Ok(blocks)
 }
 
-fn heading(stiffness: SweptStiffness) -> &'static str {
+/// A stiffness in words: the heading of its figures, and one word for the names of their files.
+fn words_of(stiffness: SweptStiffness) -> (&'static str, &'static str) {
     match stiffness {
-        SweptStiffness::Water => "Stiff water, through consolidation",
-        SweptStiffness::Skeleton => "A skeleton that hardly compresses, through consolidation",
+        SweptStiffness::Water => ("Stiff water, through consolidation", "water"),
+        SweptStiffness::Skeleton => ("A skeleton that hardly compresses, through consolidation", "skeleton"),
     }
 }
 
-fn subject(showing: Showing) -> &'static str {
+/// What is shown, in words: the subject of a figure, and one word for the name of its file.
+fn subject(showing: Showing) -> (&'static str, &'static str) {
     match showing {
-        Showing::Displacement => "Displacement at the nodes",
-        Showing::Pressure => "Pressure at the points",
-        Showing::Oscillation => "Oscillation of the pressure",
+        Showing::Displacement => ("Displacement at the nodes", "displacement"),
+        Showing::Pressure => ("Pressure at the points", "pressure"),
+        Showing::Oscillation => ("Oscillation of the pressure", "oscillation"),
     }
 }
 
@@ -66,7 +68,8 @@ fn figure(results: &StudyResults<'_>, sweep: &StiffnessSweep, time_factor: f64, 
         SweptStiffness::Water => ChartAxis::log10("K_w/E (–)"),
         SweptStiffness::Skeleton => ChartAxis::log10("1 − 2ν (–)").inverted(),
     };
-    let title = format!("{}, T_v = {time_factor}", subject(showing));
+    let (subject, word) = subject(showing);
+    let title = format!("{subject}, T_v = {time_factor}");
     let label = match showing {
         Showing::Displacement | Showing::Pressure => "relative L_2 error (–)",
         Showing::Oscillation => "total variation over the exact one's (–)",
@@ -82,24 +85,8 @@ fn figure(results: &StudyResults<'_>, sweep: &StiffnessSweep, time_factor: f64, 
     if showing == Showing::Oscillation {
         chart.rules.push(Rule { at: 1.0, label: "theory".to_owned() });
     }
-    let name = format!("{}-{}", word(showing), axis_word(sweep.stiffness));
+    let name = format!("{word}-{}", words_of(sweep.stiffness).1);
     results.figure(&name, chart, format!("{title}."))
-}
-
-/// The same in one word, for the name of a file.
-fn word(showing: Showing) -> &'static str {
-    match showing {
-        Showing::Displacement => "displacement",
-        Showing::Pressure => "pressure",
-        Showing::Oscillation => "oscillation",
-    }
-}
-
-fn axis_word(stiffness: SweptStiffness) -> &'static str {
-    match stiffness {
-        SweptStiffness::Water => "water",
-        SweptStiffness::Skeleton => "skeleton",
-    }
 }
 
 fn table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
@@ -122,5 +109,5 @@ fn table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
         Showing::Oscillation => vec!["Total variation over the exact one's, minus one.".to_owned()],
         Showing::Displacement | Showing::Pressure => Vec::new(),
     };
-    Table::of(format!("{}, T_v = {time_factor}", subject(showing)), columns, rows).notes(notes)
+    Table::of(format!("{}, T_v = {time_factor}", subject(showing).0), columns, rows).notes(notes)
 }

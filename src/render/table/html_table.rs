@@ -1,7 +1,7 @@
 //! Tables as fragments of HTML.
 use crate::render::escape::{html, plain_html};
 use crate::render::render_error::RenderError;
-use crate::render::table::{Align, Cell, Table, mark, marked};
+use crate::render::table::{Align, Cell, Table, marked};
 use std::fmt::Write as _;
 
 impl Table {
@@ -36,9 +36,9 @@ impl Table {
             out.push_str("</tr>\n");
         }
         out.push_str("</tbody>\n</table>\n</div>\n");
-        let marks = footnotes.iter().enumerate().map(|(i, f)| format!("<sup>{}</sup> {}", mark(i), html(f)));
-        for note in marks.chain(self.notes.iter().map(|n| html(n))) {
-            let _ = writeln!(out, "<p class=\"small\">{note}</p>");
+        for (mark, note) in self.lines_below() {
+            let mark = mark.map(|mark| format!("<sup>{mark}</sup> ")).unwrap_or_default();
+            let _ = writeln!(out, "<p class=\"small\">{mark}{}</p>", html(note));
         }
         Ok(out)
     }

@@ -1,7 +1,7 @@
 //! Tables in GitHub's Markdown.
 use crate::render::escape;
 use crate::render::render_error::RenderError;
-use crate::render::table::{Align, Cell, Table, mark, marked};
+use crate::render::table::{Align, Cell, Table, marked};
 use std::fmt::Write as _;
 
 impl Table {
@@ -32,8 +32,7 @@ impl Table {
             let cells: Vec<String> = cells.iter().map(|cell| show(cell, &footnotes)).collect();
             out.push_str(&row(&cells));
         }
-        let marks = footnotes.iter().enumerate().map(|(i, f)| (Some(mark(i)), *f));
-        for (mark, note) in marks.chain(self.notes.iter().map(|n| (None, n.as_str()))) {
+        for (mark, note) in self.lines_below() {
             let mark = mark.map(|m| format!("<sup>{m}</sup> ")).unwrap_or_default();
             let _ = writeln!(out, "\n{mark}{}", escape::markdown(note));
         }

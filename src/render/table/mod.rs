@@ -217,6 +217,12 @@ impl Table {
         }
     }
 
+    /// The lines below the table: footnotes with their marks, then notes without.
+    pub(crate) fn lines_below(&self) -> Vec<(Option<String>, &str)> {
+        let footnotes = self.footnotes().into_iter().enumerate().map(|(i, note)| (Some(mark(i)), note));
+        footnotes.chain(self.notes.iter().map(|note| (None, note.as_str()))).collect()
+    }
+
     /// The reasons for what is missing, each once, in the order of their first appearance.
     pub(crate) fn footnotes(&self) -> Vec<&str> {
         let mut reasons: Vec<&str> = Vec::new();
@@ -233,7 +239,7 @@ impl Table {
 }
 
 /// The mark of a footnote: a, b, … z, then numbers.
-pub(crate) fn mark(i: usize) -> String {
+fn mark(i: usize) -> String {
     match u8::try_from(i) {
         Ok(n) if n < 26 => char::from(b'a' + n).to_string(),
         _ => (i + 1).to_string(),

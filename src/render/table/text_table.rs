@@ -1,6 +1,6 @@
 //! Tables for a terminal, without colours.
 use crate::render::render_error::RenderError;
-use crate::render::table::{Align, Table, mark, marked};
+use crate::render::table::{Align, Table, marked};
 use comfy_table::{CellAlignment, ContentArrangement};
 
 impl Table {
@@ -39,8 +39,10 @@ impl Table {
             out.push_str(row.trim_end());
             out.push('\n');
         }
-        let marks = footnotes.iter().enumerate().map(|(i, f)| format!("[{}] {}", mark(i), line(f)));
-        let notes: Vec<String> = marks.chain(self.notes.iter().map(|n| line(n))).collect();
+        let marked_line = |(mark, note): (Option<String>, &str)| {
+            mark.map(|mark| format!("[{mark}] ")).unwrap_or_default() + &line(note)
+        };
+        let notes: Vec<String> = self.lines_below().into_iter().map(marked_line).collect();
         if !notes.is_empty() {
             out.push('\n');
             out.push_str(&notes.join("\n"));

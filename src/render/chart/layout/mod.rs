@@ -18,7 +18,7 @@ pub(crate) const SMALL: f64 = 12.0;
 pub(crate) const LABEL: f64 = 13.0;
 pub(crate) const NOTE: f64 = 11.0;
 const PAD: f64 = 14.0;
-const LINE: f64 = 1.3;
+pub(crate) const LINE: f64 = 1.3;
 
 /// Where the legend goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -103,7 +103,7 @@ impl Bin {
 }
 
 /// Number of the bin that a coordinate lies in.
-#[allow(clippy::cast_possible_truncation, reason = "a figure has some thousand pixels")]
+#[expect(clippy::cast_possible_truncation, reason = "a figure has some thousand pixels")]
 fn bin_of(coordinate: f64) -> i64 {
     (coordinate / BIN).floor() as i64
 }
