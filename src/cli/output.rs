@@ -20,14 +20,29 @@ pub enum TableFormat {
 
 /// Prints tables, parted by empty lines; JSON as one array of a list of rows a table.
 pub fn print_tables(tables: &[Table], format: TableFormat) -> anyhow::Result<()> {
-    let texts: Vec<String> = match format {
-        TableFormat::Table => tables.iter().map(Table::to_text).collect::<Result<_, _>>()?,
-        TableFormat::Markdown => tables.iter().map(Table::to_markdown).collect::<Result<_, _>>()?,
-        TableFormat::Csv => tables.iter().map(Table::to_csv).collect::<Result<_, _>>()?,
-        TableFormat::Json => vec![json_of(&tables.iter().map(rows_of).collect::<anyhow::Result<Vec<_>>>()?)?],
+    let write = match format {
+        TableFormat::Table => Table::to_text,
+        TableFormat::Markdown => Table::to_markdown,
+        TableFormat::Csv => Table::to_csv,
+        TableFormat::Json => {
+            return print_data(&json_of(&tables.iter().map(rows_of).collect::<anyhow::Result<Vec<_>>>()?)?);
+        }
     };
-    let text = texts.join("\n");
+    let text = tables.iter().map(write).collect::<Result<Vec<_>, _>>()?.join("\n");
     print_data(&if format == TableFormat::Table { coloured(&text) } else { text })
+}
+
+/// A CSV of a header and rows.
+pub fn csv_of<F: AsRef<[u8]>>(
+    header: impl IntoIterator<Item = F>,
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header)?;
+    for row in rows {
+        writer.write_record(row)?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
 /// A value as JSON for programs, with an end of line.

@@ -47,6 +47,29 @@ pub struct StudyLines {
 }
 
 impl StudyLines {
+    /// The lines of a command about a scene, whose name `by` gave.
+    pub fn of(command: &str, scene: &str, by: &str) -> anyhow::Result<Self> {
+        let mut lines = Self::default();
+        lines.give("title", &quoted(command), &format!("`{command}`"))?;
+        lines.give("scene", &quoted(scene), by)?;
+        Ok(lines)
+    }
+
+    /// The options of the outputs, where they were given.
+    pub fn give_outputs(
+        &mut self,
+        reference: Option<&str>,
+        time_factors: Option<&str>,
+    ) -> anyhow::Result<()> {
+        if let Some(typed) = time_factors {
+            self.give("output.time_factors", &list("--time-factor", typed)?, "`--time-factor`")?;
+        }
+        if let Some(reference) = reference {
+            self.give("output.references", &format!("[{}]", quoted(reference)), "`--reference`")?;
+        }
+        Ok(())
+    }
+
     /// A key whose value comes from an option; `by` names it in messages.
     pub fn give(&mut self, key: &str, value: &str, by: &str) -> anyhow::Result<()> {
         if let Some((_, other)) = self.given.iter().find(|(given, _)| given == key) {

@@ -29,6 +29,13 @@ pub fn read_all(paths: &[PathBuf]) -> anyhow::Result<Vec<StudySource>> {
     Ok(sources)
 }
 
+/// The file that a study came from: the named one, or a shipped one as a repository knows it.
+pub fn file_of(study: &str, named: &[PathBuf]) -> String {
+    let stem = |path: &&PathBuf| path.file_stem().is_some_and(|stem| stem.to_string_lossy() == study);
+    let file = named.iter().find(stem).map(|path| path.display().to_string());
+    file.unwrap_or_else(|| format!("studies/{study}.toml"))
+}
+
 /// The text of one file, or of a pipe.
 fn read(path: &Path) -> anyhow::Result<StudySource> {
     let refused =

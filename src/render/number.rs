@@ -7,7 +7,7 @@ pub fn error(value: f64) -> String {
 
 /// A number with so many decimals, with a proper minus and no sign at zero.
 pub fn fixed(value: f64, decimals: usize) -> String {
-    finite(value, |v| unsigned_zero(format!("{v:.decimals$}")).replace('-', "−"))
+    finite(value, |v| minus(format!("{v:.decimals$}")))
 }
 
 /// An order: two decimals.
@@ -19,10 +19,7 @@ pub fn order(value: f64) -> String {
 pub fn percent(share: f64) -> String {
     finite(share * 100.0, |v| {
         let text = match v.abs() {
-            0.0 => "0".to_owned(),
-            a if a >= 99.95 => format!("{v:.0}"),
-            a if a >= 9.995 => format!("{v:.1}"),
-            a if a >= 0.0995 => format!("{v:.2}"),
+            a if a == 0.0 || a >= 0.0995 => three_digits(v),
             a if a >= 0.000_995 => format!("{v:.4}"),
             _ => format!("{v:.2e}"),
         };
@@ -101,6 +98,11 @@ fn three_digits(v: f64) -> String {
         a if a >= 9.995 => format!("{v:.1}"),
         _ => format!("{v:.2}"),
     }
+}
+
+/// The typographic minus, and no minus before a zero.
+pub(crate) fn minus(text: String) -> String {
+    unsigned_zero(text).replacen('-', "−", 1)
 }
 
 fn unsigned_zero(text: String) -> String {

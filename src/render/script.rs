@@ -74,23 +74,14 @@ fn belongs(c: char) -> bool {
     (c.is_alphanumeric() && superscript(c).is_none()) || c == '∞'
 }
 
+/// Characters that Unicode has above the line, and the same upon it.
+const ABOVE: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺ⁿ";
+const ON_THE_LINE: &str = "0123456789−+n";
+
+/// What stands on the line for a character that Unicode has above it.
 fn superscript(c: char) -> Option<char> {
-    Some(match c {
-        '⁰' => '0',
-        '¹' => '1',
-        '²' => '2',
-        '³' => '3',
-        '⁴' => '4',
-        '⁵' => '5',
-        '⁶' => '6',
-        '⁷' => '7',
-        '⁸' => '8',
-        '⁹' => '9',
-        '⁻' => '−',
-        '⁺' => '+',
-        'ⁿ' => 'n',
-        _ => return None,
-    })
+    let at = ABOVE.chars().position(|one| one == c)?;
+    ON_THE_LINE.chars().nth(at)
 }
 
 fn subscript(c: char) -> Option<char> {
@@ -100,22 +91,11 @@ fn subscript(c: char) -> Option<char> {
 
 /// A whole number as a Unicode superscript.
 pub(crate) fn exponent(n: i32) -> String {
-    n.to_string()
-        .chars()
-        .map(|c| match c {
-            '-' => '⁻',
-            '0' => '⁰',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            '4' => '⁴',
-            '5' => '⁵',
-            '6' => '⁶',
-            '7' => '⁷',
-            '8' => '⁸',
-            _ => '⁹',
-        })
-        .collect()
+    let raised = |c: char| {
+        let at = ON_THE_LINE.chars().position(|one| one == c)?;
+        ABOVE.chars().nth(at)
+    };
+    n.to_string().replace('-', "−").chars().filter_map(raised).collect()
 }
 
 /// An upper estimate of the width of `text`, in units of the font size.

@@ -1,11 +1,7 @@
 //! What every figure owes its reader. The gallery is written to the temporary folder to be looked
 //! at.
 
-use crate::render::chart::describe::{
-    Chart, ChartAxis, ChartDirection, PointLabel, Rule, Series, ShadedBand, Size, SlopeTriangle, Style,
-    TrianglePlace,
-};
-use crate::render::chart::field::Colours;
+use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle, Style};
 use crate::render::chart::gallery::{convergence, gallery, nothing, pressure_field};
 
 fn svg(chart: &Chart) -> String {
@@ -68,15 +64,12 @@ fn hostile_descriptions_still_make_a_figure() {
     chart.title = "a < b & \"c\" \u{0} \u{e000}".into();
     chart.size = Size { width: f64::NAN, plot_height: -5.0, equal_units: true };
     chart.x.ticks = Some(vec![f64::NAN, -1.0, 0.05]);
-    chart.triangles.push(SlopeTriangle { slope: f64::NAN, place: TrianglePlace::At(0.1, 0.1) });
-    chart.triangles.push(SlopeTriangle { slope: 0.0, place: TrianglePlace::At(-0.1, f64::NAN) });
-    chart.rules.push(Rule { axis: ChartDirection::X, at: -1.0, label: "x".into() });
-    chart.annotations.push(PointLabel { at: (f64::NAN, 1.0), text: "?".into() });
-    chart.series[0].ringed = vec![999];
-    chart.series[0].bars = vec![(f64::NAN, 0.0); 9];
-    chart.series.push(Series::new("one", vec![(0.1, 0.1)]).tag("only"));
-    chart.series.push(Series::new("", Vec::new()).tag("none"));
-    chart.bands.push(ShadedBand { name: String::new(), points: vec![(f64::NAN, 0.0, -1.0)], colour: 99 });
+    chart.triangles.push(SlopeTriangle { slope: f64::NAN, beside: "MPM".into() });
+    chart.triangles.push(SlopeTriangle { slope: 0.0, beside: "nobody".into() });
+    chart.rules.push(Rule { at: -1.0, label: "x".into() });
+    chart.rules.push(Rule { at: f64::NAN, label: "?".into() });
+    chart.series.push(Series::new("one", vec![(0.1, 0.1)]));
+    chart.series.push(Series::new("", Vec::new()));
     let text = svg(&chart);
     assert!(text.contains("a &lt; b &amp; &quot;c&quot;"), "{text}");
     let mut field = pressure_field();
@@ -169,12 +162,12 @@ fn the_first_row_of_a_field_is_the_lowest() {
     let mut chart = pressure_field();
     if let Some(field) = &mut chart.field {
         (field.x_edges, field.y_edges) = (vec![0.0, 1.0], vec![0.0, 1.0, 2.0]);
-        (field.values, field.colours) = (vec![0.0, 1.0], Colours::Sequential);
+        field.values = vec![-1.0, 1.0];
     }
     let text = svg(&chart);
     let cell = |colour: &str| {
         let line = text.lines().find(|l| l.starts_with("<rect") && l.contains(colour));
         number(line.unwrap_or_else(|| panic!("{colour}")), "y")
     };
-    assert!(cell("#440154") > cell("#FDE725"));
+    assert!(cell("#2166AC") > cell("#B2182B"));
 }

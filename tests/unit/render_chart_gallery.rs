@@ -1,9 +1,6 @@
 //! Figures of every kind from made-up data.
-use crate::render::chart::describe::{
-    Chart, ChartAxis, ChartDirection, PointLabel, Range, Rule, Scale, Series, ShadedBand, Size,
-    SlopeTriangle, Style, TrianglePlace,
-};
-use crate::render::chart::field::{ColourField, Colours};
+use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle, Style};
+use crate::render::chart::field::ColourField;
 use std::f64::consts::PI;
 
 /// Terzaghi's series, good enough for a picture.
@@ -49,11 +46,9 @@ pub(crate) fn convergence() -> Chart {
         chart.series.push(Series::new(name, points));
     }
     chart.triangles = [(1.0, METHODS[2]), (2.0, METHODS[4])]
-        .map(|(slope, name)| SlopeTriangle { slope, place: TrianglePlace::Beside(name.into()) })
+        .map(|(slope, name)| SlopeTriangle { slope, beside: name.into() })
         .to_vec();
-    chart
-        .rules
-        .push(Rule { axis: ChartDirection::Y, at: 1.4e-4, label: "water storage: 1.4·10⁻⁴".into() });
+    chart.rules.push(Rule { at: 1.4e-4, label: "water storage: 1.4·10⁻⁴".into() });
     chart
 }
 
@@ -65,7 +60,7 @@ fn isochrones() -> Chart {
     );
     for t in [0.02, 0.05, 0.1, 0.2, 0.5] {
         let theory = steps(80).map(|z| (pressure(z, t), z)).collect();
-        chart.series.push(Series::theory("Terzaghi, compressible water", theory).tag(format!("T_v = {t}")));
+        chart.series.push(Series::theory("Terzaghi, compressible water", theory));
         for (slot, name) in ["GIMP-SRI", "GC-SRI-patch"].into_iter().enumerate() {
             let off = [0.03, 0.0][slot];
             let points = (0..10).map(|i| (f64::from(i) + 0.5) / 10.0);
@@ -93,11 +88,6 @@ fn degree() -> Chart {
         let points = times.iter().step_by(10).map(|&t| (t, consolidation(t) * 0.98)).collect();
         chart.series.push(Series::new(name, points).style(Style::Markers));
     }
-    chart.bands.push(ShadedBand {
-        name: "±5 %".into(),
-        points: times.iter().map(|&t| (t, 0.95 * consolidation(t), 1.05 * consolidation(t))).collect(),
-        colour: 6,
-    });
     chart
 }
 
@@ -112,16 +102,10 @@ fn work_precision() -> Chart {
         let cost = [3.0, 0.05, 0.0004][i];
         let points: Vec<(f64, f64)> =
             (0..6).map(|k| (cost * 5f64.powi(k), 4e-2 * 0.26f64.powi(k) * (1.0 + 0.3 * i as f64))).collect();
-        let mut series = Series::new(name, points.clone());
-        series.bars = points.iter().map(|p| (p.1 * 0.8, p.1 * 1.25)).collect();
-        if i == 2 {
-            series.ringed = (0..6).collect();
-            front = points;
-        }
-        chart.series.push(series);
+        chart.series.push(Series::new(name, points.clone()));
+        front = points;
     }
-    chart.series.push(Series::theory("", front).style(Style::Stairs).slot(6));
-    chart.ring = Some("on the Pareto front".into());
+    chart.series.push(Series::theory("", front).slot(6));
     chart
 }
 
@@ -141,46 +125,9 @@ pub(crate) fn pressure_field() -> Chart {
         }
     }
     values[30] = f64::NAN;
-    chart.field = Some(ColourField {
-        label: "p/q (–)".into(),
-        x_edges: edges.clone(),
-        y_edges: edges,
-        values,
-        colours: Colours::Diverging(0.0),
-        scale: Scale::Linear,
-        range: Range::Auto,
-    });
+    chart.field =
+        Some(ColourField { label: "p/q (–)".into(), x_edges: edges.clone(), y_edges: edges, values });
     chart.size = Size { width: 480.0, plot_height: 340.0, equal_units: true };
-    chart
-}
-
-fn stability_map() -> Chart {
-    let mut chart = Chart::new(
-        "Critical step of GC-SRI-patch, explicit",
-        ChartAxis::log10("hydraulic conductivity k (m/s)"),
-        ChartAxis::log10("K_w/E (–)"),
-    );
-    let x_edges: Vec<f64> = (0..=20).map(|i| 10f64.powf(-12.0 + f64::from(i) / 2.0)).collect();
-    let y_edges: Vec<f64> = (0..=15).map(|i| 10f64.powf(1.0 + f64::from(i) / 3.0)).collect();
-    let mut values = Vec::new();
-    for y in &y_edges[1..] {
-        for x in &x_edges[1..] {
-            values.push((2e-4 / y.sqrt()).min(x * 1e2));
-        }
-    }
-    chart.field = Some(ColourField {
-        label: "critical Δt (s)".into(),
-        x_edges,
-        y_edges,
-        values,
-        colours: Colours::Sequential,
-        scale: Scale::Log10,
-        range: Range::Auto,
-    });
-    let edge =
-        (0..=10).map(|i| (3e-8 * 10f64.powf(-0.25 * f64::from(i)), 10f64.powf(1.0 + 0.5 * f64::from(i))));
-    chart.series.push(Series::theory("drag and wave limits equal (predicted)", edge.clone().collect()));
-    chart.series.push(Series::new("observed", edge.step_by(2).collect()).style(Style::Markers).slot(8));
     chart
 }
 
@@ -204,12 +151,10 @@ fn crowd() -> Chart {
         chart.series.push(Series::new(name, points.collect()));
     }
     for (i, slope) in [(3, 1.0), (6, 2.5), (12, 4.0)] {
-        let place = TrianglePlace::Beside(chart.series[i].name.clone());
-        chart.triangles.push(SlopeTriangle { slope, place });
+        let beside = chart.series[i].name.clone();
+        chart.triangles.push(SlopeTriangle { slope, beside });
     }
-    chart.rules.push(Rule { axis: ChartDirection::X, at: 0.5, label: "half the limit".into() });
-    chart.annotations.push(PointLabel { at: (1e-2, 1e-6), text: "round-off".into() });
-    chart.notes.push("A note of the caller's own.".into());
+    chart.rules.push(Rule { at: 1e-6, label: "round-off".into() });
     chart
 }
 
@@ -219,15 +164,7 @@ fn column() -> Chart {
     let values = (0..20).map(|i| pressure(1.0 - (f64::from(i) + 0.5) / 20.0, 0.1) * 2e5).collect();
     let mut chart =
         Chart::new("Pressure in the column", ChartAxis::linear("x (m)"), ChartAxis::linear("y (m)"));
-    chart.field = Some(ColourField {
-        label: "p (Pa)".into(),
-        x_edges: vec![0.0, 0.1],
-        y_edges,
-        values,
-        colours: Colours::Sequential,
-        scale: Scale::Linear,
-        range: Range::Fixed(0.0, 2e5),
-    });
+    chart.field = Some(ColourField { label: "p (Pa)".into(), x_edges: vec![0.0, 0.1], y_edges, values });
     chart.size = Size { width: 320.0, plot_height: 360.0, equal_units: true };
     chart
 }
@@ -241,7 +178,6 @@ pub(in crate::render) fn gallery() -> Vec<(&'static str, Chart)> {
         ("degree", degree()),
         ("work-precision", work_precision()),
         ("pressure-field", pressure_field()),
-        ("stability-map", stability_map()),
         ("nothing", nothing()),
     ]
 }

@@ -8,6 +8,7 @@ use crate::cli::exit::{Ended, Exit, sentence};
 use crate::cli::output::{TableFormat, coloured, json_of};
 use crate::cli::progress::StudyBar;
 use crate::cli::stream::{print_data, say};
+use crate::cli::study_files;
 use crate::golden::GoldenFile;
 use crate::golden::case_changes::CaseChange;
 use crate::golden::compare::Difference;
@@ -194,10 +195,5 @@ impl<'a> CheckJson<'a> {
 
 /// The file that a study came from, as a repository knows it.
 fn file_of(study: &str, named: &[PathBuf]) -> Option<String> {
-    if study == REFERENCES {
-        return None;
-    }
-    let stem = |path: &PathBuf| path.file_stem().is_some_and(|stem| stem.to_string_lossy() == study);
-    let named = named.iter().find(|path| stem(path)).map(|path| path.display().to_string());
-    Some(named.unwrap_or_else(|| format!("studies/{study}.toml")))
+    (study != REFERENCES).then(|| study_files::file_of(study, named))
 }

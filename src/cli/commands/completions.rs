@@ -11,9 +11,8 @@ pub struct Arguments {
     shell: Shell,
 }
 
-/// Prints the script of a shell.
-pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let mut command = crate::cli::command();
+/// Prints the script with which a shell completes a command.
+pub fn run(arguments: &Arguments, mut command: clap::Command) -> anyhow::Result<Exit> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut command, "oedometer", &mut script);
     print_data(&String::from_utf8(script)?)?;

@@ -1,7 +1,7 @@
 //! `oedometer exact`: an exact solution as numbers.
 
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::json_of;
+use crate::cli::output::{csv_of, json_of};
 use crate::cli::overrides;
 use crate::cli::overrides::StudyLines;
 use crate::cli::stream::{print_data, say};
@@ -57,66 +57,26 @@ pub struct Arguments {
     format: Format,
 }
 
-/// One printed row.
-#[derive(serde::Serialize)]
-struct PrintedRow {
-    time_factor: f64,
-    zeta: f64,
-    pressure_ratio: f64,
-    settlement_ratio: f64,
-    degree_of_consolidation: f64,
-    #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    plane: Option<PlaneColumns>,
+/// One printed row: names of columns with their numbers.
+struct PrintedRow(Vec<(&'static str, f64)>);
+
+impl serde::Serialize for PrintedRow {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().copied())
+    }
 }
 
-/// What `--x` adds: distance `x/L`, displacements over the height, effective stresses over the load.
-#[derive(serde::Serialize)]
-struct PlaneColumns {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    x: Option<f64>,
-    /// The same for who asked by the older name.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    xi: Option<f64>,
-    horizontal_displacement_ratio: f64,
-    vertical_displacement_ratio: f64,
-    effective_stress_ratio_xx: f64,
-    effective_stress_ratio_yy: f64,
-    effective_stress_ratio_xy: f64,
-}
-
-impl PlaneColumns {
-    const NAMES: [&str; 5] = [
-        "horizontal_displacement_ratio",
-        "vertical_displacement_ratio",
-        "effective_stress_ratio_xx",
-        "effective_stress_ratio_yy",
-        "effective_stress_ratio_xy",
-    ];
-
-    fn of(along: &Distances, ratio: f64, fields: &LayerFields, parameters: &ColumnParameters) -> Self {
-        let [xx, yy, _, xy] = fields.effective_stress.map(|stress| stress / parameters.load);
-        let [horizontal, vertical] = fields.displacement.map(|component| component / parameters.height);
-        Self {
-            x: (along.column == Distances::COLUMN).then_some(ratio),
-            xi: (along.column != Distances::COLUMN).then_some(ratio),
-            horizontal_displacement_ratio: horizontal,
-            vertical_displacement_ratio: vertical,
-            effective_stress_ratio_xx: xx,
-            effective_stress_ratio_yy: yy,
-            effective_stress_ratio_xy: xy,
-        }
-    }
-
-    fn values(&self) -> [f64; 6] {
-        [
-            self.x.or(self.xi).unwrap_or_default(),
-            self.horizontal_displacement_ratio,
-            self.vertical_displacement_ratio,
-            self.effective_stress_ratio_xx,
-            self.effective_stress_ratio_yy,
-            self.effective_stress_ratio_xy,
-        ]
-    }
+/// What `--x` adds: the distance, displacements over the height, effective stresses over the load.
+fn plane_columns(fields: &LayerFields, parameters: &ColumnParameters) -> [(&'static str, f64); 5] {
+    let [xx, yy, _, xy] = fields.effective_stress.map(|stress| stress / parameters.load);
+    let [horizontal, vertical] = fields.displacement.map(|component| component / parameters.height);
+    [
+        ("horizontal_displacement_ratio", horizontal),
+        ("vertical_displacement_ratio", vertical),
+        ("effective_stress_ratio_xx", xx),
+        ("effective_stress_ratio_yy", yy),
+        ("effective_stress_ratio_xy", xy),
+    ]
 }
 
 /// Places along a layer, with the name of their column.
@@ -128,12 +88,10 @@ struct Distances {
 }
 
 impl Distances {
-    const COLUMN: &'static str = "x";
-
     /// Those that were asked for, of a solution that has them.
     fn of(arguments: &Arguments, kind: ReferenceKind) -> anyhow::Result<Option<Self>> {
         let (option, column, typed) = match (&arguments.x, &arguments.along) {
-            (Some(typed), _) => ("--x", Self::COLUMN, typed),
+            (Some(typed), _) => ("--x", "x", typed),
             (None, Some(typed)) => ("--along", "xi", typed),
             (None, None) => return Ok(None),
         };
@@ -185,25 +143,28 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     for time_factor in time_factors {
         let settlement = reference.settlement(time_factor)?;
         let degree = reference.degree_of_consolidation(time_factor)?;
-        let row = |zeta: f64, pressure: f64, plane: Option<PlaneColumns>| PrintedRow {
-            time_factor,
-            zeta,
-            pressure_ratio: pressure / parameters.load,
-            settlement_ratio: settlement / parameters.height,
-            degree_of_consolidation: degree,
-            plane,
+        let row = |zeta: f64, pressure: f64| {
+            vec![
+                ("time_factor", time_factor),
+                ("zeta", zeta),
+                ("pressure_ratio", pressure / parameters.load),
+                ("settlement_ratio", settlement / parameters.height),
+                ("degree_of_consolidation", degree),
+            ]
         };
         let state = if distances.is_some() { reference.plane_state(time_factor)? } else { None };
         for zeta in &depths {
             let fields = reference.fields(time_factor, *zeta)?;
             let (Some(state), Some(distances)) = (&state, &distances) else {
-                rows.push(row(*zeta, fields.pressure, None));
+                rows.push(PrintedRow(row(*zeta, fields.pressure)));
                 continue;
             };
             for ratio in &distances.ratios {
                 let at = state.fields(ratio * parameters.length, (1.0 - zeta) * parameters.height)?;
-                let plane = PlaneColumns::of(distances, *ratio, &at, &parameters);
-                rows.push(row(*zeta, at.pressure, Some(plane)));
+                let mut columns = row(*zeta, at.pressure);
+                columns.push((distances.column, *ratio));
+                columns.extend(plane_columns(&at, &parameters));
+                rows.push(PrintedRow(columns));
             }
         }
         let truncation = reference.accuracy(time_factor)?;
@@ -211,7 +172,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     match arguments.format {
         Format::Csv => {
-            print_data(&csv_of(&rows, distances.as_ref())?)?;
+            print_data(&rows_csv(&rows)?)?;
             for one in &accuracy {
                 say!(
                     "T_v = {}: {} terms, tail below {:.1e}, round-off below {ROUND_OFF:.0e}",
@@ -236,9 +197,7 @@ fn parameters_of(
     assignments: &[String],
 ) -> anyhow::Result<(ColumnParameters, ReferenceKind)> {
     let scene = SceneKind::of_solution(kind);
-    let mut lines = StudyLines::default();
-    lines.give("title", "\"exact\"", "`exact`")?;
-    lines.give("scene", &overrides::quoted(scene.name()), "the solution's name")?;
+    let mut lines = StudyLines::of("exact", scene.name(), "the solution's name")?;
     lines.assign(assignments)?;
     lines.refuse_without_effect(&overrides::OF_RUNS)?;
     let study = lines.study_for(Purpose::Theory, ["method = [\"MPM\"]", "cells = [1]"].map(str::to_owned))?;
@@ -277,23 +236,14 @@ fn time_factors_of(
     degrees.iter().map(one).collect()
 }
 
-fn csv_of(rows: &[PrintedRow], distances: Option<&Distances>) -> anyhow::Result<String> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let mut names =
-        vec!["time_factor", "zeta", "pressure_ratio", "settlement_ratio", "degree_of_consolidation"];
-    if let Some(distances) = distances {
-        names.push(distances.column);
-        names.extend(PlaneColumns::NAMES);
-    }
-    writer.write_record(names)?;
-    for row in rows {
-        let numbers = [row.pressure_ratio, row.settlement_ratio, row.degree_of_consolidation];
-        let mut fields = vec![row.time_factor.to_string(), row.zeta.to_string()];
-        fields.extend(numbers.map(|number| format!("{number:.16e}")));
-        if let Some(plane) = &row.plane {
-            fields.extend(plane.values().map(|number| format!("{number:.16e}")));
-        }
-        writer.write_record(fields)?;
-    }
-    Ok(String::from_utf8(writer.into_inner()?)?)
+/// The rows as CSV: what was asked for as it is, what was found with 17 significant digits.
+fn rows_csv(rows: &[PrintedRow]) -> anyhow::Result<String> {
+    let names = rows.first().into_iter().flat_map(|row| row.0.iter().map(|(name, _)| *name));
+    let fields = |row: &PrintedRow| {
+        let field = |(place, (_, number)): (usize, &(&str, f64))| {
+            if place < 2 { number.to_string() } else { format!("{number:.16e}") }
+        };
+        row.0.iter().enumerate().map(field).collect()
+    };
+    csv_of(names, rows.iter().map(fields))
 }

@@ -8,6 +8,7 @@ use crate::cli::commands::run::{DEFAULT_RESULTS, load_or_shipped};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
 use crate::cli::stream::{print_data, say};
+use crate::cli::study_files::file_of;
 use crate::golden::{GoldenError, GoldenFile};
 use crate::judge::explanation::explain;
 use crate::mpm::run::Kernel;
@@ -61,7 +62,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         print_tables(&explanation::tables_of(&record, &found), arguments.format)?;
     }
     say!("{}: {}", study.name, explanation::golden_sentence(&found));
-    say!("run it again: {}", rerun(study, case, &arguments.studies));
+    let file = file_of(&study.name, &arguments.studies);
+    say!("run it again: oedometer run {file} --case {}", case.hash());
     Ok(Exit::Pass)
 }
 
@@ -113,12 +115,4 @@ fn record_of(study: &Study, case: &Case, results: &Path) -> anyhow::Result<Recor
         return Ok(record);
     }
     Ok(run_case(case, &study.references, Kernel::Fastest, true, &|_, _| true)?)
-}
-
-/// The command that runs one case again and keeps its record.
-fn rerun(study: &Study, case: &Case, named: &[PathBuf]) -> String {
-    let stem = |path: &&PathBuf| path.file_stem().is_some_and(|stem| stem.to_string_lossy() == study.name);
-    let file = named.iter().find(stem);
-    let file = file.map_or_else(|| format!("studies/{}.toml", study.name), |path| path.display().to_string());
-    format!("oedometer run {file} --case {}", case.hash())
 }

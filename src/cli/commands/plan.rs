@@ -3,6 +3,7 @@
 use crate::campaign::estimated_updates;
 use crate::cli::commands::run::{TierArgument, load_or_shipped};
 use crate::cli::exit::Exit;
+use crate::cli::output::csv_of;
 use crate::cli::stream::print_data;
 use std::path::PathBuf;
 
@@ -21,16 +22,14 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // Every file is judged before anything is printed.
     let studies = load_or_shipped(&arguments.studies)?;
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(["study", "case", "estimated_point_updates", "label"])?;
-    let mut exit = Exit::NothingSelected;
-    for study in studies {
-        for case in study.cases(arguments.tier.into()) {
-            exit = Exit::Pass;
-            let updates = estimated_updates(case).to_string();
-            writer.write_record([study.name.as_str(), &case.hash(), &updates, &case.label()])?;
-        }
-    }
-    print_data(&String::from_utf8(writer.into_inner()?)?)?;
+    let rows: Vec<Vec<String>> = studies
+        .iter()
+        .flat_map(|study| study.cases(arguments.tier.into()).into_iter().map(move |case| (study, case)))
+        .map(|(study, case)| {
+            vec![study.name.clone(), case.hash(), estimated_updates(case).to_string(), case.label()]
+        })
+        .collect();
+    let exit = if rows.is_empty() { Exit::NothingSelected } else { Exit::Pass };
+    print_data(&csv_of(["study", "case", "estimated_point_updates", "label"], rows)?)?;
     Ok(exit)
 }

@@ -6,9 +6,11 @@ use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_a
 use crate::cli::exit::Exit;
 use crate::cli::stream::say;
 use crate::record::whole_file::write_whole;
-use crate::render::page::{figures, render_html, render_markdown};
-use crate::render::report::front_page::front_page;
-use crate::render::report::{StudyResults, page_of};
+use crate::render::page::figures;
+use crate::render::page::html_page::render_html;
+use crate::render::page::markdown_page::render_markdown;
+use crate::render::report::StudyResults;
+use crate::render::report::pages::{front_page, page_of};
 use std::path::PathBuf;
 
 /// Arguments of `report`.

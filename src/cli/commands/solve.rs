@@ -1,16 +1,19 @@
 //! `oedometer solve`: one case from the command line, its errors on standard output.
 
 use crate::campaign::{estimated_updates, run_case_within};
+use crate::case::Case;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::json_of;
+use crate::cli::output::{csv_of, json_of};
 use crate::cli::overrides;
 use crate::cli::overrides::StudyLines;
 use crate::cli::stream::{print_data, say};
 use crate::judge::soundness;
 use crate::mpm::run::Kernel;
 use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::outcome::{Failure, StepSizes};
 use crate::mpm::run::profile::{PhaseTime, profiled};
-use crate::record::{ERROR_COLUMNS, ErrorRow, Record, Status};
+use crate::record::provenance::Provenance;
+use crate::record::{Balance, ERROR_COLUMNS, ErrorRow, Groups, Record, ReferenceUse, StartChecks, Status};
 use crate::render::tables::measures;
 use crate::render::tables::phases::phases_table;
 use crate::study::check::Study;
@@ -83,7 +86,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let (record, phases) = if arguments.profile { profiled(solve) } else { (solve(), Vec::new()) };
     let record = record?;
     match arguments.format {
-        SolveFormat::Csv => print_data(&csv_of(&record)?)?,
+        SolveFormat::Csv => {
+            print_data(&csv_of(ERROR_COLUMNS, record.errors.iter().map(|row| row.csv_fields().to_vec()))?)?;
+        }
         SolveFormat::Json => print_data(&json_of(&SolveJson::of(&record, &phases))?)?,
         SolveFormat::Table => print_data(&measures::table_of(&record)?)?,
     }
@@ -145,16 +150,8 @@ fn tell_of_long(study: &Study) {
 
 /// The study of one case that the command line describes.
 fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
-    let mut lines = StudyLines::default();
-    lines.give("title", "\"solve\"", "`solve`")?;
-    lines.give("scene", &overrides::quoted(&arguments.scene), "the scene's name")?;
-    if let Some(factors) = &arguments.time_factor {
-        let factors = overrides::list("--time-factor", factors)?;
-        lines.give("output.time_factors", &factors, "`--time-factor`")?;
-    }
-    if let Some(reference) = &arguments.reference {
-        lines.give("output.references", &format!("[{}]", overrides::quoted(reference)), "`--reference`")?;
-    }
+    let mut lines = StudyLines::of("solve", &arguments.scene, "the scene's name")?;
+    lines.give_outputs(arguments.reference.as_deref(), arguments.time_factor.as_deref())?;
     lines.assign(&arguments.assignments)?;
     lines.refuse_without_effect(&[
         ("task", "`oedometer stability` looks for critical steps"),
@@ -186,15 +183,6 @@ const OWN_OPTIONS: [(&str, &str); 5] = [
     ("time_step", "--time-step RULE"),
 ];
 
-fn csv_of(record: &Record) -> anyhow::Result<String> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(ERROR_COLUMNS)?;
-    for row in &record.errors {
-        writer.write_record(row.csv_fields())?;
-    }
-    Ok(String::from_utf8(writer.into_inner()?)?)
-}
-
 /// The JSON of `solve`: the record without its snapshots, the essentials on top.
 #[derive(serde::Serialize)]
 struct SolveJson<'a> {
@@ -207,18 +195,18 @@ struct SolveJson<'a> {
     rejected_steps: u64,
     wall_seconds: Option<f64>,
     measures: &'a [ErrorRow],
-    groups: crate::record::Groups,
-    start: Option<crate::record::StartChecks>,
-    balance: &'a [crate::record::Balance],
-    references: &'a [crate::record::ReferenceUse],
-    step_sizes: crate::mpm::run::outcome::StepSizes,
-    failure: Option<&'a crate::mpm::run::outcome::Failure>,
-    case: &'a crate::case::Case,
+    groups: Groups,
+    start: Option<StartChecks>,
+    balance: &'a [Balance],
+    references: &'a [ReferenceUse],
+    step_sizes: StepSizes,
+    failure: Option<&'a Failure>,
+    case: &'a Case,
     hash: &'a str,
     /// Where the time went, with `--profile`.
     #[serde(skip_serializing_if = "<[PhaseTime]>::is_empty")]
     phases: &'a [PhaseTime],
-    provenance: &'a crate::record::provenance::Provenance,
+    provenance: &'a Provenance,
 }
 
 impl<'a> SolveJson<'a> {

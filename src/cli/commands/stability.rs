@@ -5,12 +5,12 @@ use crate::case::tier::Tier;
 use crate::cli::commands::run::jobs_of;
 use crate::cli::commands::solve::SolveFormat;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::json_of;
+use crate::cli::output::{csv_of, json_of};
 use crate::cli::overrides;
 use crate::cli::overrides::StudyLines;
 use crate::cli::stream::print_data;
 use crate::mpm::critical_step::observed::CriticalStep;
-use crate::record::{Record, Status};
+use crate::record::{Probe, Record, Status};
 use crate::render::tables::critical_steps;
 
 /// Difference of observed from predicted step up to which they agree.
@@ -44,9 +44,7 @@ pub struct Arguments {
 /// Predicts, observes and prints; the verdict is that both agree within 2 %, that 0.97 of the
 /// predicted step runs clean and that 1.03 of it leaves with a name.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let mut lines = StudyLines::default();
-    lines.give("title", "\"stability\"", "`stability`")?;
-    lines.give("scene", &overrides::quoted(&arguments.scene), "the scene's name")?;
+    let mut lines = StudyLines::of("stability", &arguments.scene, "the scene's name")?;
     lines.give("task", "\"stability\"", "`stability`")?;
     lines.give("output.time_factors", &format!("[{:?}]", arguments.time_factor), "`--time-factor`")?;
     lines.assign(&arguments.assignments)?;
@@ -65,7 +63,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     match arguments.format {
         SolveFormat::Table => print_data(&(critical_steps::table_of(&report.records).to_text()? + "\n"))?,
-        SolveFormat::Csv => print_data(&csv_of(&report.records)?)?,
+        SolveFormat::Csv => print_data(&csv_of(COLUMNS, report.records.iter().flat_map(rows_of))?)?,
         SolveFormat::Json => {
             let rows: Vec<_> = report.records.iter().map(StabilityJson::of).collect();
             print_data(&json_of(&rows)?)?;
@@ -106,44 +104,43 @@ impl<'a> StabilityJson<'a> {
     }
 }
 
-fn csv_of(records: &[Record]) -> anyhow::Result<String> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record([
-        "method",
-        "cells",
-        "points_per_cell",
-        "predicted_seconds",
-        "observed_seconds",
-        "wave_limit_seconds",
-        "drag_limit_seconds",
-        "combined_limit_seconds",
-        "share",
-        "status",
-        "steps",
-        "predicted_growth",
-        "observed_growth",
-    ])?;
-    for record in records {
-        let Some(found) = &record.stability else { continue };
-        for probe in &found.probes {
-            let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
-            let failure = probe.failure.as_ref();
-            writer.write_record([
-                record.case.method.to_string(),
-                record.case.cells.to_string(),
-                record.case.points_per_cell.to_string(),
-                format!("{:e}", found.predicted),
-                number(found.observed),
-                format!("{:e}", found.wave_limit),
-                format!("{:e}", found.drag_limit),
-                format!("{:e}", found.combined_limit),
-                probe.share.to_string(),
-                failure.map_or("ok", |failure| failure.kind.name()).to_owned(),
-                probe.steps.to_string(),
-                number(probe.predicted_growth),
-                number(failure.and_then(|failure| failure.growth)),
-            ])?;
-        }
-    }
-    Ok(String::from_utf8(writer.into_inner()?)?)
+/// Columns of the CSV: a row each run beside a limit.
+const COLUMNS: [&str; 13] = [
+    "method",
+    "cells",
+    "points_per_cell",
+    "predicted_seconds",
+    "observed_seconds",
+    "wave_limit_seconds",
+    "drag_limit_seconds",
+    "combined_limit_seconds",
+    "share",
+    "status",
+    "steps",
+    "predicted_growth",
+    "observed_growth",
+];
+
+fn rows_of(record: &Record) -> Vec<Vec<String>> {
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
+    let Some(found) = &record.stability else { return Vec::new() };
+    let row = |probe: &Probe| {
+        let failure = probe.failure.as_ref();
+        vec![
+            record.case.method.to_string(),
+            record.case.cells.to_string(),
+            record.case.points_per_cell.to_string(),
+            format!("{:e}", found.predicted),
+            number(found.observed),
+            format!("{:e}", found.wave_limit),
+            format!("{:e}", found.drag_limit),
+            format!("{:e}", found.combined_limit),
+            probe.share.to_string(),
+            failure.map_or("ok", |failure| failure.kind.name()).to_owned(),
+            probe.steps.to_string(),
+            number(probe.predicted_growth),
+            number(failure.and_then(|failure| failure.growth)),
+        ]
+    };
+    found.probes.iter().map(row).collect()
 }

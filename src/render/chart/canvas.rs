@@ -126,10 +126,6 @@ impl Canvas {
         self.put(&Circle::new(spot(centre), units(radius), ink.into().style(0.0, true)));
     }
 
-    pub fn ring(&mut self, centre: Px, radius: f64, ink: impl Into<Ink>, width: f64) {
-        self.put(&Circle::new(spot(centre), units(radius), ink.into().style(width, false)));
-    }
-
     /// Text whose base line runs through `at`.
     pub fn text(&mut self, text: &str, at: Px, look: Type) {
         let Rgb(r, g, b) = look.ink;

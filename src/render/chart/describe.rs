@@ -1,5 +1,6 @@
 //! What a figure shows, as plain data.
 use crate::render::chart::field::ColourField;
+use crate::render::chart::layout::scale::{Range, Scale};
 
 /// A figure: axes, what is drawn between them, and what is said about it.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,20 +15,12 @@ pub struct Chart {
     pub y: ChartAxis,
     /// Cells of colour beneath everything else.
     pub field: Option<ColourField>,
-    /// Shaded intervals beneath the lines.
-    pub bands: Vec<ShadedBand>,
     /// Lines and markers.
     pub series: Vec<Series>,
-    /// Straight lines at one value of one axis.
+    /// Level lines at one value.
     pub rules: Vec<Rule>,
     /// Triangles that show what an order looks like.
     pub triangles: Vec<SlopeTriangle>,
-    /// Words inside the figure.
-    pub annotations: Vec<PointLabel>,
-    /// What a ring around a point means; wanted where a series has ringed points.
-    pub ring: Option<String>,
-    /// Lines below the figure.
-    pub notes: Vec<String>,
     /// Outer width and height of the plotting area.
     pub size: Size,
 }
@@ -41,13 +34,9 @@ impl Chart {
             x,
             y,
             field: None,
-            bands: Vec::new(),
             series: Vec::new(),
             rules: Vec::new(),
             triangles: Vec::new(),
-            annotations: Vec::new(),
-            ring: None,
-            notes: Vec::new(),
             size: Size::default(),
         }
     }
@@ -69,6 +58,11 @@ pub struct Size {
     pub plot_height: f64,
     /// One unit of x as long as one unit of y, as maps of a body want it.
     pub equal_units: bool,
+}
+
+impl Size {
+    /// That of a figure with a neighbour.
+    pub const PANEL: Self = Self { width: 560.0, plot_height: 360.0, equal_units: false };
 }
 
 impl Default for Size {
@@ -125,24 +119,6 @@ impl ChartAxis {
     }
 }
 
-/// How an axis or a colour bar spreads its values.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scale {
-    /// Evenly.
-    Linear,
-    /// Evenly in the decimal logarithm.
-    Log10,
-}
-
-/// What an axis or a colour bar shows.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Range {
-    /// All of the data.
-    Auto,
-    /// From the first value to the second, whatever the data.
-    Fixed(f64, f64),
-}
-
 /// Points that belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
@@ -153,34 +129,14 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
     /// What is drawn.
     pub style: Style,
-    /// Colour by number; by place in the chart if not given.
-    pub colour: Option<usize>,
-    /// Marker by number; as the colour if not given.
-    pub marker: Option<usize>,
-    /// Dash pattern by number; as the colour if not given.
-    pub dash: Option<usize>,
-    /// Points, by index, with a ring around them: the Pareto front, say.
-    pub ringed: Vec<usize>,
-    /// Lower and upper end of a bar at each point: a spread.
-    pub bars: Vec<(f64, f64)>,
-    /// A few characters written at the curve itself.
-    pub tag: Option<String>,
+    /// Colour, marker and dash pattern by number; by place in the chart if not given.
+    pub slot: Option<usize>,
 }
 
 impl Series {
     /// A series of markers joined by lines.
     pub fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self {
-            name: name.into(),
-            points,
-            style: Style::LineAndMarkers,
-            colour: None,
-            marker: None,
-            dash: None,
-            ringed: Vec::new(),
-            bars: Vec::new(),
-            tag: None,
-        }
+        Self { name: name.into(), points, style: Style::LineAndMarkers, slot: None }
     }
 
     /// The curve that the others are held against.
@@ -198,14 +154,7 @@ impl Series {
     /// The same series with colour, marker and dash of one number.
     #[must_use]
     pub fn slot(mut self, slot: usize) -> Self {
-        (self.colour, self.marker, self.dash) = (Some(slot), Some(slot), Some(slot));
-        self
-    }
-
-    /// The same series with words at the curve.
-    #[must_use]
-    pub fn tag(mut self, tag: impl Into<String>) -> Self {
-        self.tag = Some(tag.into());
+        self.slot = Some(slot);
         self
     }
 }
@@ -219,39 +168,15 @@ pub enum Style {
     Markers,
     /// Markers joined by a line.
     LineAndMarkers,
-    /// A line that stays level up to the next point and jumps there.
-    Stairs,
     /// The reference: always dark, above other lines and beneath all markers. Several references
     /// differ by their dashes.
     Theory,
 }
 
-/// A shaded interval.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ShadedBand {
-    /// Name in the legend.
-    pub name: String,
-    /// Place, lower end, upper end.
-    pub points: Vec<(f64, f64, f64)>,
-    /// Colour by number.
-    pub colour: usize,
-}
-
-/// Which axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ChartDirection {
-    /// The horizontal axis.
-    X,
-    /// The vertical axis.
-    Y,
-}
-
-/// A straight line across the figure: a floor, a limit, a tolerance.
+/// A level line across the figure: a floor, a limit, a tolerance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
-    /// The axis on which the value is read.
-    pub axis: ChartDirection,
-    /// The value.
+    /// The value on the vertical axis.
     pub at: f64,
     /// Words at the line.
     pub label: String,
@@ -262,24 +187,6 @@ pub struct Rule {
 pub struct SlopeTriangle {
     /// The slope; negative where the error falls to the right.
     pub slope: f64,
-    /// Where to put it.
-    pub place: TrianglePlace,
-}
-
-/// Where a triangle is put.
-#[derive(Debug, Clone, PartialEq)]
-pub enum TrianglePlace {
-    /// Where there is room beside the series of this name.
-    Beside(String),
-    /// At this point, in the units of the axes.
-    At(f64, f64),
-}
-
-/// Words at a point.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PointLabel {
-    /// The point, in the units of the axes.
-    pub at: (f64, f64),
-    /// The words.
-    pub text: String,
+    /// Name of the series that it stands beside, where there is room.
+    pub beside: String,
 }

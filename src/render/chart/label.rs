@@ -1,5 +1,6 @@
 //! Numbers on axes.
 use crate::elementary;
+use crate::render::number::minus;
 use crate::render::script::exponent;
 
 /// A number as `1.5·10⁻³`, down to the decimal place `digits` if that is given.
@@ -35,15 +36,6 @@ pub(crate) fn decimals(digit: f64) -> usize {
 #[expect(clippy::cast_possible_truncation, reason = "the cast saturates, and exponents are small")]
 pub(crate) fn whole(x: f64) -> i32 {
     x.round() as i32
-}
-
-/// The typographic minus, and no minus before a zero.
-pub(crate) fn minus(text: String) -> String {
-    match text.strip_prefix('-') {
-        Some(rest) if rest.chars().all(|c| matches!(c, '0' | '.')) => rest.to_owned(),
-        Some(rest) => format!("−{rest}"),
-        None => text,
-    }
 }
 
 #[cfg(test)]

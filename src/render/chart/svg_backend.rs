@@ -65,6 +65,7 @@ impl SvgBackend {
 
     /// The colour of an area, or of an outline of some width.
     fn paint(&mut self, style: &impl BackendStyle, is_area: bool) {
+        self.opacity(style.color());
         self.attribute("fill", if is_area { hexadecimal(style.color()) } else { "none".to_owned() });
         if !is_area {
             self.attribute("stroke", hexadecimal(style.color()));
@@ -72,12 +73,18 @@ impl SvgBackend {
         }
     }
 
-    fn points(&mut self, path: impl IntoIterator<Item = BackendCoord>) {
+    /// A line or an area through points.
+    fn corners(
+        &mut self,
+        element: &str,
+        path: impl IntoIterator<Item = BackendCoord>,
+        style: &impl BackendStyle,
+        is_area: bool,
+    ) {
+        self.elements.push_str(element);
+        self.paint(style, is_area);
         let points: Vec<String> = path.into_iter().map(|(x, y)| format!("{x},{y}")).collect();
         self.attribute("points", points.join(" "));
-    }
-
-    fn end(&mut self) {
         self.elements.push_str("/>\n");
     }
 }
@@ -118,9 +125,8 @@ impl DrawingBackend for SvgBackend {
         for (name, value) in [("x", left), ("y", top), ("width", right - left), ("height", bottom - top)] {
             self.attribute(name, value);
         }
-        self.opacity(style.color());
         self.paint(style, is_area);
-        self.end();
+        self.elements.push_str("/>\n");
         Ok(())
     }
 
@@ -129,11 +135,7 @@ impl DrawingBackend for SvgBackend {
         path: I,
         style: &S,
     ) -> SvgWritten {
-        self.elements.push_str("<polyline");
-        self.opacity(style.color());
-        self.paint(style, false);
-        self.points(path);
-        self.end();
+        self.corners("<polyline", path, style, false);
         Ok(())
     }
 
@@ -142,11 +144,7 @@ impl DrawingBackend for SvgBackend {
         path: I,
         style: &S,
     ) -> SvgWritten {
-        self.elements.push_str("<polygon");
-        self.opacity(style.color());
-        self.paint(style, true);
-        self.points(path);
-        self.end();
+        self.corners("<polygon", path, style, true);
         Ok(())
     }
 
@@ -158,9 +156,8 @@ impl DrawingBackend for SvgBackend {
         is_area: bool,
     ) -> SvgWritten {
         let _ = write!(self.elements, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"");
-        self.opacity(style.color());
         self.paint(style, is_area);
-        self.end();
+        self.elements.push_str("/>\n");
         Ok(())
     }
 

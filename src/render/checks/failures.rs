@@ -32,6 +32,11 @@ pub(crate) fn wrapped(text: &str, first: &str, others: &str) -> String {
     lines.join("\n") + "\n"
 }
 
+/// A subject, and below it what is said of it.
+fn item(subject: &str, words: &str) -> String {
+    wrapped(subject, "  ", "    ") + &wrapped(words, "    ", "    ")
+}
+
 /// Everything that failed, section by section.
 pub(crate) fn text_of(check: &StudyCheck) -> String {
     text_of_failures(check) + &text_of_changes(check)
@@ -43,14 +48,10 @@ pub(crate) fn text_of_failures(check: &StudyCheck) -> String {
     let unmet = unmet.map(|judgement| {
         let verdict = &judgement.verdict;
         let (class, reason) = (verdict.classification.class.name(), &verdict.reason);
-        wrapped(&format!("✗ {}", judgement.subject), "  ", "    ")
-            + &wrapped(&format!("{class}: {reason}"), "    ", "    ")
+        item(&format!("✗ {}", judgement.subject), &format!("{class}: {reason}"))
     });
     let notes = |notes: &[CaseNote]| -> Vec<String> {
-        let item = |note: &CaseNote| {
-            wrapped(&format!("✗ {}", note.case), "  ", "    ") + &wrapped(&note.sentence, "    ", "    ")
-        };
-        notes.iter().map(item).collect()
+        notes.iter().map(|note| item(&format!("✗ {}", note.case), &note.sentence)).collect()
     };
     [
         section("expectations not met", unmet.collect()),
@@ -101,7 +102,7 @@ fn difference(one: &Difference) -> String {
             format!("{}: {}", one.change.name(), found.map_or(String::new(), number::exact))
         }
     };
-    wrapped(&one.name, "  ", "    ") + &wrapped(&how, "    ", "    ")
+    item(&one.name, &how)
 }
 
 fn times(ratio: f64) -> String {
@@ -117,7 +118,7 @@ fn case_change(one: &CaseChange) -> String {
         one.better,
         one.unpaired
     );
-    wrapped(&format!("{} {}", mood.mark(), one.case), "  ", "    ") + &wrapped(&counts, "    ", "    ")
+    item(&format!("{} {}", mood.mark(), one.case), &counts)
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! Pages as one HTML file. What stands around the sections is in `page.html` and `page.css`.
 use crate::render::escape;
 use crate::render::page::marked_text::{paragraphs, to_html};
-use crate::render::page::{Block, Figure, Mood, Page};
+use crate::render::page::{Block, Figure, Page, check};
 use crate::render::render_error::RenderError;
+use crate::render::table::Mood;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::{Environment, Value, context};
 use std::fmt::Write as _;
@@ -10,7 +11,12 @@ use std::fmt::Write as _;
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 
-pub(crate) fn write(page: &Page) -> Result<String, RenderError> {
+/// The page as one HTML file that needs nothing else.
+///
+/// # Errors
+/// If a name is unusable or used twice, a table is ragged, or a figure cannot be drawn.
+pub fn render_html(page: &Page) -> Result<String, RenderError> {
+    check(page)?;
     let fail =
         |e: minijinja::Error| RenderError::Template { title: page.title.clone(), reason: e.to_string() };
     let mut sections = Vec::new();
@@ -96,16 +102,13 @@ fn write_block(block: &Block, out: &mut String, number: &mut usize) -> Result<()
             }
             out.push_str("</details>\n");
         }
-        Block::Code(text) => {
-            let _ = writeln!(out, "<pre><code>{}</code></pre>", escape::plain_html(text.trim_end()));
-        }
     }
     Ok(())
 }
 
 fn write_figure(figure: &Figure, out: &mut String, number: &mut usize) -> Result<(), RenderError> {
     *number += 1;
-    let svg = figure.svg()?;
+    let svg = figure.chart.svg()?;
     // No screen makes a figure larger than it was meant to be.
     let own = natural_width(&svg).map_or(String::new(), |w| format!(" style=\"--own: {w}px\""));
     let caption = paragraphs(&figure.caption).iter().map(|p| to_html(p)).collect::<Vec<_>>().join("<br>");

@@ -1,41 +1,52 @@
 //! Pages in GitHub's Markdown.
 use crate::render::escape;
 use crate::render::page::marked_text::{paragraphs, to_markdown};
-use crate::render::page::{Block, Figure, Mood, Page};
+use crate::render::page::{Block, Figure, Page, Section, check};
 use crate::render::render_error::RenderError;
+use crate::render::table::Mood;
 
-pub(crate) fn write(page: &Page) -> Result<String, RenderError> {
+/// The page as Markdown. Its figures are at `figures/NAME.svg`, as `figures` lists them.
+///
+/// # Errors
+/// If a name is unusable or used twice, or a table is ragged.
+pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
+    check(page)?;
     let mut out = vec![format!("# {}", escape::markdown(&page.title))];
-    out.extend(paragraphs(&page.lead).iter().map(|p| to_markdown(p)));
+    out.extend(running(&page.lead));
     if page.sections.len() > 2 {
-        let entries = page.sections.iter().map(|s| {
-            let mark = s.mood.map(|m| format!(" {}", m.mark())).unwrap_or_default();
-            format!("- [{}](#{}){mark}", escape::markdown(&s.heading), s.id)
-        });
+        let entry = |s: &Section| format!("- [{}](#{}){}", escape::markdown(&s.heading), s.id, mark_of(s));
+        let entries = page.sections.iter().map(entry);
         out.push(entries.collect::<Vec<_>>().join("\n"));
     }
     for section in &page.sections {
         // An anchor of our own: those made from headings change with every word.
-        let mark = section.mood.map(|m| format!(" {}", m.mark())).unwrap_or_default();
         out.push(format!("<a id=\"{}\"></a>", section.id));
-        out.push(format!("## {}{mark}", escape::markdown(&section.heading)));
+        out.push(format!("## {}{}", escape::markdown(&section.heading), mark_of(section)));
         for block in &section.blocks {
             out.push(write_block(block)?);
         }
     }
     if !page.footer.is_empty() {
         out.push("---".to_owned());
-        out.extend(paragraphs(&page.footer).iter().map(|p| to_markdown(p)));
+        out.extend(running(&page.footer));
     }
     out.retain(|part| !part.is_empty());
     Ok(format!("{}\n", out.join("\n\n")))
 }
 
+/// How a section ended, as the end of its heading.
+fn mark_of(section: &Section) -> String {
+    section.mood.map(|mood| format!(" {}", mood.mark())).unwrap_or_default()
+}
+
+/// The paragraphs of a text.
+fn running(text: &str) -> Vec<String> {
+    paragraphs(text).iter().map(|p| to_markdown(p)).collect()
+}
+
 fn write_block(block: &Block) -> Result<String, RenderError> {
     Ok(match block {
-        Block::Paragraph(text) => {
-            paragraphs(text).iter().map(|p| to_markdown(p)).collect::<Vec<_>>().join("\n\n")
-        }
+        Block::Paragraph(text) => running(text).join("\n\n"),
         Block::Heading(text) => format!("### {}", escape::markdown(text)),
         Block::List(points) => {
             let point = |p: &String| format!("- {}", to_markdown(&paragraphs(p).join(" ")));
@@ -50,27 +61,18 @@ fn write_block(block: &Block) -> Result<String, RenderError> {
                 Mood::Fail => "CAUTION",
                 Mood::Note => "NOTE",
             };
-            let lines = paragraphs(text).iter().map(|p| format!("> {}", to_markdown(p))).collect::<Vec<_>>();
+            let lines: Vec<String> = running(text).iter().map(|p| format!("> {p}")).collect();
             format!("> [!{kind}]\n{}", lines.join("\n>\n"))
         }
         Block::Details { summary, blocks } => {
             let inside = blocks.iter().map(write_block).collect::<Result<Vec<_>, _>>()?.join("\n\n");
             format!("<details>\n<summary>{}</summary>\n\n{inside}\n\n</details>", escape::html(summary))
         }
-        Block::Code(text) => {
-            let fence = "`".repeat(longest_quotes(text).max(2) + 1);
-            format!("{fence}text\n{}\n{fence}", text.trim_end())
-        }
     })
 }
 
 fn write_figure(figure: &Figure) -> String {
-    let image = format!("![{}](figures/{}.svg)", escape::markdown(figure.title()), figure.name);
-    let caption: Vec<String> = paragraphs(&figure.caption).iter().map(|p| to_markdown(p)).collect();
+    let image = format!("![{}](figures/{}.svg)", escape::markdown(&figure.chart.title), figure.name);
+    let caption = running(&figure.caption);
     if caption.is_empty() { image } else { format!("{image}\n\n{}", caption.join("\n\n")) }
-}
-
-/// The longest row of back quotes, which the fence has to outdo.
-fn longest_quotes(text: &str) -> usize {
-    text.split(|c| c != '`').map(str::len).max().unwrap_or(0)
 }

@@ -62,8 +62,6 @@ pub enum Block {
         /// What it opens.
         blocks: Vec<Block>,
     },
-    /// Text as it is typed.
-    Code(String),
 }
 
 /// A figure on a page.
@@ -71,58 +69,17 @@ pub enum Block {
 pub struct Figure {
     /// Name of its file, without an ending: lower-case letters, digits, `-`, `_` and `.`.
     pub name: String,
-    /// What it shows.
-    pub picture: Picture,
+    /// What it shows, drawn when the page is written.
+    pub chart: Box<Chart>,
     /// What is said below it, lightly marked.
     pub caption: String,
-}
-
-/// What a figure shows.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Picture {
-    /// A chart, drawn when the page is written.
-    Chart(Box<Chart>),
-    /// An SVG document, taken as it is: it must come from a trusted hand.
-    Svg(String),
 }
 
 impl Figure {
     /// A figure of a chart.
     pub fn new(name: impl Into<String>, chart: Chart, caption: impl Into<String>) -> Self {
-        Self { name: name.into(), picture: Picture::Chart(Box::new(chart)), caption: caption.into() }
+        Self { name: name.into(), chart: Box::new(chart), caption: caption.into() }
     }
-
-    fn svg(&self) -> Result<String, RenderError> {
-        match &self.picture {
-            Picture::Chart(chart) => chart.svg(),
-            Picture::Svg(text) => Ok(text.clone()),
-        }
-    }
-
-    fn title(&self) -> &str {
-        match &self.picture {
-            Picture::Chart(chart) => &chart.title,
-            Picture::Svg(_) => &self.name,
-        }
-    }
-}
-
-/// The page as one HTML file that needs nothing else.
-///
-/// # Errors
-/// If a name is unusable or used twice, a table is ragged, or a figure cannot be drawn.
-pub fn render_html(page: &Page) -> Result<String, RenderError> {
-    check(page)?;
-    html_page::write(page)
-}
-
-/// The page as Markdown. Its figures are at `figures/NAME.svg`, as [`figures`] lists them.
-///
-/// # Errors
-/// If a name is unusable or used twice, or a table is ragged.
-pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
-    check(page)?;
-    markdown_page::write(page)
 }
 
 /// The figures of a page: file name (without a folder) and SVG.
@@ -131,7 +88,10 @@ pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
 /// If a name is unusable or used twice, or a figure cannot be drawn.
 pub fn figures(page: &Page) -> Result<Vec<(String, String)>, RenderError> {
     check(page)?;
-    all_figures(page).into_iter().map(|figure| Ok((format!("{}.svg", figure.name), figure.svg()?))).collect()
+    all_figures(page)
+        .into_iter()
+        .map(|figure| Ok((format!("{}.svg", figure.name), figure.chart.svg()?)))
+        .collect()
 }
 
 /// Every figure of a page, in order.
@@ -152,7 +112,7 @@ pub(crate) fn all_figures(page: &Page) -> Vec<&Figure> {
 }
 
 /// Names become files and anchors: they must be safe, and each its own.
-fn check(page: &Page) -> Result<(), RenderError> {
+pub(crate) fn check(page: &Page) -> Result<(), RenderError> {
     let ids: Vec<&str> = page.sections.iter().map(|s| s.id.as_str()).collect();
     let names: Vec<&str> = all_figures(page).iter().map(|f| f.name.as_str()).collect();
     for list in [&ids, &names] {

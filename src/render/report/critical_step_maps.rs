@@ -2,7 +2,7 @@
 
 use crate::judge::stability_map::{MapAxis, maps_of};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
-use crate::render::page::{Block, Figure, slug};
+use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::tables::critical_steps::table_of;
 
@@ -21,18 +21,15 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
         let least = steps().fold(f64::INFINITY, f64::min);
         let label = "critical step over h/c (–)";
         let x = match map.axis {
-            MapAxis::Flip | MapAxis::Offset | MapAxis::Points => ChartAxis::linear(axis_label(map.axis)),
-            MapAxis::Conductivity | MapAxis::Stiffness | MapAxis::Porosity => {
-                ChartAxis::log10(axis_label(map.axis))
+            MapAxis::Points => {
+                ChartAxis::linear(axis_label(map.axis)).with_ticks((1..=5).map(f64::from).collect())
             }
-        };
-        let x = match map.axis {
-            MapAxis::Points => x.with_ticks((1..=5).map(f64::from).collect()),
-            _ => x,
+            MapAxis::Flip | MapAxis::Offset => ChartAxis::linear(axis_label(map.axis)),
+            _ => ChartAxis::log10(axis_label(map.axis)),
         };
         let y = if most > WIDE * least { ChartAxis::log10(label) } else { ChartAxis::linear(label) };
         let mut chart = Chart::new(format!("Critical step, {}", map.shared), x, y);
-        chart.size = Size { width: 560.0, ..Size::default() };
+        chart.size = Size::PANEL;
         for (slot, curve) in map.curves.iter().enumerate() {
             let predicted = curve.points.iter().map(|point| (point.at, point.predicted)).collect();
             let observed =
@@ -48,8 +45,7 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
             "Lines: spectral radius of the step operator. Marks: bisection of runs. Largest difference {:.2} %.",
             100.0 * map.largest_deviation
         );
-        let name = slug(&format!("{}-{}", results.study.name, map.shared));
-        figures.push(Figure::new(name, chart, caption));
+        figures.push(results.figure(&map.shared, chart, caption));
     }
     vec![
         Block::Heading("Critical step, predicted and observed".to_owned()),

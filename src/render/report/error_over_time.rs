@@ -6,7 +6,7 @@ use crate::judge::peers;
 use crate::judge::peers::Comparison;
 use crate::judge::work_precision::{NextLevel, TimedRun, WorkPrecision};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Style};
-use crate::render::page::{Block, Figure, slug};
+use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, TableColumn, columns};
 
@@ -19,15 +19,12 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
     if !several {
         return Vec::new();
     }
+    let front: Vec<_> = precision.runs.iter().filter(|run| run.on_front).collect();
     let mut blocks = vec![
         Block::Heading("Error against wall time".to_owned()),
-        Block::Figure(Figure::new(
-            slug(&format!("{}-wall-time", results.study.name)),
-            chart_of(&precision),
-            caption(&precision),
-        )),
+        Block::Figure(results.figure("wall-time", chart_of(&precision), caption(&precision))),
         Block::Table(cheapest_table(&precision)),
-        Block::Table(front_table(&precision)),
+        Block::Table(runs_table("The Pareto front", &front, &precision)),
     ];
     if !precision.next_levels.is_empty() {
         blocks.push(Block::Table(next_table(&precision.next_levels)));
@@ -89,9 +86,9 @@ fn cheapest_table(precision: &WorkPrecision<'_>) -> Table {
         let mut row = vec![Cell::Percent(cheapest.tolerance)];
         match &cheapest.run {
             Some(run) => row.extend(run_cells(run)),
-            None => row.push(Cell::Missing("no timed run is within it".to_owned())),
+            None => row.push(Cell::missing("no timed run is within it")),
         }
-        row.resize_with(1 + RUN_COLUMNS, || Cell::Missing("no timed run is within the tolerance".to_owned()));
+        row.resize_with(1 + run_columns().len(), || Cell::missing("no timed run is within the tolerance"));
         row
     });
     let mut columns = columns("> tolerance");
@@ -100,26 +97,12 @@ fn cheapest_table(precision: &WorkPrecision<'_>) -> Table {
         .note("error of the pore pressure at the points, relative L2, the worst of the outputs")
 }
 
-fn front_table(precision: &WorkPrecision<'_>) -> Table {
-    let front: Vec<_> = precision.runs.iter().filter(|run| run.on_front).collect();
-    runs_table("The Pareto front", &front, precision)
-}
-
 /// Columns of a run.
-const RUN_COLUMNS: usize = 6;
-
-fn run_columns() -> [TableColumn; RUN_COLUMNS] {
-    [
-        TableColumn::text("run"),
-        TableColumn::number("error"),
-        TableColumn::number("wall, median").unit("ms"),
-        TableColumn::number("± deviation").unit("ms"),
-        TableColumn::number("steps"),
-        TableColumn::number("point updates"),
-    ]
+fn run_columns() -> Vec<TableColumn> {
+    columns("run | > error | > wall, median [ms] | > ± deviation [ms] | > steps | > point updates")
 }
 
-fn run_cells(run: &TimedRun<'_>) -> [Cell; RUN_COLUMNS] {
+fn run_cells(run: &TimedRun<'_>) -> [Cell; 6] {
     [
         Cell::Code(run.record.case.label()),
         Cell::Error(run.error),
@@ -136,11 +119,11 @@ fn runs_table(title: &str, runs: &[&TimedRun<'_>], precision: &WorkPrecision<'_>
     notes.extend(
         precision.noise_floor.map(|noise| format!("noise floor of the session: {:.1} %", 100.0 * noise)),
     );
-    Table::of(title, run_columns().to_vec(), runs.iter().map(|run| run_cells(run).to_vec())).notes(notes)
+    Table::of(title, run_columns(), runs.iter().map(|run| run_cells(run).to_vec())).notes(notes)
 }
 
 fn next_table(levels: &[NextLevel]) -> Table {
-    let unknown = || Cell::Missing("the coarser levels predict none".to_owned());
+    let share = |off: Option<f64>| Cell::of(off, Cell::Percent, "the coarser levels predict none");
     let rows = levels.iter().map(|level| {
         let held = level.finest_predicted;
         vec![
@@ -148,11 +131,10 @@ fn next_table(levels: &[NextLevel]) -> Table {
             Cell::Number(1e3 * level.finest.cost),
             Cell::Error(level.finest.error),
             Cell::Number(1e3 * level.next.cost),
-            level.next.error.map_or(Cell::Missing("the series does not converge".to_owned()), Cell::Error),
+            Cell::of(level.next.error, Cell::Error, "the series does not converge"),
             Cell::Order(level.next.cost_exponent),
-            held.map_or_else(unknown, |held| Cell::Percent(held.cost / level.finest.cost - 1.0)),
-            held.and_then(|held| held.error)
-                .map_or_else(unknown, |error| Cell::Percent(error / level.finest.error - 1.0)),
+            share(held.map(|held| held.cost / level.finest.cost - 1.0)),
+            share(held.and_then(|held| held.error).map(|error| error / level.finest.error - 1.0)),
         ]
     });
     Table::of(
@@ -168,38 +150,27 @@ fn next_table(levels: &[NextLevel]) -> Table {
 }
 
 fn peers_table(compared: &[Comparison<'_, '_>]) -> Table {
-    let missing = || Cell::Missing("not measured".to_owned());
+    let measured = |value: Option<f64>, kind| Cell::of(value, kind, "not measured");
     let rows = compared.iter().map(|one| {
         let mut row = vec![Cell::Text(format!("{}: {}", one.peer.name, one.peer.kind))];
-        row.extend(one.peer.errors.map(|error| error.map_or_else(missing, Cell::Error)));
-        row.push(one.peer.seconds.map_or_else(missing, Cell::Number));
+        row.extend(one.peer.errors.map(|error| measured(error, Cell::Error)));
+        row.push(measured(one.peer.seconds, Cell::Number));
         match &one.ahead {
             Some((run, errors)) => {
                 row.push(Cell::Code(run.record.case.label()));
-                row.extend(errors.map(|error| error.map_or_else(missing, Cell::Error)));
+                row.extend(errors.map(|error| measured(error, Cell::Error)));
                 row.push(Cell::Number(run.wall.median));
             }
             None => {
-                row.resize_with(10, || Cell::Missing("every run here is somewhere worse".to_owned()));
+                row.resize_with(10, || Cell::missing("every run here is somewhere worse"));
             }
         }
         row
     });
-    let [early, middle, late] = peers::TIME_FACTORS.map(|factor| format!("T_v = {factor}"));
+    let times = peers::TIME_FACTORS.map(|factor| format!("> T_v = {factor}")).join(" | ");
     Table::of(
         "Other programs on this column, and the first run here that is nowhere worse",
-        vec![
-            TableColumn::text("program"),
-            TableColumn::number(&early),
-            TableColumn::number(&middle),
-            TableColumn::number(&late),
-            TableColumn::number("CPU").unit("s"),
-            TableColumn::text("run here"),
-            TableColumn::number(early),
-            TableColumn::number(middle),
-            TableColumn::number(late),
-            TableColumn::number("wall").unit("s"),
-        ],
+        columns(&format!("program | {times} | > CPU [s] | run here | {times} | > wall [s]")),
         rows,
     )
     .note(

@@ -1,11 +1,11 @@
 //! Error against work, and the wall times that were measured fairly.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::judge::paths::{first_norm, paths};
+use crate::judge::paths::paths;
 use crate::measure::wall_times::median;
 use crate::record::{Record, Status};
 use crate::render::chart::describe::{Chart, ChartAxis, Series};
-use crate::render::page::{Block, Figure, slug};
+use crate::render::page::Block;
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, columns};
 use crate::study::expectation::{Axis, Measure};
@@ -22,9 +22,8 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
             ChartAxis::log10(labels::error_axis(&measure)),
         );
         let labels = labels::path_labels(&along_mesh);
-        let shared = if labels.shared.is_empty() { String::new() } else { format!("; {}", labels.shared) };
-        chart.subtitle =
-            Some(format!("{}, T_v = {}{shared}", labels::measure(&measure), measure.time_factor));
+        let (words, end) = (labels::measure(&measure), labels.subtitle_end());
+        chart.subtitle = Some(format!("{words}, T_v = {}{end}", measure.time_factor));
         for (path, label) in along_mesh.iter().zip(&labels.each) {
             let points = path
                 .records
@@ -34,11 +33,9 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
         }
         let caption = "Work to the last output, counted and not timed: every step visits every point once, or does \
                        the same by one banded map of the grid. Order p in h costs e ~ W^(−p/2): a mesh twice as fine \
-                       has twice the points and twice the steps."
-            .to_owned();
-        let figure = Figure::new(slug(&format!("{}-work", results.study.name)), chart, caption);
+                       has twice the points and twice the steps.";
         blocks.push(Block::Heading("Error against work".to_owned()));
-        blocks.push(Block::Figure(figure));
+        blocks.push(Block::Figure(results.figure("work", chart, caption)));
     }
     let timed: Vec<&Record> = results
         .records
@@ -54,14 +51,9 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
 /// Pressure at the points against the scene's own reference at the last output.
 fn measure_of(results: &StudyResults<'_>) -> Option<Measure> {
     let record = results.records.first()?;
-    Some(Measure {
-        quantity: Quantity::Pressure,
-        sample: Sample::Points,
-        norm: first_norm(Quantity::Pressure),
-        reference: results.study.references.first()?.name().to_owned(),
-        time_factor: *record.case.time_factors.last()?,
-        probe: None,
-    })
+    let reference = results.study.references.first()?.name();
+    let last = *record.case.time_factors.last()?;
+    Some(labels::first_measure(Quantity::Pressure, Sample::Points, reference, last))
 }
 
 fn error(record: &Record, measure: &Measure) -> Option<f64> {
@@ -79,7 +71,7 @@ fn timing_table(timed: &[&Record], measure: &Measure) -> Table {
         let nanoseconds = 1e9 * middle / record.counters.point_updates as f64;
         vec![
             Cell::Code(record.case.label()),
-            error(record, measure).map_or(Cell::Missing("no error was measured".to_owned()), Cell::Error),
+            Cell::of(error(record, measure), Cell::Error, "no error was measured"),
             Cell::Count(record.counters.steps),
             Cell::Count(record.counters.point_updates),
             Cell::Seconds(middle),

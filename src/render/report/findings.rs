@@ -3,9 +3,10 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::Class;
 use crate::convergence::orders::WINDOW;
-use crate::judge::paths::{Path, first_norm, paths};
+use crate::judge::paths::{Path, paths};
 use crate::render::number;
 use crate::render::page::{Block, Section};
+use crate::render::report::labels::first_measure;
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure};
@@ -17,8 +18,7 @@ const QUOTED_CELLS: usize = 10;
 /// What a reader should know first.
 pub fn lead(results: &[StudyResults<'_>]) -> String {
     let judged: usize = results.iter().map(|one| one.judgements.len()).sum();
-    let met =
-        results.iter().flat_map(|one| &one.judgements).filter(|judgement| judgement.verdict.pass).count();
+    let met: usize = results.iter().map(StudyResults::met).sum();
     let runs: usize = results.iter().map(|one| one.records.len()).sum();
     let unsound: usize = results.iter().map(|one| one.unsound.len()).sum();
     let checks = if unsound == 0 { String::new() } else { format!(", {unsound} checks of runs failed") };
@@ -57,14 +57,7 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
             let Some(time_factor) = times.get((times.len() - 1) / 2) else { continue };
             for reference in &one.study.references {
                 let cells = QUOTED.map(|(quantity, sample)| {
-                    let measure = Measure {
-                        quantity,
-                        sample,
-                        norm: first_norm(quantity),
-                        reference: reference.name().to_owned(),
-                        time_factor: *time_factor,
-                        probe: None,
-                    };
+                    let measure = first_measure(quantity, sample, reference.name(), *time_factor);
                     quote(&one.study.name, path, &measure, &mut floors)
                 });
                 // Against another theory than its own a run is quoted where that is the question.
@@ -89,8 +82,7 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
         "at the middle output time of each study; relative L_2 norm over the volume; a class \
              stands where it allows no order",
     );
-    let unmet =
-        results.iter().flat_map(|one| &one.judgements).filter(|judgement| !judgement.verdict.pass).count();
+    let unmet: usize = results.iter().map(|one| one.judgements.len() - one.met()).sum();
     let mut blocks = Vec::new();
     if unmet > 0 {
         blocks.push(Block::Callout(
@@ -106,7 +98,7 @@ pub fn section(results: &[StudyResults<'_>]) -> Section {
     Section {
         heading: "Findings".to_owned(),
         id: "findings".to_owned(),
-        mood: Some(if unmet == 0 { Mood::Pass } else { Mood::Fail }),
+        mood: Some(Mood::of(unmet == 0)),
         blocks,
     }
 }

@@ -1,7 +1,7 @@
 //! Words for quantities, samples and axes, the same in every figure and table.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::judge::paths::Path;
+use crate::judge::paths::{Path, first_norm};
 use crate::study::expectation::{Axis, Measure};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -30,6 +30,12 @@ pub fn measure(measure: &Measure) -> String {
     format!("{} {}", quantity(measure.quantity), sample(measure.sample))
 }
 
+/// A measure in the norm in which its quantity is reported first.
+pub fn first_measure(quantity: Quantity, sample: Sample, reference: &str, time_factor: f64) -> Measure {
+    let norm = first_norm(quantity);
+    Measure { quantity, sample, norm, reference: reference.to_owned(), time_factor, probe: None }
+}
+
 /// Label of an axis of refinement.
 pub fn axis(axis: Axis) -> &'static str {
     match axis {
@@ -55,6 +61,13 @@ pub struct PathLabels {
     pub each: Vec<String>,
     /// What all paths share.
     pub shared: String,
+}
+
+impl PathLabels {
+    /// What all share, as the end of a subtitle.
+    pub fn subtitle_end(&self) -> String {
+        if self.shared.is_empty() { String::new() } else { format!("; {}", self.shared) }
+    }
 }
 
 /// Splits the labels of paths into what differs and what is shared; the method is always named.

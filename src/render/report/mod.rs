@@ -5,8 +5,8 @@ pub mod critical_step_maps;
 pub mod error_over_time;
 pub mod error_over_work;
 pub mod findings;
-pub mod front_page;
 pub mod labels;
+pub mod pages;
 pub mod plane_fields;
 pub mod refinement;
 pub mod stiffness_sweeps;
@@ -16,11 +16,11 @@ pub mod theory_lines;
 pub mod worst_checks;
 
 use crate::case::tier::Tier;
-use crate::exact::exact_error::ExactError;
 use crate::judge::paths::{Judgement, judge_study};
 use crate::judge::soundness;
 use crate::record::{Record, Status};
-use crate::render::page::Page;
+use crate::render::chart::describe::Chart;
+use crate::render::page::{Figure, slug};
 use crate::study::check::Study;
 
 /// A study with its records and the judgements on them.
@@ -46,36 +46,27 @@ impl<'a> StudyResults<'a> {
     }
 
     /// Whether an expectation of the study is about a reference.
-    fn asks_for(&self, reference: &str) -> bool {
+    pub(crate) fn asks_for(&self, reference: &str) -> bool {
         self.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
     }
 
+    /// How many of its expectations are met.
+    pub(crate) fn met(&self) -> usize {
+        self.judgements.iter().filter(|judgement| judgement.verdict.pass).count()
+    }
+
+    /// A figure whose name begins with that of the study.
+    pub(crate) fn figure(&self, name: &str, chart: Chart, caption: impl Into<String>) -> Figure {
+        Figure::new(slug(&format!("{}-{name}", self.study.name)), chart, caption)
+    }
+
     /// What runs the study again.
-    fn run_command(&self) -> String {
+    pub(crate) fn run_command(&self) -> String {
         format!("oedometer run studies/{}.toml", self.study.name)
     }
 
     /// Whether every expectation is met, by records that are sound.
-    fn passes(&self) -> bool {
-        self.unsound.is_empty() && self.judgements.iter().all(|judgement| judgement.verdict.pass)
+    pub(crate) fn passes(&self) -> bool {
+        self.unsound.is_empty() && self.met() == self.judgements.len()
     }
-}
-
-/// The page over the results of studies.
-///
-/// # Errors
-/// When a reference refuses a case.
-pub fn page_of(results: &[StudyResults<'_>]) -> Result<Page, ExactError> {
-    let mut sections = vec![findings::section(results)];
-    for one in results {
-        sections.push(study_section::of_study(one)?);
-    }
-    sections.extend(survival::section(results));
-    sections.push(appendix::section(results));
-    Ok(Page {
-        title: "Convergence report".to_owned(),
-        lead: findings::lead(results),
-        sections,
-        footer: appendix::footer(results),
-    })
 }

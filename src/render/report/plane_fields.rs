@@ -5,10 +5,10 @@ use crate::exact::exact_error::ExactError;
 use crate::judge::locking::{Standing, standings};
 use crate::measure::plane_field::PlaneField;
 use crate::record::{Record, Status};
-use crate::render::chart::describe::{Chart, ChartAxis, Range, Scale, Size};
-use crate::render::chart::field::{ColourField, Colours};
+use crate::render::chart::describe::{Chart, ChartAxis, Size};
+use crate::render::chart::field::ColourField;
 use crate::render::number;
-use crate::render::page::{Block, Figure, slug};
+use crate::render::page::{Block, Figure};
 use crate::render::report::{StudyResults, stiffness_sweeps};
 use crate::render::table::{Cell, Mood, Table, columns};
 
@@ -84,9 +84,6 @@ fn figure(
         x_edges: field.x_edges.clone(),
         y_edges: field.y_edges.clone(),
         values: values.to_vec(),
-        colours: Colours::Diverging(0.0),
-        scale: Scale::Linear,
-        range: Range::Auto,
     });
     chart.size = Size { width: 380.0, plot_height: 240.0, equal_units: true };
     let caption = match oscillation {
@@ -95,7 +92,7 @@ fn figure(
             format!("{name} at T_v = {time_factor}: oscillation index {}.", number::fixed(index, 2))
         }
     };
-    Figure::new(slug(&format!("{}-field-{name}", results.study.name)), chart, caption)
+    results.figure(&format!("field-{name}"), chart, caption)
 }
 
 /// The findings in sentences, each from the numbers.
@@ -138,17 +135,17 @@ fn accuracy(standings: &[Standing]) -> Table {
         let class = match one.class {
             Some(Class::Locked) => Cell::Verdict(Mood::Fail, Class::Locked.name().to_owned()),
             Some(class) => Cell::Text(class.name().to_owned()),
-            None => missing(),
+            None => Cell::missing(UNMEASURED),
         };
         vec![
             Cell::Code(one.method.to_string()),
             rounded(Some(one.rank), 1),
             class,
-            error(one.displacement),
-            order(one.displacement_order),
-            error(one.pressure),
-            order(one.pressure_order),
-            error(one.consolidated),
+            measured(one.displacement, Cell::Error),
+            measured(one.displacement_order, Cell::Order),
+            measured(one.pressure, Cell::Error),
+            measured(one.pressure_order, Cell::Order),
+            measured(one.consolidated, Cell::Error),
             rounded(one.oscillation, 3),
         ]
     });
@@ -180,11 +177,11 @@ fn robustness(standings: &[Standing]) -> Table {
     let rows = standings.iter().map(|one| {
         vec![
             Cell::Code(one.method.to_string()),
-            one.spread.map_or_else(missing, Cell::Percent),
-            error(one.stiff_skeleton),
-            error(one.stiff_skeleton_pressure),
-            one.critical_step.map_or_else(missing, Cell::Number),
-            one.seconds.map_or_else(missing, Cell::Seconds),
+            measured(one.spread, Cell::Percent),
+            measured(one.stiff_skeleton, Cell::Error),
+            measured(one.stiff_skeleton_pressure, Cell::Error),
+            measured(one.critical_step, Cell::Number),
+            measured(one.seconds, Cell::Seconds),
         ]
     });
     Table::of(
@@ -198,18 +195,13 @@ fn robustness(standings: &[Standing]) -> Table {
     .note("Spread: of the displacement error at T_v = 0 over K_w/E from 10³ on.")
 }
 
-fn missing() -> Cell {
-    Cell::Missing("not measured, or of no meaning for a locked body".to_owned())
-}
+/// Why a cell is empty.
+const UNMEASURED: &str = "not measured, or of no meaning for a locked body";
 
-fn error(value: Option<f64>) -> Cell {
-    value.map_or_else(missing, Cell::Error)
-}
-
-fn order(value: Option<f64>) -> Cell {
-    value.map_or_else(missing, Cell::Order)
+fn measured(value: Option<f64>, kind: fn(f64) -> Cell) -> Cell {
+    Cell::of(value, kind, UNMEASURED)
 }
 
 fn rounded(value: Option<f64>, decimals: usize) -> Cell {
-    value.map_or_else(missing, |value| Cell::Text(number::fixed(value, decimals)))
+    value.map_or_else(|| Cell::missing(UNMEASURED), |value| Cell::Text(number::fixed(value, decimals)))
 }

@@ -5,10 +5,9 @@ use crate::case::step_label;
 use crate::convergence::orders::WINDOW;
 use crate::exact::reference::ReferenceKind;
 use crate::judge::paths::{Path, SeriesSummary, first_norm, paths};
-use crate::render::chart::describe::{
-    Chart, ChartAxis, ChartDirection, Rule, Series, Size, SlopeTriangle, Style, TrianglePlace,
-};
-use crate::render::page::{Block, Figure, slug};
+use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
+use crate::render::page::{Block, Figure};
+use crate::render::report::labels::first_measure;
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
@@ -37,9 +36,6 @@ fn drawn<'a, 'b>(all: &'b [Path<'a>]) -> Vec<Path<'a>> {
     let plain: Vec<Path<'a>> = all.iter().filter(is_plain).cloned().collect();
     if all.len() > MOST_SERIES && !plain.is_empty() { plain } else { all.to_vec() }
 }
-
-/// Width of a figure that has a neighbour.
-const PANEL_WIDTH: f64 = 560.0;
 
 /// Figures and tables of a study along an axis; none where nothing was refined on it.
 pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
@@ -114,12 +110,6 @@ fn heading(axis: Axis) -> &'static str {
     }
 }
 
-/// A measure in the norm in which its quantity is reported first.
-fn first_measure(quantity: Quantity, sample: Sample, reference: &str, time_factor: f64) -> Measure {
-    let norm = first_norm(quantity);
-    Measure { quantity, sample, norm, reference: reference.to_owned(), time_factor, probe: None }
-}
-
 fn figure(
     results: &StudyResults<'_>,
     all: &[Path<'_>],
@@ -145,13 +135,12 @@ fn figure(
         ChartAxis::log10(labels::error_axis(&measure)),
     );
     let labels = labels::path_labels(all);
-    let shared = if labels.shared.is_empty() { String::new() } else { format!("; {}", labels.shared) };
-    chart.subtitle = Some(format!("T_v = {time_factor}, against {reference}{shared}"));
-    chart.size = Size { width: PANEL_WIDTH, ..Size::default() };
+    chart.subtitle = Some(format!("T_v = {time_factor}, against {reference}{}", labels.subtitle_end()));
+    chart.size = Size::PANEL;
     for (summary, label) in summaries.iter().zip(&labels.each) {
         let points =
             summary.series.levels().iter().filter_map(|level| Some((level.size, level.error?))).collect();
-        chart.series.push(Series::new(label.clone(), points).style(Style::LineAndMarkers));
+        chart.series.push(Series::new(label.clone(), points));
     }
     if shows_orders(axis, reference) {
         add_triangles(&mut chart, &summaries, &labels.each);
@@ -164,22 +153,16 @@ fn figure(
             results.study.scene.model_difference(kind, &summaries[0].path.records[0].case.material)
         });
         let cause = cause.map_or_else(String::new, |cause| format!(": {cause}"));
-        chart.rules.push(Rule { axis: ChartDirection::Y, at, label: format!("floor of {whose}{cause}") });
+        chart.rules.push(Rule { at, label: format!("floor of {whose}{cause}") });
     }
-    let name = slug(&format!(
-        "{}-{}-{}-{}-{reference}",
-        results.study.name,
-        axis.name(),
-        quantity.name(),
-        sample.name()
-    ));
+    let name = format!("{}-{}-{}-{reference}", axis.name(), quantity.name(), sample.name());
     let caption = match axis {
         Axis::Cells | Axis::TimeStep | Axis::WaterBulkModulus => captions(&summaries),
         Axis::PointsPerCell => {
             "More points refine the quadrature, not the mesh: the error tends to the mesh's own.".to_owned()
         }
     };
-    Some(Figure::new(name, chart, caption))
+    Some(results.figure(&name, chart, caption))
 }
 
 /// Whether a series along the axis is expected to fall with an order, and not to end in the mesh's
@@ -216,7 +199,7 @@ fn add_triangles(chart: &mut Chart, summaries: &[SeriesSummary<'_>], labels: &[S
             summary.finest.as_ref().is_ok_and(|finest| (finest.order - slope).abs() < 0.3)
         });
         if let Some((_, label)) = near {
-            chart.triangles.push(SlopeTriangle { slope, place: TrianglePlace::Beside(label.clone()) });
+            chart.triangles.push(SlopeTriangle { slope, beside: label.clone() });
         }
     }
 }
@@ -295,12 +278,9 @@ fn orders_row(
     axis: Axis,
 ) -> Vec<Cell> {
     let mut row = vec![Cell::Code(label.to_owned()), labels::measure(measure).as_str().into()];
-    let errors = summary.series.levels().iter().map(|level| match level.error {
-        Some(error) => Cell::Error(error),
-        None => Cell::Missing("no error was measured".to_owned()),
-    });
-    row.extend(errors);
-    row.resize(2 + levels, Cell::Missing("not run".to_owned()));
+    let levels_run = summary.series.levels().iter();
+    row.extend(levels_run.map(|level| Cell::of(level.error, Cell::Error, "no error was measured")));
+    row.resize(2 + levels, Cell::missing("not run"));
     if shows_orders(axis, &measure.reference) {
         let pairs: Vec<String> = summary
             .pairs

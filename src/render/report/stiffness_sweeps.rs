@@ -3,8 +3,8 @@
 
 use crate::exact::exact_error::ExactError;
 use crate::judge::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
-use crate::render::chart::describe::{Chart, ChartAxis, ChartDirection, Rule, Series, Size, Style};
-use crate::render::page::{Block, Figure, slug};
+use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size};
+use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, TableColumn, columns};
 
@@ -14,7 +14,7 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     for stiffness in SweptStiffness::ALL {
         let Some(sweep) = StiffnessSweep::of(results.study, results.records, stiffness)? else { continue };
         let Some(last) = sweep.time_factors.last().copied() else { continue };
-        blocks.push(Block::Heading(heading(stiffness).to_owned()));
+        blocks.push(Block::Heading(words_of(stiffness).0.to_owned()));
         blocks.push(Block::Paragraph(format!(
             "{} cells over the height, T_v = {last}; what a method does not feel is a level line. Methods that agree hide \
              one another; the tables have them all.",
@@ -33,18 +33,20 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     Ok(blocks)
 }
 
-fn heading(stiffness: SweptStiffness) -> &'static str {
+/// A stiffness in words: the heading of its figures, and one word for the names of their files.
+fn words_of(stiffness: SweptStiffness) -> (&'static str, &'static str) {
     match stiffness {
-        SweptStiffness::Water => "Stiff water, through consolidation",
-        SweptStiffness::Skeleton => "A skeleton that hardly compresses, through consolidation",
+        SweptStiffness::Water => ("Stiff water, through consolidation", "water"),
+        SweptStiffness::Skeleton => ("A skeleton that hardly compresses, through consolidation", "skeleton"),
     }
 }
 
-fn subject(showing: Showing) -> &'static str {
+/// What is shown, in words: the subject of a figure, and one word for the name of its file.
+fn subject(showing: Showing) -> (&'static str, &'static str) {
     match showing {
-        Showing::Displacement => "Displacement at the nodes",
-        Showing::Pressure => "Pressure at the points",
-        Showing::Oscillation => "Oscillation of the pressure",
+        Showing::Displacement => ("Displacement at the nodes", "displacement"),
+        Showing::Pressure => ("Pressure at the points", "pressure"),
+        Showing::Oscillation => ("Oscillation of the pressure", "oscillation"),
     }
 }
 
@@ -66,40 +68,25 @@ fn figure(results: &StudyResults<'_>, sweep: &StiffnessSweep, time_factor: f64, 
         SweptStiffness::Water => ChartAxis::log10("K_w/E (–)"),
         SweptStiffness::Skeleton => ChartAxis::log10("1 − 2ν (–)").inverted(),
     };
-    let title = format!("{}, T_v = {time_factor}", subject(showing));
+    let (subject, word) = subject(showing);
+    let title = format!("{subject}, T_v = {time_factor}");
     let label = match showing {
         Showing::Displacement | Showing::Pressure => "relative L_2 error (–)",
         Showing::Oscillation => "total variation over the exact one's (–)",
     };
     let mut chart = Chart::new(title.clone(), x, ChartAxis::log10(label));
-    chart.size = Size { width: 560.0, ..Size::default() };
+    chart.size = Size::PANEL;
     for row in sweep.at(time_factor) {
         let points = sweep.values.iter().zip(&row.found).filter_map(|(value, found)| {
             Some((place(sweep.stiffness, *value), drawn(showing, found[showing as usize]?)))
         });
-        chart.series.push(Series::new(row.method.to_string(), points.collect()).style(Style::LineAndMarkers));
+        chart.series.push(Series::new(row.method.to_string(), points.collect()));
     }
     if showing == Showing::Oscillation {
-        chart.rules.push(Rule { axis: ChartDirection::Y, at: 1.0, label: "theory".to_owned() });
+        chart.rules.push(Rule { at: 1.0, label: "theory".to_owned() });
     }
-    let name = slug(&format!("{}-{}-{}", results.study.name, word(showing), axis_word(sweep.stiffness)));
-    Figure::new(name, chart, format!("{title}."))
-}
-
-/// The same in one word, for the name of a file.
-fn word(showing: Showing) -> &'static str {
-    match showing {
-        Showing::Displacement => "displacement",
-        Showing::Pressure => "pressure",
-        Showing::Oscillation => "oscillation",
-    }
-}
-
-fn axis_word(stiffness: SweptStiffness) -> &'static str {
-    match stiffness {
-        SweptStiffness::Water => "water",
-        SweptStiffness::Skeleton => "skeleton",
-    }
+    let name = format!("{word}-{}", words_of(sweep.stiffness).1);
+    results.figure(&name, chart, format!("{title}."))
 }
 
 fn table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
@@ -110,7 +97,7 @@ fn table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
     let mut columns = columns("method");
     columns.extend(sweep.values.iter().map(|value| TableColumn::number(header(value))));
     let cell = |value: Option<f64>| match (value, showing) {
-        (None, _) => Cell::Missing("not run".to_owned()),
+        (None, _) => Cell::missing("not run"),
         (Some(value), Showing::Oscillation) => Cell::Number(value),
         (Some(value), _) => Cell::Error(value),
     };
@@ -122,5 +109,5 @@ fn table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
         Showing::Oscillation => vec!["Total variation over the exact one's, minus one.".to_owned()],
         Showing::Displacement | Showing::Pressure => Vec::new(),
     };
-    Table::of(format!("{}, T_v = {time_factor}", subject(showing)), columns, rows).notes(notes)
+    Table::of(format!("{}, T_v = {time_factor}", subject(showing).0), columns, rows).notes(notes)
 }

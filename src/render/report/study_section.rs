@@ -16,8 +16,8 @@ pub fn of_study(results: &StudyResults<'_>) -> Result<Section, ExactError> {
     let study = results.study;
     let mut blocks = vec![Block::Paragraph(study.summary.clone())];
     if !results.judgements.is_empty() {
-        let met = results.judgements.iter().filter(|judgement| judgement.verdict.pass).count();
-        let mood = if met == results.judgements.len() { Mood::Pass } else { Mood::Fail };
+        let met = results.met();
+        let mood = Mood::of(met == results.judgements.len());
         blocks.push(Block::Callout(
             mood,
             format!("{met} of {} expectations are met.", results.judgements.len()),
@@ -52,7 +52,7 @@ pub fn of_study(results: &StudyResults<'_>) -> Result<Section, ExactError> {
     Ok(Section {
         heading: study.title.clone(),
         id: study.name.clone(),
-        mood: Some(if results.passes() { Mood::Pass } else { Mood::Fail }),
+        mood: Some(Mood::of(results.passes())),
         blocks,
     })
 }

@@ -17,29 +17,16 @@ pub fn section(results: &[StudyResults<'_>]) -> Option<Section> {
     if hard.is_empty() {
         return None;
     }
-    let mut methods: Vec<String> = Vec::new();
-    for record in hard.iter().flat_map(|one| one.records) {
-        let name = runner_of(record);
-        if !methods.contains(&name) {
-            methods.push(name);
-        }
-    }
+    let methods = distinct(hard.iter().flat_map(|one| one.records).map(runner_of));
     let mut columns = columns("hard case | mesh");
     columns.extend(methods.iter().map(|method| TableColumn::text(method.clone())));
     let mut rows = Vec::new();
     for one in &hard {
-        let mut setups: Vec<String> = Vec::new();
-        for record in one.records {
-            let setup = setup_of(record);
-            if !setups.contains(&setup) {
-                setups.push(setup);
-            }
-        }
-        for setup in setups {
+        for setup in distinct(one.records.iter().map(setup_of)) {
             let mut row: Vec<Cell> = vec![one.study.title.as_str().into(), setup.as_str().into()];
             row.extend(methods.iter().map(|method| {
                 let of_setup = |record: &&Record| setup_of(record) == setup && runner_of(record) == *method;
-                one.records.iter().find(of_setup).map_or(Cell::Missing("not tried".to_owned()), end_of)
+                one.records.iter().find(of_setup).map_or(Cell::missing("not tried"), end_of)
             }));
             rows.push(row);
         }
@@ -53,7 +40,7 @@ pub fn section(results: &[StudyResults<'_>]) -> Option<Section> {
     Some(Section {
         heading: "What each method survives".to_owned(),
         id: "survival".to_owned(),
-        mood: Some(if moods { Mood::Pass } else { Mood::Fail }),
+        mood: Some(Mood::of(moods)),
         blocks: vec![
             Block::Paragraph(
                 "Every case ends in a state with a name: all outputs reached, or the failure with its step, its time \
@@ -63,6 +50,17 @@ pub fn section(results: &[StudyResults<'_>]) -> Option<Section> {
             Block::Table(table),
         ],
     })
+}
+
+/// Names in the order of their first appearance.
+fn distinct(names: impl Iterator<Item = String>) -> Vec<String> {
+    let mut seen: Vec<String> = Vec::new();
+    for name in names {
+        if !seen.contains(&name) {
+            seen.push(name);
+        }
+    }
+    seen
 }
 
 fn is_hard(results: &StudyResults<'_>) -> bool {

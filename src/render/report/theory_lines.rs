@@ -9,7 +9,7 @@ use crate::measure::theory_curves::{
 };
 use crate::record::{Record, Status};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
-use crate::render::page::{Block, Figure, slug};
+use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
 
 /// Cells of the runs whose profiles are drawn: the paper's column.
@@ -84,7 +84,7 @@ fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, Exa
         },
         ChartAxis::linear("depth below the surface (H − Y)/H (–)").between(0.0, 1.0).inverted(),
     );
-    chart.size = Size { width: 560.0, ..Size::default() };
+    chart.size = Size::PANEL;
     for (slot, time_factor) in record.case.time_factors.iter().enumerate() {
         chart
             .series
@@ -98,12 +98,11 @@ fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, Exa
             .slot(slot),
         );
     }
-    let name = slug(&format!("{}-isochrones-{}", results.study.name, record.case.method));
     let caption = format!(
         "Markers: material points of {} on {} cells. Lines: theory.",
         record.case.method, record.case.cells
     );
-    Ok(Figure::new(name, chart, caption))
+    Ok(results.figure(&format!("isochrones-{}", record.case.method), chart, caption))
 }
 
 /// The paper's Figs 3b and 4b: degree of consolidation against the time factor.
@@ -116,7 +115,7 @@ fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Figure
         ChartAxis::log10("time factor T_v (–)"),
         ChartAxis::linear("degree of consolidation by settlement U (–)").between(0.0, 1.0).inverted(),
     );
-    chart.size = Size { width: 560.0, ..Size::default() };
+    chart.size = Size::PANEL;
     chart.series.push(Series::theory(own.name(), theory_consolidation(case, own, end)?));
     for (slot, record) in shown.iter().enumerate() {
         chart.series.push(
@@ -125,12 +124,9 @@ fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Figure
                 .slot(slot),
         );
     }
-    let name = slug(&format!("{}-consolidation", results.study.name));
-    let caption =
-        "Settlement over its final value, downward as engineers draw it. The methods differ in their \
-                   stresses, hardly in their settlement."
-            .to_owned();
-    Ok(Figure::new(name, chart, caption))
+    let caption = "Settlement over its final value, downward as engineers draw it. The methods differ in their \
+                   stresses, hardly in their settlement.";
+    Ok(results.figure("consolidation", chart, caption))
 }
 
 /// Why a constant in each cell is of first order at the points and of second at the centres, with

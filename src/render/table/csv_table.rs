@@ -3,33 +3,41 @@ use crate::render::number;
 use crate::render::render_error::RenderError;
 use crate::render::table::{Cell, Table};
 
-pub(crate) fn write(table: &Table) -> Result<String, RenderError> {
-    let fail = |reason: String| RenderError::Csv { title: table.title.clone(), reason };
-    let wide: Vec<bool> = (0..table.columns.len())
-        .map(|i| table.rows.iter().any(|row| matches!(row[i], Cell::OrderWithin(..))))
-        .collect();
-    let mut writer = ::csv::Writer::from_writer(Vec::new());
-    let mut header = Vec::new();
-    for (column, &wide) in table.columns.iter().zip(&wide) {
-        header.push(column.heading());
-        if wide {
-            header.push(format!("{} ±", column.heading()));
-        }
-    }
-    writer.write_record(&header).map_err(|e| fail(e.to_string()))?;
-    for row in &table.rows {
-        let mut fields = Vec::new();
-        for (cell, &wide) in row.iter().zip(&wide) {
-            let (value, half) = show(cell);
-            fields.push(value);
+impl Table {
+    /// For machines: numbers with all of their digits, shares as shares, times in seconds, an empty
+    /// field for what is missing; an order's interval has a column of its own.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_csv(&self) -> Result<String, RenderError> {
+        self.check()?;
+        let fail = |reason: String| RenderError::Csv { title: self.title.clone(), reason };
+        let wide: Vec<bool> = (0..self.columns.len())
+            .map(|i| self.rows.iter().any(|row| matches!(row[i], Cell::OrderWithin(..))))
+            .collect();
+        let mut writer = ::csv::Writer::from_writer(Vec::new());
+        let mut header = Vec::new();
+        for (column, &wide) in self.columns.iter().zip(&wide) {
+            header.push(column.heading());
             if wide {
-                fields.push(half);
+                header.push(format!("{} ±", column.heading()));
             }
         }
-        writer.write_record(&fields).map_err(|e| fail(e.to_string()))?;
+        writer.write_record(&header).map_err(|e| fail(e.to_string()))?;
+        for row in &self.rows {
+            let mut fields = Vec::new();
+            for (cell, &wide) in row.iter().zip(&wide) {
+                let (value, half) = show(cell);
+                fields.push(value);
+                if wide {
+                    fields.push(half);
+                }
+            }
+            writer.write_record(&fields).map_err(|e| fail(e.to_string()))?;
+        }
+        let bytes = writer.into_inner().map_err(|e| fail(e.to_string()))?;
+        String::from_utf8(bytes).map_err(|e| fail(e.to_string()))
     }
-    let bytes = writer.into_inner().map_err(|e| fail(e.to_string()))?;
-    String::from_utf8(bytes).map_err(|e| fail(e.to_string()))
 }
 
 fn show(cell: &Cell) -> (String, String) {

@@ -1,44 +1,52 @@
 //! Tables as fragments of HTML.
 use crate::render::escape::{html, plain_html};
-use crate::render::table::{Align, Cell, Table, mark, marked};
+use crate::render::render_error::RenderError;
+use crate::render::table::{Align, Cell, Table, marked};
 use std::fmt::Write as _;
 
-pub(crate) fn write(table: &Table) -> String {
-    let footnotes = table.footnotes();
-    let mut out = String::from("<div class=\"table\">\n<table>\n");
-    if !table.title.is_empty() {
-        let _ = writeln!(out, "<caption>{}</caption>", html(&table.title));
-    }
-    out.push_str("<thead>\n<tr>");
-    for column in &table.columns {
-        let unit = column.unit.as_ref().map(|u| format!(" <small>{}</small>", html(u))).unwrap_or_default();
-        let _ = write!(
-            out,
-            "<th scope=\"col\" class=\"{}\">{}{unit}</th>",
-            class(column.align),
-            html(&column.header)
-        );
-    }
-    out.push_str("</tr>\n</thead>\n<tbody>\n");
-    for row in &table.rows {
-        out.push_str("<tr>");
-        for (cell, column) in row.iter().zip(&table.columns) {
-            let _ = write!(out, "<td class=\"{}\">{}</td>", class(column.align), show(cell, &footnotes));
+impl Table {
+    /// A fragment of HTML.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_html(&self) -> Result<String, RenderError> {
+        self.check()?;
+        let footnotes = self.footnotes();
+        let mut out = String::from("<div class=\"table\">\n<table>\n");
+        if !self.title.is_empty() {
+            let _ = writeln!(out, "<caption>{}</caption>", html(&self.title));
         }
-        out.push_str("</tr>\n");
+        out.push_str("<thead>\n<tr>");
+        for column in &self.columns {
+            let unit =
+                column.unit.as_ref().map(|u| format!(" <small>{}</small>", html(u))).unwrap_or_default();
+            let _ = write!(
+                out,
+                "<th scope=\"col\" class=\"{}\">{}{unit}</th>",
+                class(column.align),
+                html(&column.header)
+            );
+        }
+        out.push_str("</tr>\n</thead>\n<tbody>\n");
+        for row in &self.rows {
+            out.push_str("<tr>");
+            for (cell, column) in row.iter().zip(&self.columns) {
+                let _ = write!(out, "<td class=\"{}\">{}</td>", class(column.align), show(cell, &footnotes));
+            }
+            out.push_str("</tr>\n");
+        }
+        out.push_str("</tbody>\n</table>\n</div>\n");
+        for (mark, note) in self.lines_below() {
+            let mark = mark.map(|mark| format!("<sup>{mark}</sup> ")).unwrap_or_default();
+            let _ = writeln!(out, "<p class=\"small\">{mark}{}</p>", html(note));
+        }
+        Ok(out)
     }
-    out.push_str("</tbody>\n</table>\n</div>\n");
-    let marks = footnotes.iter().enumerate().map(|(i, f)| format!("<sup>{}</sup> {}", mark(i), html(f)));
-    for note in marks.chain(table.notes.iter().map(|n| html(n))) {
-        let _ = writeln!(out, "<p class=\"small\">{note}</p>");
-    }
-    out
 }
 
 fn class(align: Align) -> &'static str {
     match align {
         Align::Left => "l",
-        Align::Centre => "c",
         Align::Right => "r",
     }
 }

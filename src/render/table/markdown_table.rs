@@ -1,37 +1,43 @@
 //! Tables in GitHub's Markdown.
 use crate::render::escape;
-use crate::render::table::{Align, Cell, Table, mark, marked};
+use crate::render::render_error::RenderError;
+use crate::render::table::{Align, Cell, Table, marked};
 use std::fmt::Write as _;
 
-pub(crate) fn write(table: &Table) -> String {
-    let footnotes = table.footnotes();
-    let mut out = String::new();
-    if !table.title.is_empty() {
-        let _ = write!(out, "**{}**\n\n", escape::markdown(&table.title));
+impl Table {
+    /// For GitHub's Markdown.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_markdown(&self) -> Result<String, RenderError> {
+        self.check()?;
+        let footnotes = self.footnotes();
+        let mut out = String::new();
+        if !self.title.is_empty() {
+            let _ = write!(out, "**{}**\n\n", escape::markdown(&self.title));
+        }
+        let heads: Vec<String> = self.columns.iter().map(|c| escape::markdown(&c.heading())).collect();
+        let rules: Vec<&str> = self
+            .columns
+            .iter()
+            .map(|c| match c.align {
+                Align::Left => ":---",
+                Align::Right => "---:",
+            })
+            .collect();
+        let row = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+        out.push_str(&row(&heads));
+        out.push_str(&row(&rules.iter().map(|&r| r.to_owned()).collect::<Vec<_>>()));
+        for cells in &self.rows {
+            let cells: Vec<String> = cells.iter().map(|cell| show(cell, &footnotes)).collect();
+            out.push_str(&row(&cells));
+        }
+        for (mark, note) in self.lines_below() {
+            let mark = mark.map(|m| format!("<sup>{m}</sup> ")).unwrap_or_default();
+            let _ = writeln!(out, "\n{mark}{}", escape::markdown(note));
+        }
+        Ok(out)
     }
-    let heads: Vec<String> = table.columns.iter().map(|c| escape::markdown(&c.heading())).collect();
-    let rules: Vec<&str> = table
-        .columns
-        .iter()
-        .map(|c| match c.align {
-            Align::Left => ":---",
-            Align::Centre => ":---:",
-            Align::Right => "---:",
-        })
-        .collect();
-    let row = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-    out.push_str(&row(&heads));
-    out.push_str(&row(&rules.iter().map(|&r| r.to_owned()).collect::<Vec<_>>()));
-    for cells in &table.rows {
-        let cells: Vec<String> = cells.iter().map(|cell| show(cell, &footnotes)).collect();
-        out.push_str(&row(&cells));
-    }
-    let marks = footnotes.iter().enumerate().map(|(i, f)| (Some(mark(i)), *f));
-    for (mark, note) in marks.chain(table.notes.iter().map(|n| (None, n.as_str()))) {
-        let mark = mark.map(|m| format!("<sup>{m}</sup> ")).unwrap_or_default();
-        let _ = writeln!(out, "\n{mark}{}", escape::markdown(note));
-    }
-    out
 }
 
 fn show(cell: &Cell, footnotes: &[&str]) -> String {

@@ -37,8 +37,6 @@ pub struct TableColumn {
 pub enum Align {
     /// At the left: words.
     Left,
-    /// In the middle.
-    Centre,
     /// At the right: numbers.
     Right,
 }
@@ -62,7 +60,7 @@ impl TableColumn {
     }
 
     /// Header and unit on one line.
-    fn heading(&self) -> String {
+    pub(crate) fn heading(&self) -> String {
         match &self.unit {
             Some(unit) => format!("{} ({unit})", self.header),
             None => self.header.clone(),
@@ -122,6 +120,11 @@ pub enum Mood {
 }
 
 impl Mood {
+    /// What a judgement that is met or not means.
+    pub fn of(is_met: bool) -> Self {
+        if is_met { Self::Pass } else { Self::Fail }
+    }
+
     /// A mark that reads without colours.
     pub(crate) fn mark(self) -> &'static str {
         match self {
@@ -147,6 +150,16 @@ impl From<&str> for Cell {
 }
 
 impl Cell {
+    /// Nothing, and why.
+    pub fn missing(why: &str) -> Self {
+        Self::Missing(why.to_owned())
+    }
+
+    /// A value where there is one, else why there is none.
+    pub fn of(value: Option<f64>, kind: fn(f64) -> Self, why: &str) -> Self {
+        value.map_or_else(|| Self::missing(why), kind)
+    }
+
     /// What the cell says; why something is missing is left to the footnotes.
     fn show(&self) -> String {
         match self {
@@ -190,44 +203,8 @@ impl Table {
         self
     }
 
-    /// For a terminal.
-    ///
-    /// # Errors
-    /// If a row has too few or too many cells.
-    pub fn to_text(&self) -> Result<String, RenderError> {
-        self.check()?;
-        Ok(text_table::write(self))
-    }
-
-    /// For GitHub's Markdown.
-    ///
-    /// # Errors
-    /// If a row has too few or too many cells.
-    pub fn to_markdown(&self) -> Result<String, RenderError> {
-        self.check()?;
-        Ok(markdown_table::write(self))
-    }
-
-    /// A fragment of HTML.
-    ///
-    /// # Errors
-    /// If a row has too few or too many cells.
-    pub fn to_html(&self) -> Result<String, RenderError> {
-        self.check()?;
-        Ok(html_table::write(self))
-    }
-
-    /// For machines: numbers with all of their digits, shares as shares, times in seconds, an empty
-    /// field for what is missing; an order's interval has a column of its own.
-    ///
-    /// # Errors
-    /// If a row has too few or too many cells.
-    pub fn to_csv(&self) -> Result<String, RenderError> {
-        self.check()?;
-        csv_table::write(self)
-    }
-
-    fn check(&self) -> Result<(), RenderError> {
+    /// Refuses a row with too few or too many cells.
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
         let expected = self.columns.len();
         match self.rows.iter().position(|row| row.len() != expected) {
             None => Ok(()),
@@ -240,8 +217,14 @@ impl Table {
         }
     }
 
+    /// The lines below the table: footnotes with their marks, then notes without.
+    pub(crate) fn lines_below(&self) -> Vec<(Option<String>, &str)> {
+        let footnotes = self.footnotes().into_iter().enumerate().map(|(i, note)| (Some(mark(i)), note));
+        footnotes.chain(self.notes.iter().map(|note| (None, note.as_str()))).collect()
+    }
+
     /// The reasons for what is missing, each once, in the order of their first appearance.
-    fn footnotes(&self) -> Vec<&str> {
+    pub(crate) fn footnotes(&self) -> Vec<&str> {
         let mut reasons: Vec<&str> = Vec::new();
         for cell in self.rows.iter().flatten() {
             if let Cell::Missing(reason) = cell
@@ -264,7 +247,7 @@ fn mark(i: usize) -> String {
 }
 
 /// What a cell says with the mark of its footnote, if it has one.
-fn marked(cell: &Cell, footnotes: &[&str]) -> (String, Option<String>) {
+pub(crate) fn marked(cell: &Cell, footnotes: &[&str]) -> (String, Option<String>) {
     let place = match cell {
         Cell::Missing(reason) => footnotes.iter().position(|f| f == reason),
         _ => None,

@@ -22,17 +22,16 @@ pub fn table_of(records: &[Record]) -> Table {
 
 fn row_of(record: &Record) -> Option<Vec<Cell>> {
     let found = record.stability.as_ref()?;
-    let missing = || Cell::Missing("no step left".to_owned());
     let mut row = vec![
         Cell::Code(record.case.label_without_step()),
         Cell::Error(found.predicted),
-        found.observed.map_or_else(missing, Cell::Error),
-        found.deviation().map_or_else(missing, Cell::Percent),
+        Cell::of(found.observed, Cell::Error, "no step left"),
+        Cell::of(found.deviation(), Cell::Percent, "no step left"),
         Cell::Number(found.predicted / found.wave_limit),
         found.creeping_from.map_or(Cell::Text("–".to_owned()), Cell::Error),
     ];
     row.extend(found.probes.iter().map(|probe| {
-        let mood = if probe.is_as_predicted() { Mood::Pass } else { Mood::Fail };
+        let mood = Mood::of(probe.is_as_predicted());
         Cell::Verdict(mood, words(probe))
     }));
     Some(row)

@@ -32,7 +32,7 @@ pub fn golden_sentence(explanation: &Explanation) -> String {
 }
 
 fn carriers_table(record: &Record, carriers: &[Carrier]) -> Table {
-    let optional = |value: Option<f64>| value.map_or(Cell::Missing(String::new()), Cell::Error);
+    let optional = |value: Option<f64>| Cell::of(value, Cell::Error, "");
     let rows = carriers.iter().map(|carrier| {
         let row = &carrier.row;
         let main = match row.quantity {
@@ -54,7 +54,7 @@ fn carriers_table(record: &Record, carriers: &[Carrier]) -> Table {
                 Cell::Error(place.computed),
                 Cell::Error(place.exact),
             ],
-            None => std::array::from_fn(|_| Cell::Missing(String::new())),
+            None => std::array::from_fn(|_| Cell::missing("")),
         });
         cells
     });
@@ -82,7 +82,7 @@ fn levels_table(first: &Carrier, series: &LevelSeries) -> Table {
         let own = place == series.own;
         vec![
             label.as_str().into(),
-            error.map_or(Cell::Missing("no golden value".to_owned()), Cell::Error),
+            Cell::of(*error, Cell::Error, "no golden value"),
             if own { Cell::Verdict(Mood::Note, "this case".to_owned()) } else { "golden".into() },
         ]
     });

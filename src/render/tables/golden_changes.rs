@@ -87,13 +87,12 @@ pub(crate) fn changes_table(changes: &[CaseChange]) -> Table {
 
 /// Values that differ from their golden ones.
 pub fn differences_table(differences: &[Difference]) -> Table {
-    let value = |value: Option<f64>| {
-        value.map_or(Cell::Missing("no value".to_owned()), |v| number::exact(v).as_str().into())
-    };
+    let value =
+        |value: Option<f64>| value.map_or(Cell::missing("no value"), |v| number::exact(v).as_str().into());
     let rows = differences.iter().take(MOST_DIFFERENCES).map(|one| {
         let change = match (one.golden, one.found) {
             (Some(golden), Some(found)) => Cell::Error(found - golden),
-            _ => Cell::Missing("nothing to compare".to_owned()),
+            _ => Cell::missing("nothing to compare"),
         };
         vec![
             one.change.name().into(),

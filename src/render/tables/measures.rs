@@ -103,7 +103,7 @@ pub fn checks_table(record: &Record) -> Table {
 pub fn bound_cell(check: &RecordCheck) -> Cell {
     match check.bound {
         Some(bound) => {
-            let mood = if check.holds() { Mood::Pass } else { Mood::Fail };
+            let mood = Mood::of(check.holds());
             Cell::Verdict(mood, format!("≤ {}", number::error(bound)))
         }
         None => Cell::Text("not judged".to_owned()),

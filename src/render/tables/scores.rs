@@ -5,6 +5,7 @@ use crate::case::quantity::Quantity;
 use crate::judge::score::score_series::ScoredSeries;
 use crate::judge::score::{Score, WorstPlace};
 use crate::record::ErrorRow;
+use crate::render::table;
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::render::tables::measures::NOT_RESOLVED;
 use std::collections::HashMap;
@@ -27,11 +28,7 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
     let is_plane = score.worst.iter().any(|worst| worst.x.is_some());
     columns.push(TableColumn::number("worst at ζ"));
     columns.extend(is_plane.then(|| TableColumn::number("and x/L")));
-    columns.extend([
-        TableColumn::number("its share"),
-        TableColumn::number("result there"),
-        TableColumn::number("exact there"),
-    ]);
+    columns.extend(table::columns("> its share | > result there | > exact there"));
     let is_main = |row: &&ErrorRow| matches!(row.norm, Norm::L2 | Norm::Relative);
     let index = score.index();
     let worst_of: HashMap<(u64, Quantity), &WorstPlace> =
@@ -51,7 +48,7 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
     let unresolved = score.unresolved.iter().filter(|one| one.reference == first).map(|one| {
         let mut cells =
             vec![Cell::Number(one.time_factor), one.quantity.name().into(), one.sample.name().into()];
-        cells.resize_with(columns.len(), || Cell::Missing(NOT_RESOLVED.to_owned()));
+        cells.resize_with(columns.len(), || Cell::missing(NOT_RESOLVED));
         cells
     });
     let rows: Vec<Vec<Cell>> = rows.chain(unresolved).collect();
@@ -65,39 +62,35 @@ fn error_cell(row: Option<&ErrorRow>) -> Cell {
     match row {
         Some(row) if row.quantity == Quantity::Settlement => Cell::Percent(row.value),
         Some(row) => Cell::Error(row.value),
-        None => Cell::Missing(NOT_RESOLVED.to_owned()),
+        None => Cell::missing(NOT_RESOLVED),
     }
 }
 
 fn place_cells(worst: Option<&WorstPlace>, is_plane: bool) -> Vec<Cell> {
-    let missing = || Cell::Missing(String::new());
-    let mut cells = vec![worst.map_or_else(missing, |worst| Cell::Number(worst.zeta))];
-    cells.extend(is_plane.then(|| worst.and_then(|worst| worst.x).map_or_else(missing, Cell::Number)));
+    let mut cells = vec![Cell::of(worst.map(|worst| worst.zeta), Cell::Number, "")];
+    cells.extend(is_plane.then(|| Cell::of(worst.and_then(|worst| worst.x), Cell::Number, "")));
     cells.extend(match worst {
         Some(worst) => [Cell::Percent(worst.share), Cell::Error(worst.computed), Cell::Error(worst.exact)],
-        None => std::array::from_fn(|_| missing()),
+        None => std::array::from_fn(|_| Cell::missing("")),
     });
     cells
 }
 
 /// One row a series over meshes, with its errors, order and class.
 pub fn series_table(series: &[ScoredSeries], cells: &[usize]) -> Table {
-    let mut columns = ["T_v", "quantity", "reference"].map(TableColumn::text).to_vec();
-    columns[0] = TableColumn::number("T_v");
+    let mut columns = columns("> T_v | quantity | reference");
     columns.extend(cells.iter().map(|cells| TableColumn::number(format!("{cells} cells"))));
-    columns.extend([TableColumn::number("order"), TableColumn::text("class"), TableColumn::text("reason")]);
+    columns.extend(table::columns("> order | class | reason"));
     let rows = series.iter().map(|one| {
         let mut row = vec![
             Cell::Number(one.measure.time_factor),
             one.measure.quantity.name().into(),
             one.measure.reference.as_str().into(),
         ];
-        row.extend(one.series.levels().iter().map(|level| match level.error {
-            Some(error) => Cell::Error(error),
-            None => Cell::Missing("no such row in the result".to_owned()),
-        }));
+        let levels = one.series.levels().iter();
+        row.extend(levels.map(|level| Cell::of(level.error, Cell::Error, "no such row in the result")));
         let class = &one.classification;
-        row.push(class.order.map_or(Cell::Missing("the class allows no order".to_owned()), Cell::Order));
+        row.push(Cell::of(class.order, Cell::Order, "the class allows no order"));
         row.push(class.class.name().into());
         row.push(class.reason.as_str().into());
         row

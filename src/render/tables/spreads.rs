@@ -17,7 +17,7 @@ pub fn table_of(spreads: &[ValueScatter]) -> Table {
             Cell::Error(spread.tolerance()),
             match &spread.place {
                 Some(place) => Cell::Code(place.clone()),
-                None => Cell::Missing("every bit is equal".to_owned()),
+                None => Cell::missing("every bit is equal"),
             },
         ]
     });

@@ -26,10 +26,15 @@ pub fn table_of(judgements: &[Judgement]) -> Option<Table> {
     })
 }
 
+/// Why the finest three levels tell nothing.
+const OSCILLATES: &str = "the finest three go to and fro";
+/// Why there is no fit.
+const FEW: &str = "fewer than four levels";
+
 fn row_of(judgement: &Judgement) -> Option<Vec<Cell>> {
     let found = judgement.uncertainty.as_ref()?;
-    let missing = |why: &str| Cell::Missing(why.to_owned());
-    let share = |value: f64| Cell::Error(value / found.finest().abs());
+    let share =
+        |value: Option<f64>, why| Cell::of(value.map(|it| it / found.finest().abs()), Cell::Error, why);
     let index = found.finest_three.estimate;
     let fit = found.least_squares.as_ref();
     let of_fit = fit.and_then(|fit| fit.grids.last());
@@ -38,11 +43,11 @@ fn row_of(judgement: &Judgement) -> Option<Vec<Cell>> {
         Cell::Count(found.values.len() as u64),
         digits(found.finest()),
         behaviour_name(found.finest_three.behaviour).into(),
-        found.order.map_or_else(|| missing("the finest three go to and fro"), Cell::Number),
-        found.extrapolated.map_or_else(|| missing("the finest three go to and fro"), digits),
-        index.map_or_else(|| missing("the finest three go to and fro"), |index| share(index.index_fine)),
-        of_fit.map_or_else(|| missing("fewer than four levels"), |grid| share(grid.uncertainty)),
-        fit.map_or_else(|| missing("fewer than four levels"), |fit| model_name(fit.model).into()),
+        Cell::of(found.order, Cell::Number, OSCILLATES),
+        Cell::of(found.extrapolated, digits, OSCILLATES),
+        share(index.map(|index| index.index_fine), OSCILLATES),
+        share(of_fit.map(|grid| grid.uncertainty), FEW),
+        fit.map_or_else(|| Cell::missing(FEW), |fit| model_name(fit.model).into()),
         Cell::Error(found.relative()),
     ])
 }

@@ -6,7 +6,7 @@ pub mod results;
 use crate::case::Case;
 use crate::cli::commands::score::results::{Held, Results};
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{TableFormat, json_of, print_tables};
+use crate::cli::output::{TableFormat, csv_of, json_of, print_tables};
 use crate::cli::overrides;
 use crate::cli::overrides::StudyLines;
 use crate::cli::stream::{print_data, say};
@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let results = Results::of(&arguments.results, arguments.cells.as_deref(), &held)?;
     match arguments.format {
         TableFormat::Json => print_data(&json_of(&results.scores())?)?,
-        TableFormat::Csv => print_data(&csv_of(&results.scores(), &arguments.results)?)?,
+        TableFormat::Csv => print_data(&errors_csv(&results.scores(), &arguments.results)?)?,
         _ => {
             let mut tables = Vec::new();
             for one in &results.all {
@@ -136,16 +136,8 @@ fn mapping_of(path: Option<&Path>, case: &Case) -> anyhow::Result<Mapping> {
 /// The scene with the column that the result is of, as a study with one case, and the time factors
 /// that were asked for.
 fn study_of(arguments: &Arguments) -> anyhow::Result<(Study, Vec<f64>)> {
-    let mut lines = StudyLines::default();
-    lines.give("title", "\"score\"", "`score`")?;
-    lines.give("scene", &overrides::quoted(&arguments.scene), "`--scene`")?;
-    if let Some(reference) = &arguments.reference {
-        lines.give("output.references", &format!("[{}]", overrides::quoted(reference)), "`--reference`")?;
-    }
-    if let Some(typed) = &arguments.time_factor {
-        let list = overrides::list("--time-factor", typed)?;
-        lines.give("output.time_factors", &list, "`--time-factor`")?;
-    }
+    let mut lines = StudyLines::of("score", &arguments.scene, "`--scene`")?;
+    lines.give_outputs(arguments.reference.as_deref(), arguments.time_factor.as_deref())?;
     lines.assign(&arguments.assignments)?;
     lines.refuse_without_effect(&overrides::OF_RUNS)?;
     let is_requested = lines.has("output.time_factors");
@@ -168,22 +160,13 @@ fn groups_of(case: &Case) -> String {
     )
 }
 
-fn csv_of(scores: &[&Score], results: &[PathBuf]) -> anyhow::Result<String> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
+/// The errors as CSV, of several results with the name of each in front.
+fn errors_csv(scores: &[&Score], results: &[PathBuf]) -> anyhow::Result<String> {
     let several = scores.len() > 1;
-    let mut header = ERROR_COLUMNS.to_vec();
-    if several {
-        header.insert(0, "result");
-    }
-    writer.write_record(&header)?;
-    for (score, result) in scores.iter().zip(results) {
-        for row in &score.errors {
-            let mut fields = row.csv_fields().to_vec();
-            if several {
-                fields.insert(0, result.display().to_string());
-            }
-            writer.write_record(&fields)?;
-        }
-    }
-    Ok(String::from_utf8(writer.into_inner()?)?)
+    let header = several.then_some("result").into_iter().chain(ERROR_COLUMNS);
+    let rows = scores.iter().zip(results).flat_map(|(score, result)| {
+        let name = several.then(|| result.display().to_string());
+        score.errors.iter().map(move |row| name.clone().into_iter().chain(row.csv_fields()).collect())
+    });
+    csv_of(header, rows)
 }

@@ -3,6 +3,7 @@ use crate::render::chart::canvas::Px;
 use crate::render::chart::describe::{Chart, Style};
 use crate::render::chart::layout::clip::PixelFrame;
 use crate::render::chart::layout::scale::{Reason, Ruler};
+use std::collections::BTreeMap;
 
 /// The places of the points of each series, and what is to be said about those without one.
 pub(crate) struct PlacedNote {
@@ -10,17 +11,17 @@ pub(crate) struct PlacedNote {
     pub notes: Vec<String>,
 }
 
+/// How many points are lost for each reason, and to which series.
+type Lost<'a> = BTreeMap<Reason, (usize, Vec<&'a str>)>;
+
 /// Puts every point of every series in its place.
 pub(crate) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &PixelFrame) -> PlacedNote {
-    let mut lost: Vec<(Reason, usize, Vec<&str>)> = Vec::new();
+    let mut lost = Lost::new();
     let mut lose = |reason: Reason, name| {
-        let i = lost.iter().position(|(r, ..)| *r == reason).unwrap_or_else(|| {
-            lost.push((reason, 0, Vec::new()));
-            lost.len() - 1
-        });
-        lost[i].1 += 1;
-        if !lost[i].2.contains(&name) {
-            lost[i].2.push(name);
+        let (count, names) = lost.entry(reason).or_default();
+        *count += 1;
+        if !names.contains(&name) {
+            names.push(name);
         }
     };
     let mut points = Vec::new();
@@ -44,7 +45,6 @@ pub(crate) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &PixelFrame) -> 
         }
         points.push(places);
     }
-    lost.sort_by_key(|(reason, ..)| *reason);
     let mut notes = sentence(&lost).into_iter().collect::<Vec<_>>();
     notes.extend(chart.field.as_ref().and_then(|field| match (field.shape(), field.missing()) {
         (None, _) => Some("The field's edges and values do not belong together.".to_owned()),
@@ -55,11 +55,11 @@ pub(crate) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &PixelFrame) -> 
     PlacedNote { points, notes }
 }
 
-fn sentence(lost: &[(Reason, usize, Vec<&str>)]) -> Option<String> {
-    let total: usize = lost.iter().map(|(_, n, _)| n).sum();
+fn sentence(lost: &Lost<'_>) -> Option<String> {
+    let total: usize = lost.values().map(|(n, _)| n).sum();
     let reasons: Vec<String> = lost
         .iter()
-        .map(|(reason, n, names)| {
+        .map(|(reason, (n, names))| {
             let named: Vec<&str> = names.iter().copied().filter(|n| !n.is_empty()).collect();
             let more = if named.len() > 3 { ", …" } else { "" };
             let who = named.iter().take(3).copied().collect::<Vec<_>>().join(", ");

@@ -18,7 +18,7 @@ pub(crate) const SMALL: f64 = 12.0;
 pub(crate) const LABEL: f64 = 13.0;
 pub(crate) const NOTE: f64 = 11.0;
 const PAD: f64 = 14.0;
-const LINE: f64 = 1.3;
+pub(crate) const LINE: f64 = 1.3;
 
 /// Where the legend goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,11 +67,6 @@ fn spans(chart: &Chart) -> (Span, Span) {
     for series in &chart.series {
         xs.extend(series.points.iter().map(|p| p.0));
         ys.extend(series.points.iter().map(|p| p.1));
-        ys.extend(series.bars.iter().flat_map(|b| [b.0, b.1]));
-    }
-    for (x, low, high) in chart.bands.iter().flat_map(|b| &b.points) {
-        xs.push(*x);
-        ys.extend([low, high]);
     }
     if let Some(field) = &chart.field {
         xs.extend(&field.x_edges);
@@ -166,8 +161,13 @@ fn side(legend: &Legend, wide: f64, tall: f64, has_bar: bool) -> LegendSide {
 
 fn bar_edge(chart: &Chart, top: f64, height: f64, tall: f64) -> Option<Edge> {
     let field = chart.field.as_ref().filter(|f| f.shape().is_some())?;
-    let axis = ChartAxis { scale: field.scale, ..ChartAxis::linear("") };
-    Some(edge(&axis, field.span(), (top + height, top), false, wrap(&field.label, tall / LABEL)))
+    Some(edge(
+        &ChartAxis::linear(""),
+        field.span(),
+        (top + height, top),
+        false,
+        wrap(&field.label, tall / LABEL),
+    ))
 }
 
 /// Room for the labels and the words of an upright axis.

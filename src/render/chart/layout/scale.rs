@@ -1,6 +1,23 @@
 //! From values to pixels.
 use crate::elementary;
-use crate::render::chart::describe::{Range, Scale as Kind};
+
+/// How an axis or a colour bar spreads its values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// Evenly in the decimal logarithm.
+    Log10,
+}
+
+/// What an axis or a colour bar shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Range {
+    /// All of the data.
+    Auto,
+    /// From the first value to the second, whatever the data.
+    Fixed(f64, f64),
+}
 
 /// Beyond these, no picture of the rest would be left.
 const HUGE: f64 = 1e150;
@@ -26,12 +43,12 @@ impl Reason {
 }
 
 /// Whether a value can be put on such an axis at all.
-pub(crate) fn drawable(value: f64, kind: Kind) -> Result<f64, Reason> {
+pub(crate) fn drawable(value: f64, kind: Scale) -> Result<f64, Reason> {
     match kind {
         _ if !value.is_finite() => Err(Reason::NotFinite),
-        Kind::Log10 if value <= 0.0 => Err(Reason::NotPositive),
+        Scale::Log10 if value <= 0.0 => Err(Reason::NotPositive),
         _ if value.abs() > HUGE => Err(Reason::Extreme),
-        Kind::Log10 if value < 1.0 / HUGE => Err(Reason::Extreme),
+        Scale::Log10 if value < 1.0 / HUGE => Err(Reason::Extreme),
         _ => Ok(value),
     }
 }
@@ -39,14 +56,14 @@ pub(crate) fn drawable(value: f64, kind: Kind) -> Result<f64, Reason> {
 /// The lower and upper end of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
-    pub kind: Kind,
+    pub kind: Scale,
     pub low: f64,
     pub high: f64,
 }
 
 impl Span {
     /// The span of an axis that has to show `values`, with a margin as a share of it.
-    pub fn over(kind: Kind, range: Range, values: impl Iterator<Item = f64>, margin: f64) -> Self {
+    pub fn over(kind: Scale, range: Range, values: impl Iterator<Item = f64>, margin: f64) -> Self {
         if let Range::Fixed(low, high) = range
             && low < high
             && drawable(low, kind).is_ok()
@@ -58,10 +75,10 @@ impl Span {
             Some(ends.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
         });
         let (low, high) = match (ends, kind) {
-            (None, Kind::Linear) => (0.0, 1.0),
-            (None, Kind::Log10) => (0.1, 10.0),
-            (Some((low, high)), Kind::Linear) => widen(low, high, margin),
-            (Some((low, high)), Kind::Log10) => {
+            (None, Scale::Linear) => (0.0, 1.0),
+            (None, Scale::Log10) => (0.1, 10.0),
+            (Some((low, high)), Scale::Linear) => widen(low, high, margin),
+            (Some((low, high)), Scale::Log10) => {
                 let (a, b) = (elementary::log10(low), elementary::log10(high));
                 let room = (margin * (b - a)).max(if b - a < 0.3 && margin > 0.0 { 0.15 } else { 0.0 });
                 let room = if a == b { room.max(0.15) } else { room };
@@ -74,8 +91,8 @@ impl Span {
     /// Where a value stands between the ends: 0 at the lower, 1 at the upper.
     pub fn share(&self, value: f64) -> f64 {
         match self.kind {
-            Kind::Linear => (value - self.low) / (self.high - self.low),
-            Kind::Log10 => elementary::log10(value / self.low) / elementary::log10(self.high / self.low),
+            Scale::Linear => (value - self.low) / (self.high - self.low),
+            Scale::Log10 => elementary::log10(value / self.low) / elementary::log10(self.high / self.low),
         }
     }
 }
@@ -134,12 +151,12 @@ mod tests {
 
     #[test]
     fn what_cannot_be_drawn_has_a_reason() {
-        assert_eq!(drawable(f64::NAN, Kind::Linear), Err(Reason::NotFinite));
-        assert_eq!(drawable(f64::INFINITY, Kind::Log10), Err(Reason::NotFinite));
-        assert_eq!(drawable(0.0, Kind::Log10), Err(Reason::NotPositive));
-        assert_eq!(drawable(-1.0, Kind::Linear), Ok(-1.0));
-        assert_eq!(drawable(1e-200, Kind::Log10), Err(Reason::Extreme));
-        assert_eq!(drawable(1e200, Kind::Linear), Err(Reason::Extreme));
+        assert_eq!(drawable(f64::NAN, Scale::Linear), Err(Reason::NotFinite));
+        assert_eq!(drawable(f64::INFINITY, Scale::Log10), Err(Reason::NotFinite));
+        assert_eq!(drawable(0.0, Scale::Log10), Err(Reason::NotPositive));
+        assert_eq!(drawable(-1.0, Scale::Linear), Ok(-1.0));
+        assert_eq!(drawable(1e-200, Scale::Log10), Err(Reason::Extreme));
+        assert_eq!(drawable(1e200, Scale::Linear), Err(Reason::Extreme));
     }
 
     #[test]
@@ -173,7 +190,7 @@ mod tests {
 
     #[test]
     fn values_map_linearly_or_by_their_logarithm() {
-        let span = Span { kind: Kind::Log10, low: 1e-3, high: 1e1 };
+        let span = Span { kind: Scale::Log10, low: 1e-3, high: 1e1 };
         let ruler = Ruler { span, from: 400.0, to: 0.0 };
         assert!((ruler.px(1e-1).unwrap_or(0.0) - 200.0).abs() < 1e-9);
         assert_eq!(ruler.px(-1.0), Err(Reason::NotPositive));

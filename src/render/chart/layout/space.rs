@@ -31,8 +31,6 @@ struct Bin {
 struct Obstacle {
     room: PixelFrame,
     weight: f64,
-    /// The series whose line it is a piece of.
-    line_of: Option<usize>,
 }
 
 /// A box that would do, and what speaks against it from the start.
@@ -49,13 +47,13 @@ impl Space {
 
     /// A marker.
     pub fn add_marker(&mut self, at: Px) {
-        self.add(at, Obstacle { room: around(at, REACH, REACH), weight: 3.0, line_of: None });
+        self.add(at, Obstacle { room: around(at, REACH, REACH), weight: 3.0 });
     }
 
-    /// The curve of the series `owner`, as a trail of small boxes.
-    pub fn add_line(&mut self, piece: &[Px], owner: usize) {
+    /// A curve, as a trail of small boxes.
+    pub fn add_line(&mut self, piece: &[Px]) {
         for at in trail(piece, 4.0) {
-            self.add(at, Obstacle { room: around(at, 1.5, 1.5), weight: 1.0, line_of: Some(owner) });
+            self.add(at, Obstacle { room: around(at, 1.5, 1.5), weight: 1.0 });
         }
     }
 
@@ -70,15 +68,15 @@ impl Space {
         self.taken.push(room);
     }
 
-    /// The offer with the least in its way; the first of equals. The line of `owner` is no
-    /// obstacle to its own words. Offers that leave the frame count only if there is no other.
-    pub fn best(&self, offers: &[Offer], owner: Option<usize>) -> Option<usize> {
+    /// The offer with the least in its way; the first of equals. Offers that leave the frame count only
+    /// if there is no other.
+    pub fn best(&self, offers: &[Offer]) -> Option<usize> {
         let cost = |offer: &Offer| {
             let outside = self.frame.is_some_and(|f| {
                 let corners = [(offer.room.left, offer.room.top), (offer.room.right, offer.room.bottom)];
                 !corners.iter().all(|&c| f.holds(c))
             });
-            self.met(&offer.room, owner) + offer.penalty + if outside { 1e4 } else { 0.0 }
+            self.met(&offer.room) + offer.penalty + if outside { 1e4 } else { 0.0 }
         };
         let every = offers.len().div_ceil(MOST_OFFERS).max(1);
         let costs = offers.iter().enumerate().step_by(every).map(|(place, offer)| (place, cost(offer)));
@@ -86,13 +84,12 @@ impl Space {
     }
 
     /// Weight of all that a room meets.
-    fn met(&self, room: &PixelFrame, owner: Option<usize>) -> f64 {
+    fn met(&self, room: &PixelFrame) -> f64 {
         let mut met = 60.0 * self.taken.iter().filter(|taken| taken.meets(room)).count() as f64;
         for x in bin_of(room.left - REACH)..=bin_of(room.right + REACH) {
             for y in bin_of(room.top - REACH)..=bin_of(room.bottom + REACH) {
                 let Some(bin) = self.bins.get(&(x, y)) else { continue };
-                met +=
-                    if owner.is_none() && is_within(x, y, room) { bin.weight } else { bin.met(room, owner) };
+                met += if is_within(x, y, room) { bin.weight } else { bin.met(room) };
             }
         }
         met
@@ -100,14 +97,13 @@ impl Space {
 }
 
 impl Bin {
-    fn met(&self, room: &PixelFrame, owner: Option<usize>) -> f64 {
-        let in_the_way = |one: &&Obstacle| (owner.is_none() || one.line_of != owner) && one.room.meets(room);
-        self.obstacles.iter().filter(in_the_way).map(|one| one.weight).sum()
+    fn met(&self, room: &PixelFrame) -> f64 {
+        self.obstacles.iter().filter(|one| one.room.meets(room)).map(|one| one.weight).sum()
     }
 }
 
 /// Number of the bin that a coordinate lies in.
-#[allow(clippy::cast_possible_truncation, reason = "a figure has some thousand pixels")]
+#[expect(clippy::cast_possible_truncation, reason = "a figure has some thousand pixels")]
 fn bin_of(coordinate: f64) -> i64 {
     (coordinate / BIN).floor() as i64
 }
@@ -150,16 +146,15 @@ mod tests {
     #[test]
     fn the_emptier_place_wins_and_the_frame_is_kept() {
         let mut space = Space::within(PixelFrame { left: 0.0, top: 0.0, right: 100.0, bottom: 100.0 });
-        space.add_line(&[(0.0, 50.0), (100.0, 50.0)], 0);
+        space.add_line(&[(0.0, 50.0), (100.0, 50.0)]);
         let offer = |x, y| Offer { room: around((x, y), 10.0, 5.0), penalty: 0.0 };
         let offers = [offer(50.0, 50.0), offer(50.0, 20.0), offer(99.0, 20.0)];
-        assert_eq!(space.best(&offers, None), Some(1));
-        assert_eq!(space.best(&offers, Some(0)), Some(0));
+        assert_eq!(space.best(&offers), Some(1));
         let others = [offers[1], offer(20.0, 80.0)];
-        assert_eq!(space.best(&others, None), Some(0));
+        assert_eq!(space.best(&others), Some(0));
         space.take(offers[1].room);
-        assert_eq!(space.best(&others, None), Some(1));
-        assert_eq!(space.best(&[], None), None);
+        assert_eq!(space.best(&others), Some(1));
+        assert_eq!(space.best(&[]), None);
     }
 
     #[test]
@@ -170,10 +165,9 @@ mod tests {
     }
 
     /// What `best` promises, with every offer held against every obstacle.
-    fn best_of_all_pairs(all: &[Obstacle], offers: &[Offer], owner: Option<usize>) -> Option<usize> {
+    fn best_of_all_pairs(all: &[Obstacle], offers: &[Offer]) -> Option<usize> {
         let cost = |offer: &Offer| {
-            let met =
-                |one: &&Obstacle| (owner.is_none() || one.line_of != owner) && one.room.meets(&offer.room);
+            let met = |one: &&Obstacle| one.room.meets(&offer.room);
             all.iter().filter(met).map(|one| one.weight).sum::<f64>() + offer.penalty
         };
         (0..offers.len()).min_by(|&a, &b| cost(&offers[a]).total_cmp(&cost(&offers[b])))
@@ -188,32 +182,30 @@ mod tests {
             f64::from(seed >> 8) / f64::from(1 << 24) * (most + 20.0) - 10.0
         };
         let mut space = Space::default();
-        for owner in 0..6 {
+        for _ in 0..6 {
             let curve: Vec<Px> = (0..8).map(|_| (number(700.0), number(400.0))).collect();
-            space.add_line(&curve, owner);
+            space.add_line(&curve);
             for at in curve {
                 space.add_marker(at);
             }
         }
         let all: Vec<Obstacle> = space.bins.values().flat_map(|bin| bin.obstacles.clone()).collect();
-        for owner in [None, Some(0), Some(5)] {
-            for size in [(12.0, 6.0), (60.0, 7.0), (90.0, 70.0)] {
-                let offers: Vec<Offer> = (0..200)
-                    .map(|_| around((number(700.0), number(400.0)), size.0, size.1))
-                    .map(|room| Offer { room, penalty: 0.001 * room.left.abs() })
-                    .collect();
-                assert_eq!(space.best(&offers, owner), best_of_all_pairs(&all, &offers, owner), "{size:?}");
-            }
+        for size in [(12.0, 6.0), (60.0, 7.0), (90.0, 70.0)] {
+            let offers: Vec<Offer> = (0..200)
+                .map(|_| around((number(700.0), number(400.0)), size.0, size.1))
+                .map(|room| Offer { room, penalty: 0.001 * room.left.abs() })
+                .collect();
+            assert_eq!(space.best(&offers), best_of_all_pairs(&all, &offers), "{size:?}");
         }
     }
 
     #[test]
     fn of_very_many_offers_some_are_weighed_and_the_free_one_among_them_wins() {
         let mut space = Space::default();
-        space.add_line(&[(0.0, 50.0), (600.0, 50.0)], 0);
+        space.add_line(&[(0.0, 50.0), (600.0, 50.0)]);
         let offer = |y| Offer { room: around((300.0, y), 10.0, 5.0), penalty: 0.0 };
         let mut offers = vec![offer(50.0); 10 * MOST_OFFERS];
         offers[70] = offer(80.0);
-        assert_eq!(space.best(&offers, None), Some(70));
+        assert_eq!(space.best(&offers), Some(70));
     }
 }

@@ -1,8 +1,8 @@
 //! Where an axis has ticks and what they say.
 use crate::elementary;
-use crate::render::chart::describe::Scale as Kind;
-use crate::render::chart::label::{decimals, minus, power, whole};
-use crate::render::chart::layout::scale::{Ruler, Span, drawable};
+use crate::render::chart::label::{decimals, power, whole};
+use crate::render::chart::layout::scale::{Ruler, Scale, Span, drawable};
+use crate::render::number::minus;
 use crate::render::script::{exponent, width};
 
 /// A tick; without a label it is a minor one.
@@ -60,9 +60,9 @@ fn automatic(ruler: &Ruler, room: Room) -> Vec<Tick> {
     let apart = if room.beside { 4.8 * room.font } else { 3.4 * room.font };
     let most = (ruler.length() / apart).clamp(2.0, 12.0);
     match span.kind {
-        Kind::Linear => even(&span, most),
-        Kind::Log10 if elementary::log10(span.high / span.low) < 0.75 => even(&span, most),
-        Kind::Log10 => decades(&span, most),
+        Scale::Linear => even(&span, most),
+        Scale::Log10 if elementary::log10(span.high / span.low) < 0.75 => even(&span, most),
+        Scale::Log10 => decades(&span, most),
     }
 }
 
@@ -140,7 +140,7 @@ fn value_of(m: i32, n: i32) -> f64 {
 /// Drops the labels that would touch a neighbour; powers of ten hold their place first.
 fn thin(ticks: &mut [Tick], ruler: &Ruler, room: Room) {
     let mut order: Vec<usize> = (0..ticks.len()).filter(|&i| ticks[i].label.is_some()).collect();
-    if ruler.span.kind == Kind::Log10 {
+    if ruler.span.kind == Scale::Log10 {
         order.sort_by_key(|&i| !is_power(ticks[i].value));
     }
     let mut taken: Vec<(f64, f64)> = Vec::new();
@@ -167,34 +167,34 @@ fn is_power(value: f64) -> bool {
 mod tests {
     use super::*;
 
-    fn labels(kind: Kind, low: f64, high: f64, length: f64, beside: bool) -> Vec<String> {
+    fn labels(kind: Scale, low: f64, high: f64, length: f64, beside: bool) -> Vec<String> {
         let ruler = Ruler { span: Span { kind, low, high }, from: 0.0, to: length };
         ticks(&ruler, None, Room { font: 12.0, beside }).into_iter().filter_map(|t| t.label).collect()
     }
 
     #[test]
     fn linear_ticks_are_round_numbers() {
-        assert_eq!(labels(Kind::Linear, 0.0, 1.0, 500.0, true), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
-        assert_eq!(labels(Kind::Linear, -0.3, 0.2, 250.0, true), ["−0.2", "0.0", "0.2"]);
+        assert_eq!(labels(Scale::Linear, 0.0, 1.0, 500.0, true), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(labels(Scale::Linear, -0.3, 0.2, 250.0, true), ["−0.2", "0.0", "0.2"]);
         assert_eq!(
-            labels(Kind::Linear, 0.0, 2e6, 300.0, true),
+            labels(Scale::Linear, 0.0, 2e6, 300.0, true),
             ["0", "5·10⁵", "1.0·10⁶", "1.5·10⁶", "2.0·10⁶"]
         );
     }
 
     #[test]
     fn log_ticks_are_powers_or_plain_numbers() {
-        assert_eq!(labels(Kind::Log10, 1e-6, 1e-1, 300.0, false).first().map(String::as_str), Some("10⁻⁶"));
-        assert_eq!(labels(Kind::Log10, 0.02, 0.25, 400.0, true), ["0.02", "0.05", "0.1", "0.2"]);
-        let wide = labels(Kind::Log10, 1e-30, 1e30, 300.0, false);
+        assert_eq!(labels(Scale::Log10, 1e-6, 1e-1, 300.0, false).first().map(String::as_str), Some("10⁻⁶"));
+        assert_eq!(labels(Scale::Log10, 0.02, 0.25, 400.0, true), ["0.02", "0.05", "0.1", "0.2"]);
+        let wide = labels(Scale::Log10, 1e-30, 1e30, 300.0, false);
         assert!(wide.len() >= 4 && wide.len() <= 13, "{wide:?}");
-        let narrow = labels(Kind::Log10, 0.11, 0.13, 400.0, true);
+        let narrow = labels(Scale::Log10, 0.11, 0.13, 400.0, true);
         assert!(narrow.len() >= 3, "{narrow:?}");
     }
 
     #[test]
     fn labels_never_overlap() {
-        for kind in [Kind::Linear, Kind::Log10] {
+        for kind in [Scale::Linear, Scale::Log10] {
             for (low, high) in [(1e-9, 1.0), (0.1, 0.2), (1.0, 1e12), (1e7, 1.000_01e7), (3e-5, 4e-5)] {
                 for length in [60.0, 200.0, 700.0] {
                     let ruler = Ruler { span: Span { kind, low, high }, from: 0.0, to: length };
@@ -215,7 +215,7 @@ mod tests {
 
     #[test]
     fn given_ticks_are_taken_as_they_are() {
-        let ruler = Ruler { span: Span { kind: Kind::Log10, low: 0.02, high: 0.3 }, from: 0.0, to: 500.0 };
+        let ruler = Ruler { span: Span { kind: Scale::Log10, low: 0.02, high: 0.3 }, from: 0.0, to: 500.0 };
         let room = Room { font: 12.0, beside: true };
         let labels: Vec<_> = ticks(&ruler, Some(&[0.2, 0.1, 0.05, 0.025, 5.0, f64::NAN, -1.0]), room)
             .into_iter()

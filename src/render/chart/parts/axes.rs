@@ -2,12 +2,11 @@
 use crate::render::chart::canvas::{Canvas, Hold, Rgb, Type};
 use crate::render::chart::layout::clip::PixelFrame;
 use crate::render::chart::layout::ticks::Tick;
-use crate::render::chart::layout::{ChartLayout, Edge, LABEL, NOTE, SMALL, TITLE};
+use crate::render::chart::layout::{ChartLayout, Edge, LABEL, LINE, NOTE, SMALL, TITLE};
 use crate::render::chart::palette::{FRAME, MAJOR, MINOR, QUIET, TEXT};
 use crate::render::script::width;
 
 const PLAIN: Type = Type { size: SMALL, ink: TEXT, bold: false, hold: Hold::Start, upright: false };
-const LINE: f64 = 1.3;
 
 /// Thin lines behind the data.
 pub(crate) fn draw_grid(canvas: &mut Canvas, layout: &ChartLayout) {

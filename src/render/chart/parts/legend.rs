@@ -1,6 +1,6 @@
 //! The legend: what it says, and how much room it needs.
 use crate::elementary;
-use crate::render::chart::canvas::{Canvas, Hold, Ink, Px, Rgb, Type};
+use crate::render::chart::canvas::{Canvas, Hold, Px, Rgb, Type};
 use crate::render::chart::describe::{Chart, Style};
 use crate::render::chart::palette::{DARK, QUIET, TEXT, colour, dash, marker};
 use crate::render::script::{width, wrap};
@@ -37,53 +37,34 @@ pub(crate) fn looks(chart: &Chart) -> Vec<Look> {
                 seen.push(&series.name);
                 seen.len() - 1
             });
-            let slot = series.colour.unwrap_or(place);
+            let slot = series.slot.unwrap_or(place);
             Look {
                 colour: if theory { DARK } else { colour(slot) },
                 line: series.style != Style::Markers,
-                dash: dash(series.dash.unwrap_or(if theory { place } else { slot })),
+                dash: dash(slot),
                 width: if theory { 17 } else { 15 },
-                marker: matches!(series.style, Style::Markers | Style::LineAndMarkers)
-                    .then(|| series.marker.unwrap_or(slot)),
+                marker: matches!(series.style, Style::Markers | Style::LineAndMarkers).then_some(slot),
             }
         })
         .collect()
 }
 
-/// What an entry shows beside its words.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum LegendSample {
-    Series(Look),
-    ShadedBand(Rgb),
-    Ring,
-}
-
 /// The legend of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Legend {
-    entries: Vec<(LegendSample, Vec<String>)>,
+    entries: Vec<(Look, Vec<String>)>,
 }
 
 impl Legend {
     pub fn of(chart: &Chart, looks: &[Look], drawn: &[usize]) -> Self {
-        let mut seen: Vec<(LegendSample, String)> = Vec::new();
-        let mut enter = |sample, text: String| {
-            if !text.is_empty() && !seen.iter().any(|(s, t)| *s == sample && *t == text) {
-                seen.push((sample, text));
-            }
-        };
+        let mut seen: Vec<(Look, String)> = Vec::new();
         for ((series, look), &count) in chart.series.iter().zip(looks).zip(drawn) {
-            let empty = count == 0 && !series.name.is_empty();
-            let text = if empty { format!("{} (no data)", series.name) } else { series.name.clone() };
-            enter(LegendSample::Series(*look), text);
+            let text = if count == 0 { format!("{} (no data)", series.name) } else { series.name.clone() };
+            if !series.name.is_empty() && !seen.contains(&(*look, text.clone())) {
+                seen.push((*look, text));
+            }
         }
-        for band in &chart.bands {
-            enter(LegendSample::ShadedBand(colour(band.colour)), band.name.clone());
-        }
-        if let Some(text) = &chart.ring {
-            enter(LegendSample::Ring, text.clone());
-        }
-        let entries = seen.into_iter().map(|(s, text)| (s, wrap(&text, 22.0))).collect();
+        let entries = seen.into_iter().map(|(look, text)| (look, wrap(&text, 22.0))).collect();
         Self { entries }
     }
 
@@ -128,15 +109,15 @@ impl Legend {
     }
 
     pub fn draw_rows(&self, canvas: &mut Canvas, at: Px, room: f64) {
-        for ((sample, lines), (x, y)) in self.entries.iter().zip(self.rows(room).0) {
-            draw_entry(canvas, *sample, lines, (at.0 + x, at.1 + y));
+        for ((look, lines), (x, y)) in self.entries.iter().zip(self.rows(room).0) {
+            draw_entry(canvas, *look, lines, (at.0 + x, at.1 + y));
         }
     }
 
     pub fn draw_column(&self, canvas: &mut Canvas, at: Px) {
         let mut y = at.1;
-        for (sample, lines) in &self.entries {
-            draw_entry(canvas, *sample, lines, (at.0, y));
+        for (look, lines) in &self.entries {
+            draw_entry(canvas, *look, lines, (at.0, y));
             y += entry_height(lines);
         }
     }
@@ -146,29 +127,18 @@ fn entry_height(lines: &[String]) -> f64 {
     ROW + 14.0 * (lines.len().max(1) - 1) as f64
 }
 
-fn draw_entry(canvas: &mut Canvas, sample: LegendSample, lines: &[String], at: Px) {
+fn draw_entry(canvas: &mut Canvas, look: Look, lines: &[String], at: Px) {
     let middle = at.1 + ROW / 2.0;
-    let centre = (at.0 + SAMPLE / 2.0, middle);
-    match sample {
-        LegendSample::Series(look) => {
-            if look.line {
-                let ends = [(at.0, middle), (at.0 + SAMPLE, middle)];
-                stroke(canvas, &[ends.to_vec()], look);
-            }
-            if let Some(slot) = look.marker {
-                marker(canvas, centre, slot, 4.0, look.colour);
-            }
-        }
-        LegendSample::ShadedBand(colour) => {
-            let corners = [(at.0 + 2.0, middle - 6.0), (at.0 + SAMPLE - 2.0, middle + 6.0)];
-            canvas.rect(corners[0], corners[1], Ink(colour, 0.22));
-        }
-        LegendSample::Ring => canvas.ring(centre, 7.0, DARK, 1.3),
+    if look.line {
+        stroke(canvas, &[vec![(at.0, middle), (at.0 + SAMPLE, middle)]], look);
     }
-    let look = Type { size: FONT, ink: TEXT, bold: false, hold: Hold::Start, upright: false };
+    if let Some(slot) = look.marker {
+        marker(canvas, (at.0 + SAMPLE / 2.0, middle), slot, 4.0, look.colour);
+    }
+    let plain = Type { size: FONT, ink: TEXT, bold: false, hold: Hold::Start, upright: false };
     for (i, line) in lines.iter().enumerate() {
         let ink = if line.ends_with("(no data)") { QUIET } else { TEXT };
-        canvas.text(line, (at.0 + SAMPLE + GAP, middle + 4.2 + 14.0 * i as f64), Type { ink, ..look });
+        canvas.text(line, (at.0 + SAMPLE + GAP, middle + 4.2 + 14.0 * i as f64), Type { ink, ..plain });
     }
 }
 

@@ -1,7 +1,6 @@
 //! The parts of a figure, each drawn on a canvas.
 
 pub mod axes;
-pub mod fill;
 pub mod legend;
 pub mod triangle;
 pub mod words;

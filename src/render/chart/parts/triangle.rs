@@ -1,10 +1,10 @@
 //! Triangles that show what an order looks like.
 use crate::elementary;
 use crate::render::chart::canvas::{Canvas, Ink, Px};
-use crate::render::chart::describe::{Chart, Scale, TrianglePlace};
+use crate::render::chart::describe::Chart;
 use crate::render::chart::layout::ChartLayout;
 use crate::render::chart::layout::clip::PixelFrame;
-use crate::render::chart::layout::scale::Ruler;
+use crate::render::chart::layout::scale::{Ruler, Scale};
 use crate::render::chart::layout::space::{Offer, Space};
 use crate::render::chart::palette::{DARK, QUIET};
 use crate::render::chart::parts::words::write;
@@ -34,26 +34,18 @@ pub(crate) fn draw_triangles(
             continue;
         }
         let label = format!("{}", (wanted.slope.abs() * 100.0).round() / 100.0);
-        let offers = match &wanted.place {
-            TrianglePlace::At(x, y) => match (layout.x.ruler.px(*x), layout.y.ruler.px(*y)) {
-                (Ok(px), Ok(py)) if layout.plot.holds((px, py)) => {
-                    beside((px, py), wanted.slope, layout, &[0.0])
-                }
-                _ => continue,
-            },
-            TrianglePlace::Beside(name) => chart
-                .series
-                .iter()
-                .zip(places)
-                .filter(|(s, _)| s.name == *name)
-                .flat_map(|(_, p)| p.windows(2).filter_map(|w| Some((w[0]?, w[1]?))).collect::<Vec<_>>())
-                .flat_map(|(a, b)| [0.25, 0.5, 0.75].map(|t| (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1))))
-                .flat_map(|at| beside(at, wanted.slope, layout, &[16.0, 26.0, 40.0]))
-                .collect(),
-        };
+        let offers: Vec<(Triangle, f64)> = chart
+            .series
+            .iter()
+            .zip(places)
+            .filter(|(s, _)| s.name == wanted.beside)
+            .flat_map(|(_, p)| p.windows(2).filter_map(|w| Some((w[0]?, w[1]?))))
+            .flat_map(|(a, b)| [0.25, 0.5, 0.75].map(|t| (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1))))
+            .flat_map(|at| beside(at, wanted.slope, layout, &[16.0, 26.0, 40.0]))
+            .collect();
         let rooms: Vec<Offer> =
             offers.iter().map(|(t, penalty)| Offer { room: reach(t), penalty: *penalty }).collect();
-        if let Some(i) = space.best(&rooms, None) {
+        if let Some(i) = space.best(&rooms) {
             space.take(rooms[i].room);
             draw_triangle(canvas, &offers[i].0, &label);
         }

@@ -1,7 +1,9 @@
-//! The front page of a report: what a reader sees first, short enough for a repository to keep.
+//! The pages of a report: the whole, and a front page with what a reader sees first, short enough for a
+//! repository to keep.
 
+use crate::exact::exact_error::ExactError;
 use crate::render::page::{Block, Figure, Page, Section, all_figures};
-use crate::render::report::{StudyResults, appendix, findings};
+use crate::render::report::{StudyResults, appendix, findings, study_section, survival};
 use crate::render::table::{Cell, Mood, Table, columns};
 
 /// What the front page shows a figure of: its name there, and what the names of the report's figures
@@ -15,6 +17,25 @@ const SHOWN: [(&str, &str); 7] = [
     ("readme-critical-step", "-drag"),
     ("readme-wall-time", "-wall-time"),
 ];
+
+/// The page over the results of studies.
+///
+/// # Errors
+/// When a reference refuses a case.
+pub fn page_of(results: &[StudyResults<'_>]) -> Result<Page, ExactError> {
+    let mut sections = vec![findings::section(results)];
+    for one in results {
+        sections.push(study_section::of_study(one)?);
+    }
+    sections.extend(survival::section(results));
+    sections.push(appendix::section(results));
+    Ok(Page {
+        title: "Convergence report".to_owned(),
+        lead: findings::lead(results),
+        sections,
+        footer: appendix::footer(results),
+    })
+}
 
 /// The findings, a figure of each kind and the verdict on every study; the rest is in the `whole` report.
 pub fn front_page(results: &[StudyResults<'_>], whole: &Page) -> Page {
@@ -48,12 +69,10 @@ fn section(heading: &str, id: &str, blocks: Vec<Block>) -> Section {
 /// One row per study: how many of its expectations are met, and what runs it.
 fn studies_table(results: &[StudyResults<'_>]) -> Table {
     let rows = results.iter().map(|one| {
-        let met = one.judgements.iter().filter(|judgement| judgement.verdict.pass).count();
-        let mood = if one.passes() { Mood::Pass } else { Mood::Fail };
         vec![
             one.study.title.as_str().into(),
             Cell::Count(one.records.len() as u64),
-            Cell::Verdict(mood, format!("{met} of {}", one.judgements.len())),
+            Cell::Verdict(Mood::of(one.passes()), format!("{} of {}", one.met(), one.judgements.len())),
             Cell::Code(one.run_command()),
         ]
     });
