@@ -1,9 +1,10 @@
 //! The frozen step: accelerations, kick and drift.
 
 use crate::mpm::assembled::operators::{FrozenOperators, NodeConstants};
-use crate::mpm::assembled::rows::banded_rows::BandsWithin;
-use crate::mpm::assembled::rows::{LANES, Lanes, MARGIN, REACH, RowStorage, Rows};
-use crate::mpm::assembled::state::{FrozenState, SOLID, WATER, lanes, set_lanes};
+use crate::mpm::assembled::rows::RowStorage;
+use crate::mpm::assembled::rows::banded_rows::{BandsWithin, REACH};
+use crate::mpm::assembled::rows::block_products::Rows;
+use crate::mpm::assembled::state::{FrozenState, LANES, Lanes, MARGIN, SOLID, WATER, lanes, set_lanes};
 use crate::mpm::body::{Body, ShapeFunction};
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::operators::volumetric::VolumetricRows;

@@ -2,70 +2,19 @@
 //!
 //! A body's step reads as the paper's list: [`kick_and_drift`](Body::kick_and_drift). Drag is part of step 2.
 
+pub mod deformation;
 pub mod points_to_nodes;
 pub mod scheme;
 
-use crate::elementary;
 use crate::mpm::body::Body;
-use crate::mpm::explicit::scheme::Scheme;
+use crate::mpm::explicit::deformation::{Following, rotated, stretch_of};
 use crate::mpm::method::{Configuration, Memory, PressureIntegration};
 use crate::mpm::operators::basis::ShapeFunction;
-use crate::mpm::operators::recovery::PointsInCells;
-use crate::mpm::operators::row::SIXTH;
+use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 use crate::mpm::run::profile::{Phase, enter};
-use crate::soil::tensor::{Tensor, Vector, product, product_with_transpose};
-use serde::{Deserialize, Serialize};
+use crate::soil::tensor::{Tensor, Vector, product};
 
-/// Time level at which the drag between skeleton and water is taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Drag {
-    /// Old velocities: bounds the step by the drag.
-    Explicit,
-    /// New velocities, a 2 × 2 solve a node: no bound from the drag.
-    Implicit,
-    /// The mean over the step: of second order in it, and no bound either.
-    Centred,
-}
-
-impl Drag {
-    /// Every choice, in the order of the documentation.
-    pub const ALL: [Self; 3] = [Self::Explicit, Self::Implicit, Self::Centred];
-
-    /// Name in study files.
-    #[inline]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Explicit => "explicit",
-            Self::Implicit => "implicit",
-            Self::Centred => "centred",
-        }
-    }
-}
-
-/// Choices of the explicit integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct ExplicitSettings {
-    /// Time levels of velocities and stresses.
-    #[serde(default, skip_serializing_if = "Scheme::is_paper")]
-    pub scheme: Scheme,
-    /// Time level of the drag.
-    pub drag: Drag,
-    /// Share of the acceleration update (FLIP) in the points' velocities; the rest is
-    /// interpolated from the nodes (PIC).
-    pub flip: f64,
-    /// Whether the stresses see velocities mapped back from the updated points (the paper's
-    /// step 5) instead of the nodal velocities of step 3.
-    pub mapping_back: bool,
-}
-
-impl Default for ExplicitSettings {
-    /// The paper's: forward Euler, explicit drag, pure FLIP, mapping back.
-    #[inline]
-    fn default() -> Self {
-        Self { scheme: Scheme::ForwardEuler, drag: Drag::Explicit, flip: 1.0, mapping_back: true }
-    }
-}
+pub use crate::mpm::explicit::scheme::{Drag, ExplicitSettings};
 
 impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// One explicit step of `dt` seconds, as the paper has it.
@@ -319,38 +268,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 }
 
-/// What follows the deformation of a point beside its volume.
-#[derive(Clone, Copy)]
-enum Following {
-    Domain,
-    InverseDeformation,
-    Nothing,
-}
-
-impl Following {
-    /// Factor of the volume, exact in the logarithmic strain; what follows it has followed.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    fn deform<const D: usize>(
-        self,
-        half_length: &mut Vector<D>,
-        inverse_deformation: &mut Tensor<D>,
-        increment: &Tensor<D>,
-    ) -> f64 {
-        let stretch: Vector<D> = std::array::from_fn(|d| stretch_of(increment[d][d]));
-        match self {
-            Self::Domain => {
-                for d in 0..D {
-                    half_length[d] *= stretch[d];
-                }
-            }
-            Self::InverseDeformation => *inverse_deformation = relaxed(inverse_deformation, increment),
-            Self::Nothing => {}
-        }
-        stretch.iter().product()
-    }
-}
-
 /// Adds a run of nodal vectors with their weights.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
@@ -359,86 +276,5 @@ fn add_weighted<const D: usize>(value: &mut Vector<D>, nodes: &[Vector<D>], weig
         for d in 0..D {
             value[d] += weight * node[d];
         }
-    }
-}
-
-const PER_24: f64 = 1.0 / 24.0;
-
-/// `exp(ε)`: a step's strain is so small that four terms are exact to round-off.
-#[inline]
-fn stretch_of(strain: f64) -> f64 {
-    if strain.abs() < 1e-4 {
-        1.0 + strain * (1.0 + strain * (0.5 + strain * (SIXTH + strain * PER_24)))
-    } else {
-        elementary::exp(strain)
-    }
-}
-
-/// A stress turned with the material over a step of displacement gradient `A`: `Q σ Qᵀ` with the
-/// rotation `Q = (I − W/2)⁻¹(I + W/2)`, `W = skew A` (Hughes & Winget 1980). Together with the rate
-/// form it is Jaumann's stress rate, and exactly objective under a rigid rotation.
-#[inline]
-fn rotated<const D: usize>(stress: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
-    if D != 2 {
-        return *stress;
-    }
-    let half = 0.25 * (increment[1][0] - increment[0][1]);
-    let per = 1.0 / (1.0 + half * half);
-    let (cosine, sine) = ((1.0 - half * half) * per, 2.0 * half * per);
-    let turn: Tensor<D> = std::array::from_fn(|i| {
-        std::array::from_fn(|j| match (i, j) {
-            (0, 1) => -sine,
-            (1, 0) => sine,
-            _ => cosine,
-        })
-    });
-    product_with_transpose(&product(&turn, stress), &turn)
-}
-
-/// `F⁻¹ exp(−A)` for a step's strain `A`, to third order in it.
-#[inline]
-fn relaxed<const D: usize>(inverse: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
-    let once = product(inverse, increment);
-    let twice = product(&once, increment);
-    std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j] - once[i][j] + 0.5 * twice[i][j]))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_stretch_is_the_exponential() {
-        for strain in [-0.3_f64, -9e-5, -1e-7, 0.0, 3e-6, 9.9e-5, 0.2] {
-            assert!((stretch_of(strain) / strain.exp() - 1.0).abs() < 3e-16);
-        }
-    }
-
-    #[test]
-    fn a_stress_turns_with_the_material_and_keeps_its_invariants() {
-        // A quarter turn in a thousand steps takes the stress along x to one along y.
-        let angle = std::f64::consts::FRAC_PI_2 / 1000.0;
-        let mut stress = [[5.0, 1.0], [1.0, -2.0]];
-        // Q with tan(θ/2) = w/2 turns by θ.
-        let spin = 2.0 * (0.5 * angle).tan();
-        for _ in 0..1000 {
-            stress = rotated(&stress, &[[0.0, -spin], [spin, 0.0]]);
-        }
-        for (got, exact) in stress.iter().flatten().zip([-2.0, -1.0, -1.0, 5.0]) {
-            assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
-        }
-        let stretched = rotated(&stress, &[[0.1, 0.3], [0.3, -0.2]]);
-        assert_eq!(stretched, stress, "a strain without spin turns nothing");
-    }
-
-    #[test]
-    fn the_inverse_deformation_keeps_to_the_volume() {
-        let mut inverse = [[1.0, 0.0], [0.0, 1.0]];
-        let increment = [[1e-6, 3e-6], [-2e-6, -4e-6]];
-        for _ in 0..50_000 {
-            inverse = relaxed(&inverse, &increment);
-        }
-        let determinant: f64 = inverse[0][0] * inverse[1][1] - inverse[0][1] * inverse[1][0];
-        assert!((determinant.ln() - 50_000.0 * 3e-6).abs() < 1e-10, "det F⁻¹ = exp(−tr ε)");
     }
 }

@@ -7,7 +7,6 @@
 //! Wanner 2003): second order for the same work. The drag must then be centred too.
 
 use crate::elementary;
-use crate::mpm::explicit::{Drag, ExplicitSettings};
 use serde::{Deserialize, Serialize};
 
 /// Time levels of velocities and stresses.
@@ -42,6 +41,72 @@ impl Scheme {
     }
 }
 
+/// Time level at which the drag between skeleton and water is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Drag {
+    /// Old velocities: bounds the step by the drag.
+    Explicit,
+    /// New velocities, a 2 × 2 solve a node: no bound from the drag.
+    Implicit,
+    /// The mean over the step: of second order in it, and no bound either.
+    Centred,
+}
+
+impl Drag {
+    /// Every choice, in the order of the documentation.
+    pub const ALL: [Self; 3] = [Self::Explicit, Self::Implicit, Self::Centred];
+
+    /// Name in study files.
+    #[inline]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Explicit => "explicit",
+            Self::Implicit => "implicit",
+            Self::Centred => "centred",
+        }
+    }
+
+    /// Weight of the new relative velocity in the drag of a kick, `z` its duration times the rate at
+    /// which the drag alone brings the phases together.
+    ///
+    /// Centred: the weight that makes the mean drag of `ṙ = −λ r + const` exact,
+    /// `1/(1 − e^{−z}) − 1/z` (exponential fitting; Liniger & Willoughby 1970). One half for a short
+    /// kick, and one where the drag is stiff: second order, and no limit on the step.
+    #[inline]
+    pub fn implicit_weight(self, z: impl FnOnce() -> f64) -> f64 {
+        match self {
+            Self::Explicit => 0.0,
+            Self::Implicit => 1.0,
+            Self::Centred => fitted_weight(z()),
+        }
+    }
+}
+
+/// Choices of the explicit integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ExplicitSettings {
+    /// Time levels of velocities and stresses.
+    #[serde(default, skip_serializing_if = "Scheme::is_paper")]
+    pub scheme: Scheme,
+    /// Time level of the drag.
+    pub drag: Drag,
+    /// Share of the acceleration update (FLIP) in the points' velocities; the rest is
+    /// interpolated from the nodes (PIC).
+    pub flip: f64,
+    /// Whether the stresses see velocities mapped back from the updated points (the paper's
+    /// step 5) instead of the nodal velocities of step 3.
+    pub mapping_back: bool,
+}
+
+impl Default for ExplicitSettings {
+    /// The paper's: forward Euler, explicit drag, pure FLIP, mapping back.
+    #[inline]
+    fn default() -> Self {
+        Self { scheme: Scheme::ForwardEuler, drag: Drag::Explicit, flip: 1.0, mapping_back: true }
+    }
+}
+
 /// The rhythm of a run: how long each kick lasts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rhythm {
@@ -58,23 +123,6 @@ impl Rhythm {
         match settings.scheme {
             Scheme::ForwardEuler => dt,
             Scheme::Leapfrog => 0.5 * (last + dt),
-        }
-    }
-}
-
-impl Drag {
-    /// Weight of the new relative velocity in the drag of a kick, `z` its duration times the rate at
-    /// which the drag alone brings the phases together.
-    ///
-    /// Centred: the weight that makes the mean drag of `ṙ = −λ r + const` exact,
-    /// `1/(1 − e^{−z}) − 1/z` (exponential fitting; Liniger & Willoughby 1970). One half for a short
-    /// kick, and one where the drag is stiff: second order, and no limit on the step.
-    #[inline]
-    pub fn implicit_weight(self, z: impl FnOnce() -> f64) -> f64 {
-        match self {
-            Self::Explicit => 0.0,
-            Self::Implicit => 1.0,
-            Self::Centred => fitted_weight(z()),
         }
     }
 }

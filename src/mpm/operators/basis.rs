@@ -4,9 +4,9 @@
 //! to its type, and every stencil, load and displacement asks for its rows here.
 
 use crate::mpm::method::Basis;
-use crate::mpm::operators::row::{Row, whole};
+use crate::mpm::operators::row::Row;
 use crate::mpm::operators::stencil::visit_block;
-use crate::mpm::state::grid::Grid;
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid, whole};
 use crate::mpm::state::nodes::Support;
 use crate::soil::tensor::Vector;
 
@@ -96,8 +96,30 @@ pub fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
     let (cell, per_cell) = (grid.cell_at(place), grid.inverse_cell_size());
     std::array::from_fn(|d| {
         let row = S::row(place[d], cell[d], half_length[d] * per_cell);
-        if S::PASSES_WALLS { support.folded(grid, d, row) } else { row }
+        if S::PASSES_WALLS { folded(support, grid, d, row) } else { row }
     })
+}
+
+/// A row along a direction without nodes beyond held faces, nor far beyond a free surface: those
+/// have no freedom of their own.
+#[inline]
+fn folded<const D: usize, const W: usize>(
+    support: &Support<D>,
+    grid: &Grid<D>,
+    direction: usize,
+    mut row: Row<W>,
+) -> Row<W> {
+    let (lowest, highest) = (GHOST_LAYERS, GHOST_LAYERS + grid.cells[direction]);
+    if support.lower[direction] {
+        row.fold_at(lowest, |node| node < lowest);
+    }
+    if support.upper[direction] {
+        row.fold_at(highest, |node| node > highest);
+    }
+    if let Some(outermost) = support.outermost.filter(|_| direction == D - 1) {
+        row.straighten_beyond(outermost);
+    }
+    row
 }
 
 /// `max(x, 0)` in one instruction; `f64::max` takes three to mind a NaN.
@@ -211,7 +233,7 @@ impl ShapeFunction<4> for CubicSpline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mpm::operators::row::tests::moments;
+    use crate::mpm::operators::row::moments;
     use proptest::prelude::*;
 
     proptest! {

@@ -6,10 +6,10 @@
 //! the ends of the point's domain.
 
 use crate::mpm::method::StrainGradient;
-use crate::mpm::operators::row::{Row, SIXTH};
+use crate::mpm::operators::row::Row;
 use crate::mpm::operators::stencil::{Blocks, Stencils};
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{Grid, cell_below};
+use crate::mpm::state::grid::{Grid, SIXTH, cell_below};
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Nodes per direction between the ends of a domain: four at either end, at most one cell apart.
@@ -199,7 +199,7 @@ fn composite(place: f64, cell: usize, has_lower: bool, has_upper: bool) -> Row<4
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mpm::operators::row::tests::moments;
+    use crate::mpm::operators::row::moments;
     use proptest::prelude::*;
 
     proptest! {

@@ -7,7 +7,7 @@
 use crate::mpm::body::Body;
 use crate::mpm::method::PressureIntegration;
 use crate::mpm::operators::basis::ShapeFunction;
-use crate::mpm::operators::recovery::PointsInCells;
+use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 use crate::soil::tensor::Vector;
 
 /// A linear functional of a nodal vector field: one vector of coefficients a node.

@@ -3,7 +3,6 @@
 //! Two layers of ghost nodes surround the grid, so that no stencil needs a bounds case. The last
 //! direction is vertical; a column is `D = 1`, plane strain `D = 2` with `x` first.
 
-use crate::mpm::operators::row::whole;
 use crate::soil::tensor::Vector;
 
 /// Layers of nodes beyond the grid on every side.
@@ -11,6 +10,20 @@ pub const GHOST_LAYERS: usize = 2;
 
 /// Points closer to a cell face than this share of a cell belong to the upper cell.
 const FACE_TOLERANCE: f64 = 1e-10;
+
+/// No division in the step's innermost loops.
+pub(crate) const SIXTH: f64 = 1.0 / 6.0;
+
+/// Whole part of a coordinate in cells; 32 bits convert several times faster than 64.
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "coordinates in cells are positive, the ghost layers see to it"
+)]
+pub(crate) fn whole(in_cells: f64) -> usize {
+    in_cells as u32 as usize
+}
 
 /// `base^exponent`, for the nodes or cells of a block.
 #[inline]

@@ -1,7 +1,6 @@
 //! Nodal fields: lumped masses, forces, velocities and accelerations of both phases.
 
-use crate::mpm::operators::row::Row;
-use crate::mpm::state::grid::{GHOST_LAYERS, Grid};
+use crate::mpm::state::grid::Grid;
 use crate::soil::material::Material;
 use crate::soil::tensor::Vector;
 
@@ -101,25 +100,7 @@ impl<const D: usize> Support<D> {
         Self { lower: [false; D], upper: [false; D], rough_base: false, outermost: None }
     }
 
-    /// A row along a direction without nodes beyond held faces, nor far beyond a free surface: those
-    /// have no freedom of their own.
-    #[inline]
-    #[must_use]
-    pub fn folded<const W: usize>(&self, grid: &Grid<D>, direction: usize, mut row: Row<W>) -> Row<W> {
-        let (lowest, highest) = (GHOST_LAYERS, GHOST_LAYERS + grid.cells[direction]);
-        if self.lower[direction] {
-            row.fold_at(lowest, |node| node < lowest);
-        }
-        if self.upper[direction] {
-            row.fold_at(highest, |node| node > highest);
-        }
-        if let Some(outermost) = self.outermost.filter(|_| direction == D - 1) {
-            row.straighten_beyond(outermost);
-        }
-        row
-    }
-
-    /// The same on a base that the skeleton sticks to.
+    /// The same faces on a base that the skeleton sticks to.
     #[must_use]
     #[inline]
     pub fn on_rough_base(self) -> Self {

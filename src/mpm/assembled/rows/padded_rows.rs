@@ -4,8 +4,8 @@
 //! be five times as long in a plane.
 
 use crate::mpm::assembled::operators::FrozenOperators;
-use crate::mpm::assembled::rows::{LANES, Lanes, MARGIN, Rows};
-use crate::mpm::assembled::state::FrozenState;
+use crate::mpm::assembled::rows::block_products::Rows;
+use crate::mpm::assembled::state::{FrozenState, LANES, Lanes, MARGIN};
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Rows that reach anywhere.

@@ -8,41 +8,15 @@ pub mod constant;
 pub mod nodal;
 pub mod null_space;
 pub mod patch;
+pub mod points_in_cells;
 
 use crate::mpm::method::{Method, Recovery};
 use crate::mpm::operators::recovery::nodal::NodalMeans;
 use crate::mpm::operators::recovery::null_space::CellPlanes;
 use crate::mpm::operators::recovery::patch::PatchRows;
+use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::Grid;
-use crate::mpm::state::nodes::Nodes;
-use crate::soil::tensor::Vector;
-
-/// Where the points are among cells and nodes.
-#[derive(Clone, Copy, Debug)]
-pub struct PointsInCells<'a, const D: usize> {
-    /// Background grid.
-    pub grid: &'a Grid<D>,
-    /// Cells with their volumes, and the cell of each point.
-    pub cells: &'a Cells<D>,
-    /// Nodes with their supports.
-    pub nodes: &'a Nodes<D>,
-    /// Places of the points, m, `[point][component]`.
-    pub positions: &'a [Vector<D>],
-}
-
-impl<'a, const D: usize> PointsInCells<'a, D> {
-    /// The parts of a body.
-    #[inline]
-    pub fn of(
-        grid: &'a Grid<D>,
-        cells: &'a Cells<D>,
-        nodes: &'a Nodes<D>,
-        positions: &'a [Vector<D>],
-    ) -> Self {
-        Self { grid, cells, nodes, positions }
-    }
-}
 
 /// `R` of a method, with what it keeps from step to step.
 #[derive(Clone, Debug)]
@@ -129,7 +103,7 @@ fn each(out: &mut [f64], put: impl Fn(&mut f64, f64), value: impl Fn(usize) -> f
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::mpm::state::nodes::Support;
+    use crate::mpm::state::nodes::{Nodes, Support};
     use crate::mpm::state::points::Points;
 
     /// A lattice of points in free cells.
@@ -166,7 +140,6 @@ pub(crate) mod tests {
     }
 
     #[test]
-    #[inline]
     fn every_way_is_one_in_place_and_as_rows() {
         let block = SiteBlock::new(0.25, [4, 3], 2);
         let at = block.at();

@@ -5,7 +5,7 @@
 //! the hats `N_i` of the point's cell.
 
 use crate::mpm::operators::basis::{Hat, ShapeFunction};
-use crate::mpm::operators::recovery::PointsInCells;
+use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 use crate::mpm::operators::row::Row;
 
 /// Means at the nodes, `[node]`.

@@ -5,7 +5,7 @@
 //! span the constants and the lines along the [felt slopes](felt_slopes). What is felt is the plane
 //! `p̄ + s·(x − x̄)` through the values by least squares, in one dimension their mean; the rest is the null space.
 
-use crate::mpm::operators::recovery::PointsInCells;
+use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 use crate::soil::tensor::{Tensor, Vector, solve_symmetric};
 
 /// The plane through the values of each cell's points, `[cell]`.

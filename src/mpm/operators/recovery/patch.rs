@@ -5,9 +5,8 @@
 //! distance: with equal weights the recovery's Fourier symbol `(1 + 2 cos θ)/3` turns negative
 //! beyond `2π/3`, a negative stiffness that no step survives.
 
-use crate::mpm::operators::row::SIXTH;
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{Grid, power};
+use crate::mpm::state::grid::{Grid, SIXTH, power};
 use crate::soil::tensor::{Vector, solve_symmetric};
 
 /// Cells along one direction of a patch.
