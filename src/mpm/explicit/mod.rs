@@ -9,6 +9,7 @@ pub mod scheme;
 use crate::mpm::body::Body;
 use crate::mpm::explicit::deformation::{Following, rotated, stretch_of};
 use crate::mpm::method::{Configuration, Memory, PressureIntegration};
+use crate::mpm::momentum::{NodalBalance, implicit_drag, per_water_inertia};
 use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 use crate::mpm::run::profile::{Phase, enter};
@@ -60,17 +61,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// Step 2: accelerations of the water (docs/theory.md, Eq. 1) and of the skeleton (Eq. 2), lumped at the
-    /// nodes, per component:
-    ///
-    /// ```text
-    /// ρ_w V a_w       = f_w − D (v_w − v_s)          D = n γ_w V/k
-    /// m_s a_s + m_w a_w = f
-    /// ```
-    ///
-    /// with the force `f` on the mixture and `f_w` of the pressure gradient on the water.
+    /// Step 2: accelerations of water and skeleton at the nodes.
     #[inline]
-    fn nodal_accelerations(&mut self, kick: f64, drag: Drag) {
+    fn nodal_accelerations(&mut self, kick: f64, drag_level: Drag) {
         self.map_forces();
         let water_density = self.material.water_density;
         let nodes = &mut self.nodes;
@@ -80,21 +73,28 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 nodes.water_acceleration[node] = [0.0; D];
                 continue;
             }
-            let per_solid_mass = nodes.per_solid_mass[node];
-            let (water_inertia, drag_coefficient) = (water_density * nodes.volume[node], nodes.drag[node]);
-            let water_share = nodes.water_mass[node] * per_solid_mass;
-            // A share w of the drag at the new velocities adds w Δt D (a_w − a_s) with a_s from (2).
-            let decay = || kick * drag_coefficient * (1.0 + water_share) / water_inertia;
-            let implicit = drag.implicit_weight(decay) * kick * drag_coefficient;
+            let (water_inertia, drag) = (water_density * nodes.volume[node], nodes.drag[node]);
+            let whole_share = nodes.water_mass[node] * nodes.per_solid_mass[node];
+            let implicit_drag = implicit_drag(drag_level, kick, drag, whole_share, water_inertia);
             for d in 0..D {
                 let (free, water_free) = (nodes.free[node][d], nodes.water_free[node][d]);
-                let per_inertia = 1.0 / (water_inertia + implicit * (1.0 + free * water_share));
-                let relative = nodes.water_velocity[node][d] - nodes.solid_velocity[node][d];
-                let mixture = free * nodes.mixture_force[node][d] * per_solid_mass;
-                let force = nodes.water_force[node][d] - drag_coefficient * relative + implicit * mixture;
-                let water = water_free * force * per_inertia;
-                nodes.water_acceleration[node][d] = water;
-                nodes.solid_acceleration[node][d] = mixture - free * water_share * water;
+                let water_share = free * whole_share;
+                let balance = NodalBalance {
+                    per_solid_mass: free * nodes.per_solid_mass[node],
+                    water_share,
+                    per_water_inertia: per_water_inertia(
+                        water_inertia,
+                        implicit_drag,
+                        water_share,
+                        water_free,
+                    ),
+                    drag,
+                    implicit_drag,
+                };
+                let velocity = [nodes.solid_velocity[node][d], nodes.water_velocity[node][d]];
+                let (mixture, water) = (nodes.mixture_force[node][d], nodes.water_force[node][d]);
+                [nodes.solid_acceleration[node][d], nodes.water_acceleration[node][d]] =
+                    balance.accelerations(mixture, water, velocity);
             }
         }
     }

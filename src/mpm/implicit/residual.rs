@@ -6,6 +6,7 @@ use crate::mpm::implicit::tangent::Pattern;
 use crate::mpm::implicit::trial::{Skeleton, Trial};
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::PressureIntegration;
+use crate::mpm::momentum::{NodalBalance, per_water_inertia};
 use crate::mpm::run::integrator::Formulation;
 use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::stepper::StepFailure;
@@ -156,7 +157,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
             nodes.solid_velocity[node] = [0.0; D];
             nodes.water_velocity[node] = [0.0; D];
             let drag = nodes.drag[node];
-            let water_inertia = water_density * nodes.volume[node] * per_duration;
+            let (water_inertia, implicit_drag) = (water_density * nodes.volume[node], start.duration * drag);
+            // A skeleton whose motion is given does not give way to the water.
+            let balance = NodalBalance {
+                per_solid_mass: 0.0,
+                water_share: 0.0,
+                per_water_inertia: per_water_inertia(water_inertia, implicit_drag, 0.0, 1.0),
+                drag,
+                implicit_drag,
+            };
             for d in 0..D {
                 // Where the skeleton is held, the water may still slide.
                 let number = self.unknowns.displacement[node][d];
@@ -164,12 +173,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
                 let solid = self.unknowns.scales.length * per_duration * moved;
                 let solid_change = solid - start.solid_velocity[node][d];
                 let force = nodes.water_force[node][d];
-                let before = start.water_velocity[node][d];
+                let before = [start.solid_velocity[node][d], start.water_velocity[node][d]];
                 let water = match self.formulation {
                     Formulation::QuasiStatic => solid + force / drag,
-                    Formulation::UP => solid + (force - water_inertia * solid_change) / drag,
+                    Formulation::UP => solid + (force - water_inertia * per_duration * solid_change) / drag,
                     Formulation::VW => {
-                        (water_inertia * before + force + drag * solid) / (water_inertia + drag)
+                        let skeleton = per_duration * solid_change;
+                        before[1] + start.duration * balance.water_acceleration(force, before, skeleton)
                     }
                 };
                 nodes.solid_velocity[node][d] = solid;
@@ -183,7 +193,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
                         continue;
                     }
                     Formulation::UP => solid_change,
-                    Formulation::VW => water - before,
+                    Formulation::VW => water - before[1],
                 };
                 let momentum = nodes.solid_mass[node] * solid_change + nodes.water_mass[node] * water_change;
                 residual[row] =
