@@ -162,8 +162,6 @@ pub use mpm::critical_step::predicted::predicted_critical_step;
 #[doc(hidden)]
 pub use mpm::implicit::linear::LinearStepper;
 #[doc(hidden)]
-pub use mpm::operators::basis::{CubicSpline, DomainEnds, Gimp, Hat, QuadraticSpline, ShapeFunction};
-#[doc(hidden)]
 pub use mpm::run::{
     run_plan::Plan,
     stepper::{EqualSteps, Stepper},

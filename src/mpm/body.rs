@@ -1,10 +1,8 @@
 //! The discretised body: points, nodes and the operators that join them.
 
 use crate::mpm::method::{Configuration, Method};
-pub use crate::mpm::operators::basis::ShapeFunction;
-use crate::mpm::operators::basis::rows_at;
 use crate::mpm::operators::recovery::RecoveryOperator;
-use crate::mpm::operators::stencil::{Stencils, visit_block};
+use crate::mpm::operators::stencil::PointStencils;
 use crate::mpm::operators::strain_gradient::StrainOperator;
 use crate::mpm::operators::surface_load::{LoadShape, LoadedSurface};
 use crate::mpm::state::cell_memory::CellMemory;
@@ -67,7 +65,7 @@ impl<const D: usize> Problem<D> {
 
 /// The discretised body during a run.
 #[derive(Clone, Debug)]
-pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
+pub struct Body<const D: usize> {
     /// Background grid.
     pub grid: Grid<D>,
     /// Material points.
@@ -90,7 +88,7 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     /// Loaded surface.
     pub surface: LoadedSurface<D>,
     /// `N` and `∇N` between points and nodes.
-    pub basis: Stencils<D, W>,
+    pub basis: PointStencils<D>,
     /// `G` where it is not the gradient of the basis.
     pub strain: StrainOperator<D>,
     /// What the cells remember.
@@ -108,10 +106,9 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     pub dilation_rates: Vec<f64>,
     /// Mixture that passed the surface since the start, `∫ v_s + n(v_w − v_s) dt`, m.
     pub surface_flux: f64,
-    shape_function: std::marker::PhantomData<S>,
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+impl<const D: usize> Body<D> {
     /// Discretises a problem: builds operators and nodal masses on the initial configuration and
     /// maps the points' velocities to the nodes.
     pub fn new(problem: Problem<D>) -> Self {
@@ -140,11 +137,11 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 .shaped(load_shape, &points)
                 .spread_by(method.basis, support)
                 .stretching(configuration.moves_points() && !method.domains_follow()),
-            basis: Stencils::with_points(count),
+            basis: method.basis.stencils(count),
             strain: StrainOperator::of(method.strain, count),
             cell_memory: CellMemory::new(&grid),
             support,
-            splines_end_at_surface: S::PASSES_WALLS && configuration.moves_points(),
+            splines_end_at_surface: method.basis.is_spline() && configuration.moves_points(),
             recovery: RecoveryOperator::of(method, &grid, count),
             site_values: vec![0.0; sites],
             dilation_rates: vec![0.0; if method.strain.is_bbar() { count } else { 0 }],
@@ -155,7 +152,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             method,
             configuration,
             is_pushed_forward: configuration == Configuration::Total,
-            shape_function: std::marker::PhantomData,
         };
         body.displace(&initial_gradient);
         body.build_operators();
@@ -227,7 +223,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Gradient of a nodal field at a point, from which the effective stress takes its strain.
     #[inline]
     pub fn strain_gradient(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        self.strain.blocks(&self.basis).gradient(self.grid.node_stride(), point, field)
+        self.strain.gradient(&self.basis, self.grid.node_stride(), point, field)
     }
 
     /// Visits the nodes that a point's strain depends on, with their gradients, 1/m.
@@ -263,17 +259,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// Builds `N` and `∇N` of every point.
-    #[inline]
-    fn build_basis(&mut self) {
-        let grid = &self.grid;
-        let places = self.cells.place.iter().zip(&self.points.half_length);
-        for (point, (place, half_length)) in places.enumerate() {
-            let rows = rows_at::<D, W, S>(grid, &self.support, place, half_length);
-            self.basis.set(grid, point, &rows);
-        }
-    }
-
     /// Builds every operator of the method on the points' present places, and puts the load on
     /// the surface there.
     #[inline]
@@ -286,7 +271,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             self.support = self.surface.end_splines(&self.grid, &self.points);
             self.cells.end_at(&self.grid, self.support.outermost.unwrap_or(usize::MAX));
         }
-        self.build_basis();
+        let places = [&self.cells.place[..], &self.points.half_length[..]];
+        self.method.basis.build(&mut self.basis, &self.grid, &self.support, places);
         self.strain.build(&self.grid, &self.cells, &self.points.half_length);
         self.recovery.build(&self.grid, &self.cells);
         if self.is_pushed_forward {
@@ -305,14 +291,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// whose coefficients are no values.
     #[inline]
     pub fn displacement_at_node(&self, node: usize) -> Vector<D> {
-        if !S::PASSES_WALLS {
+        if !self.method.basis.is_spline() {
             return self.nodes.displacement[node];
         }
         let position = self.grid.node_position(node);
         let place = self.grid.held_in_cells(&position);
-        let rows = rows_at::<D, W, S>(&self.grid, &self.support, &place, &[0.0; D]);
         let mut value = [0.0; D];
-        visit_block(&self.grid, &rows, |node, weight| {
+        self.method.basis.visit_surface(&self.grid, &self.support, &place, |node, weight| {
             for d in 0..D {
                 value[d] += weight * self.nodes.displacement[node][d];
             }

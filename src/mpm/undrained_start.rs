@@ -5,7 +5,7 @@
 //! which an explicit run has no waves.
 
 use crate::mpm::assembled::stiffness::{NodeBlocks, pressure_stiffness};
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::implicit::banded::{Banded, BandedLu, Singular};
 use crate::mpm::method::Configuration;
 use crate::mpm::operators::volumetric::VolumetricRows;
@@ -68,7 +68,7 @@ impl<const D: usize> UndrainedSystem<D> {
     ///
     /// # Errors
     /// When it is singular: a body that nothing holds.
-    pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Result<Self, Singular> {
+    pub fn of(body: &Body<D>) -> Result<Self, Singular> {
         let rows = body.volumetric_rows();
         let mut stiffness = body.skeleton_stiffness(&rows);
         stiffness.add(&pressure_stiffness(&body.coupled_pressure_forces(&rows), &rows.divergence));
@@ -92,7 +92,7 @@ impl<const D: usize> UndrainedSystem<D> {
     }
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+impl<const D: usize> Body<D> {
     /// Brings the body into undrained equilibrium with its load.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use crate::mpm::assembled::rows::RowStorage;
 use crate::mpm::assembled::rows::banded_rows::{BandsWithin, REACH};
 use crate::mpm::assembled::rows::block_products::Rows;
 use crate::mpm::assembled::state::{FrozenState, LANES, Lanes, MARGIN, SOLID, WATER, lanes, set_lanes};
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::momentum::{NodalBalance, implicit_drag, per_water_inertia};
 use crate::mpm::operators::volumetric::VolumetricRows;
@@ -64,7 +64,7 @@ pub(crate) struct BlockConstants<const D: usize> {
 
 impl<const D: usize> AssembledStep<D> {
     /// Assembles the step of a body on its present operators, velocities and forces.
-    pub fn new<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
+    pub fn new(body: &Body<D>) -> Self {
         Self::of(FrozenOperators::of(body))
     }
 
@@ -183,7 +183,7 @@ impl<const D: usize> AssembledStep<D> {
 
     /// The body at the present state, from the body that was assembled: stresses, pressures and
     /// displacements of the points from the grid's. Velocities are known at the nodes only.
-    pub fn body_now<const W: usize, S: ShapeFunction<W>>(&self, initial: &Body<D, W, S>) -> Body<D, W, S> {
+    pub fn body_now(&self, initial: &Body<D>) -> Body<D> {
         let mut body = initial.clone();
         let spread = |field: &[Vector<D>]| {
             let mut whole = vec![[0.0; D]; self.node_count];

@@ -1,6 +1,6 @@
 //! Stiffness of a body as sparse blocks between nodes: what its forces do under displacements.
 
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::operators::volumetric::{VectorRow, VolumetricRows};
 use crate::soil::tensor::{Tensor, Vector};
 
@@ -74,7 +74,7 @@ impl<const D: usize> StrainEntry<D> {
     }
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+impl<const D: usize> Body<D> {
     /// The gradient from which a point's effective stress takes its strain, as a row.
     pub fn strain_row(&self, point: usize, rows: &VolumetricRows<D>) -> Vec<StrainEntry<D>> {
         let mut gradients = Vec::new();
@@ -182,7 +182,6 @@ pub fn pressure_stiffness<const D: usize>(
 mod tests {
     use super::*;
     use crate::mpm::method::Method;
-    use crate::mpm::operators::basis::Gimp;
     use crate::scene::SceneKind;
     use crate::scene::column::{Column, column_problem};
     use crate::soil::material::Material;
@@ -196,7 +195,7 @@ mod tests {
             let problem = column_problem::<2>(SceneKind::CosineLayer, &column, &soil, method, 4, 2);
             let mut problem = problem.expect("the seed layer");
             problem.undrained_start = false;
-            let mut body = Body::<2, 3, Gimp>::new(problem);
+            let mut body = Body::new(problem);
             let field: Vec<Vector<2>> = (0..body.nodes.len())
                 .map(|node| {
                     let [x, y] = body.grid.node_position(node);

@@ -10,14 +10,15 @@ use crate::mpm::body::Body;
 use crate::mpm::explicit::deformation::{Following, rotated, stretch_of};
 use crate::mpm::method::{Configuration, Memory, PressureIntegration};
 use crate::mpm::momentum::{NodalBalance, implicit_drag, per_water_inertia};
-use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
+use crate::mpm::operators::stencil::{Blocks, with_stencils};
+use crate::mpm::operators::strain_gradient::StrainOperator;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::soil::tensor::{Tensor, Vector, product};
 
 pub use crate::mpm::explicit::scheme::{Drag, ExplicitSettings};
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+impl<const D: usize> Body<D> {
     /// One explicit step of `dt` seconds, as the paper has it.
     #[inline]
     pub fn explicit_step(&mut self, dt: f64, settings: &ExplicitSettings) {
@@ -115,20 +116,28 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// Step 4: velocities and places of the points.
     #[inline]
     fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
-        if flip < 1.0 {
-            self.advance_points_by::<true>(kick, dt, flip);
+        let basis = std::mem::take(&mut self.basis);
+        with_stencils!(&basis, stencils => if flip < 1.0 {
+            self.advance_points_by::<true, _>(stencils.blocks(), kick, dt, flip);
         } else {
-            self.advance_points_by::<false>(kick, dt, flip);
-        }
+            self.advance_points_by::<false, _>(stencils.blocks(), kick, dt, flip);
+        });
+        self.basis = basis;
     }
 
     /// The same; where nothing is interpolated from the nodes, the water's velocities are not asked for.
     #[inline]
-    fn advance_points_by<const PIC: bool>(&mut self, kick: f64, dt: f64, flip: f64) {
+    fn advance_points_by<const PIC: bool, const W: usize>(
+        &mut self,
+        basis: Blocks<'_, D, W>,
+        kick: f64,
+        dt: f64,
+        flip: f64,
+    ) {
         let moving = self.configuration.moves_points();
         let pic = 1.0 - flip;
         let carrier = self.strain.carrier();
-        let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
+        let stride = *self.grid.node_stride();
         let nodes = &self.nodes;
         let (solid_field, solid_rates) = (&nodes.solid_velocity[..], &nodes.solid_acceleration[..]);
         let (water_field, water_rates) = (&nodes.water_velocity[..], &nodes.water_acceleration[..]);
@@ -170,12 +179,24 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     /// domain.
     #[inline]
     fn update_effective_stress(&mut self, dt: f64) {
-        let (deforms, is_bbar) = (self.configuration.deforms(), self.method.strain.is_bbar());
-        if is_bbar {
+        if self.method.strain.is_bbar() {
             self.recover_dilation_rates();
         }
+        let (basis, strain) = (std::mem::take(&mut self.basis), std::mem::take(&mut self.strain));
+        match &strain {
+            StrainOperator::Basis => {
+                with_stencils!(&basis, stencils => self.strain_points(stencils.blocks(), dt))
+            }
+            StrainOperator::Composite(stencils) => self.strain_points(stencils.blocks(), dt),
+            StrainOperator::BetweenEnds(stencils) => self.strain_points(stencils.blocks(), dt),
+        }
+        (self.basis, self.strain) = (basis, strain);
+    }
+
+    #[inline]
+    fn strain_points<const W: usize>(&mut self, blocks: Blocks<'_, D, W>, dt: f64) {
+        let (deforms, is_bbar) = (self.configuration.deforms(), self.method.strain.is_bbar());
         let (following, is_total) = (self.following(), self.configuration == Configuration::Total);
-        let blocks = self.strain.blocks(&self.basis);
         let stride = *self.grid.node_stride();
         let (field, dilation_rates) = (&self.nodes.solid_velocity[..], &self.dilation_rates[..]);
         let (law, stiffness) = (self.material.law, self.stiffness);

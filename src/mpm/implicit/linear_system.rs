@@ -10,7 +10,7 @@
 //! relative velocity is eliminated. In short `C ẋ + K x = g`, `C` zero in the rows of the mixture.
 
 use crate::mpm::assembled::stiffness::NodeBlocks;
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::implicit::banded::Banded;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::operators::sparse_rows::SparseRows;
@@ -67,7 +67,7 @@ type Entry = (usize, usize, f64, f64);
 
 impl<const D: usize> LinearOperators<D> {
     /// Takes a body's present operators and forces.
-    pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
+    pub fn of(body: &Body<D>) -> Self {
         let unknowns = Unknowns::of(body);
         let mut loaded = body.clone();
         loaded.map_forces();

@@ -5,7 +5,7 @@
 //! number of cells. So the tangent is consistent with every law, configuration and continuity by
 //! construction: there is no second set of formulas that could disagree with the first.
 
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::implicit::banded::Banded;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::PressureIntegration;
@@ -27,12 +27,9 @@ struct Structure {
 }
 
 impl Structure {
-    fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(
-        body: &Body<D, W, S>,
-        unknowns: &Unknowns<D>,
-    ) -> Self {
+    fn of<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Self {
         Self {
-            basis: body.basis.first.clone(),
+            basis: body.basis.first().to_vec(),
             strain: body.strain.first().to_vec(),
             cells: body.cells.of_point.clone(),
             last_node: body.last_spline_node(),
@@ -55,10 +52,7 @@ pub struct Pattern {
 
 impl Pattern {
     /// The pattern of a body on its present operators.
-    pub fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(
-        body: &Body<D, W, S>,
-        unknowns: &Unknowns<D>,
-    ) -> Self {
+    pub fn of<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Self {
         let columns_of_row = felt_unknowns(body, unknowns);
         let mut rows_of_column = vec![Vec::new(); unknowns.count];
         let (mut lower, mut upper) = (0, 0);
@@ -74,13 +68,9 @@ impl Pattern {
     }
 
     /// Whether it still is the pattern of a body; nothing is allocated.
-    pub fn is_of<const D: usize, const W: usize, S: ShapeFunction<W>>(
-        &self,
-        body: &Body<D, W, S>,
-        unknowns: &Unknowns<D>,
-    ) -> bool {
+    pub fn is_of<const D: usize>(&self, body: &Body<D>, unknowns: &Unknowns<D>) -> bool {
         let known = &self.structure;
-        known.basis == body.basis.first
+        known.basis == body.basis.first()
             && known.strain == body.strain.first()
             && known.cells == body.cells.of_point
             && known.last_node == body.last_spline_node()
@@ -119,10 +109,7 @@ impl Pattern {
 }
 
 /// Unknowns that the balance of each unknown's row feels.
-fn felt_unknowns<const D: usize, const W: usize, S: ShapeFunction<W>>(
-    body: &Body<D, W, S>,
-    unknowns: &Unknowns<D>,
-) -> Vec<Vec<usize>> {
+fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<Vec<usize>> {
     let stride = body.grid.node_stride();
     let by_point: Vec<Vec<usize>> = (0..body.points.len())
         .map(|point| {

@@ -1,7 +1,7 @@
 //! The unknowns of an implicit step and their order: free components of the skeleton's
 //! displacement at the nodes, and pressures where the method takes them.
 
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::method::PressureIntegration;
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::mpm::state::cells::Cells;
@@ -62,7 +62,7 @@ enum UnknownKind {
 
 impl<const D: usize> Unknowns<D> {
     /// Numbers the unknowns of a body on its present operators.
-    pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
+    pub fn of(body: &Body<D>) -> Self {
         let mut unknowns = Self {
             displacement: Vec::new(),
             sites: Vec::new(),

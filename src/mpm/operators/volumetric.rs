@@ -6,7 +6,6 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::method::PressureIntegration;
-use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 use crate::soil::tensor::Vector;
 
@@ -33,7 +32,7 @@ pub enum Place {
     Point(usize),
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+impl<const D: usize> Body<D> {
     /// Divergence of a nodal field at a place, on the present configuration.
     #[inline]
     pub fn divergence_at(&self, place: Place, field: &[Vector<D>]) -> f64 {
