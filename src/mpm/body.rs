@@ -49,7 +49,6 @@ pub struct Problem<const D: usize> {
 impl<const D: usize> Problem<D> {
     /// The same problem with all loads, stresses and motions of its start times a factor.
     #[must_use]
-    #[inline]
     pub fn scaled(mut self, factor: f64) -> Self {
         self.load *= factor;
         self.pressure_scale *= factor;
@@ -162,7 +161,6 @@ impl<const D: usize> Body<D> {
 
     /// Displaces points and nodes by a uniform gradient; where strains are finite, the points take
     /// their volumes with them, and where they move, their places and domains.
-    #[inline]
     fn displace(&mut self, gradient: &Tensor<D>) {
         let moved = |place: &Vector<D>| -> Vector<D> {
             std::array::from_fn(|d| (0..D).map(|e| gradient[d][e] * place[e]).sum())
@@ -192,7 +190,6 @@ impl<const D: usize> Body<D> {
 
     /// Brings operators and masses up to the points' places and volumes: all of them where points
     /// move, what follows the volumes where weights stay on the initial configuration.
-    #[inline]
     pub fn follow_points(&mut self) {
         self.follow_places();
         if self.configuration.deforms() {
@@ -201,7 +198,6 @@ impl<const D: usize> Body<D> {
     }
 
     /// Brings the operators alone up to the points' places and volumes.
-    #[inline]
     pub(crate) fn follow_places(&mut self) {
         if self.is_pushed_forward {
             self.cells.sum_volumes(&self.points, self.material.porosity);
@@ -211,25 +207,10 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// A gradient on the initial configuration on the present one, `∇₀v F⁻¹`.
-    #[inline]
-    pub fn pushed_forward(&self, point: usize, gradient: Tensor<D>) -> Tensor<D> {
-        if !self.is_pushed_forward {
-            return gradient;
-        }
-        product(&gradient, &self.points.inverse_deformation[point])
-    }
-
     /// Gradient of a nodal field at a point, from which the effective stress takes its strain.
     #[inline]
     pub fn strain_gradient(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
         self.strain.gradient(&self.basis, self.grid.node_stride(), point, field)
-    }
-
-    /// Visits the nodes that a point's strain depends on, with their gradients, 1/m.
-    #[inline]
-    pub fn visit_strain(&self, point: usize, node_visitor: impl FnMut(usize, &Vector<D>)) {
-        self.strain.visit(&self.basis, self.grid.node_stride(), point, node_visitor);
     }
 
     /// What carries a point under a nodal velocity or displacement: the value of the basis, or the
@@ -245,7 +226,8 @@ impl<const D: usize> Body<D> {
         if !self.is_pushed_forward {
             return self.basis.divergence(self.grid.node_stride(), point, field);
         }
-        let gradient = self.pushed_forward(point, self.basis.gradient(self.grid.node_stride(), point, field));
+        let gradient = self.basis.gradient(self.grid.node_stride(), point, field);
+        let gradient = product(&gradient, &self.points.inverse_deformation[point]);
         (0..D).map(|d| gradient[d][d]).sum()
     }
 
@@ -261,7 +243,6 @@ impl<const D: usize> Body<D> {
 
     /// Builds every operator of the method on the points' present places, and puts the load on
     /// the surface there.
-    #[inline]
     pub fn build_operators(&mut self) {
         self.cells.locate(&self.grid, &self.points, self.material.porosity);
         if self.method.strain.is_composite() {
@@ -282,14 +263,12 @@ impl<const D: usize> Body<D> {
     }
 
     /// Last node of splines that end at a surface on its way through the grid.
-    #[inline]
     pub fn last_spline_node(&self) -> Option<usize> {
         self.support.outermost
     }
 
     /// Displacement of the skeleton at the place of a node, m: that of the node itself, but for splines,
     /// whose coefficients are no values.
-    #[inline]
     pub fn displacement_at_node(&self, node: usize) -> Vector<D> {
         if !self.method.basis.is_spline() {
             return self.nodes.displacement[node];
@@ -307,7 +286,6 @@ impl<const D: usize> Body<D> {
 
     /// `v_s + n (v_w − v_s)` at the nodes, with the nodal porosity: what docs/theory.md, Eq. 4
     /// takes the divergence of.
-    #[inline]
     pub fn nodal_flux(&mut self) {
         let nodes = &mut self.nodes;
         for node in 0..nodes.len() {
@@ -320,7 +298,6 @@ impl<const D: usize> Body<D> {
     }
 
     /// Largest nodal velocity of either phase, m/s; infinite where one is not finite.
-    #[inline]
     pub fn largest_velocity(&self) -> f64 {
         let both = self.nodes.solid_velocity.iter().chain(&self.nodes.water_velocity);
         both.flatten().fold(0.0, |largest: f64, velocity| {

@@ -1,5 +1,6 @@
 //! A method is a choice of four independent operators and of the configuration they live on.
 
+use crate::mpm::named::named;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -47,21 +48,15 @@ pub enum StrainGradient {
     CmpmBbar,
 }
 
+named!(StrainGradient {
+    Standard = "standard",
+    Cmpm = "cmpm",
+    CmpmEnds = "cmpm-ends",
+    Bbar = "bbar",
+    CmpmBbar = "cmpm-bbar",
+});
+
 impl StrainGradient {
-    /// Every choice.
-    pub const ALL: [Self; 5] = [Self::Standard, Self::Cmpm, Self::CmpmEnds, Self::Bbar, Self::CmpmBbar];
-
-    /// Name in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Standard => "standard",
-            Self::Cmpm => "cmpm",
-            Self::CmpmEnds => "cmpm-ends",
-            Self::Bbar => "bbar",
-            Self::CmpmBbar => "cmpm-bbar",
-        }
-    }
-
     /// Whether the Lagrange interpolant is taken, at the points or between the ends of their domains.
     #[inline]
     pub fn is_composite(self) -> bool {
@@ -88,19 +83,9 @@ pub enum PressureIntegration {
     Mean,
 }
 
+named!(PressureIntegration { Points = "points", Sri = "sri", Mean = "mean" });
+
 impl PressureIntegration {
-    /// Every choice.
-    pub const ALL: [Self; 3] = [Self::Points, Self::Sri, Self::Mean];
-
-    /// Name in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Points => "points",
-            Self::Sri => "sri",
-            Self::Mean => "mean",
-        }
-    }
-
     /// Whether there is one value a cell.
     #[inline]
     pub fn is_by_cells(self) -> bool {
@@ -124,20 +109,9 @@ pub enum Recovery {
     NullSpace,
 }
 
+named!(Recovery { Constant = "constant", Patch = "patch", Nodal = "nodal", NullSpace = "null-space" });
+
 impl Recovery {
-    /// Every choice.
-    pub const ALL: [Self; 4] = [Self::Constant, Self::Patch, Self::Nodal, Self::NullSpace];
-
-    /// Name in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Constant => "constant",
-            Self::Patch => "patch",
-            Self::Nodal => "nodal",
-            Self::NullSpace => "null-space",
-        }
-    }
-
     /// Why a recovery does not go with a place of the divergence, where it does not.
     pub fn refuses(self, pressure: PressureIntegration) -> Option<&'static str> {
         match (self, pressure.is_by_cells()) {
@@ -184,19 +158,9 @@ pub enum Configuration {
     Frozen,
 }
 
+named!(Configuration { Updated = "updated", Total = "total", Frozen = "frozen" });
+
 impl Configuration {
-    /// Every configuration.
-    pub const ALL: [Self; 3] = [Self::Updated, Self::Total, Self::Frozen];
-
-    /// Name in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Updated => "updated",
-            Self::Total => "total",
-            Self::Frozen => "frozen",
-        }
-    }
-
     /// Whether points change place and weights follow.
     #[inline]
     pub fn moves_points(self) -> bool {

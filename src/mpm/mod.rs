@@ -16,6 +16,7 @@ pub mod explicit;
 pub mod implicit;
 pub mod method;
 pub mod momentum;
+pub mod named;
 pub mod operators;
 pub mod run;
 pub mod state;

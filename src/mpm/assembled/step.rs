@@ -65,10 +65,7 @@ pub(crate) struct BlockConstants<const D: usize> {
 impl<const D: usize> AssembledStep<D> {
     /// Assembles the step of a body on its present operators, velocities and forces.
     pub fn new(body: &Body<D>) -> Self {
-        Self::of(FrozenOperators::of(body))
-    }
-
-    fn of(operators: FrozenOperators<D>) -> Self {
+        let operators = FrozenOperators::of(body);
         let count = operators.nodes.len();
         let mut step = Self {
             rows: RowStorage::of(&operators),
@@ -139,7 +136,6 @@ impl<const D: usize> AssembledStep<D> {
     }
 
     /// One step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
-    #[inline]
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         let Self { rows, constants, state, .. } = self;
         match rows {

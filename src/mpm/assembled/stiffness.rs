@@ -78,7 +78,8 @@ impl<const D: usize> Body<D> {
     /// The gradient from which a point's effective stress takes its strain, as a row.
     pub fn strain_row(&self, point: usize, rows: &VolumetricRows<D>) -> Vec<StrainEntry<D>> {
         let mut gradients = Vec::new();
-        self.visit_strain(point, |node, gradient| gradients.push((node, *gradient)));
+        let stride = self.grid.node_stride();
+        self.strain.visit(&self.basis, stride, point, |node, gradient| gradients.push((node, *gradient)));
         let is_bbar = self.method.strain.is_bbar();
         let mut entries: Vec<StrainEntry<D>> = gradients
             .into_iter()

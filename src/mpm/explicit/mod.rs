@@ -20,13 +20,11 @@ pub use crate::mpm::explicit::scheme::{Drag, ExplicitSettings};
 
 impl<const D: usize> Body<D> {
     /// One explicit step of `dt` seconds, as the paper has it.
-    #[inline]
     pub fn explicit_step(&mut self, dt: f64, settings: &ExplicitSettings) {
         self.kick_and_drift(dt, dt, settings);
     }
 
     /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
-    #[inline]
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         self.reset_grid(settings); // step 1
         enter(Phase::Forces);
@@ -49,7 +47,6 @@ impl<const D: usize> Body<D> {
 
     /// Step 1: operators, masses and velocities on the points' places. Where nothing moves, the
     /// operators stand, and velocities mapped back by the last step are already there.
-    #[inline]
     fn reset_grid(&mut self, settings: &ExplicitSettings) {
         enter(Phase::BuildWeights);
         self.follow_places();
@@ -63,7 +60,6 @@ impl<const D: usize> Body<D> {
     }
 
     /// Step 2: accelerations of water and skeleton at the nodes.
-    #[inline]
     fn nodal_accelerations(&mut self, kick: f64, drag_level: Drag) {
         self.map_forces();
         let water_density = self.material.water_density;
@@ -101,7 +97,6 @@ impl<const D: usize> Body<D> {
     }
 
     /// Step 3: nodal velocities by forward Euler.
-    #[inline]
     fn nodal_velocities(&mut self, kick: f64, dt: f64) {
         let nodes = &mut self.nodes;
         for node in 0..nodes.len() {
@@ -114,7 +109,6 @@ impl<const D: usize> Body<D> {
     }
 
     /// Step 4: velocities and places of the points.
-    #[inline]
     fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
         let basis = std::mem::take(&mut self.basis);
         with_stencils!(&basis, stencils => if flip < 1.0 {
@@ -126,7 +120,6 @@ impl<const D: usize> Body<D> {
     }
 
     /// The same; where nothing is interpolated from the nodes, the water's velocities are not asked for.
-    #[inline]
     fn advance_points_by<const PIC: bool, const W: usize>(
         &mut self,
         basis: Blocks<'_, D, W>,
@@ -177,7 +170,6 @@ impl<const D: usize> Body<D> {
 
     /// Step 6: effective stress by the method's strain gradient; at finite strain also volume and
     /// domain.
-    #[inline]
     fn update_effective_stress(&mut self, dt: f64) {
         if self.method.strain.is_bbar() {
             self.recover_dilation_rates();
@@ -185,7 +177,7 @@ impl<const D: usize> Body<D> {
         let (basis, strain) = (std::mem::take(&mut self.basis), std::mem::take(&mut self.strain));
         match &strain {
             StrainOperator::Basis => {
-                with_stencils!(&basis, stencils => self.strain_points(stencils.blocks(), dt))
+                with_stencils!(&basis, stencils => self.strain_points(stencils.blocks(), dt));
             }
             StrainOperator::Composite(stencils) => self.strain_points(stencils.blocks(), dt),
             StrainOperator::BetweenEnds(stencils) => self.strain_points(stencils.blocks(), dt),
@@ -193,7 +185,6 @@ impl<const D: usize> Body<D> {
         (self.basis, self.strain) = (basis, strain);
     }
 
-    #[inline]
     fn strain_points<const W: usize>(&mut self, blocks: Blocks<'_, D, W>, dt: f64) {
         let (deforms, is_bbar) = (self.configuration.deforms(), self.method.strain.is_bbar());
         let (following, is_total) = (self.following(), self.configuration == Configuration::Total);
@@ -247,7 +238,6 @@ impl<const D: usize> Body<D> {
     }
 
     /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
-    #[inline]
     pub(crate) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
         let following = self.following();
         let points = &mut self.points;
@@ -269,7 +259,6 @@ impl<const D: usize> Body<D> {
 
     /// Step 7: pressure increments at the sites of the method's divergence, recovered to the points:
     /// `Δp = −Δt (K_w/n) [∇·v_s + ∇·w]` (docs/theory.md, Eq. 8).
-    #[inline]
     fn update_pressure(&mut self, dt: f64) {
         self.nodal_flux();
         self.surface_flux += dt * self.surface.mean_of(&self.grid, &self.points, &self.nodes.flux);

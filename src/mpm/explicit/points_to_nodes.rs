@@ -9,31 +9,26 @@ use crate::soil::tensor::product_with_transpose;
 
 impl<const D: usize> Body<D> {
     /// Sums masses, volumes and drag of the points to the nodes.
-    #[inline]
     pub fn map_masses(&mut self) {
         self.map_points::<true, false>();
     }
 
     /// Maps the velocities of both phases from the points to the nodes, weighted with mass.
-    #[inline]
     pub fn map_velocities(&mut self) {
         self.map_points::<false, true>();
     }
 
     /// Both in one pass.
-    #[inline]
     pub fn map_masses_and_velocities(&mut self) {
         self.map_points::<true, true>();
     }
 
-    #[inline]
     fn map_points<const MASSES: bool, const VELOCITIES: bool>(&mut self) {
         let basis = std::mem::take(&mut self.basis);
         with_stencils!(&basis, stencils => self.map_points_by::<MASSES, VELOCITIES, _>(stencils.blocks()));
         self.basis = basis;
     }
 
-    #[inline]
     fn map_points_by<const MASSES: bool, const VELOCITIES: bool, const W: usize>(
         &mut self,
         basis: Blocks<'_, D, W>,
@@ -95,14 +90,12 @@ impl<const D: usize> Body<D> {
 
     /// Forces on the mixture and on the water from the points' stresses (weak form, drained
     /// surface natural).
-    #[inline]
     pub fn map_forces(&mut self) {
         let basis = std::mem::take(&mut self.basis);
         with_stencils!(&basis, stencils => self.map_forces_by(stencils.blocks()));
         self.basis = basis;
     }
 
-    #[inline]
     fn map_forces_by<const W: usize>(&mut self, basis: Blocks<'_, D, W>) {
         let (nodes, points) = (&mut self.nodes, &self.points);
         for (forces, external) in nodes.sums.forces.iter_mut().zip(&nodes.external_force) {

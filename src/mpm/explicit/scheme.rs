@@ -7,6 +7,7 @@
 //! Wanner 2003): second order for the same work. The drag must then be centred too.
 
 use crate::elementary;
+use crate::mpm::named::named;
 use serde::{Deserialize, Serialize};
 
 /// Time levels of velocities and stresses.
@@ -20,22 +21,11 @@ pub enum Scheme {
     Leapfrog,
 }
 
+named!(Scheme { ForwardEuler = "forward-euler", Leapfrog = "leapfrog" });
+
 impl Scheme {
-    /// Both, the paper's first.
-    pub const ALL: [Self; 2] = [Self::ForwardEuler, Self::Leapfrog];
-
-    /// Name in study files.
-    #[inline]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::ForwardEuler => "forward-euler",
-            Self::Leapfrog => "leapfrog",
-        }
-    }
-
     /// Whether this is the paper's; records of it say nothing of the scheme.
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-    #[inline]
     pub fn is_paper(&self) -> bool {
         *self == Self::ForwardEuler
     }
@@ -53,20 +43,9 @@ pub enum Drag {
     Centred,
 }
 
+named!(Drag { Explicit = "explicit", Implicit = "implicit", Centred = "centred" });
+
 impl Drag {
-    /// Every choice, in the order of the documentation.
-    pub const ALL: [Self; 3] = [Self::Explicit, Self::Implicit, Self::Centred];
-
-    /// Name in study files.
-    #[inline]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Explicit => "explicit",
-            Self::Implicit => "implicit",
-            Self::Centred => "centred",
-        }
-    }
-
     /// Weight of the new relative velocity in the drag of a kick, `z` its duration times the rate at
     /// which the drag alone brings the phases together.
     ///
@@ -101,7 +80,6 @@ pub struct ExplicitSettings {
 
 impl Default for ExplicitSettings {
     /// The paper's: forward Euler, explicit drag, pure FLIP, mapping back.
-    #[inline]
     fn default() -> Self {
         Self { scheme: Scheme::ForwardEuler, drag: Drag::Explicit, flip: 1.0, mapping_back: true }
     }
@@ -117,7 +95,6 @@ pub struct Rhythm {
 impl Rhythm {
     /// Duration of the kick, s, before a drift of `dt` seconds: from the middle of the last drift to
     /// the middle of this one.
-    #[inline]
     pub fn kick(&mut self, dt: f64, settings: &ExplicitSettings) -> f64 {
         let last = std::mem::replace(&mut self.drift, dt);
         match settings.scheme {

@@ -1,9 +1,7 @@
 //! What the balances of a body leave at a trial state: the one residual of every nonlinear or inertial
 //! implicit step, made of the operators of the explicit one.
 
-use crate::mpm::body::Body;
 use crate::mpm::implicit::trial::{Skeleton, Trial};
-use crate::mpm::method::PressureIntegration;
 use crate::mpm::momentum::{NodalBalance, per_water_inertia};
 use crate::mpm::run::integrator::Formulation;
 use crate::mpm::run::stepper::StepFailure;
@@ -106,46 +104,15 @@ impl<const D: usize> Trial<D> {
     }
 
     /// What is left of the mixture's volume at each site.
-    fn storage(&self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
+    fn storage(&mut self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
+        self.body.evaluate_volume_rates();
         let (body, unknowns) = (&self.body, &self.unknowns);
-        self.volume_rates(residual);
         for (site, number) in unknowns.pressure.iter().enumerate() {
             let porosity = unknowns.porosity(&body.material, &body.points, &body.cells, site);
             let stored = porosity / body.material.water_bulk_modulus
-                * self.unknowns.scales.pressure
+                * unknowns.scales.pressure
                 * (increments[*number] - start.unknowns[*number]);
-            residual[*number] = stored + start.duration * residual[*number];
+            residual[*number] = stored + start.duration * body.site_values[unknowns.sites[site]];
         }
     }
-
-    /// Rate of the mixture's volume at each site, 1/s, in the site's row.
-    fn volume_rates(&self, rates: &mut [f64]) {
-        let (body, unknowns) = (&self.body, &self.unknowns);
-        if unknowns.integration == PressureIntegration::Mean {
-            unknowns.pressure.iter().for_each(|number| rates[*number] = 0.0);
-            for point in 0..body.points.len() {
-                let cell = body.cells.of_point[point];
-                if let Some(site) = unknowns.site_of(cell) {
-                    let share = body.points.volume(point) / body.cells.volume(cell);
-                    let rate = rate_at_point(body, point, body.cells.porosity[cell]);
-                    rates[unknowns.pressure[site]] += share * rate;
-                }
-            }
-            return;
-        }
-        for (site, place) in unknowns.sites.iter().enumerate() {
-            let porosity = unknowns.porosity(&body.material, &body.points, &body.cells, site);
-            rates[unknowns.pressure[site]] = match unknowns.integration {
-                PressureIntegration::Points => rate_at_point(body, *place, porosity),
-                PressureIntegration::Sri | PressureIntegration::Mean => {
-                    body.volume_rate(porosity, |field| body.divergence_at_centre(*place, field))
-                }
-            };
-        }
-    }
-}
-
-/// Rate of the mixture's volume at a point, 1/s.
-fn rate_at_point<const D: usize>(body: &Body<D>, point: usize, porosity: f64) -> f64 {
-    body.volume_rate(porosity, |field| body.divergence_at_point(point, field))
 }

@@ -20,7 +20,6 @@ pub struct Stencils<const D: usize, const W: usize> {
 
 impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Room for `points` points, all rows zero.
-    #[inline]
     pub fn with_points(points: usize) -> Self {
         Self {
             first: vec![0; points],

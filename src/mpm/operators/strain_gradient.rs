@@ -32,7 +32,6 @@ pub enum StrainOperator<const D: usize> {
 
 impl<const D: usize> StrainOperator<D> {
     /// The operator of a choice, with room for so many points.
-    #[inline]
     pub fn of(strain: StrainGradient, points: usize) -> Self {
         match strain {
             StrainGradient::Standard | StrainGradient::Bbar => Self::Basis,
@@ -42,7 +41,6 @@ impl<const D: usize> StrainOperator<D> {
     }
 
     /// Brings the stencils up to the points' places; half-lengths of the domains in m, `[point][direction]`.
-    #[inline]
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>, half_length: &[Vector<D>]) {
         let (places, per_cell) = (cells.place.iter().enumerate(), grid.inverse_cell_size());
         match self {
@@ -74,7 +72,6 @@ impl<const D: usize> StrainOperator<D> {
     }
 
     /// Lowest node of each point's stencil, where it is not that of the basis.
-    #[inline]
     pub fn first(&self) -> &[usize] {
         match self {
             Self::Basis => &[],

@@ -83,9 +83,15 @@ impl<const D: usize> Body<D> {
         self.site_values = sites;
     }
 
+    /// Rate of the mixture's volume at each site, 1/s.
+    pub fn evaluate_volume_rates(&mut self) {
+        self.evaluate_sites(|body, place, porosity| {
+            body.volume_rate(porosity, |field| body.divergence_at(place, field))
+        });
+    }
+
     /// The skeleton's volumetric rate at the points by the method's own `D` and `R`, 1/s: the trace that B-bar
     /// takes.
-    #[inline]
     pub fn recover_dilation_rates(&mut self) {
         self.evaluate_sites(|body, place, _| body.divergence_at(place, &body.nodes.solid_velocity));
         let at = PointsInCells::of(&self.grid, &self.cells, &self.nodes, &self.points.position);
@@ -94,7 +100,6 @@ impl<const D: usize> Body<D> {
     }
 
     /// `D` and `R` of the body's method as rows; gradients are those of small strain.
-    #[inline]
     pub fn volumetric_rows(&self) -> VolumetricRows<D> {
         let is_by_cells = self.method.pressure.is_by_cells();
         let places = if is_by_cells { self.grid.cell_count() } else { self.points.len() };
@@ -123,7 +128,6 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    #[inline]
     fn divergence_rows(&self, sites: &[usize], number: &[usize]) -> Vec<VectorRow<D>> {
         let at_point = |point: usize| self.basis.gradient_row(&self.grid, point);
         match self.method.pressure {
@@ -147,7 +151,6 @@ impl<const D: usize> Body<D> {
 }
 
 /// Adds to a node's coefficients in a short row.
-#[inline]
 fn accumulate<const D: usize>(row: &mut VectorRow<D>, node: usize, coefficients: &Vector<D>) {
     let place = row.iter().position(|entry| entry.0 == node).unwrap_or_else(|| {
         row.push((node, [0.0; D]));
@@ -160,20 +163,17 @@ fn accumulate<const D: usize>(row: &mut VectorRow<D>, node: usize, coefficients:
 
 impl<const D: usize> VolumetricRows<D> {
     /// Divergence of a nodal field at every site.
-    #[inline]
     pub fn at_sites(&self, field: &[Vector<D>]) -> Vec<f64> {
         self.divergence.iter().map(|row| applied(row, field)).collect()
     }
 
     /// Values at the points from those at the sites.
-    #[inline]
     pub fn at_points(&self, sites: &[f64]) -> Vec<f64> {
         let value = |row: &Vec<(usize, f64)>| row.iter().map(|(site, weight)| weight * sites[*site]).sum();
         self.recovery.iter().map(value).collect()
     }
 
     /// The volumetric rate at a point as a functional of the field: `R D` without moduli.
-    #[inline]
     pub fn dilation_row(&self, point: usize) -> VectorRow<D> {
         let mut row = VectorRow::new();
         for (site, weight) in &self.recovery[point] {

@@ -69,13 +69,11 @@ impl<const D: usize> Grid<D> {
     }
 
     /// Number of nodes, ghosts included.
-    #[inline]
     pub fn node_count(&self) -> usize {
         self.node_stride[D - 1] * (self.cells[D - 1] + 2 * GHOST_LAYERS + 1)
     }
 
     /// Number of cells, ghosts included.
-    #[inline]
     pub fn cell_count(&self) -> usize {
         self.cell_stride[D - 1] * (self.cells[D - 1] + 2 * GHOST_LAYERS)
     }
@@ -105,7 +103,6 @@ impl<const D: usize> Grid<D> {
     }
 
     /// Whether a point lies in the grid or on its rim.
-    #[inline]
     pub fn holds(&self, position: &Vector<D>) -> bool {
         (0..D).all(|direction| {
             let cells = position[direction] * self.inverse_cell_size;
@@ -161,7 +158,6 @@ impl<const D: usize> Grid<D> {
     }
 
     /// Place of a node, m.
-    #[inline]
     pub fn node_position(&self, flat: usize) -> Vector<D> {
         let mut rest = flat;
         let mut position = [0.0; D];
@@ -174,7 +170,6 @@ impl<const D: usize> Grid<D> {
     }
 
     /// Centre of a cell, m.
-    #[inline]
     pub fn cell_centre(&self, flat: usize) -> Vector<D> {
         let mut rest = flat;
         let mut centre = [0.0; D];

@@ -10,7 +10,6 @@ pub fn value<const D: usize>(at: &PointsInCells<'_, D>, point: usize, sites: &[f
 }
 
 /// The cell of a point with its weight.
-#[inline]
 pub fn row<const D: usize>(at: &PointsInCells<'_, D>, point: usize) -> Vec<(usize, f64)> {
     vec![(at.cells.of_point[point], 1.0)]
 }

@@ -35,7 +35,6 @@ pub enum RecoveryOperator<const D: usize> {
 
 impl<const D: usize> RecoveryOperator<D> {
     /// The operator of a method, with room for a grid and so many points.
-    #[inline]
     pub fn of(method: Method, grid: &Grid<D>, points: usize) -> Self {
         match (method.pressure.is_by_cells(), method.recovery) {
             (false, Recovery::NullSpace) => Self::NullSpace(CellPlanes::with_cells(grid.cell_count())),
@@ -47,7 +46,6 @@ impl<const D: usize> RecoveryOperator<D> {
     }
 
     /// Brings the operator up to the points' places.
-    #[inline]
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
         if let Self::Patch(rows) = self {
             rows.build(grid, cells);
@@ -79,7 +77,6 @@ impl<const D: usize> RecoveryOperator<D> {
     }
 
     /// The same as rows, `[point][entry]` of site and weight.
-    #[inline]
     pub fn rows(&self, at: &PointsInCells<'_, D>) -> Vec<Vec<(usize, f64)>> {
         let points = 0..at.positions.len();
         match self {
@@ -126,7 +123,6 @@ pub(crate) mod tests {
             Self { grid, cells, nodes, points }
         }
 
-        #[inline]
         pub(crate) fn at(&self) -> PointsInCells<'_, 2> {
             let Self { grid, cells, nodes, points } = self;
             PointsInCells::of(grid, cells, nodes, &points.position)
@@ -134,7 +130,6 @@ pub(crate) mod tests {
     }
 
     /// A row applied to values.
-    #[inline]
     pub(crate) fn applied(row: &[(usize, f64)], values: &[f64]) -> f64 {
         row.iter().map(|(place, weight)| weight * values[*place]).sum()
     }

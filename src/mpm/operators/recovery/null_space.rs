@@ -47,13 +47,11 @@ impl<const D: usize> Plane<D> {
 
 impl<const D: usize> CellPlanes<D> {
     /// Room for so many cells.
-    #[inline]
     pub fn with_cells(count: usize) -> Self {
         Self { planes: vec![Plane::EMPTY; count] }
     }
 
     /// Fits the planes to the values of the points.
-    #[inline]
     pub fn fit(&mut self, at: &PointsInCells<'_, D>, value: impl Fn(usize) -> f64) {
         self.planes.fill(Plane::EMPTY);
         for (point, place) in at.positions.iter().enumerate() {
@@ -93,7 +91,6 @@ impl<const D: usize> CellPlanes<D> {
 }
 
 /// The same as rows: what each point keeps of the values of its cell's points.
-#[inline]
 pub fn rows<const D: usize>(at: &PointsInCells<'_, D>) -> Vec<Vec<(usize, f64)>> {
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); at.grid.cell_count()];
     for (point, cell) in at.cells.of_point.iter().enumerate() {
