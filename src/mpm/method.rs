@@ -193,27 +193,27 @@ pub struct Method {
 }
 
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
-const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 13] = [
-    ("MPM", Basis::Hat, StrainGradient::Standard, PressureIntegration::Points, Recovery::Constant),
-    ("GIMP", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Points, Recovery::Constant),
-    ("GIMP-SRI", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Constant),
-    ("GIMP-SRI-patch", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Patch),
-    ("GC-SRI-patch", Basis::Cpgimp, StrainGradient::Cmpm, PressureIntegration::Sri, Recovery::Patch),
-    ("CPDI-SRI-patch", Basis::Cpdi, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Patch),
-    ("CE-SRI-patch", Basis::Cpdi, StrainGradient::CmpmEnds, PressureIntegration::Sri, Recovery::Patch),
-    (
-        "GIMP-null-space",
-        Basis::Cpgimp,
-        StrainGradient::Standard,
-        PressureIntegration::Points,
-        Recovery::NullSpace,
-    ),
-    ("GIMP-mean", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Mean, Recovery::Constant),
-    ("GIMP-SRI-nodal", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Nodal),
-    ("GIMP-Bbar", Basis::Cpgimp, StrainGradient::Bbar, PressureIntegration::Sri, Recovery::Constant),
-    ("GIMP-Bbar-patch", Basis::Cpgimp, StrainGradient::Bbar, PressureIntegration::Sri, Recovery::Patch),
-    ("GC-Bbar-patch", Basis::Cpgimp, StrainGradient::CmpmBbar, PressureIntegration::Sri, Recovery::Patch),
-];
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 13] = {
+    use Basis::{Cpdi, Cpgimp, Hat};
+    use PressureIntegration::{Mean, Points, Sri};
+    use Recovery::{Constant, Nodal, NullSpace, Patch};
+    use StrainGradient::{Bbar, Cmpm, CmpmBbar, CmpmEnds, Standard};
+    [
+        ("MPM", Hat, Standard, Points, Constant),
+        ("GIMP", Cpgimp, Standard, Points, Constant),
+        ("GIMP-SRI", Cpgimp, Standard, Sri, Constant),
+        ("GIMP-SRI-patch", Cpgimp, Standard, Sri, Patch),
+        ("GC-SRI-patch", Cpgimp, Cmpm, Sri, Patch),
+        ("CPDI-SRI-patch", Cpdi, Standard, Sri, Patch),
+        ("CE-SRI-patch", Cpdi, CmpmEnds, Sri, Patch),
+        ("GIMP-null-space", Cpgimp, Standard, Points, NullSpace),
+        ("GIMP-mean", Cpgimp, Standard, Mean, Constant),
+        ("GIMP-SRI-nodal", Cpgimp, Standard, Sri, Nodal),
+        ("GIMP-Bbar", Cpgimp, Bbar, Sri, Constant),
+        ("GIMP-Bbar-patch", Cpgimp, Bbar, Sri, Patch),
+        ("GC-Bbar-patch", Cpgimp, CmpmBbar, Sri, Patch),
+    ]
+};
 
 /// Prefix of the names of methods with weights on the initial configuration.
 const TOTAL_PREFIX: &str = "TL-";

@@ -42,13 +42,9 @@ impl FreeComponents {
                 })
             })
         };
-        let (mut lower, mut upper) = (0, 0);
-        for (row, column, _) in entries().filter(|entry| entry.2 != 0.0) {
-            lower = lower.max(row.saturating_sub(column));
-            upper = upper.max(column.saturating_sub(row));
-        }
-        let mut matrix = Banded::zeros(self.places.len(), lower, upper);
-        for (row, column, value) in entries().filter(|entry| entry.2 != 0.0) {
+        let counting = || entries().filter(|entry| entry.2 != 0.0);
+        let mut matrix = Banded::spanning(self.places.len(), counting().map(|entry| (entry.0, entry.1)));
+        for (row, column, value) in counting() {
             matrix.add(row, column, value);
         }
         matrix
@@ -101,18 +97,10 @@ impl<const D: usize> Body<D> {
         let system = UndrainedSystem::of(self)?;
         self.map_forces();
         let displacements = system.displacements(&self.nodes.mixture_force);
-        self.displace_undrained(&system.rows, &displacements);
-        if self.configuration.moves_points() {
-            self.build_operators();
-        }
+        let field = &displacements[..];
+        self.displace_points(&system.rows, field, field, field);
         self.follow_points();
         Ok(())
-    }
-
-    /// Displaces nodes and points by a nodal field, with the stresses and pressures that it makes
-    /// without flow.
-    pub fn displace_undrained(&mut self, rows: &VolumetricRows<D>, displacements: &[Vector<D>]) {
-        self.displace_points(rows, displacements, displacements, displacements);
     }
 
     /// Displaces nodes and points by a field, strains the skeleton by another and compresses the

@@ -207,7 +207,7 @@ mod tests {
             let mut stiffness = body.skeleton_stiffness(&rows);
             stiffness.add(&pressure_stiffness(&body.coupled_pressure_forces(&rows), &rows.divergence));
             // The explicit step's way: strains, pressures and forces of the points.
-            body.displace_undrained(&rows, &field);
+            body.displace_points(&rows, &field, &field, &field);
             body.nodes.external_force.fill([0.0; 2]);
             body.map_forces();
             let scale = body.nodes.mixture_force.iter().flatten().fold(0.0, |s: f64, f| s.max(f.abs()));

@@ -74,9 +74,7 @@ impl<const D: usize> LinearOperators<D> {
         Self {
             stiffness: body.skeleton_stiffness(&unknowns.rows),
             pressure_forces: body.pressure_forces(&unknowns.rows),
-            porosity: (0..unknowns.sites.len())
-                .map(|site| unknowns.porosity(&body.material, &body.points, &body.cells, site))
-                .collect(),
+            porosity: unknowns.rows.sites.iter().map(|place| body.porosity_of(*place)).collect(),
             water_bulk_modulus: body.material.water_bulk_modulus,
             continuity: body.material.continuity,
             nodes: loaded.nodes,

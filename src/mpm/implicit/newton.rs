@@ -23,25 +23,13 @@ const TOLERANCE: f64 = 1e-11;
 /// Ratio of an iteration's correction to the last one's beyond which the tangent is made anew.
 const SLOW: f64 = 0.1;
 
-/// Stages of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stages {
-    /// Two, of SDIRK2.
-    Sdirk,
-    /// One, of backward Euler for what is implicit.
-    Single,
-}
-
-impl Stages {
-    /// Of each stage: what it lasts for and where it ends, in steps, and the share of its increment
-    /// in the start of the next one, or in the step.
-    fn of_step(self) -> &'static [(f64, f64, f64)] {
-        match self {
-            Self::Sdirk => &[(SDIRK_GAMMA, SDIRK_GAMMA, SECOND_STAGE), (SDIRK_GAMMA, 1.0, 1.0)],
-            Self::Single => &[(1.0, 1.0, 1.0)],
-        }
-    }
-}
+/// What a stage lasts for and where it ends, in steps, and the share of its increment in the start of the next
+/// one, or in the step.
+type Stage = (f64, f64, f64);
+/// Those of SDIRK2.
+const SDIRK_STAGES: &[Stage] = &[(SDIRK_GAMMA, SDIRK_GAMMA, SECOND_STAGE), (SDIRK_GAMMA, 1.0, 1.0)];
+/// That of backward Euler, for what is implicit beside an explicit skeleton.
+const SINGLE_STAGE: &[Stage] = &[(1.0, 1.0, 1.0)];
 
 /// A body on its way through time.
 pub struct NewtonStepper<const D: usize> {
@@ -56,7 +44,7 @@ pub struct NewtonStepper<const D: usize> {
     /// Error that a stage may leave in the scaled unknowns.
     tolerance: f64,
     error_scales: ErrorScales,
-    stages: Stages,
+    stages: &'static [Stage],
     start: StageStart<D>,
     /// Rate of the scaled unknowns at the end of the last step, 1/s.
     rate: Vec<f64>,
@@ -75,9 +63,9 @@ pub struct NewtonStepper<const D: usize> {
 impl<const D: usize> NewtonStepper<D> {
     /// A body at its start.
     pub fn new(body: Body<D>, plan: &Plan<'_>) -> Self {
-        let skeleton = match plan.schedule.integrator {
-            IntegratorKind::SemiImplicit => Skeleton::Explicit,
-            IntegratorKind::Explicit | IntegratorKind::Implicit => Skeleton::Implicit,
+        let (skeleton, stages) = match plan.schedule.integrator {
+            IntegratorKind::SemiImplicit => (Skeleton::Explicit, SINGLE_STAGE),
+            IntegratorKind::Explicit | IntegratorKind::Implicit => (Skeleton::Implicit, SDIRK_STAGES),
         };
         let trial = Trial::new(body, plan.schedule.formulation, skeleton);
         let pattern = Pattern::of(&trial.body, &trial.unknowns);
@@ -92,10 +80,7 @@ impl<const D: usize> NewtonStepper<D> {
             contraction: SLOW,
             tolerance: TOLERANCE * plan.pressure_scale / scales.pressure,
             error_scales: ErrorScales::of(&scales, plan),
-            stages: match plan.schedule.integrator {
-                IntegratorKind::SemiImplicit => Stages::Single,
-                IntegratorKind::Explicit | IntegratorKind::Implicit => Stages::Sdirk,
-            },
+            stages,
             start: StageStart::default(),
             rate: zero.clone(),
             state: zero.clone(),
@@ -125,7 +110,7 @@ impl<const D: usize> NewtonStepper<D> {
     fn try_step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure> {
         let mut flux = 0.0;
         let mut first = true;
-        for (duration, end, share) in self.stages.of_step() {
+        for (duration, end, share) in self.stages {
             let stage = duration * dt;
             if first {
                 self.start_step(stage);
@@ -157,7 +142,7 @@ impl<const D: usize> NewtonStepper<D> {
 
     /// Estimated error of the step whose stages were solved last.
     fn error(&self) -> f64 {
-        if self.stages == Stages::Single {
+        if self.stages.len() == 1 {
             return 0.0;
         }
         self.error_scales.largest(&self.trial.unknowns, |unknown| {
@@ -288,7 +273,7 @@ impl<const D: usize> NewtonStepper<D> {
 impl<const D: usize> Stepper for NewtonStepper<D> {
     fn advance(&mut self, steps: &EqualSteps, most_error: f64) -> Result<f64, StepFailure> {
         // Smaller steps would hide that an explicit skeleton is beyond its limit.
-        let halvings = if self.stages == Stages::Single { 0 } else { MOST_HALVINGS };
+        let halvings = if self.stages.len() == 1 { 0 } else { MOST_HALVINGS };
         (0..steps.count).try_fold(0.0, |_, _| self.step_within(steps.dt, halvings, most_error))
     }
 

@@ -107,12 +107,12 @@ impl<const D: usize> Trial<D> {
     fn storage(&mut self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
         self.body.evaluate_volume_rates();
         let (body, unknowns) = (&self.body, &self.unknowns);
-        for (site, number) in unknowns.pressure.iter().enumerate() {
-            let porosity = unknowns.porosity(&body.material, &body.points, &body.cells, site);
+        for (place, number) in unknowns.rows.sites.iter().zip(&unknowns.pressure) {
+            let porosity = body.porosity_of(*place);
             let stored = porosity / body.material.water_bulk_modulus
                 * unknowns.scales.pressure
                 * (increments[*number] - start.unknowns[*number]);
-            residual[*number] = stored + start.duration * body.site_values[unknowns.sites[site]];
+            residual[*number] = stored + start.duration * body.site_values[*place];
         }
     }
 }

@@ -15,6 +15,10 @@ pub type VectorRow<const D: usize> = Vec<(usize, Vector<D>)>;
 /// `D` and `R` of a method on a body's present operators.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VolumetricRows<const D: usize> {
+    /// Cell or point of each site.
+    pub sites: Vec<usize>,
+    /// Site of each cell or point, where it is one.
+    pub site_of_place: Vec<Option<usize>>,
     /// Divergence at each site, 1/m of the field: occupied cells, or points.
     pub divergence: Vec<VectorRow<D>>,
     /// Coupling modulus `K_w/n` of each site, Pa.
@@ -47,6 +51,15 @@ impl<const D: usize> Body<D> {
     fn share_of_cell(&self, point: usize) -> (usize, f64) {
         let cell = self.cells.of_point[point];
         (cell, self.points.volume(point) / self.cells.volume(cell))
+    }
+
+    /// Porosity of a cell or point that is a site.
+    pub fn porosity_of(&self, place: usize) -> f64 {
+        if self.method.pressure.is_by_cells() {
+            self.cells.porosity[place]
+        } else {
+            self.material.porosity_at(self.points.volume_ratio[place])
+        }
     }
 
     /// `D` in place: fills `site_values` with what a function gives at each site from a place and the porosity
@@ -105,30 +118,28 @@ impl<const D: usize> Body<D> {
         let places = if is_by_cells { self.grid.cell_count() } else { self.points.len() };
         let sites: Vec<usize> =
             if is_by_cells { self.cells.occupied().collect() } else { (0..places).collect() };
-        let mut number = vec![usize::MAX; places];
+        let mut site_of_place = vec![None; places];
         for (site, place) in sites.iter().enumerate() {
-            number[*place] = site;
+            site_of_place[*place] = Some(site);
         }
-        let porosity = |place: usize| {
-            if is_by_cells {
-                self.cells.porosity[place]
-            } else {
-                self.material.porosity_at(self.points.volume_ratio[place])
-            }
-        };
         let at = PointsInCells::of(&self.grid, &self.cells, &self.nodes, &self.points.position);
         let numbered = |row: Vec<(usize, f64)>| {
             let entries = row.into_iter().filter(|(_, weight)| *weight != 0.0);
-            entries.map(|(place, weight)| (number[place], weight)).collect()
+            entries.filter_map(|(place, weight)| Some((site_of_place[place]?, weight))).collect()
         };
         VolumetricRows {
-            divergence: self.divergence_rows(&sites, &number),
-            coupling: sites.iter().map(|place| self.material.water_bulk_modulus / porosity(*place)).collect(),
+            divergence: self.divergence_rows(&sites, &site_of_place),
+            coupling: sites
+                .iter()
+                .map(|place| self.material.water_bulk_modulus / self.porosity_of(*place))
+                .collect(),
             recovery: self.recovery.rows(&at).into_iter().map(numbered).collect(),
+            sites,
+            site_of_place,
         }
     }
 
-    fn divergence_rows(&self, sites: &[usize], number: &[usize]) -> Vec<VectorRow<D>> {
+    fn divergence_rows(&self, sites: &[usize], site_of_place: &[Option<usize>]) -> Vec<VectorRow<D>> {
         let at_point = |point: usize| self.basis.gradient_row(&self.grid, point);
         match self.method.pressure {
             PressureIntegration::Points => sites.iter().map(|point| at_point(*point)).collect(),
@@ -139,9 +150,9 @@ impl<const D: usize> Body<D> {
                 let mut rows = vec![VectorRow::new(); sites.len()];
                 for point in 0..self.points.len() {
                     let (cell, share) = self.share_of_cell(point);
+                    let Some(site) = site_of_place[cell] else { continue };
                     for (node, gradient) in at_point(point) {
-                        let coefficients = gradient.map(|component| share * component);
-                        accumulate(&mut rows[number[cell]], node, &coefficients);
+                        accumulate(&mut rows[site], node, &gradient.map(|component| share * component));
                     }
                 }
                 rows
