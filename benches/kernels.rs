@@ -11,9 +11,9 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use oedometer::exact::consolidation;
 use oedometer::{
-    AssembledStep, Body, Column, Configuration, EqualSteps, ExplicitSettings, Gimp, IntegratorKind,
-    Kernel as StepKernel, LinearStepper, Material, Method, Plan, Problem, SceneKind, Schedule, ShapeFunction,
-    Stepper, TimeStepRule, column_problem, predicted_critical_step, with_basis,
+    AssembledStep, Body, Column, Configuration, EqualSteps, ExplicitSettings, IntegratorKind,
+    Kernel as StepKernel, LinearStepper, Material, Method, Plan, Problem, SceneKind, Schedule, Stepper,
+    TimeStepRule, column_problem, predicted_critical_step,
 };
 use std::time::Instant;
 
@@ -66,10 +66,8 @@ fn moving_step<const C: usize>(bencher: Bencher, method: &str) {
 fn build_operators<const C: usize>(bencher: Bencher, method: &str) {
     let problem = problem(method, C, Configuration::Updated);
     let bencher = bencher.counter(ItemsCount::new(problem.points.len()));
-    with_basis!(problem.method.basis, W, S => {
-        let mut body = Body::<1, W, S>::new(problem);
-        bencher.bench_local(|| body.build_operators());
-    });
+    let mut body = Body::new(problem);
+    bencher.bench_local(|| body.build_operators());
 }
 
 /// One step of SDIRK2 on the frozen column: two solves of a banded system. What bounds it is the
@@ -88,8 +86,7 @@ fn implicit_step<const C: usize>(bencher: Bencher, method: &str) {
         formulation: IntegratorKind::Implicit.default_formulation(),
     };
     let plan = Plan::of(&problem, &schedule);
-    let mut stepper =
-        with_basis!(problem.method.basis, W, S => LinearStepper::new(Body::<1, W, S>::new(problem), &plan));
+    let mut stepper = LinearStepper::new(Body::new(problem), &plan);
     let step = EqualSteps::first(0.0, 0.01, 1);
     bencher
         .counter(ItemsCount::new(C * POINTS_PER_CELL))
@@ -132,15 +129,10 @@ fn stepper(method: &str, cells: usize, kernel: Kernel) -> Box<dyn FnMut()> {
     let problem = problem(method, cells, configuration);
     let settings = ExplicitSettings::default();
     let dt = 0.5 * predicted_critical_step(&problem, &settings);
-    with_basis!(problem.method.basis, W, S => steps_of(Body::<1, W, S>::new(problem), kernel, dt, settings))
+    steps_of(Body::new(problem), kernel, dt, settings)
 }
 
-fn steps_of<const W: usize, S: ShapeFunction<W> + 'static>(
-    mut body: Body<1, W, S>,
-    kernel: Kernel,
-    dt: f64,
-    settings: ExplicitSettings,
-) -> Box<dyn FnMut()> {
+fn steps_of(mut body: Body<1>, kernel: Kernel, dt: f64, settings: ExplicitSettings) -> Box<dyn FnMut()> {
     if kernel == Kernel::Assembled {
         let mut column = AssembledStep::new(&body);
         column.set_step(dt, &settings);
@@ -221,7 +213,7 @@ fn plane_cost(name: &str, cells: usize) -> PlaneCost {
         .expect("the seed layer");
     let settings = ExplicitSettings::default();
     let dt = 0.5 * predicted_critical_step(&problem, &settings);
-    let mut body = Body::<2, 3, Gimp>::new(problem);
+    let mut body = Body::new(problem);
     let mut plane = AssembledStep::new(&body);
     plane.set_step(dt, &settings);
     let [bytes, products] = plane.bytes_and_products().expect("sparse rows");
@@ -312,8 +304,7 @@ fn print_bound() {
 
 fn force_reach(method: &str, cells: usize) -> usize {
     let problem = problem(method, cells, Configuration::Frozen);
-    let column =
-        with_basis!(problem.method.basis, W, S => AssembledStep::new(&Body::<1, W, S>::new(problem)));
+    let column = AssembledStep::new(&Body::new(problem));
     column.force_reach().expect("bands")
 }
 
@@ -374,7 +365,7 @@ fn moving_cost(cells: usize, points_per_cell: usize) -> [f64; PASSES.len()] {
     let problem = crowded_problem("GC-SRI-patch", cells, points_per_cell, Configuration::Updated);
     let settings = ExplicitSettings::default();
     let dt = 0.5 * predicted_critical_step(&problem, &settings);
-    let mut body = Body::<1, 3, Gimp>::new(problem);
+    let mut body = Body::new(problem);
     let count = body.points.len();
     let mut node_sums = vec![0.0; cells + 1];
     let mut least = [f64::INFINITY; PASSES.len()];

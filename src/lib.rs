@@ -28,7 +28,7 @@
 //!
 //! | equation | what it is | place |
 //! | :-- | :-- | :-- |
-//! | 1, 2 (Zheng et al. Eqs 1, 2) | accelerations of water and mixture | `src/mpm/explicit/mod.rs:nodal_accelerations`; of frozen bodies `src/mpm/assembled/step.rs:accelerate` |
+//! | 1, 2 (Zheng et al. Eqs 1, 2) | accelerations of water and mixture | `src/mpm/momentum.rs:accelerations` |
 //! | 3, 5 | porosity | `src/soil/material.rs:porosity_at` |
 //! | 4, 4' (Zheng et al. Eq. 6) | rate of the pressure | `src/mpm/body.rs:volume_rate` |
 //! | 6, 7 (Zheng et al. Eqs 7, 8) | stress–strain laws and conductivity | `src/soil/law.rs:uniaxial_stress_ratio`, `src/soil/law.rs:conductivity` |
@@ -165,8 +165,6 @@ pub use mpm::body::{Body, Problem};
 pub use mpm::critical_step::predicted::predicted_critical_step;
 #[doc(hidden)]
 pub use mpm::implicit::linear::LinearStepper;
-#[doc(hidden)]
-pub use mpm::operators::basis::{CubicSpline, DomainEnds, Gimp, Hat, QuadraticSpline, ShapeFunction};
 #[doc(hidden)]
 pub use mpm::run::{
     run_plan::Plan,

@@ -1,10 +1,8 @@
 //! The discretised body: points, nodes and the operators that join them.
 
 use crate::mpm::method::{Configuration, Method};
-pub use crate::mpm::operators::basis::ShapeFunction;
-use crate::mpm::operators::basis::rows_at;
 use crate::mpm::operators::recovery::RecoveryOperator;
-use crate::mpm::operators::stencil::{Stencils, visit_block};
+use crate::mpm::operators::stencil::PointStencils;
 use crate::mpm::operators::strain_gradient::StrainOperator;
 use crate::mpm::operators::surface_load::{LoadShape, LoadedSurface};
 use crate::mpm::state::cell_memory::CellMemory;
@@ -51,7 +49,6 @@ pub struct Problem<const D: usize> {
 impl<const D: usize> Problem<D> {
     /// The same problem with all loads, stresses and motions of its start times a factor.
     #[must_use]
-    #[inline]
     pub fn scaled(mut self, factor: f64) -> Self {
         self.load *= factor;
         self.pressure_scale *= factor;
@@ -67,7 +64,7 @@ impl<const D: usize> Problem<D> {
 
 /// The discretised body during a run.
 #[derive(Clone, Debug)]
-pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
+pub struct Body<const D: usize> {
     /// Background grid.
     pub grid: Grid<D>,
     /// Material points.
@@ -90,7 +87,7 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     /// Loaded surface.
     pub surface: LoadedSurface<D>,
     /// `N` and `∇N` between points and nodes.
-    pub basis: Stencils<D, W>,
+    pub basis: PointStencils<D>,
     /// `G` where it is not the gradient of the basis.
     pub strain: StrainOperator<D>,
     /// What the cells remember.
@@ -108,10 +105,9 @@ pub struct Body<const D: usize, const W: usize, S: ShapeFunction<W>> {
     pub dilation_rates: Vec<f64>,
     /// Mixture that passed the surface since the start, `∫ v_s + n(v_w − v_s) dt`, m.
     pub surface_flux: f64,
-    shape_function: std::marker::PhantomData<S>,
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+impl<const D: usize> Body<D> {
     /// Discretises a problem: builds operators and nodal masses on the initial configuration and
     /// maps the points' velocities to the nodes.
     pub fn new(problem: Problem<D>) -> Self {
@@ -140,11 +136,11 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 .shaped(load_shape, &points)
                 .spread_by(method.basis, support)
                 .stretching(configuration.moves_points() && !method.domains_follow()),
-            basis: Stencils::with_points(count),
+            basis: method.basis.stencils(count),
             strain: StrainOperator::of(method.strain, count),
             cell_memory: CellMemory::new(&grid),
             support,
-            splines_end_at_surface: S::PASSES_WALLS && configuration.moves_points(),
+            splines_end_at_surface: method.basis.is_spline() && configuration.moves_points(),
             recovery: RecoveryOperator::of(method, &grid, count),
             site_values: vec![0.0; sites],
             dilation_rates: vec![0.0; if method.strain.is_bbar() { count } else { 0 }],
@@ -155,7 +151,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             method,
             configuration,
             is_pushed_forward: configuration == Configuration::Total,
-            shape_function: std::marker::PhantomData,
         };
         body.displace(&initial_gradient);
         body.build_operators();
@@ -166,7 +161,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Displaces points and nodes by a uniform gradient; where strains are finite, the points take
     /// their volumes with them, and where they move, their places and domains.
-    #[inline]
     fn displace(&mut self, gradient: &Tensor<D>) {
         let moved = |place: &Vector<D>| -> Vector<D> {
             std::array::from_fn(|d| (0..D).map(|e| gradient[d][e] * place[e]).sum())
@@ -196,7 +190,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Brings operators and masses up to the points' places and volumes: all of them where points
     /// move, what follows the volumes where weights stay on the initial configuration.
-    #[inline]
     pub fn follow_points(&mut self) {
         self.follow_places();
         if self.configuration.deforms() {
@@ -205,7 +198,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// Brings the operators alone up to the points' places and volumes.
-    #[inline]
     pub(crate) fn follow_places(&mut self) {
         if self.is_pushed_forward {
             self.cells.sum_volumes(&self.points, self.material.porosity);
@@ -215,25 +207,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// A gradient on the initial configuration on the present one, `∇₀v F⁻¹`.
-    #[inline]
-    pub fn pushed_forward(&self, point: usize, gradient: Tensor<D>) -> Tensor<D> {
-        if !self.is_pushed_forward {
-            return gradient;
-        }
-        product(&gradient, &self.points.inverse_deformation[point])
-    }
-
     /// Gradient of a nodal field at a point, from which the effective stress takes its strain.
     #[inline]
     pub fn strain_gradient(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        self.strain.blocks(&self.basis).gradient(self.grid.node_stride(), point, field)
-    }
-
-    /// Visits the nodes that a point's strain depends on, with their gradients, 1/m.
-    #[inline]
-    pub fn visit_strain(&self, point: usize, node_visitor: impl FnMut(usize, &Vector<D>)) {
-        self.strain.visit(&self.basis, self.grid.node_stride(), point, node_visitor);
+        self.strain.gradient(&self.basis, self.grid.node_stride(), point, field)
     }
 
     /// What carries a point under a nodal velocity or displacement: the value of the basis, or the
@@ -249,7 +226,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         if !self.is_pushed_forward {
             return self.basis.divergence(self.grid.node_stride(), point, field);
         }
-        let gradient = self.pushed_forward(point, self.basis.gradient(self.grid.node_stride(), point, field));
+        let gradient = self.basis.gradient(self.grid.node_stride(), point, field);
+        let gradient = product(&gradient, &self.points.inverse_deformation[point]);
         (0..D).map(|d| gradient[d][d]).sum()
     }
 
@@ -263,20 +241,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// Builds `N` and `∇N` of every point.
-    #[inline]
-    fn build_basis(&mut self) {
-        let grid = &self.grid;
-        let places = self.cells.place.iter().zip(&self.points.half_length);
-        for (point, (place, half_length)) in places.enumerate() {
-            let rows = rows_at::<D, W, S>(grid, &self.support, place, half_length);
-            self.basis.set(grid, point, &rows);
-        }
-    }
-
     /// Builds every operator of the method on the points' present places, and puts the load on
     /// the surface there.
-    #[inline]
     pub fn build_operators(&mut self) {
         self.cells.locate(&self.grid, &self.points, self.material.porosity);
         if self.method.strain.is_composite() {
@@ -286,7 +252,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             self.support = self.surface.end_splines(&self.grid, &self.points);
             self.cells.end_at(&self.grid, self.support.outermost.unwrap_or(usize::MAX));
         }
-        self.build_basis();
+        let places = [&self.cells.place[..], &self.points.half_length[..]];
+        self.method.basis.build(&mut self.basis, &self.grid, &self.support, places);
         self.strain.build(&self.grid, &self.cells, &self.points.half_length);
         self.recovery.build(&self.grid, &self.cells);
         if self.is_pushed_forward {
@@ -296,23 +263,20 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// Last node of splines that end at a surface on its way through the grid.
-    #[inline]
     pub fn last_spline_node(&self) -> Option<usize> {
         self.support.outermost
     }
 
     /// Displacement of the skeleton at the place of a node, m: that of the node itself, but for splines,
     /// whose coefficients are no values.
-    #[inline]
     pub fn displacement_at_node(&self, node: usize) -> Vector<D> {
-        if !S::PASSES_WALLS {
+        if !self.method.basis.is_spline() {
             return self.nodes.displacement[node];
         }
         let position = self.grid.node_position(node);
         let place = self.grid.held_in_cells(&position);
-        let rows = rows_at::<D, W, S>(&self.grid, &self.support, &place, &[0.0; D]);
         let mut value = [0.0; D];
-        visit_block(&self.grid, &rows, |node, weight| {
+        self.method.basis.visit_surface(&self.grid, &self.support, &place, |node, weight| {
             for d in 0..D {
                 value[d] += weight * self.nodes.displacement[node][d];
             }
@@ -322,7 +286,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// `v_s + n (v_w − v_s)` at the nodes, with the nodal porosity: what docs/theory.md, Eq. 4
     /// takes the divergence of.
-    #[inline]
     pub fn nodal_flux(&mut self) {
         let nodes = &mut self.nodes;
         for node in 0..nodes.len() {
@@ -335,7 +298,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// Largest nodal velocity of either phase, m/s; infinite where one is not finite.
-    #[inline]
     pub fn largest_velocity(&self) -> f64 {
         let both = self.nodes.solid_velocity.iter().chain(&self.nodes.water_velocity);
         both.flatten().fold(0.0, |largest: f64, velocity| {

@@ -1,5 +1,6 @@
 //! A method is a choice of four independent operators and of the configuration they live on.
 
+use crate::mpm::named::named;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -47,21 +48,15 @@ pub enum StrainGradient {
     CmpmBbar,
 }
 
+named!(StrainGradient {
+    Standard = "standard",
+    Cmpm = "cmpm",
+    CmpmEnds = "cmpm-ends",
+    Bbar = "bbar",
+    CmpmBbar = "cmpm-bbar",
+});
+
 impl StrainGradient {
-    /// Every choice.
-    pub const ALL: [Self; 5] = [Self::Standard, Self::Cmpm, Self::CmpmEnds, Self::Bbar, Self::CmpmBbar];
-
-    /// Name in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Standard => "standard",
-            Self::Cmpm => "cmpm",
-            Self::CmpmEnds => "cmpm-ends",
-            Self::Bbar => "bbar",
-            Self::CmpmBbar => "cmpm-bbar",
-        }
-    }
-
     /// Whether the Lagrange interpolant is taken, at the points or between the ends of their domains.
     #[inline]
     pub fn is_composite(self) -> bool {
@@ -88,19 +83,9 @@ pub enum PressureIntegration {
     Mean,
 }
 
+named!(PressureIntegration { Points = "points", Sri = "sri", Mean = "mean" });
+
 impl PressureIntegration {
-    /// Every choice.
-    pub const ALL: [Self; 3] = [Self::Points, Self::Sri, Self::Mean];
-
-    /// Name in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Points => "points",
-            Self::Sri => "sri",
-            Self::Mean => "mean",
-        }
-    }
-
     /// Whether there is one value a cell.
     #[inline]
     pub fn is_by_cells(self) -> bool {
@@ -124,20 +109,9 @@ pub enum Recovery {
     NullSpace,
 }
 
+named!(Recovery { Constant = "constant", Patch = "patch", Nodal = "nodal", NullSpace = "null-space" });
+
 impl Recovery {
-    /// Every choice.
-    pub const ALL: [Self; 4] = [Self::Constant, Self::Patch, Self::Nodal, Self::NullSpace];
-
-    /// Name in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Constant => "constant",
-            Self::Patch => "patch",
-            Self::Nodal => "nodal",
-            Self::NullSpace => "null-space",
-        }
-    }
-
     /// Why a recovery does not go with a place of the divergence, where it does not.
     pub fn refuses(self, pressure: PressureIntegration) -> Option<&'static str> {
         match (self, pressure.is_by_cells()) {
@@ -184,19 +158,9 @@ pub enum Configuration {
     Frozen,
 }
 
+named!(Configuration { Updated = "updated", Total = "total", Frozen = "frozen" });
+
 impl Configuration {
-    /// Every configuration.
-    pub const ALL: [Self; 3] = [Self::Updated, Self::Total, Self::Frozen];
-
-    /// Name in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Updated => "updated",
-            Self::Total => "total",
-            Self::Frozen => "frozen",
-        }
-    }
-
     /// Whether points change place and weights follow.
     #[inline]
     pub fn moves_points(self) -> bool {
@@ -229,27 +193,27 @@ pub struct Method {
 }
 
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
-const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 13] = [
-    ("MPM", Basis::Hat, StrainGradient::Standard, PressureIntegration::Points, Recovery::Constant),
-    ("GIMP", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Points, Recovery::Constant),
-    ("GIMP-SRI", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Constant),
-    ("GIMP-SRI-patch", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Patch),
-    ("GC-SRI-patch", Basis::Cpgimp, StrainGradient::Cmpm, PressureIntegration::Sri, Recovery::Patch),
-    ("CPDI-SRI-patch", Basis::Cpdi, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Patch),
-    ("CE-SRI-patch", Basis::Cpdi, StrainGradient::CmpmEnds, PressureIntegration::Sri, Recovery::Patch),
-    (
-        "GIMP-null-space",
-        Basis::Cpgimp,
-        StrainGradient::Standard,
-        PressureIntegration::Points,
-        Recovery::NullSpace,
-    ),
-    ("GIMP-mean", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Mean, Recovery::Constant),
-    ("GIMP-SRI-nodal", Basis::Cpgimp, StrainGradient::Standard, PressureIntegration::Sri, Recovery::Nodal),
-    ("GIMP-Bbar", Basis::Cpgimp, StrainGradient::Bbar, PressureIntegration::Sri, Recovery::Constant),
-    ("GIMP-Bbar-patch", Basis::Cpgimp, StrainGradient::Bbar, PressureIntegration::Sri, Recovery::Patch),
-    ("GC-Bbar-patch", Basis::Cpgimp, StrainGradient::CmpmBbar, PressureIntegration::Sri, Recovery::Patch),
-];
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 13] = {
+    use Basis::{Cpdi, Cpgimp, Hat};
+    use PressureIntegration::{Mean, Points, Sri};
+    use Recovery::{Constant, Nodal, NullSpace, Patch};
+    use StrainGradient::{Bbar, Cmpm, CmpmBbar, CmpmEnds, Standard};
+    [
+        ("MPM", Hat, Standard, Points, Constant),
+        ("GIMP", Cpgimp, Standard, Points, Constant),
+        ("GIMP-SRI", Cpgimp, Standard, Sri, Constant),
+        ("GIMP-SRI-patch", Cpgimp, Standard, Sri, Patch),
+        ("GC-SRI-patch", Cpgimp, Cmpm, Sri, Patch),
+        ("CPDI-SRI-patch", Cpdi, Standard, Sri, Patch),
+        ("CE-SRI-patch", Cpdi, CmpmEnds, Sri, Patch),
+        ("GIMP-null-space", Cpgimp, Standard, Points, NullSpace),
+        ("GIMP-mean", Cpgimp, Standard, Mean, Constant),
+        ("GIMP-SRI-nodal", Cpgimp, Standard, Sri, Nodal),
+        ("GIMP-Bbar", Cpgimp, Bbar, Sri, Constant),
+        ("GIMP-Bbar-patch", Cpgimp, Bbar, Sri, Patch),
+        ("GC-Bbar-patch", Cpgimp, CmpmBbar, Sri, Patch),
+    ]
+};
 
 /// Prefix of the names of methods with weights on the initial configuration.
 const TOTAL_PREFIX: &str = "TL-";

@@ -15,6 +15,8 @@ pub mod critical_step;
 pub mod explicit;
 pub mod implicit;
 pub mod method;
+pub mod momentum;
+pub mod named;
 pub mod operators;
 pub mod run;
 pub mod state;

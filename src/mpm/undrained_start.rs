@@ -5,7 +5,7 @@
 //! which an explicit run has no waves.
 
 use crate::mpm::assembled::stiffness::{NodeBlocks, pressure_stiffness};
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::implicit::banded::{Banded, BandedLu, Singular};
 use crate::mpm::method::Configuration;
 use crate::mpm::operators::volumetric::VolumetricRows;
@@ -42,13 +42,9 @@ impl FreeComponents {
                 })
             })
         };
-        let (mut lower, mut upper) = (0, 0);
-        for (row, column, _) in entries().filter(|entry| entry.2 != 0.0) {
-            lower = lower.max(row.saturating_sub(column));
-            upper = upper.max(column.saturating_sub(row));
-        }
-        let mut matrix = Banded::zeros(self.places.len(), lower, upper);
-        for (row, column, value) in entries().filter(|entry| entry.2 != 0.0) {
+        let counting = || entries().filter(|entry| entry.2 != 0.0);
+        let mut matrix = Banded::spanning(self.places.len(), counting().map(|entry| (entry.0, entry.1)));
+        for (row, column, value) in counting() {
             matrix.add(row, column, value);
         }
         matrix
@@ -68,7 +64,7 @@ impl<const D: usize> UndrainedSystem<D> {
     ///
     /// # Errors
     /// When it is singular: a body that nothing holds.
-    pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Result<Self, Singular> {
+    pub fn of(body: &Body<D>) -> Result<Self, Singular> {
         let rows = body.volumetric_rows();
         let mut stiffness = body.skeleton_stiffness(&rows);
         stiffness.add(&pressure_stiffness(&body.coupled_pressure_forces(&rows), &rows.divergence));
@@ -92,7 +88,7 @@ impl<const D: usize> UndrainedSystem<D> {
     }
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+impl<const D: usize> Body<D> {
     /// Brings the body into undrained equilibrium with its load.
     ///
     /// # Errors
@@ -101,18 +97,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let system = UndrainedSystem::of(self)?;
         self.map_forces();
         let displacements = system.displacements(&self.nodes.mixture_force);
-        self.displace_undrained(&system.rows, &displacements);
-        if self.configuration.moves_points() {
-            self.build_operators();
-        }
+        let field = &displacements[..];
+        self.displace_points(&system.rows, field, field, field);
         self.follow_points();
         Ok(())
-    }
-
-    /// Displaces nodes and points by a nodal field, with the stresses and pressures that it makes
-    /// without flow.
-    pub fn displace_undrained(&mut self, rows: &VolumetricRows<D>, displacements: &[Vector<D>]) {
-        self.displace_points(rows, displacements, displacements, displacements);
     }
 
     /// Displaces nodes and points by a field, strains the skeleton by another and compresses the

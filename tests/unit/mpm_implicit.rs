@@ -5,7 +5,6 @@ use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::implicit::linear::LinearStepper;
 use crate::mpm::implicit::newton::NewtonStepper;
 use crate::mpm::method::{Configuration, Method};
-use crate::mpm::operators::basis::Gimp;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::outcome::{FailureKind, Outcome, RunStatus};
 use crate::mpm::run::run_plan::Plan;
@@ -143,7 +142,7 @@ fn a_run_factors_once_a_step_size() {
 #[test]
 fn newton_on_a_frozen_body_is_the_linear_system() {
     for name in METHODS.into_iter().chain(["GIMP-mean", "GIMP-SRI-nodal"]) {
-        let body = || Body::<1, 3, Gimp>::new(seed(name, &Material::default(), 6));
+        let body = || Body::new(seed(name, &Material::default(), 6));
         if name == "MPM" {
             continue;
         }

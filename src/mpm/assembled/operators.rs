@@ -1,7 +1,7 @@
 //! What a frozen step needs of its body: rows between those nodes that move, and constants of each.
 
 use crate::mpm::assembled::stiffness::entry_of;
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::soil::tensor::{Tensor, Vector};
 
@@ -56,7 +56,7 @@ pub struct NodeConstants<const D: usize> {
 
 impl<const D: usize> FrozenOperators<D> {
     /// Takes the present operators, forces and velocities of a body.
-    pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
+    pub fn of(body: &Body<D>) -> Self {
         let mut body = body.clone();
         body.map_velocities();
         body.map_forces();
@@ -86,7 +86,7 @@ impl<const D: usize> FrozenOperators<D> {
 }
 
 impl<const D: usize> NodeConstants<D> {
-    fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>, node: usize) -> Self {
+    fn of(body: &Body<D>, node: usize) -> Self {
         let fields = &body.nodes;
         Self {
             free: [fields.free[node], fields.water_free[node]],
@@ -109,9 +109,7 @@ fn numbered<T: Copy>(row: &[(usize, T)], number: &[Option<usize>]) -> Vec<(usize
 }
 
 /// `P`, `[node] → (node, 1)`.
-fn projection<const D: usize, const W: usize, S: ShapeFunction<W>>(
-    body: &Body<D, W, S>,
-) -> Vec<Vec<(usize, f64)>> {
+fn projection<const D: usize>(body: &Body<D>) -> Vec<Vec<(usize, f64)>> {
     let mut rows = vec![Vec::new(); body.nodes.len()];
     let soil = &body.material;
     for point in 0..body.points.len() {

@@ -1,7 +1,15 @@
 //! Grid arrays of a frozen step.
 
-use crate::mpm::assembled::rows::{LANES, Lanes, MARGIN};
 use crate::soil::tensor::Vector;
+
+/// Rows in a block.
+pub const LANES: usize = 4;
+/// Empty places at both ends of a grid array: a band reaches there. As long as a block, so that blocks do
+/// not straddle cache lines.
+pub const MARGIN: usize = LANES;
+
+/// One value per row of a block.
+pub type Lanes = [f64; LANES];
 
 /// Place of the skeleton in a pair of phases.
 pub const SOLID: usize = 0;

@@ -1,11 +1,13 @@
 //! The frozen step: accelerations, kick and drift.
 
 use crate::mpm::assembled::operators::{FrozenOperators, NodeConstants};
-use crate::mpm::assembled::rows::banded_rows::BandsWithin;
-use crate::mpm::assembled::rows::{LANES, Lanes, MARGIN, REACH, RowStorage, Rows};
-use crate::mpm::assembled::state::{FrozenState, SOLID, WATER, lanes, set_lanes};
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::assembled::rows::RowStorage;
+use crate::mpm::assembled::rows::banded_rows::{BandsWithin, REACH};
+use crate::mpm::assembled::rows::block_products::Rows;
+use crate::mpm::assembled::state::{FrozenState, LANES, Lanes, MARGIN, SOLID, WATER, lanes, set_lanes};
+use crate::mpm::body::Body;
 use crate::mpm::explicit::ExplicitSettings;
+use crate::mpm::momentum::{NodalBalance, implicit_drag, per_water_inertia};
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::soil::tensor::Vector;
@@ -55,18 +57,15 @@ pub(crate) struct BlockConstants<const D: usize> {
     whole_water_share: Lanes,
     drag: Lanes,
     /// Acceleration of the water over its force for one kick and drag, 1/kg.
-    water_from_force: [Lanes; D],
+    per_water_inertia: [Lanes; D],
     /// What the drag at the new velocities makes of the mixture's acceleration, kg.
     implicit_drag: Lanes,
 }
 
 impl<const D: usize> AssembledStep<D> {
     /// Assembles the step of a body on its present operators, velocities and forces.
-    pub fn new<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
-        Self::of(FrozenOperators::of(body))
-    }
-
-    fn of(operators: FrozenOperators<D>) -> Self {
+    pub fn new(body: &Body<D>) -> Self {
+        let operators = FrozenOperators::of(body);
         let count = operators.nodes.len();
         let mut step = Self {
             rows: RowStorage::of(&operators),
@@ -95,13 +94,12 @@ impl<const D: usize> AssembledStep<D> {
     pub fn set_step(&mut self, kick: f64, settings: &ExplicitSettings) {
         for block in &mut self.constants {
             for i in (0..LANES).filter(|i| block.water_inertia[*i] > 0.0) {
-                let decay =
-                    || kick * block.drag[i] * (1.0 + block.whole_water_share[i]) / block.water_inertia[i];
-                let implicit = settings.drag.implicit_weight(decay) * kick * block.drag[i];
+                let (inertia, share) = (block.water_inertia[i], block.whole_water_share[i]);
+                let implicit = implicit_drag(settings.drag, kick, block.drag[i], share, inertia);
                 block.implicit_drag[i] = implicit;
                 for d in 0..D {
-                    block.water_from_force[d][i] = block.free[WATER][d][i]
-                        / (block.water_inertia[i] + implicit * (1.0 + block.water_share[d][i]));
+                    let (share, free) = (block.water_share[d][i], block.free[WATER][d][i]);
+                    block.per_water_inertia[d][i] = per_water_inertia(inertia, implicit, share, free);
                 }
             }
         }
@@ -138,7 +136,6 @@ impl<const D: usize> AssembledStep<D> {
     }
 
     /// One step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
-    #[inline]
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         let Self { rows, constants, state, .. } = self;
         match rows {
@@ -182,7 +179,7 @@ impl<const D: usize> AssembledStep<D> {
 
     /// The body at the present state, from the body that was assembled: stresses, pressures and
     /// displacements of the points from the grid's. Velocities are known at the nodes only.
-    pub fn body_now<const W: usize, S: ShapeFunction<W>>(&self, initial: &Body<D, W, S>) -> Body<D, W, S> {
+    pub fn body_now(&self, initial: &Body<D>) -> Body<D> {
         let mut body = initial.clone();
         let spread = |field: &[Vector<D>]| {
             let mut whole = vec![[0.0; D]; self.node_count];
@@ -236,8 +233,20 @@ impl<const D: usize> BlockConstants<D> {
             water_inertia: zero,
             whole_water_share: zero,
             drag: zero,
-            water_from_force: zeros,
+            per_water_inertia: zeros,
             implicit_drag: zero,
+        }
+    }
+
+    /// The balance of a component of a row, for the kick and drag last set.
+    #[inline]
+    fn balance(&self, d: usize, i: usize) -> NodalBalance {
+        NodalBalance {
+            per_solid_mass: self.per_solid_mass[d][i],
+            water_share: self.water_share[d][i],
+            per_water_inertia: self.per_water_inertia[d][i],
+            drag: self.drag[i],
+            implicit_drag: self.implicit_drag[i],
         }
     }
 
@@ -259,8 +268,7 @@ impl<const D: usize> BlockConstants<D> {
     }
 }
 
-/// Accelerations of water (docs/theory.md, Eq. 1) and mixture (Eq. 2), and the velocities that they lead
-/// to within `kick` seconds.
+/// Accelerations of skeleton and water, and the velocities that they lead to within `kick` seconds.
 fn accelerate<const D: usize>(
     rows: &impl Rows<D>,
     constants: &[BlockConstants<D>],
@@ -276,12 +284,10 @@ fn accelerate<const D: usize>(
             let (mut solid_trial, mut water_trial) = ([0.0; LANES], [0.0; LANES]);
             for i in 0..LANES {
                 let mixture_force = nodes.mixture_force[d][i] - skeleton[d][i] - pressure[d][i];
-                let mixture = mixture_force * nodes.per_solid_mass[d][i];
-                let drag = nodes.drag[i] * (water[i] - solid[i]);
-                let water_force =
-                    nodes.water_force[d][i] - pressure[d][i] - drag + nodes.implicit_drag[i] * mixture;
-                water_rate[i] = nodes.water_from_force[d][i] * water_force;
-                solid_rate[i] = mixture - nodes.water_share[d][i] * water_rate[i];
+                let water_force = nodes.water_force[d][i] - pressure[d][i];
+                let balance = nodes.balance(d, i);
+                [solid_rate[i], water_rate[i]] =
+                    balance.accelerations(mixture_force, water_force, [solid[i], water[i]]);
                 solid_trial[i] = solid[i] + kick * solid_rate[i];
                 water_trial[i] = water[i] + kick * water_rate[i];
             }

@@ -1,6 +1,6 @@
 //! Stiffness of a body as sparse blocks between nodes: what its forces do under displacements.
 
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::operators::volumetric::{VectorRow, VolumetricRows};
 use crate::soil::tensor::{Tensor, Vector};
 
@@ -74,11 +74,12 @@ impl<const D: usize> StrainEntry<D> {
     }
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+impl<const D: usize> Body<D> {
     /// The gradient from which a point's effective stress takes its strain, as a row.
     pub fn strain_row(&self, point: usize, rows: &VolumetricRows<D>) -> Vec<StrainEntry<D>> {
         let mut gradients = Vec::new();
-        self.visit_strain(point, |node, gradient| gradients.push((node, *gradient)));
+        let stride = self.grid.node_stride();
+        self.strain.visit(&self.basis, stride, point, |node, gradient| gradients.push((node, *gradient)));
         let is_bbar = self.method.strain.is_bbar();
         let mut entries: Vec<StrainEntry<D>> = gradients
             .into_iter()
@@ -182,7 +183,6 @@ pub fn pressure_stiffness<const D: usize>(
 mod tests {
     use super::*;
     use crate::mpm::method::Method;
-    use crate::mpm::operators::basis::Gimp;
     use crate::scene::SceneKind;
     use crate::scene::column::Column;
     use crate::scene::problem::column_problem;
@@ -197,7 +197,7 @@ mod tests {
             let problem = column_problem::<2>(SceneKind::CosineLayer, &column, &soil, method, 4, 2);
             let mut problem = problem.expect("the seed layer");
             problem.undrained_start = false;
-            let mut body = Body::<2, 3, Gimp>::new(problem);
+            let mut body = Body::new(problem);
             let field: Vec<Vector<2>> = (0..body.nodes.len())
                 .map(|node| {
                     let [x, y] = body.grid.node_position(node);
@@ -208,7 +208,7 @@ mod tests {
             let mut stiffness = body.skeleton_stiffness(&rows);
             stiffness.add(&pressure_stiffness(&body.coupled_pressure_forces(&rows), &rows.divergence));
             // The explicit step's way: strains, pressures and forces of the points.
-            body.displace_undrained(&rows, &field);
+            body.displace_points(&rows, &field, &field, &field);
             body.nodes.external_force.fill([0.0; 2]);
             body.map_forces();
             let scale = body.nodes.mixture_force.iter().flatten().fold(0.0, |s: f64, f| s.max(f.abs()));

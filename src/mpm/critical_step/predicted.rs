@@ -6,7 +6,6 @@ use crate::mpm::critical_step::spectral_radius::GROWTH_TOLERANCE;
 use crate::mpm::critical_step::{formula, spectral_radius};
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::state::grid::Grid;
-use crate::with_basis;
 
 /// Cells of the column on which the critical step of a run is computed.
 const FEW_CELLS: usize = 12;
@@ -52,8 +51,7 @@ pub fn predict<const D: usize>(
     let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
     let problem =
         if is_narrow { without_middle(problem, most_cells) } else { corner(problem, most_cells / 2) };
-    let assembled =
-        with_basis!(problem.method.basis, W, S => AssembledStep::new(&Body::<D, W, S>::new(problem)));
+    let assembled = AssembledStep::new(&Body::new(problem));
     let critical_step = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE);
     Prediction { critical_step, assembled, settings: *settings }
 }

@@ -2,80 +2,29 @@
 //!
 //! A body's step reads as the paper's list: [`kick_and_drift`](Body::kick_and_drift). Drag is part of step 2.
 
+pub mod deformation;
 pub mod points_to_nodes;
 pub mod scheme;
 
-use crate::elementary;
 use crate::mpm::body::Body;
-use crate::mpm::explicit::scheme::Scheme;
+use crate::mpm::explicit::deformation::{Following, rotated, stretch_of};
 use crate::mpm::method::{Configuration, Memory, PressureIntegration};
-use crate::mpm::operators::basis::ShapeFunction;
-use crate::mpm::operators::recovery::PointsInCells;
-use crate::mpm::operators::row::SIXTH;
+use crate::mpm::momentum::{NodalBalance, implicit_drag, per_water_inertia};
+use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
+use crate::mpm::operators::stencil::{Blocks, with_stencils};
+use crate::mpm::operators::strain_gradient::StrainOperator;
 use crate::mpm::run::profile::{Phase, enter};
-use crate::soil::tensor::{Tensor, Vector, product, product_with_transpose};
-use serde::{Deserialize, Serialize};
+use crate::soil::tensor::{Tensor, Vector, product};
 
-/// Time level at which the drag between skeleton and water is taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Drag {
-    /// Old velocities: bounds the step by the drag.
-    Explicit,
-    /// New velocities, a 2 × 2 solve a node: no bound from the drag.
-    Implicit,
-    /// The mean over the step: of second order in it, and no bound either.
-    Centred,
-}
+pub use crate::mpm::explicit::scheme::{Drag, ExplicitSettings};
 
-impl Drag {
-    /// Every choice, in the order of the documentation.
-    pub const ALL: [Self; 3] = [Self::Explicit, Self::Implicit, Self::Centred];
-
-    /// Name in study files.
-    #[inline]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Explicit => "explicit",
-            Self::Implicit => "implicit",
-            Self::Centred => "centred",
-        }
-    }
-}
-
-/// Choices of the explicit integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct ExplicitSettings {
-    /// Time levels of velocities and stresses.
-    #[serde(default, skip_serializing_if = "Scheme::is_paper")]
-    pub scheme: Scheme,
-    /// Time level of the drag.
-    pub drag: Drag,
-    /// Share of the acceleration update (FLIP) in the points' velocities; the rest is
-    /// interpolated from the nodes (PIC).
-    pub flip: f64,
-    /// Whether the stresses see velocities mapped back from the updated points (the paper's
-    /// step 5) instead of the nodal velocities of step 3.
-    pub mapping_back: bool,
-}
-
-impl Default for ExplicitSettings {
-    /// The paper's: forward Euler, explicit drag, pure FLIP, mapping back.
-    #[inline]
-    fn default() -> Self {
-        Self { scheme: Scheme::ForwardEuler, drag: Drag::Explicit, flip: 1.0, mapping_back: true }
-    }
-}
-
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+impl<const D: usize> Body<D> {
     /// One explicit step of `dt` seconds, as the paper has it.
-    #[inline]
     pub fn explicit_step(&mut self, dt: f64, settings: &ExplicitSettings) {
         self.kick_and_drift(dt, dt, settings);
     }
 
     /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
-    #[inline]
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         self.reset_grid(settings); // step 1
         enter(Phase::Forces);
@@ -98,7 +47,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Step 1: operators, masses and velocities on the points' places. Where nothing moves, the
     /// operators stand, and velocities mapped back by the last step are already there.
-    #[inline]
     fn reset_grid(&mut self, settings: &ExplicitSettings) {
         enter(Phase::BuildWeights);
         self.follow_places();
@@ -111,17 +59,8 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         }
     }
 
-    /// Step 2: accelerations of the water (docs/theory.md, Eq. 1) and of the skeleton (Eq. 2), lumped at the
-    /// nodes, per component:
-    ///
-    /// ```text
-    /// ρ_w V a_w       = f_w − D (v_w − v_s)          D = n γ_w V/k
-    /// m_s a_s + m_w a_w = f
-    /// ```
-    ///
-    /// with the force `f` on the mixture and `f_w` of the pressure gradient on the water.
-    #[inline]
-    fn nodal_accelerations(&mut self, kick: f64, drag: Drag) {
+    /// Step 2: accelerations of water and skeleton at the nodes.
+    fn nodal_accelerations(&mut self, kick: f64, drag_level: Drag) {
         self.map_forces();
         let water_density = self.material.water_density;
         let nodes = &mut self.nodes;
@@ -131,27 +70,33 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 nodes.water_acceleration[node] = [0.0; D];
                 continue;
             }
-            let per_solid_mass = nodes.per_solid_mass[node];
-            let (water_inertia, drag_coefficient) = (water_density * nodes.volume[node], nodes.drag[node]);
-            let water_share = nodes.water_mass[node] * per_solid_mass;
-            // A share w of the drag at the new velocities adds w Δt D (a_w − a_s) with a_s from (2).
-            let decay = || kick * drag_coefficient * (1.0 + water_share) / water_inertia;
-            let implicit = drag.implicit_weight(decay) * kick * drag_coefficient;
+            let (water_inertia, drag) = (water_density * nodes.volume[node], nodes.drag[node]);
+            let whole_share = nodes.water_mass[node] * nodes.per_solid_mass[node];
+            let implicit_drag = implicit_drag(drag_level, kick, drag, whole_share, water_inertia);
             for d in 0..D {
                 let (free, water_free) = (nodes.free[node][d], nodes.water_free[node][d]);
-                let per_inertia = 1.0 / (water_inertia + implicit * (1.0 + free * water_share));
-                let relative = nodes.water_velocity[node][d] - nodes.solid_velocity[node][d];
-                let mixture = free * nodes.mixture_force[node][d] * per_solid_mass;
-                let force = nodes.water_force[node][d] - drag_coefficient * relative + implicit * mixture;
-                let water = water_free * force * per_inertia;
-                nodes.water_acceleration[node][d] = water;
-                nodes.solid_acceleration[node][d] = mixture - free * water_share * water;
+                let water_share = free * whole_share;
+                let balance = NodalBalance {
+                    per_solid_mass: free * nodes.per_solid_mass[node],
+                    water_share,
+                    per_water_inertia: per_water_inertia(
+                        water_inertia,
+                        implicit_drag,
+                        water_share,
+                        water_free,
+                    ),
+                    drag,
+                    implicit_drag,
+                };
+                let velocity = [nodes.solid_velocity[node][d], nodes.water_velocity[node][d]];
+                let (mixture, water) = (nodes.mixture_force[node][d], nodes.water_force[node][d]);
+                [nodes.solid_acceleration[node][d], nodes.water_acceleration[node][d]] =
+                    balance.accelerations(mixture, water, velocity);
             }
         }
     }
 
     /// Step 3: nodal velocities by forward Euler.
-    #[inline]
     fn nodal_velocities(&mut self, kick: f64, dt: f64) {
         let nodes = &mut self.nodes;
         for node in 0..nodes.len() {
@@ -164,22 +109,28 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// Step 4: velocities and places of the points.
-    #[inline]
     fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
-        if flip < 1.0 {
-            self.advance_points_by::<true>(kick, dt, flip);
+        let basis = std::mem::take(&mut self.basis);
+        with_stencils!(&basis, stencils => if flip < 1.0 {
+            self.advance_points_by::<true, _>(stencils.blocks(), kick, dt, flip);
         } else {
-            self.advance_points_by::<false>(kick, dt, flip);
-        }
+            self.advance_points_by::<false, _>(stencils.blocks(), kick, dt, flip);
+        });
+        self.basis = basis;
     }
 
     /// The same; where nothing is interpolated from the nodes, the water's velocities are not asked for.
-    #[inline]
-    fn advance_points_by<const PIC: bool>(&mut self, kick: f64, dt: f64, flip: f64) {
+    fn advance_points_by<const PIC: bool, const W: usize>(
+        &mut self,
+        basis: Blocks<'_, D, W>,
+        kick: f64,
+        dt: f64,
+        flip: f64,
+    ) {
         let moving = self.configuration.moves_points();
         let pic = 1.0 - flip;
         let carrier = self.strain.carrier();
-        let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
+        let stride = *self.grid.node_stride();
         let nodes = &self.nodes;
         let (solid_field, solid_rates) = (&nodes.solid_velocity[..], &nodes.solid_acceleration[..]);
         let (water_field, water_rates) = (&nodes.water_velocity[..], &nodes.water_acceleration[..]);
@@ -219,14 +170,24 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Step 6: effective stress by the method's strain gradient; at finite strain also volume and
     /// domain.
-    #[inline]
     fn update_effective_stress(&mut self, dt: f64) {
-        let (deforms, is_bbar) = (self.configuration.deforms(), self.method.strain.is_bbar());
-        if is_bbar {
+        if self.method.strain.is_bbar() {
             self.recover_dilation_rates();
         }
+        let (basis, strain) = (std::mem::take(&mut self.basis), std::mem::take(&mut self.strain));
+        match &strain {
+            StrainOperator::Basis => {
+                with_stencils!(&basis, stencils => self.strain_points(stencils.blocks(), dt));
+            }
+            StrainOperator::Composite(stencils) => self.strain_points(stencils.blocks(), dt),
+            StrainOperator::BetweenEnds(stencils) => self.strain_points(stencils.blocks(), dt),
+        }
+        (self.basis, self.strain) = (basis, strain);
+    }
+
+    fn strain_points<const W: usize>(&mut self, blocks: Blocks<'_, D, W>, dt: f64) {
+        let (deforms, is_bbar) = (self.configuration.deforms(), self.method.strain.is_bbar());
         let (following, is_total) = (self.following(), self.configuration == Configuration::Total);
-        let blocks = self.strain.blocks(&self.basis);
         let stride = *self.grid.node_stride();
         let (field, dilation_rates) = (&self.nodes.solid_velocity[..], &self.dilation_rates[..]);
         let (law, stiffness) = (self.material.law, self.stiffness);
@@ -277,7 +238,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
-    #[inline]
     pub(crate) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
         let following = self.following();
         let points = &mut self.points;
@@ -299,7 +259,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Step 7: pressure increments at the sites of the method's divergence, recovered to the points:
     /// `Δp = −Δt (K_w/n) [∇·v_s + ∇·w]` (docs/theory.md, Eq. 8).
-    #[inline]
     fn update_pressure(&mut self, dt: f64) {
         self.nodal_flux();
         self.surface_flux += dt * self.surface.mean_of(&self.grid, &self.points, &self.nodes.flux);
@@ -319,38 +278,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 }
 
-/// What follows the deformation of a point beside its volume.
-#[derive(Clone, Copy)]
-enum Following {
-    Domain,
-    InverseDeformation,
-    Nothing,
-}
-
-impl Following {
-    /// Factor of the volume, exact in the logarithmic strain; what follows it has followed.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    fn deform<const D: usize>(
-        self,
-        half_length: &mut Vector<D>,
-        inverse_deformation: &mut Tensor<D>,
-        increment: &Tensor<D>,
-    ) -> f64 {
-        let stretch: Vector<D> = std::array::from_fn(|d| stretch_of(increment[d][d]));
-        match self {
-            Self::Domain => {
-                for d in 0..D {
-                    half_length[d] *= stretch[d];
-                }
-            }
-            Self::InverseDeformation => *inverse_deformation = relaxed(inverse_deformation, increment),
-            Self::Nothing => {}
-        }
-        stretch.iter().product()
-    }
-}
-
 /// Adds a run of nodal vectors with their weights.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
@@ -359,86 +286,5 @@ fn add_weighted<const D: usize>(value: &mut Vector<D>, nodes: &[Vector<D>], weig
         for d in 0..D {
             value[d] += weight * node[d];
         }
-    }
-}
-
-const PER_24: f64 = 1.0 / 24.0;
-
-/// `exp(ε)`: a step's strain is so small that four terms are exact to round-off.
-#[inline]
-fn stretch_of(strain: f64) -> f64 {
-    if strain.abs() < 1e-4 {
-        1.0 + strain * (1.0 + strain * (0.5 + strain * (SIXTH + strain * PER_24)))
-    } else {
-        elementary::exp(strain)
-    }
-}
-
-/// A stress turned with the material over a step of displacement gradient `A`: `Q σ Qᵀ` with the
-/// rotation `Q = (I − W/2)⁻¹(I + W/2)`, `W = skew A` (Hughes & Winget 1980). Together with the rate
-/// form it is Jaumann's stress rate, and exactly objective under a rigid rotation.
-#[inline]
-fn rotated<const D: usize>(stress: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
-    if D != 2 {
-        return *stress;
-    }
-    let half = 0.25 * (increment[1][0] - increment[0][1]);
-    let per = 1.0 / (1.0 + half * half);
-    let (cosine, sine) = ((1.0 - half * half) * per, 2.0 * half * per);
-    let turn: Tensor<D> = std::array::from_fn(|i| {
-        std::array::from_fn(|j| match (i, j) {
-            (0, 1) => -sine,
-            (1, 0) => sine,
-            _ => cosine,
-        })
-    });
-    product_with_transpose(&product(&turn, stress), &turn)
-}
-
-/// `F⁻¹ exp(−A)` for a step's strain `A`, to third order in it.
-#[inline]
-fn relaxed<const D: usize>(inverse: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
-    let once = product(inverse, increment);
-    let twice = product(&once, increment);
-    std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j] - once[i][j] + 0.5 * twice[i][j]))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_stretch_is_the_exponential() {
-        for strain in [-0.3_f64, -9e-5, -1e-7, 0.0, 3e-6, 9.9e-5, 0.2] {
-            assert!((stretch_of(strain) / strain.exp() - 1.0).abs() < 3e-16);
-        }
-    }
-
-    #[test]
-    fn a_stress_turns_with_the_material_and_keeps_its_invariants() {
-        // A quarter turn in a thousand steps takes the stress along x to one along y.
-        let angle = std::f64::consts::FRAC_PI_2 / 1000.0;
-        let mut stress = [[5.0, 1.0], [1.0, -2.0]];
-        // Q with tan(θ/2) = w/2 turns by θ.
-        let spin = 2.0 * (0.5 * angle).tan();
-        for _ in 0..1000 {
-            stress = rotated(&stress, &[[0.0, -spin], [spin, 0.0]]);
-        }
-        for (got, exact) in stress.iter().flatten().zip([-2.0, -1.0, -1.0, 5.0]) {
-            assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
-        }
-        let stretched = rotated(&stress, &[[0.1, 0.3], [0.3, -0.2]]);
-        assert_eq!(stretched, stress, "a strain without spin turns nothing");
-    }
-
-    #[test]
-    fn the_inverse_deformation_keeps_to_the_volume() {
-        let mut inverse = [[1.0, 0.0], [0.0, 1.0]];
-        let increment = [[1e-6, 3e-6], [-2e-6, -4e-6]];
-        for _ in 0..50_000 {
-            inverse = relaxed(&inverse, &increment);
-        }
-        let determinant: f64 = inverse[0][0] * inverse[1][1] - inverse[0][1] * inverse[1][0];
-        assert!((determinant.ln() - 50_000.0 * 3e-6).abs() < 1e-10, "det F⁻¹ = exp(−tr ε)");
     }
 }

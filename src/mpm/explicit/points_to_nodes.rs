@@ -4,30 +4,35 @@
 //! slice, so that its bounds are checked once, and sums side by side what belongs to one node.
 
 use crate::mpm::body::Body;
-use crate::mpm::operators::basis::ShapeFunction;
+use crate::mpm::operators::stencil::{Blocks, with_stencils};
 use crate::soil::tensor::product_with_transpose;
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+impl<const D: usize> Body<D> {
     /// Sums masses, volumes and drag of the points to the nodes.
-    #[inline]
     pub fn map_masses(&mut self) {
         self.map_points::<true, false>();
     }
 
     /// Maps the velocities of both phases from the points to the nodes, weighted with mass.
-    #[inline]
     pub fn map_velocities(&mut self) {
         self.map_points::<false, true>();
     }
 
     /// Both in one pass.
-    #[inline]
     pub fn map_masses_and_velocities(&mut self) {
         self.map_points::<true, true>();
     }
 
-    #[inline]
     fn map_points<const MASSES: bool, const VELOCITIES: bool>(&mut self) {
+        let basis = std::mem::take(&mut self.basis);
+        with_stencils!(&basis, stencils => self.map_points_by::<MASSES, VELOCITIES, _>(stencils.blocks()));
+        self.basis = basis;
+    }
+
+    fn map_points_by<const MASSES: bool, const VELOCITIES: bool, const W: usize>(
+        &mut self,
+        basis: Blocks<'_, D, W>,
+    ) {
         let (soil, nodes) = (&self.material, &mut self.nodes);
         let (solid_fraction, unit_weight) = (1.0 - soil.porosity, soil.unit_weight_of_water());
         // Slices of one length: the bounds of all are checked here and not at every point.
@@ -36,7 +41,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
             (&self.points.initial_volume[..count], &self.points.volume_ratio[..count]);
         let (solid_velocity, water_velocity) =
             (&self.points.solid_velocity[..count], &self.points.water_velocity[..count]);
-        let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
+        let stride = *self.grid.node_stride();
         if MASSES {
             nodes.sums.masses.fill([0.0; 4]);
         }
@@ -85,8 +90,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 
     /// Forces on the mixture and on the water from the points' stresses (weak form, drained
     /// surface natural).
-    #[inline]
     pub fn map_forces(&mut self) {
+        let basis = std::mem::take(&mut self.basis);
+        with_stencils!(&basis, stencils => self.map_forces_by(stencils.blocks()));
+        self.basis = basis;
+    }
+
+    fn map_forces_by<const W: usize>(&mut self, basis: Blocks<'_, D, W>) {
         let (nodes, points) = (&mut self.nodes, &self.points);
         for (forces, external) in nodes.sums.forces.iter_mut().zip(&nodes.external_force) {
             *forces = [*external, [0.0; D]];
@@ -98,7 +108,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         let (effective_stress, pressure) = (&points.effective_stress[..count], &points.pressure[..count]);
         let inverse_deformation = &points.inverse_deformation[..count];
         let is_total = self.is_pushed_forward;
-        let (basis, stride) = (self.basis.blocks(), *self.grid.node_stride());
+        let stride = *self.grid.node_stride();
         for point in 0..count {
             let volume = initial_volume[point] * volume_ratio[point] * stressed_share[point];
             let pressure = volume * pressure[point];

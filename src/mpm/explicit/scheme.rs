@@ -7,7 +7,7 @@
 //! Wanner 2003): second order for the same work. The drag must then be centred too.
 
 use crate::elementary;
-use crate::mpm::explicit::{Drag, ExplicitSettings};
+use crate::mpm::named::named;
 use serde::{Deserialize, Serialize};
 
 /// Time levels of velocities and stresses.
@@ -21,46 +21,29 @@ pub enum Scheme {
     Leapfrog,
 }
 
+named!(Scheme { ForwardEuler = "forward-euler", Leapfrog = "leapfrog" });
+
 impl Scheme {
-    /// Both, the paper's first.
-    pub const ALL: [Self; 2] = [Self::ForwardEuler, Self::Leapfrog];
-
-    /// Name in study files.
-    #[inline]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::ForwardEuler => "forward-euler",
-            Self::Leapfrog => "leapfrog",
-        }
-    }
-
     /// Whether this is the paper's; records of it say nothing of the scheme.
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-    #[inline]
     pub fn is_paper(&self) -> bool {
         *self == Self::ForwardEuler
     }
 }
 
-/// The rhythm of a run: how long each kick lasts.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Rhythm {
-    /// Last drift, s; 0 before the first.
-    drift: f64,
+/// Time level at which the drag between skeleton and water is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Drag {
+    /// Old velocities: bounds the step by the drag.
+    Explicit,
+    /// New velocities, a 2 × 2 solve a node: no bound from the drag.
+    Implicit,
+    /// The mean over the step: of second order in it, and no bound either.
+    Centred,
 }
 
-impl Rhythm {
-    /// Duration of the kick, s, before a drift of `dt` seconds: from the middle of the last drift to
-    /// the middle of this one.
-    #[inline]
-    pub fn kick(&mut self, dt: f64, settings: &ExplicitSettings) -> f64 {
-        let last = std::mem::replace(&mut self.drift, dt);
-        match settings.scheme {
-            Scheme::ForwardEuler => dt,
-            Scheme::Leapfrog => 0.5 * (last + dt),
-        }
-    }
-}
+named!(Drag { Explicit = "explicit", Implicit = "implicit", Centred = "centred" });
 
 impl Drag {
     /// Weight of the new relative velocity in the drag of a kick, `z` its duration times the rate at
@@ -75,6 +58,48 @@ impl Drag {
             Self::Explicit => 0.0,
             Self::Implicit => 1.0,
             Self::Centred => fitted_weight(z()),
+        }
+    }
+}
+
+/// Choices of the explicit integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ExplicitSettings {
+    /// Time levels of velocities and stresses.
+    #[serde(default, skip_serializing_if = "Scheme::is_paper")]
+    pub scheme: Scheme,
+    /// Time level of the drag.
+    pub drag: Drag,
+    /// Share of the acceleration update (FLIP) in the points' velocities; the rest is
+    /// interpolated from the nodes (PIC).
+    pub flip: f64,
+    /// Whether the stresses see velocities mapped back from the updated points (the paper's
+    /// step 5) instead of the nodal velocities of step 3.
+    pub mapping_back: bool,
+}
+
+impl Default for ExplicitSettings {
+    /// The paper's: forward Euler, explicit drag, pure FLIP, mapping back.
+    fn default() -> Self {
+        Self { scheme: Scheme::ForwardEuler, drag: Drag::Explicit, flip: 1.0, mapping_back: true }
+    }
+}
+
+/// The rhythm of a run: how long each kick lasts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rhythm {
+    /// Last drift, s; 0 before the first.
+    drift: f64,
+}
+
+impl Rhythm {
+    /// Duration of the kick, s, before a drift of `dt` seconds: from the middle of the last drift to
+    /// the middle of this one.
+    pub fn kick(&mut self, dt: f64, settings: &ExplicitSettings) -> f64 {
+        let last = std::mem::replace(&mut self.drift, dt);
+        match settings.scheme {
+            Scheme::ForwardEuler => dt,
+            Scheme::Leapfrog => 0.5 * (last + dt),
         }
     }
 }

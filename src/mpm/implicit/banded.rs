@@ -30,6 +30,16 @@ impl Banded {
         Self { size, lower, upper, width, entries: vec![0.0; size * width] }
     }
 
+    /// A matrix of zeros whose band holds the places, `(row, column)`.
+    pub fn spanning(size: usize, places: impl Iterator<Item = (usize, usize)>) -> Self {
+        let (mut lower, mut upper) = (0, 0);
+        for (row, column) in places {
+            lower = lower.max(row.saturating_sub(column));
+            upper = upper.max(column.saturating_sub(row));
+        }
+        Self::zeros(size, lower, upper)
+    }
+
     /// Adds to an entry, which must lie within the band.
     #[inline]
     pub fn add(&mut self, row: usize, column: usize, value: f64) {

@@ -4,11 +4,10 @@
 //! `g − K x` is zero in the rows of the mixture and `C z/(γΔt)` in those of the storage, and an
 //! extrapolated state has the extrapolated residual: no product with `K` is ever taken.
 
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::implicit::banded::BandedLu;
 use crate::mpm::implicit::linear_system::{LinearOperators, LinearSystem};
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
-use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::mpm::run::outcome::FailureKind;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::mpm::run::run_plan::Plan;
@@ -16,51 +15,10 @@ use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
 use crate::soil::tensor::Vector;
 
-/// What a linear run has changed of its body.
-#[derive(Clone, Debug, Default)]
-pub struct StateChange<const D: usize> {
-    /// Displacement of the nodes since the start, m.
-    displacement: Vec<Vector<D>>,
-    /// Velocity of the skeleton at the nodes, m/s.
-    velocity: Vec<Vector<D>>,
-    /// Change of the pressures at the sites, Pa.
-    pressures: Vec<f64>,
-    /// Mixture that passed the surface, m.
-    surface_flux: f64,
-}
-
-/// A frozen body at its start, whatever its basis.
-pub trait FrozenStart<const D: usize> {
-    /// The body after a change, at a time, s, with a settlement, m.
-    fn changed(
-        &self,
-        rows: &VolumetricRows<D>,
-        change: StateChange<D>,
-        time: f64,
-        settlement: f64,
-    ) -> Snapshot;
-}
-
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> FrozenStart<D> for Body<D, W, S> {
-    fn changed(
-        &self,
-        rows: &VolumetricRows<D>,
-        change: StateChange<D>,
-        time: f64,
-        settlement: f64,
-    ) -> Snapshot {
-        let mut body = self.clone();
-        body.change_points(rows, &change.displacement, &change.pressures, &change.displacement);
-        body.nodes.solid_velocity = change.velocity;
-        body.surface_flux += change.surface_flux;
-        body.snapshot(time, settlement, &self.points)
-    }
-}
-
 /// A frozen body on its way through time.
 pub struct LinearStepper<const D: usize> {
     /// The body at the start.
-    start: Box<dyn FrozenStart<D>>,
+    start: Body<D>,
     /// Settlement of the start, m.
     settled: f64,
     system: LinearSystem<D>,
@@ -86,22 +44,12 @@ pub struct LinearStepper<const D: usize> {
 
 impl<const D: usize> LinearStepper<D> {
     /// A body at its start.
-    pub fn new<const W: usize, S: ShapeFunction<W> + 'static>(body: Body<D, W, S>, plan: &Plan<'_>) -> Self {
+    pub fn new(start: Body<D>, plan: &Plan<'_>) -> Self {
         enter(Phase::Assembly);
-        let system = LinearSystem::of(LinearOperators::of(&body));
-        let settled = body.settlement(plan.initial_height);
-        Self::from_system(Box::new(body), settled, system, plan)
-    }
-
-    fn from_system(
-        start: Box<dyn FrozenStart<D>>,
-        settled: f64,
-        system: LinearSystem<D>,
-        plan: &Plan<'_>,
-    ) -> Self {
+        let system = LinearSystem::of(LinearOperators::of(&start));
         let zero = vec![0.0; system.unknowns.count];
         Self {
-            settled,
+            settled: start.settlement(plan.initial_height),
             lu: BandedLu::of_shape(&system.fixed),
             factored: None,
             state: zero.clone(),
@@ -211,13 +159,13 @@ impl<const D: usize> Stepper for LinearStepper<D> {
             unknowns.displacement.iter().map(|node| node.map(component)).collect()
         };
         let pressure = |unknown: &usize| scales.pressure * self.state[*unknown];
-        let change = StateChange {
-            displacement: nodal(&self.state, scales.length),
-            velocity: nodal(&self.increment, self.rate_scale * scales.length),
-            pressures: unknowns.pressure.iter().map(pressure).collect(),
-            surface_flux: self.system.mean_displacement.product(0, &self.state) + self.outflow,
-        };
-        self.start.changed(&unknowns.rows, change, time, self.settlement())
+        let pressures: Vec<f64> = unknowns.pressure.iter().map(pressure).collect();
+        let displacement = nodal(&self.state, scales.length);
+        let mut body = self.start.clone();
+        body.change_points(&unknowns.rows, &displacement, &pressures, &displacement);
+        body.nodes.solid_velocity = nodal(&self.increment, self.rate_scale * scales.length);
+        body.surface_flux += self.system.mean_displacement.product(0, &self.state) + self.outflow;
+        body.snapshot(time, self.settlement(), &self.start.points)
     }
 
     fn work(&self) -> Work {

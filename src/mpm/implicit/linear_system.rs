@@ -10,7 +10,7 @@
 //! relative velocity is eliminated. In short `C ẋ + K x = g`, `C` zero in the rows of the mixture.
 
 use crate::mpm::assembled::stiffness::NodeBlocks;
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::implicit::banded::Banded;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::operators::sparse_rows::SparseRows;
@@ -67,16 +67,14 @@ type Entry = (usize, usize, f64, f64);
 
 impl<const D: usize> LinearOperators<D> {
     /// Takes a body's present operators and forces.
-    pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
+    pub fn of(body: &Body<D>) -> Self {
         let unknowns = Unknowns::of(body);
         let mut loaded = body.clone();
         loaded.map_forces();
         Self {
             stiffness: body.skeleton_stiffness(&unknowns.rows),
             pressure_forces: body.pressure_forces(&unknowns.rows),
-            porosity: (0..unknowns.sites.len())
-                .map(|site| unknowns.porosity(&body.material, &body.points, &body.cells, site))
-                .collect(),
+            porosity: unknowns.rows.sites.iter().map(|place| body.porosity_of(*place)).collect(),
             water_bulk_modulus: body.material.water_bulk_modulus,
             continuity: body.material.continuity,
             nodes: loaded.nodes,

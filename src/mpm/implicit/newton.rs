@@ -2,17 +2,17 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::implicit::banded::{Banded, BandedLu};
-use crate::mpm::implicit::residual::{Balances, StageStart};
+use crate::mpm::implicit::residual::StageStart;
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::implicit::tangent::Pattern;
 use crate::mpm::implicit::trial::{Skeleton, Trial};
-use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::mpm::run::outcome::FailureKind;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
+use crate::mpm::run::watch::lost_point;
 
 /// Iterations of a stage.
 const MOST_ITERATIONS: usize = 16;
@@ -23,29 +23,17 @@ const TOLERANCE: f64 = 1e-11;
 /// Ratio of an iteration's correction to the last one's beyond which the tangent is made anew.
 const SLOW: f64 = 0.1;
 
-/// Stages of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stages {
-    /// Two, of SDIRK2.
-    Sdirk,
-    /// One, of backward Euler for what is implicit.
-    Single,
-}
-
-impl Stages {
-    /// Of each stage: what it lasts for and where it ends, in steps, and the share of its increment
-    /// in the start of the next one, or in the step.
-    fn of_step(self) -> &'static [(f64, f64, f64)] {
-        match self {
-            Self::Sdirk => &[(SDIRK_GAMMA, SDIRK_GAMMA, SECOND_STAGE), (SDIRK_GAMMA, 1.0, 1.0)],
-            Self::Single => &[(1.0, 1.0, 1.0)],
-        }
-    }
-}
+/// What a stage lasts for and where it ends, in steps, and the share of its increment in the start of the next
+/// one, or in the step.
+type Stage = (f64, f64, f64);
+/// Those of SDIRK2.
+const SDIRK_STAGES: &[Stage] = &[(SDIRK_GAMMA, SDIRK_GAMMA, SECOND_STAGE), (SDIRK_GAMMA, 1.0, 1.0)];
+/// That of backward Euler, for what is implicit beside an explicit skeleton.
+const SINGLE_STAGE: &[Stage] = &[(1.0, 1.0, 1.0)];
 
 /// A body on its way through time.
 pub struct NewtonStepper<const D: usize> {
-    trial: Box<dyn Balances<D>>,
+    trial: Trial<D>,
     pattern: Pattern,
     tangent: Banded,
     lu: BandedLu,
@@ -56,7 +44,7 @@ pub struct NewtonStepper<const D: usize> {
     /// Error that a stage may leave in the scaled unknowns.
     tolerance: f64,
     error_scales: ErrorScales,
-    stages: Stages,
+    stages: &'static [Stage],
     start: StageStart<D>,
     /// Rate of the scaled unknowns at the end of the last step, 1/s.
     rate: Vec<f64>,
@@ -74,19 +62,16 @@ pub struct NewtonStepper<const D: usize> {
 
 impl<const D: usize> NewtonStepper<D> {
     /// A body at its start.
-    pub fn new<const W: usize, S: ShapeFunction<W> + 'static>(body: Body<D, W, S>, plan: &Plan<'_>) -> Self {
-        let skeleton = match plan.schedule.integrator {
-            IntegratorKind::SemiImplicit => Skeleton::Explicit,
-            IntegratorKind::Explicit | IntegratorKind::Implicit => Skeleton::Implicit,
+    pub fn new(body: Body<D>, plan: &Plan<'_>) -> Self {
+        let (skeleton, stages) = match plan.schedule.integrator {
+            IntegratorKind::SemiImplicit => (Skeleton::Explicit, SINGLE_STAGE),
+            IntegratorKind::Explicit | IntegratorKind::Implicit => (Skeleton::Implicit, SDIRK_STAGES),
         };
-        Self::of(Box::new(Trial::new(body, plan.schedule.formulation, skeleton)), plan)
-    }
-
-    fn of(trial: Box<dyn Balances<D>>, plan: &Plan<'_>) -> Self {
-        let pattern = trial.pattern();
+        let trial = Trial::new(body, plan.schedule.formulation, skeleton);
+        let pattern = Pattern::of(&trial.body, &trial.unknowns);
         let tangent = pattern.zeros();
-        let scales = trial.unknowns().scales;
-        let zero = vec![0.0; trial.unknowns().count];
+        let scales = trial.unknowns.scales;
+        let zero = vec![0.0; trial.unknowns.count];
         Self {
             lu: BandedLu::of_shape(&tangent),
             tangent,
@@ -95,10 +80,7 @@ impl<const D: usize> NewtonStepper<D> {
             contraction: SLOW,
             tolerance: TOLERANCE * plan.pressure_scale / scales.pressure,
             error_scales: ErrorScales::of(&scales, plan),
-            stages: match plan.schedule.integrator {
-                IntegratorKind::SemiImplicit => Stages::Single,
-                IntegratorKind::Explicit | IntegratorKind::Implicit => Stages::Sdirk,
-            },
+            stages,
             start: StageStart::default(),
             rate: zero.clone(),
             state: zero.clone(),
@@ -128,7 +110,7 @@ impl<const D: usize> NewtonStepper<D> {
     fn try_step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure> {
         let mut flux = 0.0;
         let mut first = true;
-        for (duration, end, share) in self.stages.of_step() {
+        for (duration, end, share) in self.stages {
             let stage = duration * dt;
             if first {
                 self.start_step(stage);
@@ -136,7 +118,7 @@ impl<const D: usize> NewtonStepper<D> {
             }
             self.load_at(self.time + end * dt);
             self.solve_stage()?;
-            flux += share * stage * self.trial.surface_mean(|nodes| &nodes.flux);
+            flux += share * stage * self.trial.surface_mean(&self.trial.body.nodes.flux);
             if *share != 1.0 {
                 self.start_second_stage();
             }
@@ -150,7 +132,7 @@ impl<const D: usize> NewtonStepper<D> {
         for (rate, (end, start)) in self.rate.iter_mut().zip(self.state.iter().zip(&self.start.unknowns)) {
             *rate = (end - start) / stage;
         }
-        self.settlement_rate = -self.trial.surface_mean(|nodes| &nodes.solid_velocity);
+        self.settlement_rate = -self.trial.surface_mean(&self.trial.body.nodes.solid_velocity);
         enter(Phase::BuildWeights);
         self.trial.end_step(&self.state, flux);
         self.time += dt;
@@ -160,10 +142,10 @@ impl<const D: usize> NewtonStepper<D> {
 
     /// Estimated error of the step whose stages were solved last.
     fn error(&self) -> f64 {
-        if self.stages == Stages::Single {
+        if self.stages.len() == 1 {
             return 0.0;
         }
-        self.error_scales.largest(self.trial.unknowns(), |unknown| {
+        self.error_scales.largest(&self.trial.unknowns, |unknown| {
             let start = self.start.unknowns[unknown];
             ERROR_SHARE * (start / SECOND_STAGE - (self.state[unknown] - start))
         })
@@ -181,7 +163,7 @@ impl<const D: usize> NewtonStepper<D> {
         self.start.duration = stage;
         self.start.unknowns.clear();
         self.start.unknowns.resize(self.state.len(), 0.0);
-        let [solid, water] = self.trial.velocity();
+        let [solid, water] = &self.trial.velocity;
         self.start.solid_velocity.clone_from(solid);
         self.start.water_velocity.clone_from(water);
         for (state, rate) in self.state.iter_mut().zip(&self.rate) {
@@ -191,7 +173,7 @@ impl<const D: usize> NewtonStepper<D> {
 
     /// The second stage starts where the first one's rates lead, and is guessed to have the same.
     fn start_second_stage(&mut self) {
-        let nodes = self.trial.nodes();
+        let nodes = &self.trial.body.nodes;
         for (start, now) in [
             (&mut self.start.solid_velocity, &nodes.solid_velocity),
             (&mut self.start.water_velocity, &nodes.water_velocity),
@@ -271,14 +253,14 @@ impl<const D: usize> NewtonStepper<D> {
 
     /// Points that went on to other cells change which balances feel which unknowns.
     fn follow_structure(&mut self) {
-        if self.trial.keeps(&self.pattern) {
+        if self.pattern.is_of(&self.trial.body, &self.trial.unknowns) {
             return;
         }
-        self.pattern = self.trial.pattern();
+        self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
         self.tangent = self.pattern.zeros();
         self.lu = BandedLu::of_shape(&self.tangent);
         self.factored = None;
-        let count = self.trial.unknowns().count;
+        let count = self.trial.unknowns.count;
         if count != self.state.len() {
             for vector in [&mut self.rate, &mut self.state, &mut self.residual, &mut self.scratch] {
                 vector.clear();
@@ -291,12 +273,12 @@ impl<const D: usize> NewtonStepper<D> {
 impl<const D: usize> Stepper for NewtonStepper<D> {
     fn advance(&mut self, steps: &EqualSteps, most_error: f64) -> Result<f64, StepFailure> {
         // Smaller steps would hide that an explicit skeleton is beyond its limit.
-        let halvings = if self.stages == Stages::Single { 0 } else { MOST_HALVINGS };
+        let halvings = if self.stages.len() == 1 { 0 } else { MOST_HALVINGS };
         (0..steps.count).try_fold(0.0, |_, _| self.step_within(steps.dt, halvings, most_error))
     }
 
     fn settlement(&self) -> f64 {
-        self.trial.settlement(self.initial_height)
+        self.trial.body.settlement(self.initial_height)
     }
 
     fn settlement_rate(&self) -> Option<f64> {
@@ -304,11 +286,11 @@ impl<const D: usize> Stepper for NewtonStepper<D> {
     }
 
     fn lost_point(&self) -> Option<StepFailure> {
-        self.trial.lost_point()
+        lost_point(&self.trial.body)
     }
 
     fn snapshot(&self, time: f64) -> Snapshot {
-        self.trial.snapshot(time, self.settlement())
+        self.trial.body.snapshot(time, self.settlement(), &self.trial.start)
     }
 
     fn work(&self) -> Work {

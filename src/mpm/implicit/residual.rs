@@ -1,16 +1,11 @@
 //! What the balances of a body leave at a trial state: the one residual of every nonlinear or inertial
 //! implicit step, made of the operators of the explicit one.
 
-use crate::mpm::body::{Body, ShapeFunction};
-use crate::mpm::implicit::tangent::Pattern;
 use crate::mpm::implicit::trial::{Skeleton, Trial};
-use crate::mpm::implicit::unknowns::Unknowns;
-use crate::mpm::method::PressureIntegration;
+use crate::mpm::momentum::{NodalBalance, per_water_inertia};
 use crate::mpm::run::integrator::Formulation;
-use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::stepper::StepFailure;
-use crate::mpm::run::watch::{lost_point, pores_closed};
-use crate::mpm::state::nodes::Nodes;
+use crate::mpm::run::watch::pores_closed;
 use crate::soil::tensor::Vector;
 
 /// Where a stage starts: the unknowns' share that is known before it is solved.
@@ -26,56 +21,13 @@ pub struct StageStart<const D: usize> {
     pub water_velocity: Vec<Vector<D>>,
 }
 
-/// A body with its balances at trial states, whatever its basis.
-pub trait Balances<const D: usize> {
+impl<const D: usize> Trial<D> {
     /// What the balances leave at increments of the unknowns, scaled: forces on the mixture that
     /// nothing balances, and volume that a site gained beyond its storage.
     ///
     /// # Errors
     /// [`StepFailure`] where the pores of a point are closed: there is no residual then.
-    fn residual(
-        &mut self,
-        increments: &[f64],
-        start: &StageStart<D>,
-        residual: &mut [f64],
-    ) -> Result<(), StepFailure>;
-
-    /// Ends a step at increments of the unknowns, after so much flux through the surface, m.
-    fn end_step(&mut self, increments: &[f64], flux: f64);
-
-    /// Lets a share of the load act that was there at the start.
-    fn set_load_share(&mut self, share: f64);
-
-    /// Numbering of the unknowns.
-    fn unknowns(&self) -> &Unknowns<D>;
-
-    /// Nodes as the last residual left them.
-    fn nodes(&self) -> &Nodes<D>;
-
-    /// Velocities of skeleton and water at the nodes when the step began, m/s.
-    fn velocity(&self) -> &[Vec<Vector<D>>; 2];
-
-    /// Mean of a nodal field's vertical component over the surface.
-    fn surface_mean(&self, field: fn(&Nodes<D>) -> &[Vector<D>]) -> f64;
-
-    /// Which balances feel which unknowns.
-    fn pattern(&self) -> Pattern;
-
-    /// Whether a pattern still is that of the balances; nothing is allocated.
-    fn keeps(&self, pattern: &Pattern) -> bool;
-
-    /// Settlement of the loaded surface, m, which was at `initial_height`.
-    fn settlement(&self, initial_height: f64) -> f64;
-
-    /// A point that was lost, and how, where there is one.
-    fn lost_point(&self) -> Option<StepFailure>;
-
-    /// The body at a time, s, with a settlement, m.
-    fn snapshot(&self, time: f64, settlement: f64) -> Snapshot;
-}
-
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Balances<D> for Trial<D, W, S> {
-    fn residual(
+    pub fn residual(
         &mut self,
         increments: &[f64],
         start: &StageStart<D>,
@@ -96,56 +48,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Balances<D> for Trial<
         }
     }
 
-    fn end_step(&mut self, increments: &[f64], flux: f64) {
-        self.commit(increments);
-        self.body.surface_flux += flux;
-    }
-
-    fn set_load_share(&mut self, share: f64) {
-        let body = &mut self.body;
-        body.surface.load = self.full_load * share;
-        body.surface.apply(&body.grid, &body.points, &mut body.nodes);
-    }
-
-    fn unknowns(&self) -> &Unknowns<D> {
-        &self.unknowns
-    }
-
-    fn nodes(&self) -> &Nodes<D> {
-        &self.body.nodes
-    }
-
-    fn velocity(&self) -> &[Vec<Vector<D>>; 2] {
-        &self.velocity
-    }
-
-    fn surface_mean(&self, field: fn(&Nodes<D>) -> &[Vector<D>]) -> f64 {
-        let body = &self.body;
-        body.surface.mean_of(&body.grid, &body.points, field(&body.nodes))
-    }
-
-    fn pattern(&self) -> Pattern {
-        Pattern::of(&self.body, &self.unknowns)
-    }
-
-    fn keeps(&self, pattern: &Pattern) -> bool {
-        pattern.is_of(&self.body, &self.unknowns)
-    }
-
-    fn settlement(&self, initial_height: f64) -> f64 {
-        self.body.settlement(initial_height)
-    }
-
-    fn lost_point(&self) -> Option<StepFailure> {
-        lost_point(&self.body)
-    }
-
-    fn snapshot(&self, time: f64, settlement: f64) -> Snapshot {
-        self.body.snapshot(time, settlement, &self.start)
-    }
-}
-
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
     /// Nodal velocities of both phases at the end of the stage, and what is left of the mixture's
     /// momentum.
     fn momentum(&mut self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
@@ -156,7 +58,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
             nodes.solid_velocity[node] = [0.0; D];
             nodes.water_velocity[node] = [0.0; D];
             let drag = nodes.drag[node];
-            let water_inertia = water_density * nodes.volume[node] * per_duration;
+            let (water_inertia, implicit_drag) = (water_density * nodes.volume[node], start.duration * drag);
+            // A skeleton whose motion is given does not give way to the water.
+            let balance = NodalBalance {
+                per_solid_mass: 0.0,
+                water_share: 0.0,
+                per_water_inertia: per_water_inertia(water_inertia, implicit_drag, 0.0, 1.0),
+                drag,
+                implicit_drag,
+            };
             for d in 0..D {
                 // Where the skeleton is held, the water may still slide.
                 let number = self.unknowns.displacement[node][d];
@@ -164,12 +74,13 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
                 let solid = self.unknowns.scales.length * per_duration * moved;
                 let solid_change = solid - start.solid_velocity[node][d];
                 let force = nodes.water_force[node][d];
-                let before = start.water_velocity[node][d];
+                let before = [start.solid_velocity[node][d], start.water_velocity[node][d]];
                 let water = match self.formulation {
                     Formulation::QuasiStatic => solid + force / drag,
-                    Formulation::UP => solid + (force - water_inertia * solid_change) / drag,
+                    Formulation::UP => solid + (force - water_inertia * per_duration * solid_change) / drag,
                     Formulation::VW => {
-                        (water_inertia * before + force + drag * solid) / (water_inertia + drag)
+                        let skeleton = per_duration * solid_change;
+                        before[1] + start.duration * balance.water_acceleration(force, before, skeleton)
                     }
                 };
                 nodes.solid_velocity[node][d] = solid;
@@ -183,7 +94,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
                         continue;
                     }
                     Formulation::UP => solid_change,
-                    Formulation::VW => water - before,
+                    Formulation::VW => water - before[1],
                 };
                 let momentum = nodes.solid_mass[node] * solid_change + nodes.water_mass[node] * water_change;
                 residual[row] =
@@ -193,50 +104,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
     }
 
     /// What is left of the mixture's volume at each site.
-    fn storage(&self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
+    fn storage(&mut self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
+        self.body.evaluate_volume_rates();
         let (body, unknowns) = (&self.body, &self.unknowns);
-        self.volume_rates(residual);
-        for (site, number) in unknowns.pressure.iter().enumerate() {
-            let porosity = unknowns.porosity(&body.material, &body.points, &body.cells, site);
+        for (place, number) in unknowns.rows.sites.iter().zip(&unknowns.pressure) {
+            let porosity = body.porosity_of(*place);
             let stored = porosity / body.material.water_bulk_modulus
-                * self.unknowns.scales.pressure
+                * unknowns.scales.pressure
                 * (increments[*number] - start.unknowns[*number]);
-            residual[*number] = stored + start.duration * residual[*number];
+            residual[*number] = stored + start.duration * body.site_values[*place];
         }
     }
-
-    /// Rate of the mixture's volume at each site, 1/s, in the site's row.
-    fn volume_rates(&self, rates: &mut [f64]) {
-        let (body, unknowns) = (&self.body, &self.unknowns);
-        if unknowns.integration == PressureIntegration::Mean {
-            unknowns.pressure.iter().for_each(|number| rates[*number] = 0.0);
-            for point in 0..body.points.len() {
-                let cell = body.cells.of_point[point];
-                if let Some(site) = unknowns.site_of(cell) {
-                    let share = body.points.volume(point) / body.cells.volume(cell);
-                    let rate = rate_at_point(body, point, body.cells.porosity[cell]);
-                    rates[unknowns.pressure[site]] += share * rate;
-                }
-            }
-            return;
-        }
-        for (site, place) in unknowns.sites.iter().enumerate() {
-            let porosity = unknowns.porosity(&body.material, &body.points, &body.cells, site);
-            rates[unknowns.pressure[site]] = match unknowns.integration {
-                PressureIntegration::Points => rate_at_point(body, *place, porosity),
-                PressureIntegration::Sri | PressureIntegration::Mean => {
-                    body.volume_rate(porosity, |field| body.divergence_at_centre(*place, field))
-                }
-            };
-        }
-    }
-}
-
-/// Rate of the mixture's volume at a point, 1/s.
-fn rate_at_point<const D: usize, const W: usize, S: ShapeFunction<W>>(
-    body: &Body<D, W, S>,
-    point: usize,
-    porosity: f64,
-) -> f64 {
-    body.volume_rate(porosity, |field| body.divergence_at_point(point, field))
 }

@@ -5,10 +5,9 @@
 //! number of cells. So the tangent is consistent with every law, configuration and continuity by
 //! construction: there is no second set of formulas that could disagree with the first.
 
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::implicit::banded::Banded;
 use crate::mpm::implicit::unknowns::Unknowns;
-use crate::mpm::method::PressureIntegration;
 
 /// Difference by which a scaled unknown is moved: the square root of the round-off leaves eight
 /// digits of a tangent whose unknowns are strains.
@@ -27,12 +26,9 @@ struct Structure {
 }
 
 impl Structure {
-    fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(
-        body: &Body<D, W, S>,
-        unknowns: &Unknowns<D>,
-    ) -> Self {
+    fn of<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Self {
         Self {
-            basis: body.basis.first.clone(),
+            basis: body.basis.first().to_vec(),
             strain: body.strain.first().to_vec(),
             cells: body.cells.of_point.clone(),
             last_node: body.last_spline_node(),
@@ -49,38 +45,31 @@ pub struct Pattern {
     rows_of_column: Vec<Vec<usize>>,
     /// Unknowns that are moved together.
     groups: Vec<Vec<usize>>,
-    lower: usize,
-    upper: usize,
+    /// Zeros in the shape of the tangent.
+    zeros: Banded,
 }
 
 impl Pattern {
     /// The pattern of a body on its present operators.
-    pub fn of<const D: usize, const W: usize, S: ShapeFunction<W>>(
-        body: &Body<D, W, S>,
-        unknowns: &Unknowns<D>,
-    ) -> Self {
+    pub fn of<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Self {
         let columns_of_row = felt_unknowns(body, unknowns);
         let mut rows_of_column = vec![Vec::new(); unknowns.count];
-        let (mut lower, mut upper) = (0, 0);
         for (row, columns) in columns_of_row.iter().enumerate() {
             for column in columns {
                 rows_of_column[*column].push(row);
-                lower = lower.max(row.saturating_sub(*column));
-                upper = upper.max(column.saturating_sub(row));
             }
         }
+        let places = columns_of_row.iter().enumerate();
+        let places = places.flat_map(|(row, columns)| columns.iter().map(move |column| (row, *column)));
+        let zeros = Banded::spanning(unknowns.count, places);
         let groups = groups_of(&columns_of_row, &rows_of_column);
-        Self { structure: Structure::of(body, unknowns), rows_of_column, groups, lower, upper }
+        Self { structure: Structure::of(body, unknowns), rows_of_column, groups, zeros }
     }
 
     /// Whether it still is the pattern of a body; nothing is allocated.
-    pub fn is_of<const D: usize, const W: usize, S: ShapeFunction<W>>(
-        &self,
-        body: &Body<D, W, S>,
-        unknowns: &Unknowns<D>,
-    ) -> bool {
+    pub fn is_of<const D: usize>(&self, body: &Body<D>, unknowns: &Unknowns<D>) -> bool {
         let known = &self.structure;
-        known.basis == body.basis.first
+        known.basis == body.basis.first()
             && known.strain == body.strain.first()
             && known.cells == body.cells.of_point
             && known.last_node == body.last_spline_node()
@@ -89,7 +78,7 @@ impl Pattern {
 
     /// Zeros in the shape of the tangent.
     pub fn zeros(&self) -> Banded {
-        Banded::zeros(self.rows_of_column.len(), self.lower, self.upper)
+        self.zeros.clone()
     }
 
     /// Differences of `residual` at `state`, where it is `base`. `scratch` has the length of the
@@ -119,10 +108,7 @@ impl Pattern {
 }
 
 /// Unknowns that the balance of each unknown's row feels.
-fn felt_unknowns<const D: usize, const W: usize, S: ShapeFunction<W>>(
-    body: &Body<D, W, S>,
-    unknowns: &Unknowns<D>,
-) -> Vec<Vec<usize>> {
+fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<Vec<usize>> {
     let stride = body.grid.node_stride();
     let by_point: Vec<Vec<usize>> = (0..body.points.len())
         .map(|point| {
@@ -151,16 +137,14 @@ fn felt_unknowns<const D: usize, const W: usize, S: ShapeFunction<W>>(
         }
     }
     // Porosity and deformation of a site: of its points.
-    let site_of_point = |point: usize| match unknowns.integration {
-        PressureIntegration::Points => Some(point),
-        PressureIntegration::Sri | PressureIntegration::Mean => unknowns.site_of(body.cells.of_point[point]),
-    };
+    let is_by_cells = body.method.pressure.is_by_cells();
     for (point, felt) in by_point.iter().enumerate() {
-        if let Some(site) = site_of_point(point) {
+        let place = if is_by_cells { body.cells.of_point[point] } else { point };
+        if let Some(site) = unknowns.rows.site_of_place[place] {
             rows[unknowns.pressure[site]].extend_from_slice(felt);
         }
     }
-    for site in 0..unknowns.sites.len() {
+    for site in 0..unknowns.pressure.len() {
         let row = &mut rows[unknowns.pressure[site]];
         row.push(unknowns.pressure[site]);
         for (node, _) in &unknowns.rows.divergence[site] {

@@ -7,7 +7,6 @@ use crate::elementary;
 use crate::mpm::body::Body;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::Memory;
-use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::integrator::Formulation;
 use crate::mpm::state::points::Points;
 use crate::soil::tensor::{Tensor, Vector, identity, inverse, strain_between};
@@ -23,9 +22,9 @@ pub enum Skeleton {
 
 /// A body that is moved to trial states about an anchored one.
 #[derive(Clone, Debug)]
-pub struct Trial<const D: usize, const W: usize, S: ShapeFunction<W>> {
+pub struct Trial<const D: usize> {
     /// The body; its nodes hold what the last residual was made of.
-    pub body: Body<D, W, S>,
+    pub body: Body<D>,
     /// Numbering and scales.
     pub unknowns: Unknowns<D>,
     /// Terms of the balances.
@@ -33,7 +32,7 @@ pub struct Trial<const D: usize, const W: usize, S: ShapeFunction<W>> {
     /// Time level of the effective stress.
     pub skeleton: Skeleton,
     /// Load at the start of the run, Pa.
-    pub full_load: f64,
+    full_load: f64,
     /// Points at the start of the run.
     pub start: Points<D>,
     /// Points of the anchored state.
@@ -46,9 +45,9 @@ pub struct Trial<const D: usize, const W: usize, S: ShapeFunction<W>> {
     displacement: Vec<Vector<D>>,
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
+impl<const D: usize> Trial<D> {
     /// A body anchored at its present state.
-    pub fn new(mut body: Body<D, W, S>, formulation: Formulation, skeleton: Skeleton) -> Self {
+    pub fn new(mut body: Body<D>, formulation: Formulation, skeleton: Skeleton) -> Self {
         let start = body.points.clone();
         if body.configuration.moves_points() {
             body.points.inverse_deformation.fill(identity());
@@ -69,6 +68,18 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
         };
         trial.anchor_here();
         trial
+    }
+
+    /// Lets a share of the load act that was there at the start.
+    pub fn set_load_share(&mut self, share: f64) {
+        let body = &mut self.body;
+        body.surface.load = self.full_load * share;
+        body.surface.apply(&body.grid, &body.points, &mut body.nodes);
+    }
+
+    /// Mean of a nodal field's vertical component over the surface.
+    pub fn surface_mean(&self, field: &[Vector<D>]) -> f64 {
+        self.body.surface.mean_of(&self.body.grid, &self.body.points, field)
     }
 
     /// Makes the present state the one that increments count from.
@@ -139,9 +150,10 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Trial<D, W, S> {
         }
     }
 
-    /// Ends a step at increments of the unknowns: the points keep the state, and where they move,
-    /// the operators follow them.
-    pub fn commit(&mut self, increments: &[f64]) {
+    /// Ends a step at increments of the unknowns, after so much flux through the surface, m: the points keep
+    /// the state, and where they move, the operators follow them.
+    pub fn end_step(&mut self, increments: &[f64], flux: f64) {
+        self.body.surface_flux += flux;
         self.move_to(increments);
         let moves_points = self.body.configuration.moves_points();
         if moves_points && self.formulation != Formulation::QuasiStatic {

@@ -1,13 +1,9 @@
 //! The unknowns of an implicit step and their order: free components of the skeleton's
 //! displacement at the nodes, and pressures where the method takes them.
 
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::method::PressureIntegration;
 use crate::mpm::operators::volumetric::VolumetricRows;
-use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::Grid;
-use crate::mpm::state::nodes::Nodes;
-use crate::mpm::state::points::Points;
 use crate::soil::material::Material;
 use crate::soil::tensor::Vector;
 
@@ -37,16 +33,10 @@ impl Scales {
 pub struct Unknowns<const D: usize> {
     /// Unknown of each component at each node, where it is free.
     pub displacement: Vec<[Option<usize>; D]>,
-    /// Cells or points that carry a pressure unknown.
-    pub sites: Vec<usize>,
     /// Unknown of each site.
     pub pressure: Vec<usize>,
-    /// Site of each cell or point, where it is one.
-    site_of_place: Vec<Option<usize>>,
     /// `D` and `R` of the method.
     pub rows: VolumetricRows<D>,
-    /// Where the sites are.
-    pub integration: PressureIntegration,
     /// Number of unknowns.
     pub count: usize,
     /// Scales of the unknowns and of their equations.
@@ -62,35 +52,22 @@ enum UnknownKind {
 
 impl<const D: usize> Unknowns<D> {
     /// Numbers the unknowns of a body on its present operators.
-    pub fn of<const W: usize, S: ShapeFunction<W>>(body: &Body<D, W, S>) -> Self {
+    pub fn of(body: &Body<D>) -> Self {
         let mut unknowns = Self {
             displacement: Vec::new(),
-            sites: Vec::new(),
             pressure: Vec::new(),
-            site_of_place: Vec::new(),
             rows: body.volumetric_rows(),
-            integration: body.method.pressure,
             count: 0,
             scales: Scales::of::<D>(&body.material, body.grid.cell_size),
         };
-        unknowns.number(&body.grid, &body.nodes, &body.cells, &body.points);
+        unknowns.number(body);
         unknowns
     }
 
-    fn number(&mut self, grid: &Grid<D>, nodes: &Nodes<D>, cells: &Cells<D>, points: &Points<D>) {
-        let integration = self.integration;
-        let (sites, places): (Vec<usize>, usize) = match integration {
-            PressureIntegration::Points => ((0..points.len()).collect(), points.len()),
-            PressureIntegration::Sri | PressureIntegration::Mean => {
-                (cells.occupied().collect(), grid.cell_count())
-            }
-        };
-        let mut site_of_place = vec![None; places];
-        for (site, place) in sites.iter().enumerate() {
-            site_of_place[*place] = Some(site);
-        }
-        let site_position = |site: usize| match integration {
-            PressureIntegration::Points => points.position[sites[site]],
+    fn number(&mut self, body: &Body<D>) {
+        let (grid, nodes, sites) = (&body.grid, &body.nodes, &self.rows.sites);
+        let site_position = |site: usize| match body.method.pressure {
+            PressureIntegration::Points => body.points.position[sites[site]],
             PressureIntegration::Sri | PressureIntegration::Mean => grid.cell_centre(sites[site]),
         };
         let mut sorted: Vec<(Vector<D>, UnknownKind)> = Vec::new();
@@ -123,22 +100,6 @@ impl<const D: usize> Unknowns<D> {
                 }
                 UnknownKind::Pressure { site } => self.pressure[site] = number,
             }
-        }
-        (self.sites, self.site_of_place) = (sites, site_of_place);
-    }
-
-    /// Site of a cell or point, where it is one.
-    pub fn site_of(&self, place: usize) -> Option<usize> {
-        self.site_of_place[place]
-    }
-
-    /// Porosity at a site.
-    #[inline]
-    pub fn porosity(&self, soil: &Material, points: &Points<D>, cells: &Cells<D>, site: usize) -> f64 {
-        let place = self.sites[site];
-        match self.integration {
-            PressureIntegration::Points => soil.porosity_at(points.volume_ratio[place]),
-            PressureIntegration::Sri | PressureIntegration::Mean => cells.porosity[place],
         }
     }
 }

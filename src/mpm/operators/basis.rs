@@ -1,17 +1,16 @@
 //! The bases: weights between points and nodes, as rows of one direction in units of the cell.
 //!
-//! A basis has its place here and in [`Basis`]: [`with_basis`](crate::with_basis) is the one door from its name
-//! to its type, and every stencil, load and displacement asks for its rows here.
+//! A basis has its place here and in [`Basis`]: every stencil, load and displacement asks for its rows here.
 
 use crate::mpm::method::Basis;
-use crate::mpm::operators::row::{Row, whole};
-use crate::mpm::operators::stencil::visit_block;
-use crate::mpm::state::grid::Grid;
+use crate::mpm::operators::row::Row;
+use crate::mpm::operators::stencil::{PointStencils, Stencils, visit_block};
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid, whole};
 use crate::mpm::state::nodes::Support;
 use crate::soil::tensor::Vector;
 
 /// A basis as the compiler sees it: rows of `W` nodes per direction, which sum to one by construction.
-pub trait ShapeFunction<const W: usize>: Clone {
+pub trait ShapeFunction<const W: usize> {
     /// Whether nodes beyond a wall would have a share in what is inside it.
     const PASSES_WALLS: bool = false;
 
@@ -19,30 +18,49 @@ pub trait ShapeFunction<const W: usize>: Clone {
     fn row(place: f64, cell: usize, half_length: f64) -> Row<W>;
 }
 
-/// The door from a [`Basis`] to its type: evaluates an expression with the row's width and the shape function
-/// under the names that are given, `with_basis!(method.basis, W, S => Body::<1, W, S>::new(problem))`.
-#[doc(hidden)]
-#[macro_export]
-macro_rules! with_basis {
-    ($basis:expr, $width:ident, $shape:ident => $result:expr) => {
-        match $basis {
-            $crate::Basis::Hat => $crate::with_basis!(@ 2, Hat, $width, $shape, $result),
-            $crate::Basis::Ugimp | $crate::Basis::Cpgimp => {
-                $crate::with_basis!(@ 3, Gimp, $width, $shape, $result)
-            }
-            $crate::Basis::Cpdi => $crate::with_basis!(@ 3, DomainEnds, $width, $shape, $result),
-            $crate::Basis::Bspline2 => $crate::with_basis!(@ 3, QuadraticSpline, $width, $shape, $result),
-            $crate::Basis::Bspline3 => $crate::with_basis!(@ 4, CubicSpline, $width, $shape, $result),
-        }
-    };
-    (@ $nodes:literal, $kind:ident, $width:ident, $shape:ident, $result:expr) => {{
-        const $width: usize = $nodes;
-        type $shape = $crate::$kind;
-        $result
-    }};
-}
-
 impl Basis {
+    /// Room for the stencils of so many points.
+    pub fn stencils<const D: usize>(self, points: usize) -> PointStencils<D> {
+        match self {
+            Self::Hat => PointStencils::Two(Stencils::with_points(points)),
+            Self::Ugimp | Self::Cpgimp | Self::Cpdi | Self::Bspline2 => {
+                PointStencils::Three(Stencils::with_points(points))
+            }
+            Self::Bspline3 => PointStencils::Four(Stencils::with_points(points)),
+        }
+    }
+
+    /// Builds `N` and `∇N` of points at places (in cells) with half-lengths of their domains (m), `[point][direction]`.
+    pub fn build<const D: usize>(
+        self,
+        stencils: &mut PointStencils<D>,
+        grid: &Grid<D>,
+        support: &Support<D>,
+        points: [&[Vector<D>]; 2],
+    ) {
+        match (self, stencils) {
+            (Self::Hat, PointStencils::Two(stencils)) => build::<D, 2, Hat>(stencils, grid, support, points),
+            (Self::Ugimp | Self::Cpgimp, PointStencils::Three(stencils)) => {
+                build::<D, 3, Gimp>(stencils, grid, support, points);
+            }
+            (Self::Cpdi, PointStencils::Three(stencils)) => {
+                build::<D, 3, DomainEnds>(stencils, grid, support, points);
+            }
+            (Self::Bspline2, PointStencils::Three(stencils)) => {
+                build::<D, 3, QuadraticSpline>(stencils, grid, support, points);
+            }
+            (Self::Bspline3, PointStencils::Four(stencils)) => {
+                build::<D, 4, CubicSpline>(stencils, grid, support, points);
+            }
+            _ => unreachable!("stencils of another basis"),
+        }
+    }
+
+    /// Whether the basis reaches beyond walls and free surfaces, with coefficients that are no values.
+    pub fn is_spline(self) -> bool {
+        matches!(self, Self::Bspline2 | Self::Bspline3)
+    }
+
     /// Visits the nodes that carry a place of the surface (in cells), with their weights: those of the basis,
     /// and hats where domains smear them.
     #[inline]
@@ -84,10 +102,21 @@ impl Basis {
 /// A surface this near to a face, in cells, lies on it.
 const ON_A_FACE: f64 = 1e-9;
 
+fn build<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    stencils: &mut Stencils<D, W>,
+    grid: &Grid<D>,
+    support: &Support<D>,
+    [places, half_lengths]: [&[Vector<D>]; 2],
+) {
+    for (point, (place, half_length)) in places.iter().zip(half_lengths).enumerate() {
+        stencils.set(grid, point, &rows_at::<D, W, S>(grid, support, place, half_length));
+    }
+}
+
 /// Rows of a basis at a place (in cells), for a domain of half-lengths (m), without nodes beyond held faces:
 /// `[direction]`.
 #[inline]
-pub fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
+fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
     grid: &Grid<D>,
     support: &Support<D>,
     place: &Vector<D>,
@@ -96,8 +125,30 @@ pub fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
     let (cell, per_cell) = (grid.cell_at(place), grid.inverse_cell_size());
     std::array::from_fn(|d| {
         let row = S::row(place[d], cell[d], half_length[d] * per_cell);
-        if S::PASSES_WALLS { support.folded(grid, d, row) } else { row }
+        if S::PASSES_WALLS { folded(support, grid, d, row) } else { row }
     })
+}
+
+/// A row along a direction without nodes beyond held faces, nor far beyond a free surface: those
+/// have no freedom of their own.
+#[inline]
+fn folded<const D: usize, const W: usize>(
+    support: &Support<D>,
+    grid: &Grid<D>,
+    direction: usize,
+    mut row: Row<W>,
+) -> Row<W> {
+    let (lowest, highest) = (GHOST_LAYERS, GHOST_LAYERS + grid.cells[direction]);
+    if support.lower[direction] {
+        row.fold_at(lowest, |node| node < lowest);
+    }
+    if support.upper[direction] {
+        row.fold_at(highest, |node| node > highest);
+    }
+    if let Some(outermost) = support.outermost.filter(|_| direction == D - 1) {
+        row.straighten_beyond(outermost);
+    }
+    row
 }
 
 /// `max(x, 0)` in one instruction; `f64::max` takes three to mind a NaN.
@@ -211,7 +262,7 @@ impl ShapeFunction<4> for CubicSpline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mpm::operators::row::tests::moments;
+    use crate::mpm::operators::row::moments;
     use proptest::prelude::*;
 
     proptest! {

@@ -13,17 +13,6 @@ pub struct Row<const W: usize> {
     pub gradients: [f64; W],
 }
 
-/// Whole part of a coordinate in cells; 32 bits convert several times faster than 64.
-#[inline]
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "coordinates in cells are positive, the ghost layers see to it"
-)]
-pub(crate) fn whole(in_cells: f64) -> usize {
-    in_cells as u32 as usize
-}
-
 impl Row<3> {
     /// The row about a node from the weights and gradients of its neighbours: the node has what is left.
     #[inline]
@@ -101,27 +90,24 @@ impl<const W: usize> Row<W> {
     }
 }
 
-/// No division in the step's innermost loops.
-pub(crate) const SIXTH: f64 = 1.0 / 6.0;
+/// Moment of a row: sum of `f(node)` with the weights, and with the gradients.
+#[cfg(test)]
+pub(crate) fn moments<const W: usize>(row: &Row<W>, f: impl Fn(f64) -> f64) -> (f64, f64) {
+    (0..W).fold((0.0, 0.0), |(value, gradient), k| {
+        let node = f((row.first + k) as f64);
+        (value + row.weights[k] * node, gradient + row.gradients[k] * node)
+    })
+}
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
     use crate::mpm::operators::basis::{CubicSpline, QuadraticSpline, ShapeFunction};
+    use crate::mpm::state::grid::whole;
     use proptest::prelude::*;
-
-    /// Moment of a row: sum of `f(node)` with the weights, and with the gradients.
-    #[inline]
-    pub(crate) fn moments<const W: usize>(row: &Row<W>, f: impl Fn(f64) -> f64) -> (f64, f64) {
-        (0..W).fold((0.0, 0.0), |(value, gradient), k| {
-            let node = f((row.first + k) as f64);
-            (value + row.weights[k] * node, gradient + row.gradients[k] * node)
-        })
-    }
 
     proptest! {
         #[test]
-        #[inline]
         fn rows_between_walls_meet_linear_fields(place in 5.0..6.5f64, width in 1..3_usize) {
             // Walls at node 5 and `width` cells above it.
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test range")]
@@ -145,7 +131,6 @@ pub(crate) mod tests {
         }
 
         #[test]
-        #[inline]
         fn a_row_behind_a_wall_stays_as_it_is(place in 2.5..4.4f64) {
             let (mut quadratic, mut cubic) = (QuadraticSpline::row(place, 0, 0.0), CubicSpline::row(place, whole(place), 0.0));
             let before = quadratic;
@@ -156,7 +141,6 @@ pub(crate) mod tests {
         }
 
         #[test]
-        #[inline]
         fn rows_that_end_at_a_surface_meet_linear_fields(place in 5.0..6.0f64, above in 0.0..0.5f64) {
             let linear = |x: f64| 2.0 + 3.0 * x;
             let (mut quadratic, mut cubic) = (QuadraticSpline::row(place, 0, 0.0), CubicSpline::row(place, 5, 0.0));

@@ -9,7 +9,6 @@ pub struct SparseRows<T> {
 
 impl<T: Copy> SparseRows<T> {
     /// The operator of some rows.
-    #[inline]
     pub fn of(rows: impl IntoIterator<Item = Vec<(usize, T)>>) -> Self {
         let (mut starts, mut entries) = (vec![0], Vec::new());
         for row in rows {
@@ -18,6 +17,16 @@ impl<T: Copy> SparseRows<T> {
             starts.push(entries.len());
         }
         Self { starts, entries }
+    }
+
+    /// Entries of all rows.
+    pub fn entry_count(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Size, bytes.
+    pub fn bytes(&self) -> usize {
+        std::mem::size_of_val(&self.entries[..]) + std::mem::size_of_val(&self.starts[..])
     }
 
     /// The entries of a row.

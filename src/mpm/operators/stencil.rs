@@ -2,7 +2,7 @@
 
 use crate::mpm::operators::row::Row;
 use crate::mpm::state::grid::{Grid, power};
-use crate::soil::tensor::Vector;
+use crate::soil::tensor::{Tensor, Vector};
 
 /// Weights and gradients of every point over a block of `W` nodes in each direction.
 ///
@@ -20,7 +20,6 @@ pub struct Stencils<const D: usize, const W: usize> {
 
 impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Room for `points` points, all rows zero.
-    #[inline]
     pub fn with_points(points: usize) -> Self {
         Self {
             first: vec![0; points],
@@ -76,31 +75,6 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         });
     }
 
-    /// Value of a nodal vector field at the point.
-    #[inline]
-    pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
-        self.blocks().value(stride, point, field)
-    }
-
-    /// Gradient of a nodal vector field at the point, `[component][direction]`.
-    #[inline]
-    pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> [[f64; D]; D] {
-        self.blocks().gradient(stride, point, field)
-    }
-
-    /// The nodes of a point's block with their gradients (1/m), where they are not zero: the
-    /// divergence at the point as a functional of a nodal field.
-    #[inline]
-    pub fn gradient_row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, Vector<D>)> {
-        let mut row = Vec::with_capacity(power(W, D));
-        self.visit(grid.node_stride(), point, |node, _, gradient| {
-            if *gradient != [0.0; D] {
-                row.push((node, *gradient));
-            }
-        });
-        row
-    }
-
     /// Divergence of a nodal vector field at the point.
     #[inline]
     pub fn divergence(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> f64 {
@@ -113,6 +87,78 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
             }
         });
         divergence
+    }
+}
+
+/// [`Stencils`] of the width of a basis, known once a loop: what walks them is compiled by width, and nothing else.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PointStencils<const D: usize> {
+    /// Two nodes per direction.
+    Two(Stencils<D, 2>),
+    /// Three.
+    Three(Stencils<D, 3>),
+    /// Four.
+    Four(Stencils<D, 4>),
+}
+
+/// Evaluates an expression with the [`Stencils`] of a [`PointStencils`], of whatever width, under a name.
+macro_rules! with_stencils {
+    ($point_stencils:expr, $name:ident => $result:expr) => {
+        match $point_stencils {
+            $crate::mpm::operators::stencil::PointStencils::Two($name) => $result,
+            $crate::mpm::operators::stencil::PointStencils::Three($name) => $result,
+            $crate::mpm::operators::stencil::PointStencils::Four($name) => $result,
+        }
+    };
+}
+pub(crate) use with_stencils;
+
+impl<const D: usize> Default for PointStencils<D> {
+    fn default() -> Self {
+        Self::Two(Stencils::default())
+    }
+}
+
+impl<const D: usize> PointStencils<D> {
+    /// Lowest node of each point's block.
+    pub fn first(&self) -> &[usize] {
+        with_stencils!(self, stencils => &stencils.first)
+    }
+
+    /// Visits the nodes of a point's block with weight and gradient (1/m).
+    #[inline]
+    pub fn visit(&self, stride: &[usize; D], point: usize, visitor: impl FnMut(usize, f64, &Vector<D>)) {
+        with_stencils!(self, stencils => stencils.visit(stride, point, visitor));
+    }
+
+    /// Value of a nodal vector field at the point.
+    #[inline]
+    pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
+        with_stencils!(self, stencils => stencils.blocks().value(stride, point, field))
+    }
+
+    /// Gradient of a nodal vector field at the point, `[component][direction]`.
+    #[inline]
+    pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
+        with_stencils!(self, stencils => stencils.blocks().gradient(stride, point, field))
+    }
+
+    /// Divergence of a nodal vector field at the point.
+    #[inline]
+    pub fn divergence(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> f64 {
+        with_stencils!(self, stencils => stencils.divergence(stride, point, field))
+    }
+
+    /// The nodes of a point's block with their gradients (1/m), where they are not zero: the
+    /// divergence at the point as a functional of a nodal field.
+    pub fn gradient_row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, Vector<D>)> {
+        let mut row = Vec::new();
+        self.visit(grid.node_stride(), point, |node, _, gradient| {
+            if *gradient != [0.0; D] {
+                row.push((node, *gradient));
+            }
+        });
+        row
     }
 }
 
@@ -184,7 +230,7 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     /// Gradient of a nodal vector field at the point, `[component][direction]`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> [[f64; D]; D] {
+    pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
         let mut gradient = [[0.0; D]; D];
         self.visit_runs(stride, point, |first, _, gradients| {
             for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
@@ -236,9 +282,9 @@ mod tests {
                 [1.0 + 2.0 * x - y, 3.0 - x + 4.0 * y]
             })
             .collect();
-        let value = stencils.value(grid.node_stride(), 0, &field);
+        let value = stencils.blocks().value(grid.node_stride(), 0, &field);
         assert!((value[0] - (1.0 + 2.0 * 1.37 - 0.81)).abs() < 1e-13);
-        let gradient = stencils.gradient(grid.node_stride(), 0, &field);
+        let gradient = stencils.blocks().gradient(grid.node_stride(), 0, &field);
         for (got, exact) in gradient.iter().flatten().zip([2.0, -1.0, -1.0, 4.0]) {
             assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
         }

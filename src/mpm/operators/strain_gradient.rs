@@ -6,10 +6,10 @@
 //! the ends of the point's domain.
 
 use crate::mpm::method::StrainGradient;
-use crate::mpm::operators::row::{Row, SIXTH};
-use crate::mpm::operators::stencil::{Blocks, Stencils};
+use crate::mpm::operators::row::Row;
+use crate::mpm::operators::stencil::{Blocks, PointStencils, Stencils};
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{Grid, cell_below};
+use crate::mpm::state::grid::{Grid, SIXTH, cell_below};
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Nodes per direction between the ends of a domain: four at either end, at most one cell apart.
@@ -19,9 +19,10 @@ pub const ENDS_WIDTH: usize = 5;
 const INSET: f64 = 1e-9;
 
 /// `G` of a method, with its stencils where they are not those of the basis.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub enum StrainOperator<const D: usize> {
     /// That of the basis.
+    #[default]
     Basis,
     /// That of the composite MPM.
     Composite(Stencils<D, 4>),
@@ -29,17 +30,8 @@ pub enum StrainOperator<const D: usize> {
     BetweenEnds(Stencils<D, ENDS_WIDTH>),
 }
 
-/// `G` of all points, borrowed once for a loop over them.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum StrainBlocks<'a, const D: usize, const W: usize> {
-    Basis(Blocks<'a, D, W>),
-    Composite(Blocks<'a, D, 4>),
-    BetweenEnds(Blocks<'a, D, ENDS_WIDTH>),
-}
-
 impl<const D: usize> StrainOperator<D> {
     /// The operator of a choice, with room for so many points.
-    #[inline]
     pub fn of(strain: StrainGradient, points: usize) -> Self {
         match strain {
             StrainGradient::Standard | StrainGradient::Bbar => Self::Basis,
@@ -49,7 +41,6 @@ impl<const D: usize> StrainOperator<D> {
     }
 
     /// Brings the stencils up to the points' places; half-lengths of the domains in m, `[point][direction]`.
-    #[inline]
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>, half_length: &[Vector<D>]) {
         let (places, per_cell) = (cells.place.iter().enumerate(), grid.inverse_cell_size());
         match self {
@@ -80,18 +71,7 @@ impl<const D: usize> StrainOperator<D> {
         }
     }
 
-    /// The blocks of all points.
-    #[inline]
-    pub(crate) fn blocks<'a, const W: usize>(&'a self, basis: &'a Stencils<D, W>) -> StrainBlocks<'a, D, W> {
-        match self {
-            Self::Basis => StrainBlocks::Basis(basis.blocks()),
-            Self::Composite(stencils) => StrainBlocks::Composite(stencils.blocks()),
-            Self::BetweenEnds(stencils) => StrainBlocks::BetweenEnds(stencils.blocks()),
-        }
-    }
-
     /// Lowest node of each point's stencil, where it is not that of the basis.
-    #[inline]
     pub fn first(&self) -> &[usize] {
         match self {
             Self::Basis => &[],
@@ -110,11 +90,27 @@ impl<const D: usize> StrainOperator<D> {
         }
     }
 
+    /// Gradient of a nodal field at a point, `[component][direction]`.
+    #[inline]
+    pub fn gradient(
+        &self,
+        basis: &PointStencils<D>,
+        stride: &[usize; D],
+        point: usize,
+        field: &[Vector<D>],
+    ) -> Tensor<D> {
+        match self {
+            Self::Basis => basis.gradient(stride, point, field),
+            Self::Composite(stencils) => stencils.blocks().gradient(stride, point, field),
+            Self::BetweenEnds(stencils) => stencils.blocks().gradient(stride, point, field),
+        }
+    }
+
     /// Visits the nodes that a point's strain depends on, with their gradients, 1/m.
     #[inline]
-    pub fn visit<const W: usize>(
+    pub fn visit(
         &self,
-        basis: &Stencils<D, W>,
+        basis: &PointStencils<D>,
         stride: &[usize; D],
         point: usize,
         mut node_visitor: impl FnMut(usize, &Vector<D>),
@@ -124,19 +120,6 @@ impl<const D: usize> StrainOperator<D> {
             Self::Basis => basis.visit(stride, point, visitor),
             Self::Composite(stencils) => stencils.visit(stride, point, visitor),
             Self::BetweenEnds(stencils) => stencils.visit(stride, point, visitor),
-        }
-    }
-}
-
-impl<const D: usize, const W: usize> StrainBlocks<'_, D, W> {
-    /// Gradient of a nodal field at a point, `[component][direction]`.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub(crate) fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        match self {
-            Self::Basis(blocks) => blocks.gradient(stride, point, field),
-            Self::Composite(blocks) => blocks.gradient(stride, point, field),
-            Self::BetweenEnds(blocks) => blocks.gradient(stride, point, field),
         }
     }
 }
@@ -199,7 +182,7 @@ fn composite(place: f64, cell: usize, has_lower: bool, has_upper: bool) -> Row<4
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mpm::operators::row::tests::moments;
+    use crate::mpm::operators::row::moments;
     use proptest::prelude::*;
 
     proptest! {

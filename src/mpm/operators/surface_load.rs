@@ -69,7 +69,6 @@ const EDGE_SPOTS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8]
 
 impl<const D: usize> LoadedSurface<D> {
     /// The surface of a lattice: the highest points of the initial configuration.
-    #[inline]
     pub fn of(points: &Points<D>, load: f64) -> Self {
         let height = |point: usize| points.initial_position[point][D - 1];
         let highest = (0..points.len()).map(height).fold(f64::NEG_INFINITY, f64::max);
@@ -92,7 +91,6 @@ impl<const D: usize> LoadedSurface<D> {
 
     /// The surface under a load that varies along it.
     #[must_use]
-    #[inline]
     pub fn shaped(mut self, shape: LoadShape, points: &Points<D>) -> Self {
         for spot in &mut self.spots {
             let reach = spot.along * points.half_length[spot.point][0];
@@ -104,7 +102,6 @@ impl<const D: usize> LoadedSurface<D> {
 
     /// The surface of points whose domains keep their length: the material's edge still follows.
     #[must_use]
-    #[inline]
     pub fn stretching(self, stretches: bool) -> Self {
         Self { stretches, ..self }
     }
@@ -126,7 +123,6 @@ impl<const D: usize> LoadedSurface<D> {
     /// The surface of a body with a basis: its load is spread with the weights of that basis, and
     /// with hats where domains smear them.
     #[must_use]
-    #[inline]
     pub fn spread_by(self, basis: Basis, support: Support<D>) -> Self {
         Self { basis, support, ..self }
     }
@@ -145,7 +141,6 @@ impl<const D: usize> LoadedSurface<D> {
     /// A spline whose support the surface has all but left keeps its share of the load and loses the
     /// points that would carry it: their pores close. It then follows the line of those inside (extended
     /// B-splines, Höllig, Reif & Wipper 2001; for material points Yamaguchi, Moriguchi & Terada 2021).
-    #[inline]
     pub fn end_splines(&mut self, grid: &Grid<D>, points: &Points<D>) -> Support<D> {
         let height = |spot| grid.held_in_cells(&self.place(points, spot))[D - 1];
         let highest = self.spots.iter().map(height).fold(0.0, f64::max);
@@ -155,14 +150,12 @@ impl<const D: usize> LoadedSurface<D> {
 
     /// Height of the surface now, m, as much of it as has the load's shape: the mean over the
     /// width under a uniform load.
-    #[inline]
     pub fn height(&self, points: &Points<D>) -> f64 {
         let sum: f64 = self.spots.iter().map(|spot| spot.shape * self.place(points, spot)[D - 1]).sum();
         sum / self.squares
     }
 
     /// Puts the load on the nodes as the external force of the mixture.
-    #[inline]
     pub fn apply(&self, grid: &Grid<D>, points: &Points<D>, nodes: &mut Nodes<D>) {
         nodes.external_force.fill([0.0; D]);
         let share = if D == 1 { 1.0 } else { 1.0 / EDGE_SPOTS.len() as f64 };
@@ -174,18 +167,15 @@ impl<const D: usize> LoadedSurface<D> {
     }
 
     /// Nodes that span the surface, with the weights of [`amplitude_of`](Self::amplitude_of).
-    #[inline]
     pub fn weights(&self, grid: &Grid<D>, points: &Points<D>) -> Vec<(usize, f64)> {
         self.shares(grid, points, |spot| spot.shape / self.squares)
     }
 
     /// Nodes that span the surface, with the weights of [`mean_of`](Self::mean_of).
-    #[inline]
     pub fn mean_weights(&self, grid: &Grid<D>, points: &Points<D>) -> Vec<(usize, f64)> {
         self.shares(grid, points, |_| 1.0 / self.spots.len() as f64)
     }
 
-    #[inline]
     fn shares(&self, grid: &Grid<D>, points: &Points<D>, share: impl Fn(&Spot) -> f64) -> Vec<(usize, f64)> {
         let mut weights = Vec::new();
         self.visit(grid, points, |spot, node, weight| weights.push((node, share(spot) * weight)));
@@ -194,7 +184,6 @@ impl<const D: usize> LoadedSurface<D> {
 
     /// Vertical component of a nodal vector field on the surface, as much of it as has the load's
     /// shape: the mean under a uniform load, the amplitude of the cosine under a cosine.
-    #[inline]
     pub fn amplitude_of(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
         let mut sum = 0.0;
         self.visit(grid, points, |spot, node, weight| sum += spot.shape * weight * field[node][D - 1]);
@@ -202,7 +191,6 @@ impl<const D: usize> LoadedSurface<D> {
     }
 
     /// Mean over the surface of a nodal vector field's vertical component.
-    #[inline]
     pub fn mean_of(&self, grid: &Grid<D>, points: &Points<D>, field: &[Vector<D>]) -> f64 {
         let mut sum = 0.0;
         self.visit(grid, points, |_, node, weight| sum += weight * field[node][D - 1]);

@@ -6,8 +6,7 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::method::PressureIntegration;
-use crate::mpm::operators::basis::ShapeFunction;
-use crate::mpm::operators::recovery::PointsInCells;
+use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 use crate::soil::tensor::Vector;
 
 /// A linear functional of a nodal vector field: one vector of coefficients a node.
@@ -16,6 +15,10 @@ pub type VectorRow<const D: usize> = Vec<(usize, Vector<D>)>;
 /// `D` and `R` of a method on a body's present operators.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VolumetricRows<const D: usize> {
+    /// Cell or point of each site.
+    pub sites: Vec<usize>,
+    /// Site of each cell or point, where it is one.
+    pub site_of_place: Vec<Option<usize>>,
     /// Divergence at each site, 1/m of the field: occupied cells, or points.
     pub divergence: Vec<VectorRow<D>>,
     /// Coupling modulus `K_w/n` of each site, Pa.
@@ -33,7 +36,7 @@ pub enum Place {
     Point(usize),
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+impl<const D: usize> Body<D> {
     /// Divergence of a nodal field at a place, on the present configuration.
     #[inline]
     pub fn divergence_at(&self, place: Place, field: &[Vector<D>]) -> f64 {
@@ -48,6 +51,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     fn share_of_cell(&self, point: usize) -> (usize, f64) {
         let cell = self.cells.of_point[point];
         (cell, self.points.volume(point) / self.cells.volume(cell))
+    }
+
+    /// Porosity of a cell or point that is a site.
+    pub fn porosity_of(&self, place: usize) -> f64 {
+        if self.method.pressure.is_by_cells() {
+            self.cells.porosity[place]
+        } else {
+            self.material.porosity_at(self.points.volume_ratio[place])
+        }
     }
 
     /// `D` in place: fills `site_values` with what a function gives at each site from a place and the porosity
@@ -84,9 +96,15 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
         self.site_values = sites;
     }
 
+    /// Rate of the mixture's volume at each site, 1/s.
+    pub fn evaluate_volume_rates(&mut self) {
+        self.evaluate_sites(|body, place, porosity| {
+            body.volume_rate(porosity, |field| body.divergence_at(place, field))
+        });
+    }
+
     /// The skeleton's volumetric rate at the points by the method's own `D` and `R`, 1/s: the trace that B-bar
     /// takes.
-    #[inline]
     pub fn recover_dilation_rates(&mut self) {
         self.evaluate_sites(|body, place, _| body.divergence_at(place, &body.nodes.solid_velocity));
         let at = PointsInCells::of(&self.grid, &self.cells, &self.nodes, &self.points.position);
@@ -95,37 +113,33 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
     }
 
     /// `D` and `R` of the body's method as rows; gradients are those of small strain.
-    #[inline]
     pub fn volumetric_rows(&self) -> VolumetricRows<D> {
         let is_by_cells = self.method.pressure.is_by_cells();
         let places = if is_by_cells { self.grid.cell_count() } else { self.points.len() };
         let sites: Vec<usize> =
             if is_by_cells { self.cells.occupied().collect() } else { (0..places).collect() };
-        let mut number = vec![usize::MAX; places];
+        let mut site_of_place = vec![None; places];
         for (site, place) in sites.iter().enumerate() {
-            number[*place] = site;
+            site_of_place[*place] = Some(site);
         }
-        let porosity = |place: usize| {
-            if is_by_cells {
-                self.cells.porosity[place]
-            } else {
-                self.material.porosity_at(self.points.volume_ratio[place])
-            }
-        };
         let at = PointsInCells::of(&self.grid, &self.cells, &self.nodes, &self.points.position);
         let numbered = |row: Vec<(usize, f64)>| {
             let entries = row.into_iter().filter(|(_, weight)| *weight != 0.0);
-            entries.map(|(place, weight)| (number[place], weight)).collect()
+            entries.filter_map(|(place, weight)| Some((site_of_place[place]?, weight))).collect()
         };
         VolumetricRows {
-            divergence: self.divergence_rows(&sites, &number),
-            coupling: sites.iter().map(|place| self.material.water_bulk_modulus / porosity(*place)).collect(),
+            divergence: self.divergence_rows(&sites, &site_of_place),
+            coupling: sites
+                .iter()
+                .map(|place| self.material.water_bulk_modulus / self.porosity_of(*place))
+                .collect(),
             recovery: self.recovery.rows(&at).into_iter().map(numbered).collect(),
+            sites,
+            site_of_place,
         }
     }
 
-    #[inline]
-    fn divergence_rows(&self, sites: &[usize], number: &[usize]) -> Vec<VectorRow<D>> {
+    fn divergence_rows(&self, sites: &[usize], site_of_place: &[Option<usize>]) -> Vec<VectorRow<D>> {
         let at_point = |point: usize| self.basis.gradient_row(&self.grid, point);
         match self.method.pressure {
             PressureIntegration::Points => sites.iter().map(|point| at_point(*point)).collect(),
@@ -136,9 +150,9 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 let mut rows = vec![VectorRow::new(); sites.len()];
                 for point in 0..self.points.len() {
                     let (cell, share) = self.share_of_cell(point);
+                    let Some(site) = site_of_place[cell] else { continue };
                     for (node, gradient) in at_point(point) {
-                        let coefficients = gradient.map(|component| share * component);
-                        accumulate(&mut rows[number[cell]], node, &coefficients);
+                        accumulate(&mut rows[site], node, &gradient.map(|component| share * component));
                     }
                 }
                 rows
@@ -148,7 +162,6 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
 }
 
 /// Adds to a node's coefficients in a short row.
-#[inline]
 fn accumulate<const D: usize>(row: &mut VectorRow<D>, node: usize, coefficients: &Vector<D>) {
     let place = row.iter().position(|entry| entry.0 == node).unwrap_or_else(|| {
         row.push((node, [0.0; D]));
@@ -161,20 +174,17 @@ fn accumulate<const D: usize>(row: &mut VectorRow<D>, node: usize, coefficients:
 
 impl<const D: usize> VolumetricRows<D> {
     /// Divergence of a nodal field at every site.
-    #[inline]
     pub fn at_sites(&self, field: &[Vector<D>]) -> Vec<f64> {
         self.divergence.iter().map(|row| applied(row, field)).collect()
     }
 
     /// Values at the points from those at the sites.
-    #[inline]
     pub fn at_points(&self, sites: &[f64]) -> Vec<f64> {
         let value = |row: &Vec<(usize, f64)>| row.iter().map(|(site, weight)| weight * sites[*site]).sum();
         self.recovery.iter().map(value).collect()
     }
 
     /// The volumetric rate at a point as a functional of the field: `R D` without moduli.
-    #[inline]
     pub fn dilation_row(&self, point: usize) -> VectorRow<D> {
         let mut row = VectorRow::new();
         for (site, weight) in &self.recovery[point] {

@@ -1,11 +1,10 @@
-//! The door of the solver: where a basis, an integrator and a kernel become types.
+//! The door of the solver: where an integrator and a kernel become a stepper.
 
 use crate::mpm::body::{Body, Problem};
 use crate::mpm::implicit::banded::Singular;
 use crate::mpm::implicit::linear::LinearStepper;
 use crate::mpm::implicit::newton::NewtonStepper;
 use crate::mpm::method::Configuration;
-use crate::mpm::operators::basis::ShapeFunction;
 use crate::mpm::run::driver::Driver;
 use crate::mpm::run::explicit_stepper::ExplicitStepper;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
@@ -13,23 +12,13 @@ use crate::mpm::run::outcome::{Failure, FailureKind, Outcome};
 use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::schedule::{Observer, Schedule};
 use crate::mpm::run::stepper::Stepper;
-use crate::with_basis;
 
 /// Solves a problem. Never panics and never loops for ever: what goes wrong ends the run with a
 /// named status, and what was finished before stays.
 pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
-    with_basis!(problem.method.basis, W, S => solve(Body::<D, W, S>::new, problem, schedule, observer))
-}
-
-fn solve<const D: usize, const W: usize, S: ShapeFunction<W> + 'static>(
-    discretise: fn(Problem<D>) -> Body<D, W, S>,
-    problem: Problem<D>,
-    schedule: &Schedule,
-    observer: Observer<'_>,
-) -> Outcome {
     let plan = Plan::of(&problem, schedule);
     let undrained_start = problem.undrained_start;
-    let mut body = discretise(problem);
+    let mut body = Body::new(problem);
     let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
     let mut stepper = stepper_of(body, &plan);
     Driver::new(stepper.as_mut(), &plan, observer).solve(start_failure.map(no_start))
@@ -37,10 +26,7 @@ fn solve<const D: usize, const W: usize, S: ShapeFunction<W> + 'static>(
 
 /// The integrator of a body: explicit; one linear system where the body is frozen and at rest;
 /// Newton's iteration elsewhere.
-fn stepper_of<const D: usize, const W: usize, S: ShapeFunction<W> + 'static>(
-    body: Body<D, W, S>,
-    plan: &Plan<'_>,
-) -> Box<dyn Stepper> {
+fn stepper_of<const D: usize>(body: Body<D>, plan: &Plan<'_>) -> Box<dyn Stepper> {
     let Schedule { integrator, formulation, .. } = *plan.schedule;
     let is_linear = body.configuration == Configuration::Frozen && formulation == Formulation::QuasiStatic;
     match integrator {

@@ -1,7 +1,7 @@
 //! The explicit step on its way through time: point by point, or assembled where nothing moves.
 
 use crate::mpm::assembled::step::AssembledStep;
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::critical_step::formula;
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::explicit::scheme::Rhythm;
@@ -18,9 +18,9 @@ use crate::mpm::state::points::Points;
 const WATCH_INTERVAL: u64 = 64;
 
 /// A body that goes by explicit steps.
-pub struct ExplicitStepper<const D: usize, const W: usize, S: ShapeFunction<W>> {
+pub struct ExplicitStepper<const D: usize> {
     /// The body; at its start where the step is assembled.
-    body: Body<D, W, S>,
+    body: Body<D>,
     frozen: Option<AssembledStep<D>>,
     start: Points<D>,
     initial_height: f64,
@@ -37,9 +37,9 @@ pub struct ExplicitStepper<const D: usize, const W: usize, S: ShapeFunction<W>> 
     load_share: f64,
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> ExplicitStepper<D, W, S> {
+impl<const D: usize> ExplicitStepper<D> {
     /// A body at its start.
-    pub fn new(body: Body<D, W, S>, plan: &Plan<'_>) -> Self {
+    pub fn new(body: Body<D>, plan: &Plan<'_>) -> Self {
         let schedule = plan.schedule;
         let is_assembled = body.configuration == Configuration::Frozen && schedule.kernel == Kernel::Fastest;
         let mut stepper = Self {
@@ -74,7 +74,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> ExplicitStepper<D, W, 
     }
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Stepper for ExplicitStepper<D, W, S> {
+impl<const D: usize> Stepper for ExplicitStepper<D> {
     fn advance(&mut self, steps: &EqualSteps, _most_error: f64) -> Result<f64, StepFailure> {
         let (settings, dt) = (self.settings, steps.dt);
         for step in 0..steps.count {

@@ -1,5 +1,6 @@
 //! Time integrators by name.
 
+use crate::mpm::named::named;
 use crate::mpm::run::time_step_rule::TimeStepRule;
 use serde::{Deserialize, Serialize};
 
@@ -25,19 +26,9 @@ pub enum IntegratorKind {
     Implicit,
 }
 
+named!(IntegratorKind { Explicit = "explicit", SemiImplicit = "semi-implicit", Implicit = "implicit" });
+
 impl IntegratorKind {
-    /// Every integrator.
-    pub const ALL: [Self; 3] = [Self::Explicit, Self::SemiImplicit, Self::Implicit];
-
-    /// Name in study files and at the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Explicit => "explicit",
-            Self::SemiImplicit => "semi-implicit",
-            Self::Implicit => "implicit",
-        }
-    }
-
     /// Step rule where none is given.
     pub fn default_rule(self) -> TimeStepRule {
         match self {
@@ -98,16 +89,4 @@ pub enum Formulation {
     VW,
 }
 
-impl Formulation {
-    /// Every formulation, the shortest first.
-    pub const ALL: [Self; 3] = [Self::QuasiStatic, Self::UP, Self::VW];
-
-    /// Name in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::QuasiStatic => "quasi-static",
-            Self::UP => "u-p",
-            Self::VW => "v-w",
-        }
-    }
-}
+named!(Formulation { QuasiStatic = "quasi-static", UP = "u-p", VW = "v-w" });

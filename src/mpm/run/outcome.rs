@@ -1,5 +1,6 @@
 //! What a run leaves behind: its end by name, counters, step sizes and snapshots.
 
+use crate::mpm::named::named;
 use crate::mpm::run::snapshot::Snapshot;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -25,31 +26,15 @@ pub enum FailureKind {
     TimedOut,
 }
 
-impl FailureKind {
-    /// Every failure.
-    pub const ALL: [Self; 7] = [
-        Self::Unstable,
-        Self::PoresClosed,
-        Self::LeftGrid,
-        Self::Singular,
-        Self::NotConverged,
-        Self::Stopped,
-        Self::TimedOut,
-    ];
-
-    /// Name in records and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Unstable => "unstable",
-            Self::PoresClosed => "pores-closed",
-            Self::LeftGrid => "left-grid",
-            Self::Singular => "singular",
-            Self::NotConverged => "not-converged",
-            Self::Stopped => "stopped",
-            Self::TimedOut => "timed-out",
-        }
-    }
-}
+named!(FailureKind {
+    Unstable = "unstable",
+    PoresClosed = "pores-closed",
+    LeftGrid = "left-grid",
+    Singular = "singular",
+    NotConverged = "not-converged",
+    Stopped = "stopped",
+    TimedOut = "timed-out",
+});
 
 /// The end of a run that did not reach its last output.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]

@@ -3,6 +3,7 @@
 //! A run says which phase it enters; nothing listens unless [`profiled`] does, and then the time
 //! between two words belongs to the phase that the first one named. Results know nothing of it.
 
+use crate::mpm::named::named;
 use serde::{Deserialize, Serialize};
 use std::cell::{Cell, RefCell};
 use std::time::Instant;
@@ -41,30 +42,22 @@ pub enum Phase {
     Assessment,
 }
 
-impl Phase {
-    /// Every phase with its name in tables, in the order of a run.
-    const NAMED: [(Self, &'static str); 14] = [
-        (Self::Setup, "setup"),
-        (Self::CriticalStep, "critical step"),
-        (Self::BuildWeights, "build weights"),
-        (Self::MapVelocities, "map velocities"),
-        (Self::Forces, "forces"),
-        (Self::Motion, "motion"),
-        (Self::Stresses, "stresses"),
-        (Self::Recovery, "pressures and recovery"),
-        (Self::Balances, "balances of trial states"),
-        (Self::Assembly, "assembly"),
-        (Self::Factors, "factors"),
-        (Self::Solve, "solve"),
-        (Self::Outputs, "outputs"),
-        (Self::Assessment, "exact solution and errors"),
-    ];
-
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        Self::NAMED[self as usize].1
-    }
-}
+named!(Phase {
+    Setup = "setup",
+    CriticalStep = "critical step",
+    BuildWeights = "build weights",
+    MapVelocities = "map velocities",
+    Forces = "forces",
+    Motion = "motion",
+    Stresses = "stresses",
+    Recovery = "pressures and recovery",
+    Balances = "balances of trial states",
+    Assembly = "assembly",
+    Factors = "factors",
+    Solve = "solve",
+    Outputs = "outputs",
+    Assessment = "exact solution and errors",
+});
 
 /// Time of a phase.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -83,8 +76,8 @@ pub struct PhaseTime {
 struct Clock {
     phase: Phase,
     since: Instant,
-    seconds: [f64; Phase::NAMED.len()],
-    entries: [u64; Phase::NAMED.len()],
+    seconds: [f64; Phase::ALL.len()],
+    entries: [u64; Phase::ALL.len()],
 }
 
 thread_local! {
@@ -131,22 +124,22 @@ pub fn profiled<T>(work: impl FnOnce() -> T) -> (T, Vec<PhaseTime>) {
     let cost = seconds_of_an_entry();
     let seconds =
         |phase: Phase| (clock.seconds[phase as usize] - cost * clock.entries[phase as usize] as f64).max(0.0);
-    let whole: f64 = Phase::NAMED.into_iter().map(|(phase, _)| seconds(phase)).sum();
+    let whole: f64 = Phase::ALL.into_iter().map(seconds).sum();
     let time_of = |phase: Phase| PhaseTime {
         phase,
         seconds: seconds(phase),
         share: seconds(phase) / whole.max(f64::MIN_POSITIVE),
         entries: clock.entries[phase as usize],
     };
-    let entered = Phase::NAMED.into_iter().filter(|(phase, _)| clock.entries[*phase as usize] > 0);
-    (result, entered.map(|(phase, _)| time_of(phase)).collect())
+    let entered = Phase::ALL.into_iter().filter(|phase| clock.entries[*phase as usize] > 0);
+    (result, entered.map(time_of).collect())
 }
 
 fn listen() {
-    let mut entries = [0; Phase::NAMED.len()];
+    let mut entries = [0; Phase::ALL.len()];
     entries[Phase::Setup as usize] = 1;
     let clock =
-        Clock { phase: Phase::Setup, since: Instant::now(), seconds: [0.0; Phase::NAMED.len()], entries };
+        Clock { phase: Phase::Setup, since: Instant::now(), seconds: [0.0; Phase::ALL.len()], entries };
     CLOCK.set(Some(clock));
     LISTENING.set(true);
 }

@@ -1,6 +1,6 @@
 //! The state of a body at one time, sampled at points, cell centres and nodes.
 
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::state::points::Points;
 use crate::soil::tensor::Vector;
 use serde::{Deserialize, Serialize};
@@ -75,7 +75,7 @@ pub struct Totals {
     pub unbalanced_force: f64,
 }
 
-impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
+impl<const D: usize> Body<D> {
     /// Settlement of the loaded surface, m, which was at `initial_height`.
     pub fn settlement(&self, initial_height: f64) -> f64 {
         if self.configuration.moves_points() {
@@ -132,7 +132,7 @@ impl<const D: usize, const W: usize, S: ShapeFunction<W>> Body<D, W, S> {
                 means.add(node, point, weight * self.points.volume(point));
             });
         }
-        if S::PASSES_WALLS {
+        if self.method.basis.is_spline() {
             // Splines reach to nodes that lie outside the body, where no exact field is.
             let mut inside = vec![false; self.nodes.len()];
             for cell in self.cells.occupied() {

@@ -1,7 +1,7 @@
 //! Whether a run is still sound: looked at every few steps, for every integrator alike.
 
 use crate::elementary;
-use crate::mpm::body::{Body, ShapeFunction};
+use crate::mpm::body::Body;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::mpm::run::outcome::{FailureKind, StepSizes};
 use crate::mpm::run::run_plan::Plan;
@@ -95,9 +95,7 @@ impl<'a> Watch<'a> {
 }
 
 /// A point whose pores closed or that left the grid, where there is one.
-pub fn lost_point<const D: usize, const W: usize, S: ShapeFunction<W>>(
-    body: &Body<D, W, S>,
-) -> Option<StepFailure> {
+pub fn lost_point<const D: usize>(body: &Body<D>) -> Option<StepFailure> {
     let points = &body.points;
     let grains = 1.0 - body.material.porosity;
     if let Some(point) = points.volume_ratio.iter().position(|ratio| *ratio <= grains) {

@@ -46,7 +46,6 @@ impl<const D: usize> CellMemory<D> {
     }
 
     /// Takes the places of the points in the cells that they were last located in.
-    #[inline]
     fn place(&mut self, cells: &Cells<D>, points: &Points<D>) {
         self.weight.fill(0.0);
         self.centre.fill([0.0; D]);
@@ -72,7 +71,6 @@ impl<const D: usize> CellMemory<D> {
     }
 
     /// Fits the parabolas to a field of the points.
-    #[inline]
     fn fit(
         &mut self,
         grid: &Grid<D>,
@@ -134,7 +132,6 @@ impl<const D: usize> CellMemory<D> {
 
     /// Spreads pressure, effective stress and volume ratio over the points of each cell by the
     /// parabolas through the cells' means.
-    #[inline]
     pub fn spread_over_points(&mut self, grid: &Grid<D>, cells: &Cells<D>, points: &mut Points<D>) {
         self.place(cells, points);
         self.fit(grid, cells, &points.initial_volume, |point| points.pressure[point]);

@@ -61,7 +61,6 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Finds the cell of every point and sums volumes over each cell's points.
-    #[inline]
     pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, initial_porosity: f64) {
         self.point_count.fill(0);
         let found = self.of_point.iter_mut().zip(&mut self.place);
@@ -74,7 +73,6 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Sums volumes over each cell's points.
-    #[inline]
     pub fn sum_volumes(&mut self, points: &Points<D>, initial_porosity: f64) {
         self.volume.fill(0.0);
         self.porosity.fill(0.0);
@@ -93,7 +91,6 @@ impl<const D: usize> Cells<D> {
 
     /// Finds the cells that the points' domains reach into: a cell may have lost its last point and
     /// still carry the edge of the material.
-    #[inline]
     pub fn find_reached(&mut self, grid: &Grid<D>, points: &Points<D>) {
         for cell in 0..self.point_count.len() {
             self.reached[cell] = self.is_occupied(cell);
@@ -132,7 +129,6 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Means of the inverse deformation gradients over each cell's points.
-    #[inline]
     pub fn average_deformation(&mut self, points: &Points<D>) {
         self.inverse_deformation.fill([[0.0; D]; D]);
         for point in 0..points.len() {
@@ -165,13 +161,11 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Occupied cells in index order.
-    #[inline]
     pub fn occupied(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.point_count.len()).filter(|cell| self.is_occupied(*cell))
     }
 
     /// Lets cells above a last node take the divergence of the cell below it.
-    #[inline]
     pub fn end_at(&mut self, grid: &Grid<D>, outermost: usize) {
         let (cell_stride, node_stride) = (grid.cell_stride()[D - 1], grid.node_stride()[D - 1]);
         for (cell, first_node) in self.first_node.iter().enumerate() {
@@ -194,7 +188,6 @@ impl<const D: usize> Cells<D> {
     }
 
     /// The nodes of that divergence with their coefficients, 1/m.
-    #[inline]
     pub fn centre_divergence_row(&self, grid: &Grid<D>, cell: usize) -> Vec<(usize, Vector<D>)> {
         let coefficients = |corner| std::array::from_fn(|d| side(corner, d) * share_of_corner(grid));
         let corners = grid.corners(self.divergence_node[cell]).enumerate();

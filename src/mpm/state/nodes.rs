@@ -1,7 +1,6 @@
 //! Nodal fields: lumped masses, forces, velocities and accelerations of both phases.
 
-use crate::mpm::operators::row::Row;
-use crate::mpm::state::grid::{GHOST_LAYERS, Grid};
+use crate::mpm::state::grid::Grid;
 use crate::soil::material::Material;
 use crate::soil::tensor::Vector;
 
@@ -88,7 +87,6 @@ pub struct Support<const D: usize> {
 
 impl<const D: usize> Support<D> {
     /// An oedometer: rollers at the sides, fixed base, free top.
-    #[inline]
     pub fn oedometer() -> Self {
         let mut upper = [true; D];
         upper[D - 1] = false;
@@ -96,32 +94,12 @@ impl<const D: usize> Support<D> {
     }
 
     /// Nothing held at all.
-    #[inline]
     pub fn free() -> Self {
         Self { lower: [false; D], upper: [false; D], rough_base: false, outermost: None }
     }
 
-    /// A row along a direction without nodes beyond held faces, nor far beyond a free surface: those
-    /// have no freedom of their own.
-    #[inline]
+    /// The same faces on a base that the skeleton sticks to.
     #[must_use]
-    pub fn folded<const W: usize>(&self, grid: &Grid<D>, direction: usize, mut row: Row<W>) -> Row<W> {
-        let (lowest, highest) = (GHOST_LAYERS, GHOST_LAYERS + grid.cells[direction]);
-        if self.lower[direction] {
-            row.fold_at(lowest, |node| node < lowest);
-        }
-        if self.upper[direction] {
-            row.fold_at(highest, |node| node > highest);
-        }
-        if let Some(outermost) = self.outermost.filter(|_| direction == D - 1) {
-            row.straighten_beyond(outermost);
-        }
-        row
-    }
-
-    /// The same on a base that the skeleton sticks to.
-    #[must_use]
-    #[inline]
     pub fn on_rough_base(self) -> Self {
         Self { rough_base: true, ..self }
     }
@@ -182,19 +160,16 @@ impl<const D: usize> Nodes<D> {
     }
 
     /// Number of nodes.
-    #[inline]
     pub fn len(&self) -> usize {
         self.solid_mass.len()
     }
 
     /// Whether there is no node at all.
-    #[inline]
     pub fn is_empty(&self) -> bool {
         self.solid_mass.is_empty()
     }
 
     /// Turns the points' [`sums`](Self::sums) into masses, volumes and drag of the soil.
-    #[inline]
     pub fn take_masses(&mut self, soil: &Material) {
         for (node, [grain_volume, pore_volume, drag, _]) in self.sums.masses.iter().enumerate() {
             self.solid_mass[node] = soil.grain_density * grain_volume;
@@ -207,7 +182,6 @@ impl<const D: usize> Nodes<D> {
     }
 
     /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held or empty.
-    #[inline]
     pub fn take_velocities(&mut self, soil: &Material) {
         for node in 0..self.len() {
             let [solid, water] = self.sums.momenta[node];
@@ -222,7 +196,6 @@ impl<const D: usize> Nodes<D> {
 
     /// Finishes what was summed: porosities, reciprocals, and which components are free. Nodes without mass
     /// are silenced: their stale accelerations would otherwise reach the points.
-    #[inline]
     pub fn finish_masses(&mut self) {
         for node in 0..self.len() {
             if self.is_active(node) {

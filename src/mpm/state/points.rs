@@ -72,16 +72,13 @@ impl<const D: usize> Points<D> {
     }
 
     /// Whether there is no point at all.
-    #[inline]
     pub fn is_empty(&self) -> bool {
         self.pressure.is_empty()
     }
 
     /// The points of a list of indices, in its order.
     #[must_use]
-    #[inline]
     pub fn select(&self, keep: &[usize]) -> Self {
-        #[inline]
         fn pick<T: Copy>(field: &[T], keep: &[usize]) -> Vec<T> {
             keep.iter().map(|point| field[*point]).collect()
         }

@@ -2,11 +2,13 @@
 //! row reads of its own, and the compiler makes one instruction of what is done to each.
 
 use crate::mpm::assembled::operators::FrozenOperators;
-use crate::mpm::assembled::rows::{LANES, Lanes, MARGIN, REACH, Rows};
-use crate::mpm::assembled::state::FrozenState;
+use crate::mpm::assembled::rows::block_products::Rows;
+use crate::mpm::assembled::state::{FrozenState, LANES, Lanes, MARGIN};
 use crate::mpm::assembled::stiffness::pressure_stiffness;
 use crate::soil::tensor::{Tensor, Vector};
 
+/// Rows to either side that a band reaches: basis (1) + patch (1) + centre or composite (1).
+pub const REACH: usize = 3;
 /// Width of a band.
 const BAND: usize = 2 * REACH + 1;
 

@@ -4,51 +4,28 @@
 //! be five times as long in a plane.
 
 use crate::mpm::assembled::operators::FrozenOperators;
-use crate::mpm::assembled::rows::{LANES, Lanes, MARGIN, Rows};
-use crate::mpm::assembled::state::FrozenState;
+use crate::mpm::assembled::rows::block_products::Rows;
+use crate::mpm::assembled::state::{FrozenState, LANES, Lanes, MARGIN};
+use crate::mpm::operators::sparse_rows::SparseRows;
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Rows that reach anywhere.
 #[derive(Clone, Debug)]
 pub struct SparseStorage<const D: usize> {
-    divergence: SparseMap<Vector<D>>,
-    pressure_force: SparseMap<Vector<D>>,
-    skeleton_force: SparseMap<Tensor<D>>,
-    projection: SparseMap<f64>,
+    divergence: SparseRows<Vector<D>>,
+    pressure_force: SparseRows<Vector<D>>,
+    skeleton_force: SparseRows<Tensor<D>>,
+    projection: SparseRows<f64>,
     /// One where a component of a phase is free, else zero, by row.
     free: Vec<[Vector<D>; 2]>,
 }
 
-/// Rows of entries, each with its place in the array that it is multiplied with.
-#[derive(Clone, Debug)]
-struct SparseMap<T> {
-    starts: Vec<usize>,
-    entries: Vec<(u32, T)>,
-}
-
-impl<T: Copy> SparseMap<T> {
-    /// Takes rows whose columns begin at `offset` in the array, and fills their last block up with empty
-    /// ones.
-    fn of(rows: &[Vec<(usize, T)>], offset: usize) -> Self {
-        let (mut starts, mut entries) = (vec![0], Vec::new());
-        for row in rows {
-            let placed =
-                |(column, value): &(usize, T)| (u32::try_from(column + offset).unwrap_or(u32::MAX), *value);
-            entries.extend(row.iter().map(placed));
-            starts.push(entries.len());
-        }
-        starts.resize(rows.len().next_multiple_of(LANES) + 1, entries.len());
-        Self { starts, entries }
-    }
-
-    fn bytes(&self) -> usize {
-        std::mem::size_of_val(&self.entries[..]) + std::mem::size_of_val(&self.starts[..])
-    }
-
-    #[inline]
-    fn row(&self, row: usize) -> &[(u32, T)] {
-        &self.entries[self.starts[row]..self.starts[row + 1]]
-    }
+/// Rows whose columns begin at `offset` in the array that they are multiplied with; their last block is filled
+/// up with empty ones.
+fn placed<T: Copy>(rows: &[Vec<(usize, T)>], offset: usize) -> SparseRows<T> {
+    let row = |row: &Vec<(usize, T)>| row.iter().map(|(column, value)| (column + offset, *value)).collect();
+    let missing = rows.len().next_multiple_of(LANES) - rows.len();
+    SparseRows::of(rows.iter().map(row).chain(std::iter::repeat_n(Vec::new(), missing)))
 }
 
 impl<const D: usize> SparseStorage<D> {
@@ -57,10 +34,10 @@ impl<const D: usize> SparseStorage<D> {
         let mut free: Vec<_> = operators.constants.iter().map(|node| node.free).collect();
         free.resize(free.len().next_multiple_of(LANES), [[0.0; D]; 2]);
         Self {
-            divergence: SparseMap::of(&operators.divergence, MARGIN),
-            pressure_force: SparseMap::of(&operators.pressure_force, 0),
-            skeleton_force: SparseMap::of(&operators.skeleton_force, MARGIN),
-            projection: SparseMap::of(&operators.projection, MARGIN),
+            divergence: placed(&operators.divergence, MARGIN),
+            pressure_force: placed(&operators.pressure_force, 0),
+            skeleton_force: placed(&operators.skeleton_force, MARGIN),
+            projection: placed(&operators.projection, MARGIN),
             free,
         }
     }
@@ -89,9 +66,9 @@ impl<const D: usize> SparseStorage<D> {
 
     /// Multiply-adds of a step by the rows, with FLIP.
     pub fn products(&self) -> usize {
-        D * (self.divergence.entries.len() + self.pressure_force.entries.len())
-            + D * D * self.skeleton_force.entries.len()
-            + 2 * D * self.projection.entries.len()
+        D * (self.divergence.entry_count() + self.pressure_force.entry_count())
+            + D * D * self.skeleton_force.entry_count()
+            + 2 * D * self.projection.entry_count()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Constant recovery: a point takes the value of its cell, `p_p = p_c`, or its own where the divergence is
 //! taken at the points.
 
-use crate::mpm::operators::recovery::PointsInCells;
+use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 
 /// Value at a point of what is given at the cells.
 #[inline]
@@ -10,7 +10,6 @@ pub fn value<const D: usize>(at: &PointsInCells<'_, D>, point: usize, sites: &[f
 }
 
 /// The cell of a point with its weight.
-#[inline]
 pub fn row<const D: usize>(at: &PointsInCells<'_, D>, point: usize) -> Vec<(usize, f64)> {
     vec![(at.cells.of_point[point], 1.0)]
 }

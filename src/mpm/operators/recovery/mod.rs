@@ -8,41 +8,15 @@ pub mod constant;
 pub mod nodal;
 pub mod null_space;
 pub mod patch;
+pub mod points_in_cells;
 
 use crate::mpm::method::{Method, Recovery};
 use crate::mpm::operators::recovery::nodal::NodalMeans;
 use crate::mpm::operators::recovery::null_space::CellPlanes;
 use crate::mpm::operators::recovery::patch::PatchRows;
+use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::Grid;
-use crate::mpm::state::nodes::Nodes;
-use crate::soil::tensor::Vector;
-
-/// Where the points are among cells and nodes.
-#[derive(Clone, Copy, Debug)]
-pub struct PointsInCells<'a, const D: usize> {
-    /// Background grid.
-    pub grid: &'a Grid<D>,
-    /// Cells with their volumes, and the cell of each point.
-    pub cells: &'a Cells<D>,
-    /// Nodes with their supports.
-    pub nodes: &'a Nodes<D>,
-    /// Places of the points, m, `[point][component]`.
-    pub positions: &'a [Vector<D>],
-}
-
-impl<'a, const D: usize> PointsInCells<'a, D> {
-    /// The parts of a body.
-    #[inline]
-    pub fn of(
-        grid: &'a Grid<D>,
-        cells: &'a Cells<D>,
-        nodes: &'a Nodes<D>,
-        positions: &'a [Vector<D>],
-    ) -> Self {
-        Self { grid, cells, nodes, positions }
-    }
-}
 
 /// `R` of a method, with what it keeps from step to step.
 #[derive(Clone, Debug)]
@@ -61,7 +35,6 @@ pub enum RecoveryOperator<const D: usize> {
 
 impl<const D: usize> RecoveryOperator<D> {
     /// The operator of a method, with room for a grid and so many points.
-    #[inline]
     pub fn of(method: Method, grid: &Grid<D>, points: usize) -> Self {
         match (method.pressure.is_by_cells(), method.recovery) {
             (false, Recovery::NullSpace) => Self::NullSpace(CellPlanes::with_cells(grid.cell_count())),
@@ -73,7 +46,6 @@ impl<const D: usize> RecoveryOperator<D> {
     }
 
     /// Brings the operator up to the points' places.
-    #[inline]
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
         if let Self::Patch(rows) = self {
             rows.build(grid, cells);
@@ -105,7 +77,6 @@ impl<const D: usize> RecoveryOperator<D> {
     }
 
     /// The same as rows, `[point][entry]` of site and weight.
-    #[inline]
     pub fn rows(&self, at: &PointsInCells<'_, D>) -> Vec<Vec<(usize, f64)>> {
         let points = 0..at.positions.len();
         match self {
@@ -129,7 +100,7 @@ fn each(out: &mut [f64], put: impl Fn(&mut f64, f64), value: impl Fn(usize) -> f
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::mpm::state::nodes::Support;
+    use crate::mpm::state::nodes::{Nodes, Support};
     use crate::mpm::state::points::Points;
 
     /// A lattice of points in free cells.
@@ -152,7 +123,6 @@ pub(crate) mod tests {
             Self { grid, cells, nodes, points }
         }
 
-        #[inline]
         pub(crate) fn at(&self) -> PointsInCells<'_, 2> {
             let Self { grid, cells, nodes, points } = self;
             PointsInCells::of(grid, cells, nodes, &points.position)
@@ -160,13 +130,11 @@ pub(crate) mod tests {
     }
 
     /// A row applied to values.
-    #[inline]
     pub(crate) fn applied(row: &[(usize, f64)], values: &[f64]) -> f64 {
         row.iter().map(|(place, weight)| weight * values[*place]).sum()
     }
 
     #[test]
-    #[inline]
     fn every_way_is_one_in_place_and_as_rows() {
         let block = SiteBlock::new(0.25, [4, 3], 2);
         let at = block.at();

@@ -5,7 +5,7 @@
 //! the hats `N_i` of the point's cell.
 
 use crate::mpm::operators::basis::{Hat, ShapeFunction};
-use crate::mpm::operators::recovery::PointsInCells;
+use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 use crate::mpm::operators::row::Row;
 
 /// Means at the nodes, `[node]`.
@@ -18,13 +18,11 @@ pub struct NodalMeans {
 
 impl NodalMeans {
     /// Room for so many nodes.
-    #[inline]
     pub fn with_nodes(count: usize) -> Self {
         Self { mean: vec![0.0; count], volume: vec![0.0; count] }
     }
 
     /// Takes the means of what is given at the cells.
-    #[inline]
     pub fn fit<const D: usize>(&mut self, at: &PointsInCells<'_, D>, sites: &[f64]) {
         self.mean.fill(0.0);
         self.volume.fill(0.0);
@@ -47,7 +45,6 @@ impl NodalMeans {
 }
 
 /// The same as rows: the cells that each point recovers its value from, with their weights.
-#[inline]
 pub fn rows<const D: usize>(at: &PointsInCells<'_, D>) -> Vec<Vec<(usize, f64)>> {
     let mut around: Vec<Vec<usize>> = vec![Vec::new(); at.grid.node_count()];
     visit_corners(at, |node, cell| around[node].push(cell));

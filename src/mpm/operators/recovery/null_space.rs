@@ -5,7 +5,7 @@
 //! span the constants and the lines along the [felt slopes](felt_slopes). What is felt is the plane
 //! `p̄ + s·(x − x̄)` through the values by least squares, in one dimension their mean; the rest is the null space.
 
-use crate::mpm::operators::recovery::PointsInCells;
+use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 use crate::soil::tensor::{Tensor, Vector, solve_symmetric};
 
 /// The plane through the values of each cell's points, `[cell]`.
@@ -47,13 +47,11 @@ impl<const D: usize> Plane<D> {
 
 impl<const D: usize> CellPlanes<D> {
     /// Room for so many cells.
-    #[inline]
     pub fn with_cells(count: usize) -> Self {
         Self { planes: vec![Plane::EMPTY; count] }
     }
 
     /// Fits the planes to the values of the points.
-    #[inline]
     pub fn fit(&mut self, at: &PointsInCells<'_, D>, value: impl Fn(usize) -> f64) {
         self.planes.fill(Plane::EMPTY);
         for (point, place) in at.positions.iter().enumerate() {
@@ -93,7 +91,6 @@ impl<const D: usize> CellPlanes<D> {
 }
 
 /// The same as rows: what each point keeps of the values of its cell's points.
-#[inline]
 pub fn rows<const D: usize>(at: &PointsInCells<'_, D>) -> Vec<Vec<(usize, f64)>> {
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); at.grid.cell_count()];
     for (point, cell) in at.cells.of_point.iter().enumerate() {

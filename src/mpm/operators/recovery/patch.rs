@@ -5,9 +5,8 @@
 //! distance: with equal weights the recovery's Fourier symbol `(1 + 2 cos θ)/3` turns negative
 //! beyond `2π/3`, a negative stiffness that no step survives.
 
-use crate::mpm::operators::row::SIXTH;
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{Grid, power};
+use crate::mpm::state::grid::{Grid, SIXTH, power};
 use crate::soil::tensor::{Vector, solve_symmetric};
 
 /// Cells along one direction of a patch.
@@ -28,7 +27,6 @@ pub struct PatchRows<const D: usize> {
 
 impl<const D: usize> PatchRows<D> {
     /// Room for `points` points.
-    #[inline]
     pub fn with_points(points: usize) -> Self {
         Self { first: vec![0; points], weights: vec![0.0; points * Self::width()] }
     }
@@ -38,7 +36,6 @@ impl<const D: usize> PatchRows<D> {
     }
 
     /// Fits the rows to the points' places and to the occupied cells.
-    #[inline]
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
         if D == 1 {
             self.build_in_column(cells);
@@ -63,7 +60,6 @@ impl<const D: usize> PatchRows<D> {
 
     /// The rows of a column in closed form: some points side by side, as if every patch were whole, and
     /// then those that are not.
-    #[inline]
     fn build_in_column(&mut self, cells: &Cells<D>) {
         let (rows, _) = self.weights.as_chunks_mut::<BLOCK>();
         let points = cells.of_point.chunks(LANES).zip(cells.place.chunks(LANES));
@@ -101,7 +97,6 @@ impl<const D: usize> PatchRows<D> {
     }
 
     /// The cells of a point's patch with their weights.
-    #[inline]
     pub fn row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, f64)> {
         let weights = self.weights[point * Self::width()..].iter();
         let cells = (0..Self::width()).map(|block| block_cell(grid, self.first[point], block).0);
@@ -187,7 +182,6 @@ struct Patch<const D: usize> {
 }
 
 impl<const D: usize> Patch<D> {
-    #[inline]
     fn empty() -> Self {
         Self { count: 0, block: [0; MOST_CELLS], weight: [0.0; MOST_CELLS], offset: [[0.0; D]; MOST_CELLS] }
     }

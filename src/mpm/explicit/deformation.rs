@@ -1,0 +1,121 @@
+//! Deformation of a point over a step: its volume, its domain, and the turning of its stress.
+
+use crate::elementary;
+use crate::mpm::state::grid::SIXTH;
+use crate::soil::tensor::{Tensor, Vector, product, product_with_transpose};
+
+/// What follows the deformation of a point beside its volume.
+#[derive(Clone, Copy)]
+pub enum Following {
+    /// Its domain.
+    Domain,
+    /// Its inverse deformation gradient.
+    InverseDeformation,
+    /// Nothing else.
+    Nothing,
+}
+
+impl Following {
+    /// Factor of the volume, exact in the logarithmic strain; what follows it has followed.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn deform<const D: usize>(
+        self,
+        half_length: &mut Vector<D>,
+        inverse_deformation: &mut Tensor<D>,
+        increment: &Tensor<D>,
+    ) -> f64 {
+        let stretch: Vector<D> = std::array::from_fn(|d| stretch_of(increment[d][d]));
+        match self {
+            Self::Domain => {
+                for d in 0..D {
+                    half_length[d] *= stretch[d];
+                }
+            }
+            Self::InverseDeformation => *inverse_deformation = relaxed(inverse_deformation, increment),
+            Self::Nothing => {}
+        }
+        stretch.iter().product()
+    }
+}
+
+const PER_24: f64 = 1.0 / 24.0;
+
+/// `exp(ε)`: a step's strain is so small that four terms are exact to round-off.
+#[inline]
+pub fn stretch_of(strain: f64) -> f64 {
+    if strain.abs() < 1e-4 {
+        1.0 + strain * (1.0 + strain * (0.5 + strain * (SIXTH + strain * PER_24)))
+    } else {
+        elementary::exp(strain)
+    }
+}
+
+/// A stress turned with the material over a step of displacement gradient `A`: `Q σ Qᵀ` with the
+/// rotation `Q = (I − W/2)⁻¹(I + W/2)`, `W = skew A` (Hughes & Winget 1980). Together with the rate
+/// form it is Jaumann's stress rate, and exactly objective under a rigid rotation.
+#[inline]
+pub fn rotated<const D: usize>(stress: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
+    if D != 2 {
+        return *stress;
+    }
+    let half = 0.25 * (increment[1][0] - increment[0][1]);
+    let per = 1.0 / (1.0 + half * half);
+    let (cosine, sine) = ((1.0 - half * half) * per, 2.0 * half * per);
+    let turn: Tensor<D> = std::array::from_fn(|i| {
+        std::array::from_fn(|j| match (i, j) {
+            (0, 1) => -sine,
+            (1, 0) => sine,
+            _ => cosine,
+        })
+    });
+    product_with_transpose(&product(&turn, stress), &turn)
+}
+
+/// `F⁻¹ exp(−A)` for a step's strain `A`, to third order in it.
+#[inline]
+fn relaxed<const D: usize>(inverse: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
+    let once = product(inverse, increment);
+    let twice = product(&once, increment);
+    std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j] - once[i][j] + 0.5 * twice[i][j]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stretch_is_the_exponential() {
+        for strain in [-0.3_f64, -9e-5, -1e-7, 0.0, 3e-6, 9.9e-5, 0.2] {
+            assert!((stretch_of(strain) / strain.exp() - 1.0).abs() < 3e-16);
+        }
+    }
+
+    #[test]
+    fn a_stress_turns_with_the_material_and_keeps_its_invariants() {
+        // A quarter turn in a thousand steps takes the stress along x to one along y.
+        let angle = std::f64::consts::FRAC_PI_2 / 1000.0;
+        let mut stress = [[5.0, 1.0], [1.0, -2.0]];
+        // Q with tan(θ/2) = w/2 turns by θ.
+        let spin = 2.0 * (0.5 * angle).tan();
+        for _ in 0..1000 {
+            stress = rotated(&stress, &[[0.0, -spin], [spin, 0.0]]);
+        }
+        for (got, exact) in stress.iter().flatten().zip([-2.0, -1.0, -1.0, 5.0]) {
+            assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
+        }
+        let stretched = rotated(&stress, &[[0.1, 0.3], [0.3, -0.2]]);
+        assert_eq!(stretched, stress, "a strain without spin turns nothing");
+    }
+
+    #[test]
+    fn the_inverse_deformation_keeps_to_the_volume() {
+        let mut inverse = [[1.0, 0.0], [0.0, 1.0]];
+        let increment = [[1e-6, 3e-6], [-2e-6, -4e-6]];
+        for _ in 0..50_000 {
+            inverse = relaxed(&inverse, &increment);
+        }
+        let determinant: f64 = inverse[0][0] * inverse[1][1] - inverse[0][1] * inverse[1][0];
+        assert!((determinant.ln() - 50_000.0 * 3e-6).abs() < 1e-10, "det F⁻¹ = exp(−tr ε)");
+    }
+}
