@@ -33,12 +33,8 @@ mod file_text;
 pub mod references;
 pub mod tolerance;
 
-use crate::exact::exact_error::ExactError;
-use crate::golden::references::{REFERENCES, perturbed_reference_values, reference_values};
-use crate::golden::tolerance::spread_by_group;
 use crate::record::provenance::Provenance;
-use crate::record::store::StoreError;
-use crate::record::whole_file::write_whole;
+use crate::record::whole_file::{StoreError, write_whole};
 use crate::record::{ErrorRow, Record};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -136,17 +132,6 @@ impl GoldenFile {
         }
     }
 
-    /// The present values of the exact solutions as golden, for a reason.
-    ///
-    /// # Errors
-    /// When a solution refuses its column: a fault of this program.
-    pub fn of_references(reason: &str) -> Result<Self, ExactError> {
-        let values = reference_values()?;
-        let spread = spread_by_group(&values, &perturbed_reference_values()?);
-        let golden = Self { seconds: None, values, ..Self::of(REFERENCES, &[], reason) };
-        Ok(golden.with_spread(spread))
-    }
-
     /// Path of a study's golden file in a folder.
     pub fn path(folder: &Path, study: &str) -> PathBuf {
         folder.join(format!("{study}.csv"))
@@ -206,6 +191,11 @@ pub fn measure_name(row: &ErrorRow) -> String {
         row.reference,
         row.time_factor
     )
+}
+
+/// Case and measure of a golden value's name.
+pub(crate) fn parts(name: &str) -> (&str, &str) {
+    name.rsplit_once(" | ").unwrap_or((name, ""))
 }
 
 /// Every measured error and work counter of records, by name.

@@ -2,13 +2,23 @@
 
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::table::SolvedBody;
 use crate::import::units::{HorizontalSense, StatedPlace, StressSign, StressUnit, VerticalSense};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
 /// Share of the height by which a place may lie outside: round-off of a written number.
 const RIM: f64 = 1e-6;
+
+/// What was solved, as far as it takes to read a result of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolvedBody {
+    /// Height, m.
+    pub height: f64,
+    /// Length along a layer, m; a column has none.
+    pub length: Option<f64>,
+    /// Seconds at which `T_v = 1`.
+    pub seconds_per_time_factor: f64,
+}
 
 /// One row in SI.
 pub struct SampleRow {

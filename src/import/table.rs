@@ -2,7 +2,7 @@
 
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::sample_row::{SampleRow, rows_of};
+use crate::import::sample_row::{SampleRow, SolvedBody, rows_of};
 use std::path::PathBuf;
 
 /// Rows closer than this share of their time are of one time.
@@ -31,17 +31,6 @@ pub struct SampledState {
     pub horizontal_displacement: Vec<f64>,
     /// Rows that stand at the place of another, and that no other column tells from it.
     pub repeated: usize,
-}
-
-/// What was solved, as far as it takes to read a result of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SolvedBody {
-    /// Height, m.
-    pub height: f64,
-    /// Length along a layer, m; a column has none.
-    pub length: Option<f64>,
-    /// Seconds at which `T_v = 1`.
-    pub seconds_per_time_factor: f64,
 }
 
 /// States of all rows of the files of one run, by time.

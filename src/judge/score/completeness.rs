@@ -7,6 +7,7 @@ use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::coverage;
 use crate::judge::score::coverage::Bare;
+use crate::judge::score::times::time_factors;
 
 /// Share by which volumes may differ beyond what consolidation explains: round-off of written
 /// numbers.
@@ -135,7 +136,7 @@ impl Whole<'_> {
         let nearest = self.volumes.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
         let scene = nearest.filter(|volume| self.is_declared || off(volume) <= ln(OTHER_UNIT));
         let whole = scene.unwrap_or(largest);
-        let times = crate::judge::score::time_factors(self.parameters, states);
+        let times = time_factors(self.parameters, states);
         let reference = Reference::new(self.reference, self.parameters, &times)?;
         let mut worst: Option<(usize, f64)> = None;
         for (place, (sum, time)) in sums.iter().zip(&times).enumerate() {
@@ -309,7 +310,7 @@ pub fn uneven_meshes(
             let lines = coverage::lines(&state.initial_height, height);
             // Nodes have one more than there are spacings.
             let reaches = |line: Option<&f64>, end: f64| {
-                line.is_some_and(|y| (y - end).abs() <= crate::judge::score::RIM * height)
+                line.is_some_and(|y| (y - end).abs() <= coverage::SAME_PLACE * height)
             };
             let nodes = reaches(lines.first(), 0.0) && reaches(lines.last(), height);
             (lines.len() - usize::from(nodes)) as f64 / *cells as f64

@@ -12,6 +12,7 @@ use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::Finding;
+use crate::judge::score::times::time_factors;
 use crate::measure::error_contributions::contributions;
 use crate::measure::exact_fields::{ExactFields, SamplePlaces};
 use crate::measure::field_errors::{FieldError, LONG_AFTER, resolution, settlement_error};
@@ -96,11 +97,6 @@ impl SampledState {
     fn places(&self, height: f64) -> SamplePlaces<'_> {
         SamplePlaces { height, heights: &self.initial_height, distances: &self.initial_distance }
     }
-}
-
-/// Time factors of states.
-pub fn time_factors(parameters: &ColumnParameters, states: &[SampledState]) -> Vec<f64> {
-    states.iter().map(|state| parameters.time_factor(state.time)).collect()
 }
 
 /// Holds states against references.

@@ -1,8 +1,8 @@
 //! Checks of the rules of step sizes.
 
 use crate::mpm::run::TimeStepRule;
-use crate::study::check::Checker;
-use crate::study::file::TimeStepTable;
+use crate::study::check::checker::Checker;
+use crate::study::choice_tables::TimeStepTable;
 use std::ops::Range;
 
 impl Checker<'_> {
