@@ -137,7 +137,8 @@ fn drift_found(what: &str, found: Option<f64>, below: f64) -> Check {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::{RunOptions, run_study};
+    use crate::campaign::run_options::RunOptions;
+    use crate::campaign::runner::run_study;
     use crate::case::tier::Tier;
     use crate::study::check::Study;
     use crate::study::expectation::Measure;

@@ -118,7 +118,8 @@ fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::{RunOptions, run_study};
+    use crate::campaign::run_options::RunOptions;
+    use crate::campaign::runner::run_study;
     use crate::case::norm::Norm;
     use crate::case::tier::Tier;
     use crate::convergence::class::{Class, Classification};

@@ -79,7 +79,8 @@ pub fn compare<'a, 'b>(runs: &'b [TimedRun<'a>]) -> Vec<Comparison<'a, 'b>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::{RunOptions, run_study};
+    use crate::campaign::run_options::RunOptions;
+    use crate::campaign::runner::run_study;
     use crate::case::tier::Tier;
     use crate::judge::work_precision::WorkPrecision;
     use crate::record::{Record, WallSample};

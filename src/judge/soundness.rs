@@ -36,7 +36,8 @@ pub fn complaints(record: &Record) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::{RunOptions, run_study};
+    use crate::campaign::run_options::RunOptions;
+    use crate::campaign::runner::run_study;
     use crate::case::tier::Tier;
     use crate::study::check::Study;
     use crate::study::file::StudySource;

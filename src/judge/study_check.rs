@@ -1,6 +1,6 @@
 //! A study held against its expectations, its golden values, and what must hold of any record.
 
-use crate::campaign::RunError;
+use crate::campaign::run_report::RunError;
 use crate::case::tier::Tier;
 use crate::exact::exact_error::ExactError;
 use crate::golden::case_changes::{CaseChange, case_changes};

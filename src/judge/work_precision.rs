@@ -166,7 +166,8 @@ fn next_levels(records: &[Record], reference: &str) -> Vec<NextLevel> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::{RunOptions, run_study};
+    use crate::campaign::run_options::RunOptions;
+    use crate::campaign::runner::run_study;
     use crate::case::tier::Tier;
     use crate::record::WallSample;
     use crate::study::check::Study;

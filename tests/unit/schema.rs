@@ -1,5 +1,6 @@
 use super::*;
-use crate::campaign::{RunOptions, run_study};
+use crate::campaign::run_options::RunOptions;
+use crate::campaign::runner::run_study;
 use crate::case::tier::Tier;
 use crate::study::check::Study;
 use crate::study::file::StudySource;

@@ -1,6 +1,9 @@
 //! `oedometer run`: the cases of study files, their records and one tidy CSV a study.
 
-use crate::campaign::{RunError, RunOptions, RunReport, Selected, Shard, run_studies, time_study};
+use crate::campaign::run_options::{RunOptions, Selected, Shard};
+use crate::campaign::run_report::{RunError, RunReport};
+use crate::campaign::runner::run_studies;
+use crate::campaign::timing::time_study;
 use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::cli::exit::{Ended, Exit};
