@@ -1,5 +1,6 @@
 //! What is measured, and where.
 
+use crate::mpm::run::snapshot::{Samples, Snapshot};
 use serde::{Deserialize, Serialize};
 
 /// A measured quantity.
@@ -31,6 +32,16 @@ impl Quantity {
             Self::Settlement => "settlement",
         }
     }
+
+    /// Its field among samples; a settlement is none.
+    pub fn field(self, samples: &Samples) -> Option<&[f64]> {
+        match self {
+            Self::Pressure => Some(&samples.pressure),
+            Self::EffectiveStress => Some(&samples.effective_stress),
+            Self::Displacement => Some(&samples.displacement),
+            Self::Settlement => None,
+        }
+    }
 }
 
 /// Where a quantity is sampled: it decides the order that is seen.
@@ -60,6 +71,16 @@ impl Sample {
             Self::Centres => "centres",
             Self::Nodes => "nodes",
             Self::Surface => "surface",
+        }
+    }
+
+    /// The samples of a state; the surface has none but its settlement.
+    pub fn of(self, snapshot: &Snapshot) -> Option<&Samples> {
+        match self {
+            Self::Points => Some(&snapshot.points),
+            Self::Centres => Some(&snapshot.centres),
+            Self::Nodes => Some(&snapshot.nodes),
+            Self::Surface => None,
         }
     }
 }

@@ -106,9 +106,7 @@ fn critical_step_found(within: f64, record: &Record) -> Check {
 
 fn error_found(range: &ErrorRange, record: &Record) -> Check {
     let measure = &range.measure;
-    let row =
-        record.error(measure.quantity, measure.sample, measure.norm, &measure.reference, measure.time_factor);
-    let Some(error) = row.map(|row| row.value.abs()) else {
+    let Some(error) = measure.error(record).map(|row| row.value.abs()) else {
         return check("error", false, None, format!("no error at T_v = {}", typed(measure.time_factor)));
     };
     let pass = error < range.below && error >= range.above;

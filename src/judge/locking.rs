@@ -155,7 +155,7 @@ fn standing(
             let speed = formula::fastest_wave_speed(soil, soil.porosity);
             record.step_sizes.predicted_critical * speed / record.case.cell_size()
         }),
-        seconds: plain.and_then(|record| median(&record.wall_alone()).ok()),
+        seconds: plain.and_then(|record| median(&record.wall_alone())),
     })
 }
 

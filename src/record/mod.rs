@@ -228,6 +228,12 @@ impl Record {
         })
     }
 
+    /// The state at the output of a time factor, where the run came to it.
+    pub fn snapshot(&self, time_factor: f64) -> Option<&Snapshot> {
+        let index = self.case.time_factors.iter().position(|factor| *factor == time_factor)?;
+        self.snapshots.get(index)
+    }
+
     /// Wall times of runs that had the machine to themselves, s.
     pub fn wall_alone(&self) -> Vec<f64> {
         self.wall.iter().filter(|sample| sample.alone).map(|sample| sample.seconds).collect()

@@ -8,6 +8,7 @@ use crate::case::tier::Tier;
 use crate::convergence::series_demand::SeriesDemand as Demand;
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::method::Method;
+use crate::record::{ErrorRow, Record};
 use crate::wording::typed;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -68,6 +69,13 @@ pub struct Measure {
     /// reference.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub probe: Option<f64>,
+}
+
+impl Measure {
+    /// The error of a record, where it was measured.
+    pub fn error<'a>(&self, record: &'a Record) -> Option<&'a ErrorRow> {
+        record.error(self.quantity, self.sample, self.norm, &self.reference, self.time_factor)
+    }
 }
 
 impl fmt::Display for Measure {
