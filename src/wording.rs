@@ -39,6 +39,23 @@ pub fn orders(values: &[f64]) -> String {
     values.iter().map(|value| order(*value)).collect::<Vec<_>>().join(", ")
 }
 
+/// Gives an enumeration its words: `ALL` in the order of tables, and the `name` of each in files.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! words {
+    ($kind:ident: $($variant:ident $word:literal),+ $(,)?) => {
+        impl $kind {
+            /// Every one, in the order of tables.
+            pub const ALL: [Self; [$($word),+].len()] = [$(Self::$variant),+];
+
+            /// Name in files, records and tables.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $word),+ }
+            }
+        }
+    };
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

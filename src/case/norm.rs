@@ -19,20 +19,9 @@ pub enum Norm {
     Relative,
 }
 
+crate::words!(Norm: L1 "l1", L2 "l2", Linf "linf", Relative "relative");
+
 impl Norm {
-    /// Every norm, in the order of reports.
-    pub const ALL: [Self; 4] = [Self::L1, Self::L2, Self::Linf, Self::Relative];
-
-    /// Name in study files and records.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::L1 => "l1",
-            Self::L2 => "l2",
-            Self::Linf => "linf",
-            Self::Relative => "relative",
-        }
-    }
-
     /// Formula of the relative form, for reports; `x` computed, `x̂` exact, `V` volume.
     pub const fn formula(self) -> &'static str {
         match self {

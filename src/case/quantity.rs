@@ -19,20 +19,13 @@ pub enum Quantity {
     Settlement,
 }
 
+crate::words!(
+    Quantity:
+    Pressure "pressure", EffectiveStress "effective_stress", Displacement "displacement",
+    Settlement "settlement",
+);
+
 impl Quantity {
-    /// Every quantity.
-    pub const ALL: [Self; 4] = [Self::Pressure, Self::EffectiveStress, Self::Displacement, Self::Settlement];
-
-    /// Name in study files, records and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Pressure => "pressure",
-            Self::EffectiveStress => "effective_stress",
-            Self::Displacement => "displacement",
-            Self::Settlement => "settlement",
-        }
-    }
-
     /// Its field among samples; a settlement is none.
     pub fn field(self, samples: &Samples) -> Option<&[f64]> {
         match self {
@@ -60,20 +53,9 @@ pub enum Sample {
     Surface,
 }
 
+crate::words!(Sample: Points "points", Centres "centres", Nodes "nodes", Surface "surface");
+
 impl Sample {
-    /// Every sample.
-    pub const ALL: [Self; 4] = [Self::Points, Self::Centres, Self::Nodes, Self::Surface];
-
-    /// Name in study files, records and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Points => "points",
-            Self::Centres => "centres",
-            Self::Nodes => "nodes",
-            Self::Surface => "surface",
-        }
-    }
-
     /// The samples of a state; the surface has none but its settlement.
     pub fn of(self, snapshot: &Snapshot) -> Option<&Samples> {
         match self {

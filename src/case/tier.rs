@@ -12,16 +12,4 @@ pub enum Tier {
     Full,
 }
 
-impl Tier {
-    /// Every tier, the smallest first.
-    pub const ALL: [Self; 3] = [Self::Smoke, Self::Ci, Self::Full];
-
-    /// Name in study files and at the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Smoke => "smoke",
-            Self::Ci => "ci",
-            Self::Full => "full",
-        }
-    }
-}
+crate::words!(Tier: Smoke "smoke", Ci "ci", Full "full");

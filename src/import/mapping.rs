@@ -248,34 +248,16 @@ impl Mapping {
     /// A column without its unit, sign or end; or no column at all.
     fn undeclared_column(&self) -> Option<(String, String)> {
         let (columns, units, sign) = (&self.columns, &self.units, &self.sign);
-        let has_stress = units.stress.is_some();
-        let has_displacement = units.displacement.is_some();
-        let stress = ("stress = \"kPa\"", "compression-positive");
+        let stress = (units.stress.is_some(), "stress = \"kPa\"");
+        let displacement = (units.displacement.is_some(), "displacement = \"mm\"");
+        let (is_stress, compressive) = (columns.effective_stress.is_some(), "compression-positive");
         let rows = [
-            ("p", columns.p.is_some(), has_stress, sign.p.is_some(), stress),
-            (
-                "u_y",
-                columns.u_y.is_some(),
-                has_displacement,
-                sign.u_y.is_some(),
-                ("displacement = \"mm\"", "up"),
-            ),
-            (
-                "u_x",
-                columns.u_x.is_some(),
-                has_displacement,
-                sign.u_x.is_some(),
-                ("displacement = \"mm\"", "right"),
-            ),
-            (
-                "effective_stress",
-                columns.effective_stress.is_some(),
-                has_stress,
-                sign.effective_stress.is_some(),
-                stress,
-            ),
+            ("p", columns.p.is_some(), stress, sign.p.is_some(), compressive),
+            ("u_y", columns.u_y.is_some(), displacement, sign.u_y.is_some(), "up"),
+            ("u_x", columns.u_x.is_some(), displacement, sign.u_x.is_some(), "right"),
+            ("effective_stress", is_stress, stress, sign.effective_stress.is_some(), compressive),
         ];
-        for (name, given, has_unit, has_sign, (unit, word)) in rows {
+        for (name, given, (has_unit, unit), has_sign, word) in rows {
             if given && !has_unit {
                 return Some((
                     format!("the unit of the column `{name}` is not declared"),

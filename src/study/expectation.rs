@@ -27,21 +27,15 @@ pub enum Axis {
     WaterBulkModulus,
 }
 
+crate::words!(
+    Axis:
+    Cells "cells", TimeStep "time_step", PointsPerCell "points_per_cell",
+    WaterBulkModulus "water_bulk_modulus",
+);
+
 impl Axis {
-    /// Every axis.
-    pub const ALL: [Self; 4] = [Self::Cells, Self::TimeStep, Self::PointsPerCell, Self::WaterBulkModulus];
     /// Those along which a discretisation gets finer.
     pub const REFINEMENTS: [Self; 3] = [Self::Cells, Self::TimeStep, Self::PointsPerCell];
-
-    /// Name in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Cells => "cells",
-            Self::TimeStep => "time_step",
-            Self::PointsPerCell => "points_per_cell",
-            Self::WaterBulkModulus => "water_bulk_modulus",
-        }
-    }
 }
 
 /// The reference that is no other theory: the same run at the next finer level. Differences of

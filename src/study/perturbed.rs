@@ -11,18 +11,12 @@ pub enum LastDigit {
     Conductivity,
 }
 
+crate::words!(
+    LastDigit:
+    Stiffness "last digit of the stiffness", Conductivity "last digit of the conductivity",
+);
+
 impl LastDigit {
-    /// Every such input.
-    pub const ALL: [Self; 2] = [Self::Stiffness, Self::Conductivity];
-
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Stiffness => "last digit of the stiffness",
-            Self::Conductivity => "last digit of the conductivity",
-        }
-    }
-
     /// Changes the digit.
     pub fn change(self, youngs_modulus: &mut f64, hydraulic_conductivity: &mut f64) {
         match self {
