@@ -163,3 +163,14 @@ fn run_and_keep(
     });
     Some(Ok(record))
 }
+
+/// Records of the whole study of a text.
+#[cfg(test)]
+pub(crate) fn records_of(text: &str) -> Vec<Record> {
+    use crate::case::tier::Tier;
+    use crate::study::file::StudySource;
+
+    let source = StudySource { name: "study.toml".to_owned(), text: text.to_owned() };
+    let study = Study::check(&source).expect("a sound study");
+    run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records
+}

@@ -31,16 +31,6 @@ impl Norm {
             Self::Relative => "|x − x̂| / |x̂|",
         }
     }
-
-    /// Formula of the absolute form, for reports; in the unit of the field.
-    pub const fn absolute_formula(self) -> &'static str {
-        match self {
-            Self::L1 => "Σ V|x − x̂| / Σ V",
-            Self::L2 => "√(Σ V(x − x̂)² / Σ V)",
-            Self::Linf => "max|x − x̂|",
-            Self::Relative => "|x − x̂|",
-        }
-    }
 }
 
 impl fmt::Display for Norm {

@@ -86,33 +86,25 @@ pub enum GoldenError {
     /// There is no file.
     #[error("there is no golden file {0}: look at the results, then `oedometer accept` them with a reason")]
     Missing(PathBuf),
-    /// The file cannot be read.
-    #[error("the golden file {path} cannot be read: {reason}")]
-    Unreadable {
+    /// The file cannot be read or written, or allows what no golden file may.
+    #[error("the golden file {path} {what}: {reason}")]
+    Refused {
         /// Which.
         path: PathBuf,
-        /// Why.
-        reason: String,
-    },
-    /// The file allows what no golden file may.
-    #[error("the golden file {path} is refused: {reason}")]
-    OutOfBounds {
-        /// Which.
-        path: PathBuf,
-        /// What is out of bounds.
-        reason: String,
-    },
-    /// The values have no text.
-    #[error("the golden file {path} cannot be written: {reason}")]
-    Unwritable {
-        /// Which.
-        path: PathBuf,
+        /// What is wrong with it.
+        what: &'static str,
         /// Why.
         reason: String,
     },
     /// The file system refuses.
     #[error(transparent)]
     Store(#[from] StoreError),
+}
+
+impl GoldenError {
+    fn refused(path: &Path, what: &'static str, reason: String) -> Self {
+        Self::Refused { path: path.to_owned(), what, reason }
+    }
 }
 
 impl GoldenFile {
@@ -143,7 +135,7 @@ impl GoldenFile {
     /// When it is missing, unreadable or out of bounds.
     pub fn read(folder: &Path, study: &str) -> Result<Self, GoldenError> {
         let path = Self::path(folder, study);
-        let unreadable = |reason: String| GoldenError::Unreadable { path: path.clone(), reason };
+        let unreadable = |reason: String| GoldenError::refused(&path, "cannot be read", reason);
         let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
@@ -156,7 +148,7 @@ impl GoldenFile {
             return Err(unreadable(format!("it is of study `{}` and layout {}", file.study, file.schema)));
         }
         match file.out_of_bounds() {
-            Some(reason) => Err(GoldenError::OutOfBounds { path, reason }),
+            Some(reason) => Err(GoldenError::refused(&path, "is refused", reason)),
             None => Ok(file),
         }
     }
@@ -168,9 +160,10 @@ impl GoldenFile {
     pub fn write(&self, folder: &Path) -> Result<PathBuf, GoldenError> {
         let path = Self::path(folder, &self.study);
         if let Some(reason) = self.out_of_bounds() {
-            return Err(GoldenError::OutOfBounds { path, reason });
+            return Err(GoldenError::refused(&path, "is refused", reason));
         }
-        let text = self.to_text().map_err(|reason| GoldenError::Unwritable { path: path.clone(), reason })?;
+        let text =
+            self.to_text().map_err(|reason| GoldenError::refused(&path, "cannot be written", reason))?;
         write_whole(&path, text.as_bytes())?;
         Ok(path)
     }

@@ -104,24 +104,18 @@ fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::run_options::RunOptions;
-    use crate::campaign::runner::run_study;
+    use crate::campaign::runner::records_of;
     use crate::case::norm::Norm;
     use crate::case::quantity::Sample;
-    use crate::case::tier::Tier;
     use crate::convergence::class::{Class, Classification};
     use crate::judge::paths::{first_norm, paths};
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
 
     fn records(rule: &str, cells: &str) -> Vec<Record> {
         let text = format!(
             "title = \"Causes\"\nscene = \"terzaghi\"\noutput = {{ time_factors = [0.05, 0.2] }}\n[[sweep]]\n\
              method = [\"GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = {cells}\ntime_step = [{rule}]\n"
         );
-        let source = StudySource { name: "causes.toml".to_owned(), text };
-        let study = Study::check(&source).expect("a sound study");
-        run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records
+        records_of(&text)
     }
 
     fn class_of(records: &[Record], quantity: Quantity, reference: &str, time_factor: f64) -> Classification {

@@ -181,7 +181,7 @@ fn series_order(
     let found = paths(&plain, Axis::Cells);
     let Some(path) = found.first() else { return (None, None) };
     let summary = path.summary(&measure);
-    let order = summary.finest.ok().map(|finest| finest.order);
+    let order = summary.finest.ok();
     (Some(summary.classification.class), order.filter(|_| summary.classification.class != Class::Locked))
 }
 

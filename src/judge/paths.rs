@@ -6,7 +6,7 @@ use crate::case::tier::Tier;
 use crate::case::{Case, step_label};
 use crate::convergence::class::classify::classify;
 use crate::convergence::class::{Classification, Context};
-use crate::convergence::orders::{FinestOrder, PairOrder, SlopeFit, finest_order, pair_orders, slope};
+use crate::convergence::orders::{SlopeFit, finest_order, pair_orders, slope};
 use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
 use crate::convergence::series_demand::SeriesDemand as Demand;
 use crate::convergence::uncertainty::NumericalUncertainty;
@@ -41,11 +41,11 @@ pub struct SeriesSummary<'a> {
     /// Sizes and absolute values of the errors.
     pub series: ErrorSeries,
     /// Orders between neighbours.
-    pub pairs: Vec<PairOrder>,
+    pub pairs: Vec<Result<f64, Undefined>>,
     /// Straight fit over all levels.
     pub slope: Result<SlopeFit, Undefined>,
     /// Order on the finest window.
-    pub finest: Result<FinestOrder, Undefined>,
+    pub finest: Result<f64, Undefined>,
     /// Class, reason and floor.
     pub classification: Classification,
 }

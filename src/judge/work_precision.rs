@@ -162,12 +162,8 @@ fn next_levels(records: &[Record], reference: &str) -> Vec<NextLevel> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::run_options::RunOptions;
-    use crate::campaign::runner::run_study;
-    use crate::case::tier::Tier;
+    use crate::campaign::runner::records_of;
     use crate::record::WallSample;
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
 
     const STUDY: &str = r#"title = "One more level"
 scene = "terzaghi"
@@ -184,9 +180,7 @@ time_step = [{ growth = 0.005 }]
 
     #[test]
     fn the_coarser_levels_predict_cost_and_error_of_the_finest() {
-        let source = StudySource { name: "levels.toml".to_owned(), text: STUDY.to_owned() };
-        let study = Study::check(&source).expect("a sound study");
-        let mut records = run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records;
+        let mut records = records_of(STUDY);
         for record in &mut records {
             // A cost that is the same on every machine.
             let seconds = 1e-9 * record.counters.point_updates as f64;

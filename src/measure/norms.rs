@@ -7,7 +7,7 @@
 use crate::case::norm::Norm;
 use crate::elementary;
 
-/// Norm of `computed − exact`, in the unit of the field ([`Norm::absolute_formula`]).
+/// Norm of `computed − exact` as a mean over the volume, in the unit of the field.
 ///
 /// Samples of zero volume count in no norm. None where the lists are empty, do not match, hold what is not a
 /// number or no volume at all, or where the norm is beyond the range of a double.
