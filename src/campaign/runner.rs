@@ -6,8 +6,8 @@ use crate::campaign::run_report::{Progress, RunError, RunReport};
 use crate::campaign::work_estimate::{estimated_work, work_of};
 use crate::case::Case;
 use crate::mpm::run::Kernel;
+use crate::record::Record;
 use crate::record::store::{Found, RecordStore};
-use crate::record::{Record, Status};
 use crate::study::check::Study;
 use std::cell::Cell;
 use std::sync::Mutex;
@@ -156,10 +156,7 @@ fn run_and_keep(
     tell(Progress::Finished {
         study: study.name.clone(),
         label: case.label(),
-        failure: match &record.status {
-            Status::Ok => None,
-            Status::Failed(failure) => Some(failure.to_string()),
-        },
+        failure: record.status.failure().map(ToString::to_string),
     });
     Some(Ok(record))
 }

@@ -8,13 +8,6 @@ use crate::record::store::RecordStore;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 
-/// What timing a study took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TimingReport {
-    /// Runs made for their wall time.
-    pub runs: usize,
-}
-
 /// Repeats of a case that takes long end here: their spread is small, and they would make the study
 /// wait for what it knows.
 const REPEATS_OF_LONG_CASES: usize = 3;
@@ -39,8 +32,8 @@ pub fn time_study(
     records: &mut [Record],
     store: Option<&RecordStore>,
     tell: &(dyn Fn(Progress) + Sync),
-) -> Result<TimingReport, RunError> {
-    let mut report = TimingReport::default();
+) -> Result<(), RunError> {
+    let mut is_timed = false;
     for _ in 0..study.timing_repeats {
         for record in &mut *records {
             if !wants_timing(record, study.timing_repeats) {
@@ -49,14 +42,14 @@ pub fn time_study(
             let timed = run_case(&record.case, &study.references, Kernel::Fastest, true, &|_, _| true)
                 .map_err(|source| RunError::Case { label: record.case.label(), source })?;
             record.wall.extend(timed.wall);
-            report.runs += 1;
+            is_timed = true;
             tell(Progress::Advanced(estimated_work(&record.case)));
         }
     }
-    if let Some(store) = store.filter(|_| report.runs > 0) {
+    if let Some(store) = store.filter(|_| is_timed) {
         for record in &*records {
             store.write_wall(record)?;
         }
     }
-    Ok(report)
+    Ok(())
 }

@@ -201,6 +201,13 @@ impl Default for TableLayout {
     }
 }
 
+/// What is not declared, and how to declare it.
+type Undeclared = (String, String);
+
+fn undeclared(what: &str, help: &str) -> Undeclared {
+    (what.to_owned(), help.to_owned())
+}
+
 impl Mapping {
     /// The mapping of a text.
     ///
@@ -241,12 +248,12 @@ impl Mapping {
     }
 
     /// A column that lacks a declaration, and how to give it.
-    fn undeclared(&self) -> Option<(String, String)> {
+    fn undeclared(&self) -> Option<Undeclared> {
         self.undeclared_column().or_else(|| self.undeclared_place()).or_else(|| self.undeclared_layout())
     }
 
     /// A column without its unit, sign or end; or no column at all.
-    fn undeclared_column(&self) -> Option<(String, String)> {
+    fn undeclared_column(&self) -> Option<Undeclared> {
         let (columns, units, sign) = (&self.columns, &self.units, &self.sign);
         let stress = (units.stress.is_some(), "stress = \"kPa\"");
         let displacement = (units.displacement.is_some(), "displacement = \"mm\"");
@@ -259,36 +266,29 @@ impl Mapping {
         ];
         for (name, given, (has_unit, unit), has_sign, word) in rows {
             if given && !has_unit {
-                return Some((
-                    format!("the unit of the column `{name}` is not declared"),
-                    format!("add `{unit}` to [units]"),
-                ));
+                let what = format!("the unit of the column `{name}` is not declared");
+                return Some((what, format!("add `{unit}` to [units]")));
             }
             if given && !has_sign {
-                return Some((
-                    format!("the sign of the column `{name}` is not declared"),
-                    format!("add `{name} = \"{word}\"` to [sign]"),
-                ));
+                let what = format!("the sign of the column `{name}` is not declared");
+                return Some((what, format!("add `{name} = \"{word}\"` to [sign]")));
             }
         }
         if columns.x.is_some() && sign.x.is_none() {
-            return Some((
-                "the end from which `x` counts is not declared".to_owned(),
+            return Some(undeclared(
+                "the end from which `x` counts is not declared",
                 "add `x = \"right\"` to [sign] where x = 0 is under the crest of the load, `x = \"left\"` where it is \
-                 at the other end"
-                    .to_owned(),
+                 at the other end",
             ));
         }
         rows.iter().all(|(_, given, ..)| !given).then(|| {
-            (
-                "no column to score is named".to_owned(),
-                "name `p`, `u_y`, `u_x` or `effective_stress` in [columns]".to_owned(),
-            )
+            let help = "name `p`, `u_y`, `u_x` or `effective_stress` in [columns]";
+            undeclared("no column to score is named", help)
         })
     }
 
     /// Places, volumes and times that cannot be found.
-    fn undeclared_place(&self) -> Option<(String, String)> {
+    fn undeclared_place(&self) -> Option<Undeclared> {
         let columns = &self.columns;
         let is_current = self.position.y == StatedPlace::Current;
         for (place, given, component, has_component) in [
@@ -303,27 +303,22 @@ impl Mapping {
             }
         }
         if !(self.origin.x.is_finite() && self.origin.y.is_finite()) {
-            return Some(("an origin is no finite number".to_owned(), "write it as in the file".to_owned()));
+            return Some(undeclared("an origin is no finite number", "write it as in the file"));
         }
         if self.whole_volume.is_some_and(|volume| !(volume.is_finite() && volume > 0.0)) {
-            return Some((
-                "`whole_volume` is not positive".to_owned(),
-                "give what the volumes of all samples add up to".to_owned(),
-            ));
+            let help = "give what the volumes of all samples add up to";
+            return Some(undeclared("`whole_volume` is not positive", help));
         }
         (columns.t.is_none() && self.time.files.is_empty()).then(|| {
-            (
-                "no time is declared".to_owned(),
-                "name the column `t`, or give [time] files = { \"step_10.csv\" = 8.175 }".to_owned(),
-            )
+            let help = "name the column `t`, or give [time] files = { \"step_10.csv\" = 8.175 }";
+            undeclared("no time is declared", help)
         })
     }
 
     /// Marks of the file that no file can have.
-    fn undeclared_layout(&self) -> Option<(String, String)> {
-        (!self.csv.delimiter.is_ascii() || !self.csv.comment.is_none_or(|mark| mark.is_ascii())).then(|| {
-            ("a delimiter or comment mark is no ASCII character".to_owned(), "use \",\" or \";\"".to_owned())
-        })
+    fn undeclared_layout(&self) -> Option<Undeclared> {
+        (!self.csv.delimiter.is_ascii() || !self.csv.comment.is_none_or(|mark| mark.is_ascii()))
+            .then(|| undeclared("a delimiter or comment mark is no ASCII character", "use \",\" or \";\""))
     }
 }
 

@@ -4,7 +4,7 @@ use crate::convergence::class::Class;
 use crate::convergence::class::evaluable_series::plain;
 use crate::judge::paths::Judgement;
 use crate::judge::verdict::{Check, Verdict, VerdictOutcome, check};
-use crate::record::{Balance, Record, Status};
+use crate::record::{Balance, Record};
 use crate::study::case_expectation::{CaseDemand, CaseExpectation, ErrorRange};
 use crate::wording::typed;
 
@@ -55,12 +55,9 @@ impl CaseDemand {
 
 fn status_found(wanted: &str, record: &Record) -> Check {
     let found = record.status.name();
-    let how = match &record.status {
-        Status::Ok => String::new(),
-        Status::Failed(failure) => {
-            format!(" at step {}, t = {:.3e} s: {}", failure.step, failure.time, failure.reason)
-        }
-    };
+    let how = record.status.failure().map_or_else(String::new, |failure| {
+        format!(" at step {}, t = {:.3e} s: {}", failure.step, failure.time, failure.reason)
+    });
     let pass = found == wanted;
     let instead = if pass { String::new() } else { format!(" instead of {wanted}") };
     check("status", pass, None, format!("{found}{instead}{how}"))

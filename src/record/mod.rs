@@ -35,15 +35,20 @@ pub enum Status {
 impl Status {
     /// Whether the time was over before the case was.
     pub fn is_late(&self) -> bool {
-        matches!(self, Self::Failed(failure) if failure.kind == FailureKind::TimedOut)
+        self.failure().is_some_and(|failure| failure.kind == FailureKind::TimedOut)
+    }
+
+    /// How it failed, if it did.
+    pub fn failure(&self) -> Option<&Failure> {
+        match self {
+            Self::Ok => None,
+            Self::Failed(failure) => Some(failure),
+        }
     }
 
     /// `ok`, or the failure's name.
     pub fn name(&self) -> String {
-        match self {
-            Self::Ok => "ok".to_owned(),
-            Self::Failed(failure) => failure.kind.name().to_owned(),
-        }
+        self.failure().map_or("ok", |failure| failure.kind.name()).to_owned()
     }
 }
 

@@ -298,14 +298,6 @@ impl StudySource {
     ///
     /// # Errors
     /// What the parser refuses, with the nearest key.
-    pub fn parse(&self) -> Result<StudyFile, StudyError> {
-        self.read()
-    }
-
-    /// Reads TOML into any tables, with the complaints of a study.
-    ///
-    /// # Errors
-    /// What the parser refuses, with the nearest key.
     pub fn read<T: serde::de::DeserializeOwned>(&self) -> Result<T, StudyError> {
         toml::from_str(&self.text).map_err(|error| self.error(vec![explained(&error, &self.text)]))
     }

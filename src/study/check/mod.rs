@@ -85,7 +85,7 @@ impl Study {
     /// # Errors
     /// Every complaint with its place.
     pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
-        let file = source.parse()?;
+        let file: StudyFile = source.read()?;
         let mut checker =
             Checker { source, diagnostics: Vec::new(), column_height: None, multiplied_out: 0, purpose };
         let study = checker.study(&file);
