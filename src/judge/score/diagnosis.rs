@@ -54,12 +54,11 @@ pub fn diagnosis(
     let times: Vec<f64> = seen.iter().map(|state| parameters.time_factor(state.time)).collect();
     let solution = Reference::new(reference, parameters, &times)?;
     let exact = exact_of(&solution, parameters, &times, &seen)?;
-    let settled = parameters.final_settlement();
     let mut sentences: Vec<(String, Vec<&str>)> = Vec::new();
     for (quantity, column, scale) in [
         (Quantity::Pressure, "p", parameters.load),
         (Quantity::EffectiveStress, "effective_stress", parameters.load),
-        (Quantity::Displacement, "u_y", settled),
+        (Quantity::Displacement, "u_y", parameters.final_settlement()),
     ] {
         let trials = Trials {
             quantity,
@@ -179,8 +178,7 @@ impl Trials<'_> {
 
     /// The mistakes that would explain the error.
     fn all(&self, error: f64) -> Vec<Mistake> {
-        let convinces =
-            |mistake: &Mistake, improved: f64| mistake.left <= MENDED && mistake.left <= improved * error;
+        let convinces = |mistake: &Mistake, share: f64| mistake.left <= MENDED.min(share * error);
         let mut mistakes = self.signs_and_units();
         mistakes.extend(self.total_stress());
         mistakes.extend(self.turned());
@@ -201,6 +199,8 @@ impl Trials<'_> {
             StressUnit::ALL.map(|unit| (unit.name(), unit.pascals() / given.pascals())).to_vec()
         };
         let given = units.iter().find(|(_, factor)| *factor == 1.0).map_or("", |(name, _)| name);
+        // In a layer under a cosine the other end looks like the other sign.
+        let other_end = if self.solution.is_plane() { " Or does `x` count from the other end?" } else { "" };
         let mut mistakes = Vec::new();
         for (name, factor) in &units {
             for sign in [1.0, -1.0] {
@@ -209,7 +209,7 @@ impl Trials<'_> {
                 }
                 let unit = format!("is it in {name} where {given} is declared?");
                 let asked = match (*factor == 1.0, sign > 0.0) {
-                    (true, _) => format!("is the sign declared wrongly?{}", self.other_end()),
+                    (true, _) => format!("is the sign declared wrongly?{other_end}"),
                     (false, true) => unit,
                     (false, false) => format!("{unit} And is the sign declared wrongly?"),
                 };
@@ -220,11 +220,6 @@ impl Trials<'_> {
             }
         }
         mistakes
-    }
-
-    /// In a layer under a cosine the other end looks like the other sign.
-    fn other_end(&self) -> &'static str {
-        if self.solution.is_plane() { " Or does `x` count from the other end?" } else { "" }
     }
 
     /// The total stress where the effective one is declared.
@@ -346,11 +341,8 @@ impl Trials<'_> {
 
 /// A factor as one says it: −1.00, 0.001, 60.
 fn short_factor(factor: f64) -> String {
-    if factor.abs() == 1.0 {
-        format!("{factor:.2}").replace('-', "−")
-    } else {
-        short(factor).replace('-', "−")
-    }
+    let digits = if factor.abs() == 1.0 { format!("{factor:.2}") } else { short(factor) };
+    digits.replace('-', "−")
 }
 
 #[cfg(test)]
