@@ -113,7 +113,9 @@ mod study;
 mod wording;
 
 // What a study is, and how it is run and judged.
-pub use campaign::{RunOptions, Selected, run_case, run_studies, run_study};
+pub use campaign::case_run::run_case;
+pub use campaign::run_options::{RunOptions, Selected};
+pub use campaign::runner::{run_studies, run_study};
 pub use case::norm::Norm;
 pub use case::quantity::{Quantity, Sample};
 pub use case::tier::Tier;

@@ -39,6 +39,22 @@ pub fn orders(values: &[f64]) -> String {
     values.iter().map(|value| order(*value)).collect::<Vec<_>>().join(", ")
 }
 
+/// Gives an enumeration its words: `ALL` in the order of tables, and the `name` of each in files.
+macro_rules! words {
+    ($kind:ident: $($variant:ident $word:literal),+ $(,)?) => {
+        impl $kind {
+            /// Every one, in the order of tables.
+            pub const ALL: [Self; [$($word),+].len()] = [$(Self::$variant),+];
+
+            /// Name in files, records and tables.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $word),+ }
+            }
+        }
+    };
+}
+pub(crate) use words;
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,7 +6,7 @@ pub mod quantity;
 pub mod tier;
 
 use crate::elementary;
-use crate::mpm::explicit::{Drag, ExplicitSettings};
+use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery, StrainGradient};
 use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::Formulation;
@@ -16,6 +16,7 @@ use crate::scene::arrangement::Arrangement;
 use crate::scene::column::Column;
 use crate::soil::continuity::Continuity;
 use crate::soil::material::Material;
+use crate::wording::words;
 use serde::{Deserialize, Serialize};
 
 /// State and operators of a point, bytes.
@@ -35,18 +36,9 @@ pub enum Task {
     Stability,
 }
 
+words!(Task: Solve "solve", Stability "stability");
+
 impl Task {
-    /// Every task.
-    pub const ALL: [Self; 2] = [Self::Solve, Self::Stability];
-
-    /// Name in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Solve => "solve",
-            Self::Stability => "stability",
-        }
-    }
-
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     fn is_solve(&self) -> bool {
         *self == Self::Solve
@@ -167,36 +159,19 @@ impl Case {
     /// What is special about integration and equations: empty for the paper's integration of the
     /// scene's own equations.
     pub fn variant(&self) -> String {
-        let defaults = ExplicitSettings::default();
-        let mut parts = Vec::new();
-        if self.formulation != self.integrator.default_formulation() {
-            parts.push(self.formulation.name().to_owned());
-        }
-        if self.settings.scheme != defaults.scheme {
-            parts.push(self.settings.scheme.name().to_owned());
-        }
-        if self.settings.drag != defaults.drag {
-            parts.push(match self.settings.drag {
-                Drag::Explicit => "explicit drag".to_owned(),
-                Drag::Implicit => "implicit drag".to_owned(),
-                Drag::Centred => "centred drag".to_owned(),
-            });
-        }
-        if self.settings.flip != defaults.flip {
-            parts.push(format!("FLIP {}", self.settings.flip));
-        }
-        if self.settings.mapping_back != defaults.mapping_back {
-            parts.push("no mapping back".to_owned());
-        }
-        if self.column.dimensions == 2 && !self.scene.needs_two_dimensions() {
-            parts.push("two dimensions".to_owned());
-        }
-        if self.material.law != self.scene.default_law() {
-            parts.push(format!("{} law", self.material.law.name()));
-        }
-        if self.material.continuity != Continuity::Conservative {
-            parts.push("porosity gradient dropped".to_owned());
-        }
+        let (settings, usual) = (&self.settings, ExplicitSettings::default());
+        let named = [
+            (self.formulation != self.integrator.default_formulation(), self.formulation.name().to_owned()),
+            (settings.scheme != usual.scheme, settings.scheme.name().to_owned()),
+            (settings.drag != usual.drag, format!("{} drag", settings.drag.name())),
+            (settings.flip != usual.flip, format!("FLIP {}", settings.flip)),
+            (settings.mapping_back != usual.mapping_back, "no mapping back".to_owned()),
+            (self.column.dimensions == 2 && !self.scene.needs_two_dimensions(), "two dimensions".to_owned()),
+            (self.material.law != self.scene.default_law(), format!("{} law", self.material.law.name())),
+            (self.material.continuity != Continuity::Conservative, "porosity gradient dropped".to_owned()),
+        ];
+        let mut parts: Vec<String> =
+            named.into_iter().filter(|(is_special, _)| *is_special).map(|(_, name)| name).collect();
         parts.extend(self.arrangement());
         let seed = Material::default();
         if self.scene.shows_locking() && self.material.water_bulk_modulus != seed.water_bulk_modulus {
@@ -286,6 +261,7 @@ pub fn step_label(rule: &TimeStepRule) -> String {
 mod tests {
     use super::*;
     use crate::exact::parameters::Base;
+    use crate::mpm::explicit::Drag;
     use crate::mpm::explicit::scheme::Scheme;
     use crate::soil::law::Law;
 

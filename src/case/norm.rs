@@ -1,5 +1,7 @@
 //! Norms by name, with their formulas.
 
+use crate::wording::words;
+
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -19,20 +21,9 @@ pub enum Norm {
     Relative,
 }
 
+words!(Norm: L1 "l1", L2 "l2", Linf "linf", Relative "relative");
+
 impl Norm {
-    /// Every norm, in the order of reports.
-    pub const ALL: [Self; 4] = [Self::L1, Self::L2, Self::Linf, Self::Relative];
-
-    /// Name in study files and records.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::L1 => "l1",
-            Self::L2 => "l2",
-            Self::Linf => "linf",
-            Self::Relative => "relative",
-        }
-    }
-
     /// Formula of the relative form, for reports; `x` computed, `x̂` exact, `V` volume.
     pub const fn formula(self) -> &'static str {
         match self {
@@ -40,16 +31,6 @@ impl Norm {
             Self::L2 => "√(Σ V(x − x̂)²) / √(Σ V x̂²)",
             Self::Linf => "max|x − x̂| / max|x̂|",
             Self::Relative => "|x − x̂| / |x̂|",
-        }
-    }
-
-    /// Formula of the absolute form, for reports; in the unit of the field.
-    pub const fn absolute_formula(self) -> &'static str {
-        match self {
-            Self::L1 => "Σ V|x − x̂| / Σ V",
-            Self::L2 => "√(Σ V(x − x̂)² / Σ V)",
-            Self::Linf => "max|x − x̂|",
-            Self::Relative => "|x − x̂|",
         }
     }
 }

@@ -1,5 +1,7 @@
 //! What is measured, and where.
 
+use crate::mpm::run::snapshot::{Samples, Snapshot};
+use crate::wording::words;
 use serde::{Deserialize, Serialize};
 
 /// A measured quantity.
@@ -18,17 +20,20 @@ pub enum Quantity {
     Settlement,
 }
 
-impl Quantity {
-    /// Every quantity.
-    pub const ALL: [Self; 4] = [Self::Pressure, Self::EffectiveStress, Self::Displacement, Self::Settlement];
+words!(
+    Quantity:
+    Pressure "pressure", EffectiveStress "effective_stress", Displacement "displacement",
+    Settlement "settlement",
+);
 
-    /// Name in study files, records and tables.
-    pub fn name(self) -> &'static str {
+impl Quantity {
+    /// Its field among samples; a settlement is none.
+    pub fn field(self, samples: &Samples) -> Option<&[f64]> {
         match self {
-            Self::Pressure => "pressure",
-            Self::EffectiveStress => "effective_stress",
-            Self::Displacement => "displacement",
-            Self::Settlement => "settlement",
+            Self::Pressure => Some(&samples.pressure),
+            Self::EffectiveStress => Some(&samples.effective_stress),
+            Self::Displacement => Some(&samples.displacement),
+            Self::Settlement => None,
         }
     }
 }
@@ -49,17 +54,16 @@ pub enum Sample {
     Surface,
 }
 
-impl Sample {
-    /// Every sample.
-    pub const ALL: [Self; 4] = [Self::Points, Self::Centres, Self::Nodes, Self::Surface];
+words!(Sample: Points "points", Centres "centres", Nodes "nodes", Surface "surface");
 
-    /// Name in study files, records and tables.
-    pub fn name(self) -> &'static str {
+impl Sample {
+    /// The samples of a state; the surface has none but its settlement.
+    pub fn of(self, snapshot: &Snapshot) -> Option<&Samples> {
         match self {
-            Self::Points => "points",
-            Self::Centres => "centres",
-            Self::Nodes => "nodes",
-            Self::Surface => "surface",
+            Self::Points => Some(&snapshot.points),
+            Self::Centres => Some(&snapshot.centres),
+            Self::Nodes => Some(&snapshot.nodes),
+            Self::Surface => None,
         }
     }
 }

@@ -1,5 +1,7 @@
 //! How much of a study is run.
 
+use crate::wording::words;
+
 /// How much of a study is run: a tier includes those before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Tier {
@@ -12,16 +14,4 @@ pub enum Tier {
     Full,
 }
 
-impl Tier {
-    /// Every tier, the smallest first.
-    pub const ALL: [Self; 3] = [Self::Smoke, Self::Ci, Self::Full];
-
-    /// Name in study files and at the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Smoke => "smoke",
-            Self::Ci => "ci",
-            Self::Full => "full",
-        }
-    }
-}
+words!(Tier: Smoke "smoke", Ci "ci", Full "full");

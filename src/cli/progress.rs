@@ -1,7 +1,7 @@
 //! Progress of long work on standard error: a bar with an estimate on a terminal, nothing but
 //! failures elsewhere.
 
-use crate::campaign::Progress;
+use crate::campaign::run_report::Progress;
 use crate::cli::stream::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;

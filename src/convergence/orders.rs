@@ -1,11 +1,8 @@
-//! Observed orders of convergence: by pairs, by a straight fit to all levels, and on the finest
-//! window.
+//! Observed orders of convergence: by pairs, by a straight fit to all levels, and on the finest window.
 //!
 //! An interval alone is no gate: a Student-t interval takes curvature for noise, and `h² + 8h³`
 //! over the six levels h = 1/5 … 1/160 gives 2.25 ± 0.12. Whether an order means anything is decided in
 //! [`classify`](crate::convergence::class::classify) first.
-
-use serde::{Deserialize, Serialize};
 
 use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
 use crate::convergence::student::quantile_975;
@@ -14,19 +11,8 @@ use crate::elementary;
 /// Levels in the finest window, over which an order is judged.
 pub const WINDOW: usize = 3;
 
-/// Order between two neighbouring levels.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PairOrder {
-    /// Size of the coarser level.
-    pub coarse: f64,
-    /// Size of the finer level.
-    pub fine: f64,
-    /// `ln(e_c/e_f) / ln(h_c/h_f)`, for any ratio of sizes.
-    pub order: Result<f64, Undefined>,
-}
-
 /// Straight line `ln e = ln C + p ln h` through a number of levels.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlopeFit {
     /// The slope `p`.
     pub order: f64,
@@ -39,33 +25,13 @@ pub struct SlopeFit {
     pub levels: usize,
 }
 
-/// The order on the finest [`WINDOW`] levels.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FinestOrder {
-    /// Least-squares slope of `ln e` on `ln h` over the window.
-    pub order: f64,
-    /// Pair order of the coarser two levels of the window.
-    pub coarse_pair: f64,
-    /// Pair order of the finer two.
-    pub fine_pair: f64,
-    /// Sizes of the window, from coarse to fine.
-    pub sizes: [f64; WINDOW],
-}
-
-/// Orders between all neighbouring levels, from coarse to fine.
-pub fn pair_orders(series: &ErrorSeries) -> Vec<PairOrder> {
-    let pair = |levels: &[SeriesLevel]| PairOrder {
-        coarse: levels[0].size,
-        fine: levels[1].size,
-        order: pair_order(&levels[0], &levels[1]),
+/// Orders `ln(e_c/e_f) / ln(h_c/h_f)` between all neighbouring levels, from coarse to fine.
+pub fn pair_orders(series: &ErrorSeries) -> Vec<Result<f64, Undefined>> {
+    let order = |levels: &[SeriesLevel]| {
+        let points = ErrorSeries::new(levels.to_vec()).points()?;
+        Ok(log_ratio(points[0].1, points[1].1) / log_ratio(points[0].0, points[1].0))
     };
-    series.levels().windows(2).map(pair).collect()
-}
-
-fn pair_order(coarse: &SeriesLevel, fine: &SeriesLevel) -> Result<f64, Undefined> {
-    ErrorSeries::new(vec![*coarse, *fine]).check_sizes()?;
-    let (coarse_error, fine_error) = (coarse.positive_error()?, fine.positive_error()?);
-    Ok(log_ratio(coarse_error, fine_error) / log_ratio(coarse.size, fine.size))
+    series.levels().windows(2).map(order).collect()
 }
 
 /// `ln(a/b)` of positive numbers; the quotient keeps the digits of close numbers, the difference
@@ -108,20 +74,18 @@ pub(crate) fn slope_of(points: &[(f64, f64)]) -> Result<SlopeFit, Undefined> {
     Ok(SlopeFit { order, coefficient, half_width, levels: count })
 }
 
-/// The order on the finest [`WINDOW`] levels of a series.
+/// The order on the finest [`WINDOW`] levels of a series: the slope of `ln e` on `ln h` over them.
 ///
 /// # Errors
 /// [`Undefined`] when there are fewer levels or one of the window cannot be used.
-pub fn finest_order(series: &ErrorSeries) -> Result<FinestOrder, Undefined> {
+pub fn finest_order(series: &ErrorSeries) -> Result<f64, Undefined> {
     series.check_sizes()?;
     let levels = series.levels();
-    let Some([a, b, c]) = levels.last_chunk::<WINDOW>() else {
+    let Some(window) = levels.last_chunk::<WINDOW>() else {
         return Err(Undefined::TooFewLevels { levels: levels.len(), needed: WINDOW });
     };
-    let (coarse_pair, fine_pair) = (pair_order(a, b)?, pair_order(b, c)?);
-    let window = ErrorSeries::new(vec![*a, *b, *c]);
-    let order = slope(&window)?.order;
-    Ok(FinestOrder { order, coarse_pair, fine_pair, sizes: [a.size, b.size, c.size] })
+    let window = ErrorSeries::new(window.to_vec());
+    Ok(slope(&window)?.order)
 }
 
 #[cfg(test)]
@@ -135,9 +99,8 @@ mod tests {
     }
 
     fn all_orders(series: &ErrorSeries) -> Vec<f64> {
-        let mut orders: Vec<f64> = pair_orders(series).into_iter().map(|pair| pair.order.unwrap()).collect();
-        orders.push(slope(series).unwrap().order);
-        orders.push(finest_order(series).unwrap().order);
+        let mut orders: Vec<f64> = pair_orders(series).into_iter().map(Result::unwrap).collect();
+        orders.extend([slope(series).unwrap().order, finest_order(series).unwrap()]);
         orders
     }
 
@@ -148,7 +111,7 @@ mod tests {
         assert!((fit.order - 2.254_128).abs() < 1e-6, "{fit:?}");
         assert!((fit.half_width.unwrap() - 0.119_408).abs() < 1e-5, "{fit:?}");
         let finest = finest_order(&halvings(|h| h * h + 8.0 * h.powi(3))).unwrap();
-        assert!((finest.order - 2.096).abs() < 1e-3, "{finest:?}");
+        assert!((finest - 2.096).abs() < 1e-3, "{finest}");
     }
 
     #[test]
@@ -177,7 +140,7 @@ mod tests {
         assert_eq!(finest_order(&zero), Err(Undefined::Vanishing { size: 0.1 }));
         assert!(slope(&zero).is_err());
         let pairs = pair_orders(&zero);
-        assert!(pairs[0].order.is_ok() && pairs[1].order.is_err());
+        assert!(pairs[0].is_ok() && pairs[1].is_err());
         assert!(slope(&ErrorSeries::default()).is_err());
     }
 

@@ -64,8 +64,6 @@ pub enum ParetoChange {
     NotComparable,
 }
 
-impl ParetoChange {}
-
 /// What one more level would cost and bring.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelPrediction {

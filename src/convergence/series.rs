@@ -1,28 +1,25 @@
 //! A series of errors over levels of refinement, and why a quantity derived from it may be
 //! undefined.
 
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// One level of refinement.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeriesLevel {
     /// What is refined: cell size in m, time step in s, or any length that falls with refinement.
     pub size: f64,
     /// The error at this level; `None` where the run is missing.
-    #[serde(with = "reading")]
     pub error: Option<f64>,
 }
 
 /// Errors over levels of refinement, from coarse to fine.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(from = "Vec<SeriesLevel>", into = "Vec<SeriesLevel>")]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorSeries {
     levels: Vec<SeriesLevel>,
 }
 
 /// Why an order or a fit has no value.
-#[derive(Clone, Debug, PartialEq, Error, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum Undefined {
     /// There are not enough levels.
     #[error("{levels} levels are too few: {needed} are needed")]
@@ -146,48 +143,6 @@ fn is_size(size: f64) -> bool {
     size.is_normal() && size > 0.0
 }
 
-impl From<Vec<SeriesLevel>> for ErrorSeries {
-    fn from(levels: Vec<SeriesLevel>) -> Self {
-        Self::new(levels)
-    }
-}
-
-impl From<ErrorSeries> for Vec<SeriesLevel> {
-    fn from(series: ErrorSeries) -> Self {
-        series.levels
-    }
-}
-
-/// Errors in records: a missing one is null, and what is not finite is written by name, so that
-/// the two stay apart in JSON.
-mod reading {
-    use serde::{Deserialize, Deserializer, Serializer, de::Error};
-
-    #[derive(Deserialize)]
-    #[serde(untagged)]
-    enum Written {
-        Number(f64),
-        Name(String),
-    }
-
-    #[expect(clippy::ref_option, reason = "the signature that serde calls")]
-    pub(crate) fn serialize<S: Serializer>(error: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
-        match error {
-            None => serializer.serialize_none(),
-            Some(value) if value.is_finite() => serializer.serialize_f64(*value),
-            Some(value) => serializer.serialize_str(&value.to_string()),
-        }
-    }
-
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-        Ok(match Option::<Written>::deserialize(deserializer)? {
-            None => None,
-            Some(Written::Number(value)) => Some(value),
-            Some(Written::Name(name)) => Some(name.parse().map_err(D::Error::custom)?),
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -216,17 +171,5 @@ mod tests {
         assert_eq!(same.points(), Err(Undefined::SameSize { size: 0.5 }));
         let gap = ErrorSeries::new(vec![SeriesLevel { size: 1.0, error: None }]);
         assert_eq!(gap.points(), Err(Undefined::Missing { size: 1.0 }));
-    }
-
-    #[test]
-    fn a_record_tells_a_missing_error_from_one_that_is_not_finite() {
-        let level = |error| SeriesLevel { size: 1.0, error };
-        let errors = [None, Some(f64::INFINITY), Some(f64::NEG_INFINITY), Some(0.1)];
-        let series = ErrorSeries::new(errors.map(level).to_vec());
-        let json = serde_json::to_string(&series).unwrap();
-        assert_eq!(serde_json::from_str::<ErrorSeries>(&json).unwrap(), series, "{json}");
-        let text = serde_json::to_string(&level(Some(f64::NAN))).unwrap();
-        assert_eq!(text, r#"{"size":1.0,"error":"NaN"}"#);
-        assert!(serde_json::from_str::<SeriesLevel>(&text).unwrap().error.unwrap().is_nan());
     }
 }

@@ -1,12 +1,9 @@
 //! What a study expects of a series of errors.
 
-use serde::{Deserialize, Serialize};
-
 use crate::convergence::class::Class;
 
 /// A two-sided band about an order: an order that is too high is no better than one too low.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrderBand {
     /// The order expected.
     pub value: f64,
@@ -17,32 +14,27 @@ pub struct OrderBand {
 }
 
 /// A bound on the error at a named level: a doubled error constant keeps the order.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorBound {
     /// Size of the level, as in the series.
     pub size: f64,
     /// The error must be smaller than this, in its own unit.
     pub below: f64,
     /// The error must be at least this: a result that is too good is as suspect.
-    #[serde(default)]
     pub above: f64,
 }
 
 /// Where the floor under the errors must lie; none at all counts as 0.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FloorBand {
     /// Lowest floor allowed, in the unit of the errors.
-    #[serde(default)]
     pub above: f64,
     /// Highest floor allowed.
     pub below: f64,
 }
 
 /// Marks an expectation that is known not to be met.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct KnownFailure {
     /// Whether meeting the expectation after all is a failure.
     pub strict: bool,
@@ -51,8 +43,7 @@ pub struct KnownFailure {
 }
 
 /// What is expected of one series; everything asked is judged.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SeriesDemand {
     /// Order on the finest window.
     pub order: Option<OrderBand>,

@@ -3,7 +3,7 @@
 
 use crate::convergence::pareto::ParetoChange;
 use crate::golden::compare::{Change, Difference};
-use crate::golden::references::REFERENCES;
+use crate::golden::parts;
 
 /// A case that differs from its golden values.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -36,19 +36,9 @@ impl CaseChange {
     }
 }
 
-/// Case and measure of a golden value's name.
-pub(crate) fn parts(name: &str) -> (&str, &str) {
-    name.rsplit_once(" | ").unwrap_or((name, ""))
-}
-
 /// Work counters: less of them is cheaper. A critical step is none, and no change of it is for the better.
 fn is_counter(measure: &str) -> bool {
     matches!(measure, "steps" | "point updates")
-}
-
-/// Whether a smaller value is a better one: an error or a counter, and no exact solution or critical step.
-pub(crate) fn is_better_if_smaller(study: &str, name: &str) -> bool {
-    study != REFERENCES && !parts(name).1.ends_with("critical step")
 }
 
 /// The cases of differences, in their order.

@@ -1,8 +1,8 @@
 //! Differences by kind, with what those of a kind have in common: a long list says less than one line
 //! that names the cases it is of and its largest change.
 
-use crate::golden::case_changes::parts;
 use crate::golden::compare::{Change, Difference};
+use crate::golden::parts;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The differences of one kind.

@@ -1,7 +1,6 @@
 //! The text of a golden file: a header and a table. The format is told in [`crate::golden`].
 
-use crate::golden::GoldenFile;
-use crate::golden::case_changes::parts;
+use crate::golden::{GoldenFile, parts};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What stands before every line of the header.

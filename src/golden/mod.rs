@@ -33,12 +33,8 @@ mod file_text;
 pub mod references;
 pub mod tolerance;
 
-use crate::exact::exact_error::ExactError;
-use crate::golden::references::{REFERENCES, perturbed_reference_values, reference_values};
-use crate::golden::tolerance::spread_by_group;
 use crate::record::provenance::Provenance;
-use crate::record::store::StoreError;
-use crate::record::whole_file::write_whole;
+use crate::record::whole_file::{StoreError, write_whole};
 use crate::record::{ErrorRow, Record};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -90,33 +86,25 @@ pub enum GoldenError {
     /// There is no file.
     #[error("there is no golden file {0}: look at the results, then `oedometer accept` them with a reason")]
     Missing(PathBuf),
-    /// The file cannot be read.
-    #[error("the golden file {path} cannot be read: {reason}")]
-    Unreadable {
+    /// The file cannot be read or written, or allows what no golden file may.
+    #[error("the golden file {path} {what}: {reason}")]
+    Refused {
         /// Which.
         path: PathBuf,
-        /// Why.
-        reason: String,
-    },
-    /// The file allows what no golden file may.
-    #[error("the golden file {path} is refused: {reason}")]
-    OutOfBounds {
-        /// Which.
-        path: PathBuf,
-        /// What is out of bounds.
-        reason: String,
-    },
-    /// The values have no text.
-    #[error("the golden file {path} cannot be written: {reason}")]
-    Unwritable {
-        /// Which.
-        path: PathBuf,
+        /// What is wrong with it.
+        what: &'static str,
         /// Why.
         reason: String,
     },
     /// The file system refuses.
     #[error(transparent)]
     Store(#[from] StoreError),
+}
+
+impl GoldenError {
+    fn refused(path: &Path, what: &'static str, reason: String) -> Self {
+        Self::Refused { path: path.to_owned(), what, reason }
+    }
 }
 
 impl GoldenFile {
@@ -136,17 +124,6 @@ impl GoldenFile {
         }
     }
 
-    /// The present values of the exact solutions as golden, for a reason.
-    ///
-    /// # Errors
-    /// When a solution refuses its column: a fault of this program.
-    pub fn of_references(reason: &str) -> Result<Self, ExactError> {
-        let values = reference_values()?;
-        let spread = spread_by_group(&values, &perturbed_reference_values()?);
-        let golden = Self { seconds: None, values, ..Self::of(REFERENCES, &[], reason) };
-        Ok(golden.with_spread(spread))
-    }
-
     /// Path of a study's golden file in a folder.
     pub fn path(folder: &Path, study: &str) -> PathBuf {
         folder.join(format!("{study}.csv"))
@@ -158,7 +135,7 @@ impl GoldenFile {
     /// When it is missing, unreadable or out of bounds.
     pub fn read(folder: &Path, study: &str) -> Result<Self, GoldenError> {
         let path = Self::path(folder, study);
-        let unreadable = |reason: String| GoldenError::Unreadable { path: path.clone(), reason };
+        let unreadable = |reason: String| GoldenError::refused(&path, "cannot be read", reason);
         let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
@@ -171,7 +148,7 @@ impl GoldenFile {
             return Err(unreadable(format!("it is of study `{}` and layout {}", file.study, file.schema)));
         }
         match file.out_of_bounds() {
-            Some(reason) => Err(GoldenError::OutOfBounds { path, reason }),
+            Some(reason) => Err(GoldenError::refused(&path, "is refused", reason)),
             None => Ok(file),
         }
     }
@@ -183,9 +160,10 @@ impl GoldenFile {
     pub fn write(&self, folder: &Path) -> Result<PathBuf, GoldenError> {
         let path = Self::path(folder, &self.study);
         if let Some(reason) = self.out_of_bounds() {
-            return Err(GoldenError::OutOfBounds { path, reason });
+            return Err(GoldenError::refused(&path, "is refused", reason));
         }
-        let text = self.to_text().map_err(|reason| GoldenError::Unwritable { path: path.clone(), reason })?;
+        let text =
+            self.to_text().map_err(|reason| GoldenError::refused(&path, "cannot be written", reason))?;
         write_whole(&path, text.as_bytes())?;
         Ok(path)
     }
@@ -206,6 +184,11 @@ pub fn measure_name(row: &ErrorRow) -> String {
         row.reference,
         row.time_factor
     )
+}
+
+/// Case and measure of a golden value's name.
+pub(crate) fn parts(name: &str) -> (&str, &str) {
+    name.rsplit_once(" | ").unwrap_or((name, ""))
 }
 
 /// Every measured error and work counter of records, by name.

@@ -10,6 +10,8 @@ use crate::exact::parameters::Base;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::exact::xie_leo::{Drainage, XieLeo};
+use crate::golden::GoldenFile;
+use crate::golden::tolerance::spread_by_group;
 use crate::study::perturbed::LastDigit;
 use std::collections::BTreeMap;
 
@@ -32,6 +34,19 @@ const LOADED_AT: f64 = 1e-3;
 const TIMES_OF_GROWTH: [f64; 3] = [2e-4, 1e-3, 5e-3];
 /// Bounds of nothing at all count as this.
 const LEAST_BOUND: f64 = 1e-300;
+
+impl GoldenFile {
+    /// The present values of the exact solutions as golden, for a reason.
+    ///
+    /// # Errors
+    /// When a solution refuses its column: a fault of this program.
+    pub fn of_references(reason: &str) -> Result<Self, ExactError> {
+        let values = reference_values()?;
+        let spread = spread_by_group(&values, &perturbed_reference_values()?);
+        let golden = Self { seconds: None, values, ..Self::of(REFERENCES, &[], reason) };
+        Ok(golden.with_spread(spread))
+    }
+}
 
 /// Pressures, stresses, displacements and degrees of every solution on a few places and times, and the
 /// bounds on what their sums leave out.

@@ -9,62 +9,6 @@ use crate::study::file::StudySource;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// What a file means for which nothing is declared, as a mapping file would say it.
-pub const CONVENTION: &str = r#"sample = "points"
-
-[columns]
-t = "t"
-y = "y"
-p = "p"
-u_y = "u_y"
-
-[units]
-time = "s"
-length = "m"
-displacement = "m"
-stress = "Pa"
-
-[sign]
-y = "up"
-p = "compression-positive"
-u_y = "up"
-
-[position]
-y = "reference"
-"#;
-
-/// The same of a layer: places have two coordinates, and displacements two components.
-pub const PLANE_CONVENTION: &str = r#"sample = "points"
-
-[columns]
-t = "t"
-x = "x"
-y = "y"
-p = "p"
-u_x = "u_x"
-u_y = "u_y"
-
-[units]
-time = "s"
-length = "m"
-displacement = "m"
-stress = "Pa"
-
-[sign]
-x = "right"
-y = "up"
-p = "compression-positive"
-u_x = "right"
-u_y = "up"
-
-[position]
-y = "reference"
-
-[origin]
-x = 0.0
-y = 0.0
-"#;
-
 /// What the columns of a file mean.
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -201,6 +145,13 @@ impl Default for TableLayout {
     }
 }
 
+/// What is not declared, and how to declare it.
+type Undeclared = (String, String);
+
+fn undeclared(what: &str, help: &str) -> Undeclared {
+    (what.to_owned(), help.to_owned())
+}
+
 impl Mapping {
     /// The mapping of a text.
     ///
@@ -213,16 +164,6 @@ impl Mapping {
             None => Ok(mapping),
             Some((message, help)) => Err(source.complaint(message, help)),
         }
-    }
-
-    /// The meaning of a file for which nothing is declared, of a column or of a layer.
-    ///
-    /// # Errors
-    /// Never: the text is a constant.
-    pub fn convention(is_plane: bool) -> Result<Self, StudyError> {
-        let text = if is_plane { PLANE_CONVENTION } else { CONVENTION }.to_owned();
-        let mapping = Self::read(&StudySource { name: "the convention".to_owned(), text })?;
-        Ok(Self { is_convention: true, ..mapping })
     }
 
     /// What a mapping lacks for a layer: its fields depend on the place along it.
@@ -241,72 +182,47 @@ impl Mapping {
     }
 
     /// A column that lacks a declaration, and how to give it.
-    fn undeclared(&self) -> Option<(String, String)> {
+    fn undeclared(&self) -> Option<Undeclared> {
         self.undeclared_column().or_else(|| self.undeclared_place()).or_else(|| self.undeclared_layout())
     }
 
     /// A column without its unit, sign or end; or no column at all.
-    fn undeclared_column(&self) -> Option<(String, String)> {
+    fn undeclared_column(&self) -> Option<Undeclared> {
         let (columns, units, sign) = (&self.columns, &self.units, &self.sign);
-        let has_stress = units.stress.is_some();
-        let has_displacement = units.displacement.is_some();
-        let stress = ("stress = \"kPa\"", "compression-positive");
+        let stress = (units.stress.is_some(), "stress = \"kPa\"");
+        let displacement = (units.displacement.is_some(), "displacement = \"mm\"");
+        let (is_stress, compressive) = (columns.effective_stress.is_some(), "compression-positive");
         let rows = [
-            ("p", columns.p.is_some(), has_stress, sign.p.is_some(), stress),
-            (
-                "u_y",
-                columns.u_y.is_some(),
-                has_displacement,
-                sign.u_y.is_some(),
-                ("displacement = \"mm\"", "up"),
-            ),
-            (
-                "u_x",
-                columns.u_x.is_some(),
-                has_displacement,
-                sign.u_x.is_some(),
-                ("displacement = \"mm\"", "right"),
-            ),
-            (
-                "effective_stress",
-                columns.effective_stress.is_some(),
-                has_stress,
-                sign.effective_stress.is_some(),
-                stress,
-            ),
+            ("p", columns.p.is_some(), stress, sign.p.is_some(), compressive),
+            ("u_y", columns.u_y.is_some(), displacement, sign.u_y.is_some(), "up"),
+            ("u_x", columns.u_x.is_some(), displacement, sign.u_x.is_some(), "right"),
+            ("effective_stress", is_stress, stress, sign.effective_stress.is_some(), compressive),
         ];
-        for (name, given, has_unit, has_sign, (unit, word)) in rows {
+        for (name, given, (has_unit, unit), has_sign, word) in rows {
             if given && !has_unit {
-                return Some((
-                    format!("the unit of the column `{name}` is not declared"),
-                    format!("add `{unit}` to [units]"),
-                ));
+                let what = format!("the unit of the column `{name}` is not declared");
+                return Some((what, format!("add `{unit}` to [units]")));
             }
             if given && !has_sign {
-                return Some((
-                    format!("the sign of the column `{name}` is not declared"),
-                    format!("add `{name} = \"{word}\"` to [sign]"),
-                ));
+                let what = format!("the sign of the column `{name}` is not declared");
+                return Some((what, format!("add `{name} = \"{word}\"` to [sign]")));
             }
         }
         if columns.x.is_some() && sign.x.is_none() {
-            return Some((
-                "the end from which `x` counts is not declared".to_owned(),
+            return Some(undeclared(
+                "the end from which `x` counts is not declared",
                 "add `x = \"right\"` to [sign] where x = 0 is under the crest of the load, `x = \"left\"` where it is \
-                 at the other end"
-                    .to_owned(),
+                 at the other end",
             ));
         }
         rows.iter().all(|(_, given, ..)| !given).then(|| {
-            (
-                "no column to score is named".to_owned(),
-                "name `p`, `u_y`, `u_x` or `effective_stress` in [columns]".to_owned(),
-            )
+            let help = "name `p`, `u_y`, `u_x` or `effective_stress` in [columns]";
+            undeclared("no column to score is named", help)
         })
     }
 
     /// Places, volumes and times that cannot be found.
-    fn undeclared_place(&self) -> Option<(String, String)> {
+    fn undeclared_place(&self) -> Option<Undeclared> {
         let columns = &self.columns;
         let is_current = self.position.y == StatedPlace::Current;
         for (place, given, component, has_component) in [
@@ -321,33 +237,29 @@ impl Mapping {
             }
         }
         if !(self.origin.x.is_finite() && self.origin.y.is_finite()) {
-            return Some(("an origin is no finite number".to_owned(), "write it as in the file".to_owned()));
+            return Some(undeclared("an origin is no finite number", "write it as in the file"));
         }
         if self.whole_volume.is_some_and(|volume| !(volume.is_finite() && volume > 0.0)) {
-            return Some((
-                "`whole_volume` is not positive".to_owned(),
-                "give what the volumes of all samples add up to".to_owned(),
-            ));
+            let help = "give what the volumes of all samples add up to";
+            return Some(undeclared("`whole_volume` is not positive", help));
         }
         (columns.t.is_none() && self.time.files.is_empty()).then(|| {
-            (
-                "no time is declared".to_owned(),
-                "name the column `t`, or give [time] files = { \"step_10.csv\" = 8.175 }".to_owned(),
-            )
+            let help = "name the column `t`, or give [time] files = { \"step_10.csv\" = 8.175 }";
+            undeclared("no time is declared", help)
         })
     }
 
     /// Marks of the file that no file can have.
-    fn undeclared_layout(&self) -> Option<(String, String)> {
-        (!self.csv.delimiter.is_ascii() || !self.csv.comment.is_none_or(|mark| mark.is_ascii())).then(|| {
-            ("a delimiter or comment mark is no ASCII character".to_owned(), "use \",\" or \";\"".to_owned())
-        })
+    fn undeclared_layout(&self) -> Option<Undeclared> {
+        (!self.csv.delimiter.is_ascii() || !self.csv.comment.is_none_or(|mark| mark.is_ascii()))
+            .then(|| undeclared("a delimiter or comment mark is no ASCII character", "use \",\" or \";\""))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::import::convention::{CONVENTION, PLANE_CONVENTION};
 
     fn read(text: &str) -> Result<Mapping, String> {
         Mapping::read(&StudySource { name: "map.toml".to_owned(), text: text.to_owned() })

@@ -2,13 +2,23 @@
 
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::table::SolvedBody;
 use crate::import::units::{HorizontalSense, StatedPlace, StressSign, StressUnit, VerticalSense};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
 /// Share of the height by which a place may lie outside: round-off of a written number.
 const RIM: f64 = 1e-6;
+
+/// What was solved, as far as it takes to read a result of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolvedBody {
+    /// Height, m.
+    pub height: f64,
+    /// Length along a layer, m; a column has none.
+    pub length: Option<f64>,
+    /// Seconds at which `T_v = 1`.
+    pub seconds_per_time_factor: f64,
+}
 
 /// One row in SI.
 pub struct SampleRow {
@@ -43,17 +53,19 @@ impl Places {
         let place = |name: &String| header.iter().position(|column| column == name);
         let names = || header.iter().map(|column| format!("`{column}`")).collect::<Vec<_>>().join(", ");
         let find = |name: &String| {
-            place(name).ok_or_else(|| ImportError::NoColumn {
-                path: path.to_owned(),
-                name: name.clone(),
-                header: names(),
-            })
+            let none = || format!("there is no column `{name}`; the header has {}", names());
+            place(name).ok_or_else(|| ImportError::table(path, none()))
         };
         let find_some = |name: &Option<String>| name.as_ref().map(&find).transpose();
         let columns = &mapping.columns;
         let distance = columns.x.as_ref().map(|name| match place(name) {
             None if mapping.is_convention => {
-                Err(ImportError::NoDistance { path: path.to_owned(), header: names() })
+                let reason = format!(
+                    "there is no column `x`, and a layer's fields depend on it: write the distance of each sample from \
+                     the crest of the load, m, to a column `x`, or name another with --mapping; the header has {}",
+                    names()
+                );
+                Err(ImportError::table(path, reason))
             }
             _ => find(name),
         });
@@ -121,7 +133,7 @@ pub fn rows_of(path: &Path, mapping: &Mapping, frame: SolvedBody) -> Result<Vec<
         rows.push(line.row(&places, mapping, frame, time)?);
     }
     if rows.is_empty() {
-        return Err(ImportError::Empty { path: path.to_owned() });
+        return Err(ImportError::table(path, "there are no rows"));
     }
     Ok(rows)
 }
@@ -130,7 +142,8 @@ pub fn rows_of(path: &Path, mapping: &Mapping, frame: SolvedBody) -> Result<Vec<
 fn time_of_file(path: &Path, mapping: &Mapping) -> Result<f64, ImportError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let time = mapping.time.files.get(&name).copied();
-    time.ok_or_else(|| ImportError::NoTime { path: path.to_owned(), name })
+    let nowhere = || format!("its time is declared nowhere; add \"{name}\" = … to [time] files");
+    time.ok_or_else(|| ImportError::table(path, nowhere()))
 }
 
 /// One line of a file.
@@ -141,26 +154,25 @@ struct RowReader<'a> {
 }
 
 impl RowReader<'_> {
-    fn line(&self) -> u64 {
-        self.record.position().map_or(0, csv::Position::line)
+    fn refused<T>(&self, reason: String) -> Result<T, ImportError> {
+        let line = self.record.position().map_or(0, csv::Position::line);
+        Err(ImportError::Row { path: self.path.to_owned(), line, reason })
     }
 
     fn number(&self, place: usize) -> Result<f64, ImportError> {
         let typed = self.record.get(place).unwrap_or_default();
         match typed.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(ImportError::NoNumber {
-                path: self.path.to_owned(),
-                line: self.line(),
-                column: self.header.get(place).unwrap_or_default().to_owned(),
-                typed: typed.to_owned(),
-            }),
+            _ => {
+                let column = self.header.get(place).unwrap_or_default();
+                self.refused(format!("`{typed}` in the column `{column}` is no finite number"))
+            }
         }
     }
 
-    fn not_negative(&self, number: f64, what: &'static str) -> Result<f64, ImportError> {
+    fn not_negative(&self, number: f64, what: &str) -> Result<f64, ImportError> {
         if number < 0.0 {
-            return Err(ImportError::Negative { path: self.path.to_owned(), line: self.line(), what });
+            return self.refused(format!("{what} is negative"));
         }
         Ok(number)
     }
@@ -198,12 +210,11 @@ impl RowReader<'_> {
             StatedPlace::Current => height - displacement.unwrap_or(0.0),
         };
         if !(-RIM * frame.height..=(1.0 + RIM) * frame.height).contains(&initial_height) {
-            return Err(ImportError::Outside {
-                path: self.path.to_owned(),
-                line: self.line(),
-                height: initial_height,
-                column: frame.height,
-            });
+            return self.refused(format!(
+                "the initial height {initial_height} m is outside the column of {} m: look at the unit and the sign of \
+                 `y`, and at whose places they are",
+                frame.height
+            ));
         }
         let distance = match places.distance {
             Some(place) => {
@@ -244,12 +255,10 @@ impl RowReader<'_> {
             StatedPlace::Current => distance - displacement,
         };
         if frame.length.is_some() && !(-RIM * length..=(1.0 + RIM) * length).contains(&initial) {
-            return Err(ImportError::Beyond {
-                path: self.path.to_owned(),
-                line: self.line(),
-                distance: initial,
-                length,
-            });
+            return self.refused(format!(
+                "the initial distance {initial} m from the crest is outside the layer of {length} m: look at the unit, \
+                 the sign and the origin of `x`, and at whose places they are"
+            ));
         }
         Ok(initial)
     }

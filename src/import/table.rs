@@ -2,7 +2,7 @@
 
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::sample_row::{SampleRow, rows_of};
+use crate::import::sample_row::{SampleRow, SolvedBody, rows_of};
 use std::path::PathBuf;
 
 /// Rows closer than this share of their time are of one time.
@@ -31,17 +31,6 @@ pub struct SampledState {
     pub horizontal_displacement: Vec<f64>,
     /// Rows that stand at the place of another, and that no other column tells from it.
     pub repeated: usize,
-}
-
-/// What was solved, as far as it takes to read a result of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SolvedBody {
-    /// Height, m.
-    pub height: f64,
-    /// Length along a layer, m; a column has none.
-    pub length: Option<f64>,
-    /// Seconds at which `T_v = 1`.
-    pub seconds_per_time_factor: f64,
 }
 
 /// States of all rows of the files of one run, by time.
@@ -174,7 +163,7 @@ delimiter = ";"
 
     #[test]
     fn places_along_a_layer_have_an_end_an_origin_and_a_range() {
-        let mapping = crate::import::mapping::PLANE_CONVENTION
+        let mapping = crate::import::convention::PLANE_CONVENTION
             .replace("x = \"right\"\ny", "x = \"left\"\ny")
             .replace("u_x = \"right\"", "u_x = \"left\"")
             .replace("x = 0.0", "x = 5.0")
@@ -190,7 +179,7 @@ delimiter = ";"
     #[test]
     fn a_repeated_row_is_told_from_a_second_column_of_samples() {
         let text = "t,id,y,p,u_y\n1,1,0.5,3,0\n1,2,0.5,3,0\n1,2,0.5,3,0\n1,3,0.25,3,0\n";
-        let states = states(crate::import::mapping::CONVENTION, text).expect("rows");
+        let states = states(crate::import::convention::CONVENTION, text).expect("rows");
         assert_eq!(states[0].repeated, 1, "rows 1 and 2 differ in a column without meaning");
     }
 }

@@ -1,5 +1,7 @@
 //! Units, signs and origins of columns in the words of a mapping file.
 
+use crate::wording::words;
+
 use serde::Deserialize;
 
 /// A unit of time.
@@ -88,22 +90,9 @@ pub enum StatedPlace {
     Current,
 }
 
+words!(TimeUnit: S "s", Min "min", H "h", D "d", A "a", TimeFactor "time-factor");
+
 impl TimeUnit {
-    /// Every unit.
-    pub const ALL: [Self; 6] = [Self::S, Self::Min, Self::H, Self::D, Self::A, Self::TimeFactor];
-
-    /// Its name in a mapping.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::S => "s",
-            Self::Min => "min",
-            Self::H => "h",
-            Self::D => "d",
-            Self::A => "a",
-            Self::TimeFactor => "time-factor",
-        }
-    }
-
     /// Seconds of a time in this unit, with the seconds of `T_v = 1`.
     pub fn seconds(self, time: f64, seconds_per_time_factor: f64) -> f64 {
         time * match self {
@@ -117,19 +106,9 @@ impl TimeUnit {
     }
 }
 
+words!(LengthUnit: Metre "m", Centimetre "cm", Millimetre "mm");
+
 impl LengthUnit {
-    /// Every unit.
-    pub const ALL: [Self; 3] = [Self::Metre, Self::Centimetre, Self::Millimetre];
-
-    /// Its name in a mapping.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Metre => "m",
-            Self::Centimetre => "cm",
-            Self::Millimetre => "mm",
-        }
-    }
-
     /// Metres of one.
     pub fn metres(self) -> f64 {
         match self {
@@ -140,19 +119,9 @@ impl LengthUnit {
     }
 }
 
+words!(StressUnit: Pascal "Pa", Kilopascal "kPa", Megapascal "MPa");
+
 impl StressUnit {
-    /// Every unit.
-    pub const ALL: [Self; 3] = [Self::Pascal, Self::Kilopascal, Self::Megapascal];
-
-    /// Its name in a mapping.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Pascal => "Pa",
-            Self::Kilopascal => "kPa",
-            Self::Megapascal => "MPa",
-        }
-    }
-
     /// Pascals of one.
     pub fn pascals(self) -> f64 {
         match self {

@@ -1,9 +1,10 @@
 //! Judges what a study expects of single cases; hard cases are judged by this, not by series.
 
-use crate::convergence::class::{Class, Classification};
+use crate::convergence::class::Class;
+use crate::convergence::class::evaluable_series::plain;
 use crate::judge::paths::Judgement;
-use crate::judge::verdict::{Check, Verdict, VerdictOutcome};
-use crate::record::{Record, Status};
+use crate::judge::verdict::{Check, Verdict, VerdictOutcome, check};
+use crate::record::{Balance, Record};
 use crate::study::case_expectation::{CaseDemand, CaseExpectation, ErrorRange};
 use crate::wording::typed;
 
@@ -26,13 +27,7 @@ impl CaseExpectation {
         let pass = checks.iter().all(|check| check.pass);
         let told: Vec<&str> =
             checks.iter().filter(|check| pass || !check.pass).map(|check| check.reason.as_str()).collect();
-        let classification = Classification {
-            class: Class::NotEvaluable,
-            reason: "a case is no series".to_owned(),
-            advice: None,
-            order: None,
-            floor: None,
-        };
+        let classification = plain(Class::NotEvaluable, "a case is no series".to_owned());
         let outcome = if pass { VerdictOutcome::Passed } else { VerdictOutcome::Failed };
         let verdict = Verdict { pass, outcome, reason: told.join("; "), classification, checks };
         Judgement { line: self.line, subject, verdict, uncertainty: None }
@@ -46,33 +41,23 @@ impl CaseDemand {
         checks.extend(self.status.as_ref().map(|wanted| status_found(wanted, record)));
         checks.extend(self.critical_step_within.map(|within| critical_step_found(within, record)));
         checks.extend(self.error.as_ref().map(|range| error_found(range, record)));
-        let worst = |of: fn(&crate::record::Balance) -> f64| {
-            record.balance.iter().map(|balance| of(balance).abs()).reduce(f64::max)
-        };
-        checks
-            .extend(self.solid_drift_below.map(|below| {
-                drift_found("mass of solids", worst(|balance| balance.solid_mass_drift), below)
-            }));
-        checks.extend(
-            self.water_drift_below
-                .map(|below| drift_found("water", worst(|balance| balance.water_imbalance), below)),
-        );
+        let worst =
+            |of: fn(&Balance) -> f64| record.balance.iter().map(|balance| of(balance).abs()).reduce(f64::max);
+        let drifts = [
+            ("mass of solids", worst(|balance| balance.solid_mass_drift), self.solid_drift_below),
+            ("water", worst(|balance| balance.water_imbalance), self.water_drift_below),
+        ];
+        let asked = drifts.into_iter().filter_map(|(what, found, below)| Some((what, found, below?)));
+        checks.extend(asked.map(|(what, found, below)| drift_found(what, found, below)));
         checks
     }
 }
 
-fn check(name: &str, pass: bool, measured: Option<f64>, reason: String) -> Check {
-    Check { name: name.to_owned(), pass, measured: measured.filter(|value| value.is_finite()), reason }
-}
-
 fn status_found(wanted: &str, record: &Record) -> Check {
     let found = record.status.name();
-    let how = match &record.status {
-        Status::Ok => String::new(),
-        Status::Failed(failure) => {
-            format!(" at step {}, t = {:.3e} s: {}", failure.step, failure.time, failure.reason)
-        }
-    };
+    let how = record.status.failure().map_or_else(String::new, |failure| {
+        format!(" at step {}, t = {:.3e} s: {}", failure.step, failure.time, failure.reason)
+    });
     let pass = found == wanted;
     let instead = if pass { String::new() } else { format!(" instead of {wanted}") };
     check("status", pass, None, format!("{found}{instead}{how}"))
@@ -106,9 +91,7 @@ fn critical_step_found(within: f64, record: &Record) -> Check {
 
 fn error_found(range: &ErrorRange, record: &Record) -> Check {
     let measure = &range.measure;
-    let row =
-        record.error(measure.quantity, measure.sample, measure.norm, &measure.reference, measure.time_factor);
-    let Some(error) = row.map(|row| row.value.abs()) else {
+    let Some(error) = measure.error(record).map(|row| row.value.abs()) else {
         return check("error", false, None, format!("no error at T_v = {}", typed(measure.time_factor)));
     };
     let pass = error < range.below && error >= range.above;
@@ -137,11 +120,8 @@ fn drift_found(what: &str, found: Option<f64>, below: f64) -> Check {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::{RunOptions, run_study};
-    use crate::case::tier::Tier;
-    use crate::study::check::Study;
+    use crate::campaign::runner::records_of;
     use crate::study::expectation::Measure;
-    use crate::study::file::StudySource;
 
     const STUDY: &str = r#"title = "One case"
 scene = "terzaghi"
@@ -155,9 +135,7 @@ time_step = [{ growth = 0.05 }]
 "#;
 
     fn record() -> Record {
-        let source = StudySource { name: "one.toml".to_owned(), text: STUDY.to_owned() };
-        let study = Study::check(&source).expect("a sound study");
-        run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records.remove(0)
+        records_of(STUDY).remove(0)
     }
 
     #[test]

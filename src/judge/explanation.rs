@@ -3,19 +3,17 @@
 
 use crate::case::Case;
 use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
+use crate::convergence::class::Context;
 use crate::convergence::class::classify::classify;
 use crate::convergence::series::{ErrorSeries, SeriesLevel};
 use crate::exact::exact_error::ExactError;
-use crate::exact::reference::{Reference, ReferenceKind};
+use crate::exact::reference::ReferenceKind;
 use crate::golden::compare::{Difference, compare};
 use crate::golden::{GoldenFile, measure_name, values_of};
 use crate::judge::paths::{level_size, paths};
 use crate::measure::error_contributions::contributions;
-use crate::measure::exact_fields::exact_samples;
-use crate::mpm::run::snapshot::Samples;
+use crate::measure::exact_fields::{exact_samples, reference_of};
 use crate::record::{ErrorRow, Record};
-use crate::scene::column::column_parameters;
 use crate::study::expectation::Axis;
 
 /// The error of one quantity at one kind of places, at the output where it is largest.
@@ -134,31 +132,21 @@ fn carriers_of(record: &Record) -> Result<Vec<Carrier>, ExactError> {
 /// The place that carries most of an error.
 fn place_of(record: &Record, row: &ErrorRow) -> Result<Option<ErrorPlace>, ExactError> {
     let case = &record.case;
-    let index = case.time_factors.iter().position(|factor| *factor == row.time_factor);
-    let Some(snapshot) = index.and_then(|index| record.snapshots.get(index)) else { return Ok(None) };
-    let samples = match row.sample {
-        Sample::Points => &snapshot.points,
-        Sample::Centres => &snapshot.centres,
-        Sample::Nodes => &snapshot.nodes,
-        Sample::Surface => return Ok(None),
+    let samples = record.snapshot(row.time_factor).and_then(|snapshot| row.sample.of(snapshot));
+    let (Some(samples), Ok(kind)) = (samples, row.reference.parse::<ReferenceKind>()) else {
+        return Ok(None);
     };
-    let Ok(kind) = row.reference.parse::<ReferenceKind>() else { return Ok(None) };
-    let kind = kind.of_soil(&case.material);
-    let parameters = column_parameters(&case.column, &case.material);
-    let reference = Reference::new(kind, &parameters, &[row.time_factor])?;
+    let reference = reference_of(case, kind.of_soil(&case.material), &[row.time_factor])?;
     let exact = exact_samples(case, &reference, row.time_factor, samples)?;
-    let field = |samples: &Samples| match row.quantity {
-        Quantity::Pressure => samples.pressure.clone(),
-        Quantity::EffectiveStress => samples.effective_stress.clone(),
-        _ => samples.displacement.clone(),
-    };
-    let (computed, exact) = (field(samples), field(&exact));
-    let worst = contributions(&computed, &exact, &samples.volume).first().copied();
-    Ok(worst.map(|worst| ErrorPlace {
-        zeta: 1.0 - samples.initial_height[worst.index] / case.column.height,
-        share: worst.share,
-        computed: computed[worst.index],
-        exact: exact[worst.index],
+    let fields = row.quantity.field(samples).zip(row.quantity.field(&exact));
+    Ok(fields.and_then(|(computed, exact)| {
+        let worst = *contributions(computed, exact, &samples.volume).first()?;
+        Some(ErrorPlace {
+            zeta: 1.0 - samples.initial_height[worst.index] / case.column.height,
+            share: worst.share,
+            computed: computed[worst.index],
+            exact: exact[worst.index],
+        })
     }))
 }
 
@@ -193,10 +181,7 @@ fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &Err
             size: level_size(other, axis),
             error: *error,
         };
-        let found = classify(
-            &ErrorSeries::new(known.map(level).collect()),
-            &crate::convergence::class::Context::default(),
-        );
+        let found = classify(&ErrorSeries::new(known.map(level).collect()), &Context::default());
         all.push(LevelSeries {
             axis,
             labels: path.records.iter().map(|other| level_label(&other.case, axis)).collect(),

@@ -1,18 +1,17 @@
 //! What may put a floor under the errors along a path of runs: the causes that its cases name.
 
 use crate::case::Case;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::quantity::Quantity;
 use crate::convergence::limiter::{Limiter, LimiterKind};
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::judge::paths::Path;
-use crate::measure::exact_fields::exact_samples;
+use crate::measure::exact_fields::{exact_samples, reference_of};
 use crate::measure::norms::relative_error;
 use crate::mpm::explicit::Drag;
 use crate::mpm::explicit::scheme::Scheme;
 use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::record::Record;
-use crate::scene::column::column_parameters;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 
 impl Path<'_> {
@@ -81,31 +80,18 @@ fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
     let case = &finest.case;
     let kind: ReferenceKind = measure.reference.parse().ok()?;
     let difference = case.scene.model_difference(kind, &case.material)?;
-    let parameters = column_parameters(&case.column, &case.material);
-    let times = [measure.time_factor];
-    let own = case.scene.references()[0].of_soil(&case.material);
-    let own = Reference::new(own, &parameters, &times).ok()?;
-    let other = Reference::new(kind, &parameters, &times).ok()?;
+    let of = |kind: ReferenceKind| reference_of(case, kind, &[measure.time_factor]).ok();
+    let (own, other) = (of(case.scene.references()[0].of_soil(&case.material))?, of(kind)?);
     let magnitude = if measure.quantity == Quantity::Settlement {
         let settlement = |reference: &Reference| reference.settlement(measure.time_factor).ok();
         (settlement(&own)? / settlement(&other)? - 1.0).abs()
     } else {
-        let index = case.time_factors.iter().position(|factor| *factor == measure.time_factor)?;
-        let snapshot = finest.snapshots.get(index)?;
-        let samples = match measure.sample {
-            Sample::Points => &snapshot.points,
-            Sample::Centres => &snapshot.centres,
-            Sample::Nodes | Sample::Surface => &snapshot.nodes,
-        };
-        let field = |reference: &Reference| {
-            let exact = exact_samples(case, reference, measure.time_factor, samples).ok()?;
-            Some(match measure.quantity {
-                Quantity::Pressure => exact.pressure,
-                Quantity::EffectiveStress => exact.effective_stress,
-                Quantity::Displacement | Quantity::Settlement => exact.displacement,
-            })
-        };
-        relative_error(measure.norm, &field(&own)?, &field(&other)?, &samples.volume).ok()?
+        let snapshot = finest.snapshot(measure.time_factor)?;
+        let samples = measure.sample.of(snapshot).unwrap_or(&snapshot.nodes);
+        let exact = |reference| exact_samples(case, reference, measure.time_factor, samples).ok();
+        let (own, other) = (exact(&own)?, exact(&other)?);
+        let field = |samples| measure.quantity.field(samples);
+        relative_error(measure.norm, field(&own)?, field(&other)?, &samples.volume)?
     };
     Some(Limiter {
         kind: LimiterKind::Model,
@@ -118,22 +104,18 @@ fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::{RunOptions, run_study};
+    use crate::campaign::runner::records_of;
     use crate::case::norm::Norm;
-    use crate::case::tier::Tier;
+    use crate::case::quantity::Sample;
     use crate::convergence::class::{Class, Classification};
     use crate::judge::paths::{first_norm, paths};
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
 
     fn records(rule: &str, cells: &str) -> Vec<Record> {
         let text = format!(
             "title = \"Causes\"\nscene = \"terzaghi\"\noutput = {{ time_factors = [0.05, 0.2] }}\n[[sweep]]\n\
              method = [\"GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = {cells}\ntime_step = [{rule}]\n"
         );
-        let source = StudySource { name: "causes.toml".to_owned(), text };
-        let study = Study::check(&source).expect("a sound study");
-        run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records
+        records_of(&text)
     }
 
     fn class_of(records: &[Record], quantity: Quantity, reference: &str, time_factor: f64) -> Classification {

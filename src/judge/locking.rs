@@ -10,7 +10,6 @@ use crate::measure::plane_field::PlaneField;
 use crate::measure::wall_times::median;
 use crate::mpm::critical_step::formula;
 use crate::mpm::method::Method;
-use crate::mpm::run::integrator::IntegratorKind;
 use crate::record::{Record, Status};
 use crate::soil::material::Material;
 use crate::study::check::Study;
@@ -57,12 +56,7 @@ pub struct Standing {
 /// # Errors
 /// When a reference refuses a case.
 pub fn standings(study: &Study, records: &[Record]) -> Result<Vec<Standing>, ExactError> {
-    let mut methods: Vec<Method> = Vec::new();
-    for record in records {
-        if !methods.contains(&record.case.method) {
-            methods.push(record.case.method);
-        }
-    }
+    let methods = methods_of(records);
     let reference = study.references[0].name();
     let cells = common_cells(records, &methods);
     let mut standings = methods
@@ -74,13 +68,20 @@ pub fn standings(study: &Study, records: &[Record]) -> Result<Vec<Standing>, Exa
     Ok(standings)
 }
 
+/// The methods of records, each once, in their order.
+pub(crate) fn methods_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Method> {
+    let mut methods: Vec<Method> = Vec::new();
+    for record in records {
+        if !methods.contains(&record.case.method) {
+            methods.push(record.case.method);
+        }
+    }
+    methods
+}
+
 /// Whether a record is of the undisturbed soil, by the implicit integrator, and sound.
 fn is_plain(record: &Record) -> bool {
-    let (soil, seed) = (&record.case.material, Material::default());
-    soil.water_bulk_modulus == seed.water_bulk_modulus
-        && soil.poissons_ratio == seed.poissons_ratio
-        && record.case.integrator != IntegratorKind::Explicit
-        && record.status == Status::Ok
+    record.case.has_usual_compressibility() && !record.case.is_explicit() && record.status == Status::Ok
 }
 
 /// Most cells that every method ran to the last output.
@@ -118,7 +119,7 @@ fn standing(
             let soil = &record.case.material;
             soil.water_bulk_modulus >= STIFF_WATER * soil.youngs_modulus
                 && soil.poissons_ratio == Material::default().poissons_ratio
-                && record.case.integrator != IntegratorKind::Explicit
+                && !record.case.is_explicit()
         })
         .filter_map(moved)
         .collect();
@@ -128,7 +129,7 @@ fn standing(
     let hardest = on_mesh()
         .max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
         .filter(|record| ratio(record) > Material::default().poissons_ratio);
-    let explicit = own.iter().find(|record| record.case.integrator == IntegratorKind::Explicit);
+    let explicit = own.iter().find(|record| record.case.is_explicit());
     let order = |quantity, sample| series_order(records, method, quantity, sample, reference);
     let field = match plain {
         Some(record) => PlaneField::of(record, 0.0)?,
@@ -155,7 +156,7 @@ fn standing(
             let speed = formula::fastest_wave_speed(soil, soil.porosity);
             record.step_sizes.predicted_critical * speed / record.case.cell_size()
         }),
-        seconds: plain.and_then(|record| median(&record.wall_alone()).ok()),
+        seconds: plain.and_then(|record| median(&record.wall_alone())),
     })
 }
 
@@ -180,7 +181,7 @@ fn series_order(
     let found = paths(&plain, Axis::Cells);
     let Some(path) = found.first() else { return (None, None) };
     let summary = path.summary(&measure);
-    let order = summary.finest.ok().map(|finest| finest.order);
+    let order = summary.finest.ok();
     (Some(summary.classification.class), order.filter(|_| summary.classification.class != Class::Locked))
 }
 

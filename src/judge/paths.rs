@@ -6,14 +6,13 @@ use crate::case::tier::Tier;
 use crate::case::{Case, step_label};
 use crate::convergence::class::classify::classify;
 use crate::convergence::class::{Classification, Context};
-use crate::convergence::orders::{FinestOrder, PairOrder, SlopeFit, finest_order, pair_orders, slope};
+use crate::convergence::orders::{SlopeFit, finest_order, pair_orders, slope};
 use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
 use crate::convergence::series_demand::SeriesDemand as Demand;
 use crate::convergence::uncertainty::NumericalUncertainty;
 use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::measure::norms::relative_error;
 use crate::mpm::run::integrator::IntegratorKind;
-use crate::mpm::run::snapshot::{Samples, Snapshot};
 use crate::record::Record;
 use crate::soil::material::Material;
 use crate::study::check::Study;
@@ -42,11 +41,11 @@ pub struct SeriesSummary<'a> {
     /// Sizes and absolute values of the errors.
     pub series: ErrorSeries,
     /// Orders between neighbours.
-    pub pairs: Vec<PairOrder>,
+    pub pairs: Vec<Result<f64, Undefined>>,
     /// Straight fit over all levels.
     pub slope: Result<SlopeFit, Undefined>,
     /// Order on the finest window.
-    pub finest: Result<FinestOrder, Undefined>,
+    pub finest: Result<f64, Undefined>,
     /// Class, reason and floor.
     pub classification: Classification,
 }
@@ -137,7 +136,8 @@ impl<'a> Path<'a> {
             let neighbours = records.windows(2);
             neighbours.map(|pair| level(pair[0], difference_of(pair[0], pair[1], measure))).collect()
         } else {
-            records.iter().map(|record| level(record, error_of(record, measure))).collect()
+            let error_of = |record| measure.error(record).map(|row| row.value.abs());
+            records.iter().map(|record| level(record, error_of(record))).collect()
         };
         ErrorSeries::new(levels)
     }
@@ -177,13 +177,7 @@ impl<'a> Path<'a> {
         if measure.norm != Norm::Relative {
             return Vec::new();
         }
-        let value = |record: &&Record| {
-            let (quantity, sample) = (measure.quantity, measure.sample);
-            let row =
-                record.error(quantity, sample, measure.norm, &measure.reference, measure.time_factor)?;
-            Some(row.value)
-        };
-        self.records.iter().filter_map(value).collect()
+        self.records.iter().filter_map(|record| Some(measure.error(record)?.value)).collect()
     }
 
     /// Settlement over the exact one at each level, for the errors of displacements: a locked body
@@ -192,13 +186,9 @@ impl<'a> Path<'a> {
         if !matches!(measure.quantity, Quantity::Displacement | Quantity::Settlement) {
             return Vec::new();
         }
-        let settlement = |record: &&Record| {
-            let (sample, norm) = (Sample::Surface, Norm::Relative);
-            let row =
-                record.error(Quantity::Settlement, sample, norm, &measure.reference, measure.time_factor)?;
-            Some(1.0 + row.value)
-        };
-        self.records.iter().filter_map(settlement).collect()
+        let (quantity, sample, norm) = (Quantity::Settlement, Sample::Surface, Norm::Relative);
+        let settlement = Measure { quantity, sample, norm, ..measure.clone() };
+        self.records.iter().filter_map(|record| Some(1.0 + settlement.error(record)?.value)).collect()
     }
 
     /// What the runs of the path share, in words, the method first.
@@ -229,36 +219,15 @@ impl<'a> Path<'a> {
     }
 }
 
-/// Size of a measured error.
-fn error_of(record: &Record, measure: &Measure) -> Option<f64> {
-    record
-        .error(measure.quantity, measure.sample, measure.norm, &measure.reference, measure.time_factor)
-        .map(|row| row.value.abs())
-}
-
 /// Difference of a run from the next finer one, whose places are the same.
 fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f64> {
-    let at = |record: &Record| {
-        let factors = &record.case.time_factors;
-        let index = factors.iter().position(|factor| *factor == measure.time_factor)?;
-        record.snapshots.get(index).cloned()
-    };
-    let (coarse, fine) = (at(record)?, at(finer)?);
+    let (coarse, fine) = (record.snapshot(measure.time_factor)?, finer.snapshot(measure.time_factor)?);
     if measure.quantity == Quantity::Settlement {
         return Some((coarse.settlement / fine.settlement - 1.0).abs());
     }
-    let samples = |snapshot: &Snapshot| match measure.sample {
-        Sample::Points => snapshot.points.clone(),
-        Sample::Centres => snapshot.centres.clone(),
-        Sample::Nodes | Sample::Surface => snapshot.nodes.clone(),
-    };
-    let (coarse, fine) = (samples(&coarse), samples(&fine));
-    let field = |samples: &Samples| match measure.quantity {
-        Quantity::Pressure => samples.pressure.clone(),
-        Quantity::EffectiveStress => samples.effective_stress.clone(),
-        Quantity::Displacement | Quantity::Settlement => samples.displacement.clone(),
-    };
-    relative_error(measure.norm, &field(&coarse), &field(&fine), &fine.volume).ok()
+    let (coarse, fine) = [coarse, fine].map(|one| measure.sample.of(one).unwrap_or(&one.nodes)).into();
+    let (computed, exact) = (measure.quantity.field(coarse)?, measure.quantity.field(fine)?);
+    relative_error(measure.norm, computed, exact, &fine.volume)
 }
 
 /// Order in the cell size that a method's operators promise at small strain, where they promise
@@ -278,18 +247,11 @@ fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
 
 /// Judges every expectation of a study that its tier can answer.
 pub fn judge_study(study: &Study, records: &[Record], tier: Tier) -> Vec<Judgement> {
-    study
-        .expectations
-        .iter()
-        .filter(|expectation| expectation.tier <= tier)
+    let series = study.expectations.iter().filter(|expectation| expectation.tier <= tier);
+    let cases = study.case_expectations.iter().filter(|expectation| expectation.tier <= tier);
+    series
         .flat_map(|expectation| judge_expectation(expectation, records))
-        .chain(
-            study
-                .case_expectations
-                .iter()
-                .filter(|expectation| expectation.tier <= tier)
-                .flat_map(|expectation| expectation.judge(records)),
-        )
+        .chain(cases.flat_map(|expectation| expectation.judge(records)))
         .collect()
 }
 
@@ -307,7 +269,9 @@ fn judge_expectation(expectation: &SeriesExpectation, records: &[Record]) -> Vec
         let method =
             expectation.selection.method().map_or("any method".to_owned(), |method| method.to_string());
         let nothing = ErrorSeries::new(Vec::new());
-        let verdict = judge(&strict(&expectation.demand), &nothing, &Context::default(), &Beside::default());
+        // Without its pardon: nothing was measured, and that is no known failure.
+        let strict = Demand { xfail: None, ..expectation.demand.clone() };
+        let verdict = judge(&strict, &nothing, &Context::default(), &Beside::default());
         let subject = format!("{method}: {what}");
         return vec![Judgement { line: expectation.line, subject, verdict, uncertainty: None }];
     }
@@ -324,11 +288,6 @@ fn judge_expectation(expectation: &SeriesExpectation, records: &[Record]) -> Vec
             }
         })
         .collect()
-}
-
-/// A demand without its pardon: nothing was measured, and that is no known failure.
-fn strict(demand: &Demand) -> Demand {
-    Demand { xfail: None, ..demand.clone() }
 }
 
 /// The norm in which a quantity is reported first.

@@ -79,12 +79,9 @@ pub fn compare<'a, 'b>(runs: &'b [TimedRun<'a>]) -> Vec<Comparison<'a, 'b>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::{RunOptions, run_study};
-    use crate::case::tier::Tier;
+    use crate::campaign::runner::records_of;
     use crate::judge::work_precision::WorkPrecision;
     use crate::record::{Record, WallSample};
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
 
     /// Runs of a scene on two meshes, with a cost that is the same on every machine.
     fn runs_of(scene: &str, table: &str) -> Vec<Record> {
@@ -93,9 +90,7 @@ mod tests {
              [[sweep]]\nmethod = [\"GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = [8, 16]\n\
              time_step = [{{ growth = 0.02 }}]\n"
         );
-        let study =
-            Study::check(&StudySource { name: "peers.toml".to_owned(), text }).expect("a sound study");
-        let mut records = run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records;
+        let mut records = records_of(&text);
         for record in &mut records {
             let seconds = 1e-9 * record.counters.point_updates as f64;
             record.wall = vec![WallSample { seconds, alone: true }; 2];

@@ -4,11 +4,11 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::series_demand::SeriesDemand as Demand;
 use crate::convergence::uncertainty::ValueSeries;
-use crate::exact::reference::{Reference, ReferenceKind};
+use crate::exact::reference::ReferenceKind;
 use crate::judge::paths::{Path, level_size};
 use crate::judge::verdict::Beside;
-use crate::measure::exact_fields::exact_samples;
-use crate::measure::oscillation::oscillation;
+use crate::measure::exact_fields::{exact_samples, reference_of};
+use crate::measure::oscillation::reversal;
 use crate::measure::plane_field::PlaneField;
 use crate::record::Record;
 use crate::scene::column::column_parameters;
@@ -53,41 +53,26 @@ impl Path<'_> {
             return field.filter(|_| is_measured).map(|field| field.oscillation_index());
         }
         let case = &record.case;
-        let index = case.time_factors.iter().position(|factor| *factor == measure.time_factor)?;
-        let snapshot = record.snapshots.get(index)?;
-        let (samples, per_cell) = match measure.sample {
-            Sample::Points => (&snapshot.points, case.points_per_cell as f64),
-            Sample::Centres => (&snapshot.centres, 1.0),
-            Sample::Nodes => (&snapshot.nodes, 1.0),
-            Sample::Surface => return None,
-        };
+        let samples = measure.sample.of(record.snapshot(measure.time_factor)?)?;
         let kind = measure.reference.parse::<ReferenceKind>().ok()?.of_soil(&case.material);
-        let parameters = column_parameters(&case.column, &case.material);
-        let reference = Reference::new(kind, &parameters, &[measure.time_factor]).ok()?;
+        let reference = reference_of(case, kind, &[measure.time_factor]).ok()?;
         let exact = exact_samples(case, &reference, measure.time_factor, samples).ok()?;
-        let (computed, exact) = match measure.quantity {
-            Quantity::Pressure => (&samples.pressure, exact.pressure),
-            Quantity::EffectiveStress => (&samples.effective_stress, exact.effective_stress),
-            Quantity::Displacement => (&samples.displacement, exact.displacement),
-            Quantity::Settlement => return None,
-        };
-        oscillation(computed, &exact, per_cell).ok()?.reversal
+        reversal(measure.quantity.field(samples)?, measure.quantity.field(&exact)?)
     }
 }
 
 /// The value of a run: its settlement, or a field between the two cell centres about the probe.
 fn value_of(record: &Record, measure: &Measure) -> Option<f64> {
     let case = &record.case;
-    let index = case.time_factors.iter().position(|factor| *factor == measure.time_factor)?;
-    let snapshot = record.snapshots.get(index)?;
+    let snapshot = record.snapshot(measure.time_factor)?;
     let final_settlement = column_parameters(&case.column, &case.material).final_settlement();
-    let (field, scale) = match measure.quantity {
+    let scale = match measure.quantity {
         Quantity::Settlement => return Some(snapshot.settlement / final_settlement),
-        Quantity::Pressure => (&snapshot.centres.pressure, case.column.load),
-        Quantity::EffectiveStress => (&snapshot.centres.effective_stress, case.column.load),
-        Quantity::Displacement => (&snapshot.centres.displacement, final_settlement),
+        Quantity::Pressure | Quantity::EffectiveStress => case.column.load,
+        Quantity::Displacement => final_settlement,
     };
     let height = (1.0 - measure.probe?) * case.column.height;
+    let field = measure.quantity.field(&snapshot.centres)?;
     Some(between(&snapshot.centres.initial_height, field, height)? / scale)
 }
 

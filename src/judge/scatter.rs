@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 const ROUND_OFF: f64 = 1e-12;
 
 /// The largest differences between two sets of values.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct ValueScatter {
     /// Study.
     pub study: String,
@@ -45,12 +45,8 @@ pub fn spread_of(
     let mut spread = ValueScatter {
         study: study.to_owned(),
         source: source.to_owned(),
-        values: 0,
         unpaired: names_missing(one, other) + names_missing(other, one),
-        differing: 0,
-        absolute: 0.0,
-        relative: 0.0,
-        place: None,
+        ..ValueScatter::default()
     };
     for (name, a) in one {
         let Some(b) = other.get(name) else { continue };

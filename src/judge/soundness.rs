@@ -36,10 +36,7 @@ pub fn complaints(record: &Record) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::{RunOptions, run_study};
-    use crate::case::tier::Tier;
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
+    use crate::campaign::runner::records_of;
 
     const STUDY: &str = r#"title = "Sound"
 scene = "terzaghi"
@@ -53,9 +50,7 @@ time_step = [{ growth = 0.05 }]
 "#;
 
     fn sound() -> Record {
-        let source = StudySource { name: "sound.toml".to_owned(), text: STUDY.to_owned() };
-        let study = Study::check(&source).expect("a sound study");
-        run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records.remove(0)
+        records_of(STUDY).remove(0)
     }
 
     /// What is said of a record that differs from a sound one.

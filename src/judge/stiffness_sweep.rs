@@ -5,9 +5,9 @@ use crate::case::Case;
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::exact_error::ExactError;
+use crate::judge::locking::methods_of;
 use crate::measure::plane_field::PlaneField;
 use crate::mpm::method::Method;
-use crate::mpm::run::integrator::IntegratorKind;
 use crate::record::{Record, Status};
 use crate::soil::material::Material;
 use crate::study::check::Study;
@@ -39,12 +39,10 @@ impl SweptStiffness {
     /// Whether a case departs from the seed's soil in this stiffness at most.
     fn is_alone_in(self, case: &Case) -> bool {
         let seed = Material::default();
-        let mut soil = case.material;
         match self {
-            Self::Water => soil.water_bulk_modulus = seed.water_bulk_modulus,
-            Self::Skeleton => soil.poissons_ratio = seed.poissons_ratio,
+            Self::Water => case.material.poissons_ratio == seed.poissons_ratio,
+            Self::Skeleton => case.material.water_bulk_modulus == seed.water_bulk_modulus,
         }
-        soil.water_bulk_modulus == seed.water_bulk_modulus && soil.poissons_ratio == seed.poissons_ratio
     }
 }
 
@@ -106,7 +104,7 @@ impl StiffnessSweep {
             .filter(|record| {
                 let case = &record.case;
                 record.status == Status::Ok
-                    && case.integrator != IntegratorKind::Explicit
+                    && !case.is_explicit()
                     && case.time_factors.last().is_some_and(|last| *last > 0.0)
                     && stiffness.is_alone_in(case)
             })
@@ -129,12 +127,7 @@ impl StiffnessSweep {
         if values.len() < LEAST_VALUES {
             return Ok(None);
         }
-        let mut methods: Vec<Method> = Vec::new();
-        for record in &alike {
-            if !methods.contains(&record.case.method) {
-                methods.push(record.case.method);
-            }
-        }
+        let methods = methods_of(alike.iter().copied());
         let time_factors = hardest.case.time_factors.clone();
         let reference = study.references[0].name();
         let mut rows = Vec::new();

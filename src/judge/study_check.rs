@@ -1,6 +1,6 @@
 //! A study held against its expectations, its golden values, and what must hold of any record.
 
-use crate::campaign::RunError;
+use crate::campaign::run_report::RunError;
 use crate::case::tier::Tier;
 use crate::exact::exact_error::ExactError;
 use crate::golden::case_changes::{CaseChange, case_changes};
@@ -82,7 +82,8 @@ impl StudyCheck {
         };
         Self {
             failed_cases: notes(&|record| {
-                failure_sentence(record).filter(|_| !study.foresees(record)).into_iter().collect()
+                let failure = record.status.failure().filter(|_| !study.foresees(record));
+                failure.map(ToString::to_string).into_iter().collect()
             }),
             // What a run that failed leaves behind is no result to complain of.
             unsound: notes(&|record| match record.status {
@@ -183,11 +184,4 @@ fn slowness(golden: &GoldenFile, seconds: f64) -> Option<String> {
             seconds / before
         )
     })
-}
-
-fn failure_sentence(record: &Record) -> Option<String> {
-    match &record.status {
-        Status::Ok => None,
-        Status::Failed(failure) => Some(failure.to_string()),
-    }
 }

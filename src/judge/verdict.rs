@@ -125,7 +125,8 @@ fn conclude(
     }
 }
 
-fn check(name: &str, pass: bool, measured: Option<f64>, reason: String) -> Check {
+/// Something that was asked, judged.
+pub(crate) fn check(name: &str, pass: bool, measured: Option<f64>, reason: String) -> Check {
     let measured = measured.filter(|value| value.is_finite());
     Check { name: name.to_owned(), pass, measured, reason }
 }

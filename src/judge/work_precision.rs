@@ -3,7 +3,7 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::pareto::{CostLevel, CostPoint, LevelPrediction, front, predict_next};
 use crate::judge::paths::{Path, first_norm, paths};
-use crate::measure::wall_times::{WallSpread, noise_floor, paired_ratio, spread};
+use crate::measure::wall_times::{WallSpread, median, noise_floor, paired_ratio, spread};
 use crate::record::{Record, Status};
 use crate::study::expectation::{Axis, Measure};
 
@@ -94,19 +94,15 @@ impl TimedRun<'_> {
 }
 
 fn timed<'a>(record: &'a Record, reference: &str) -> Option<TimedRun<'a>> {
-    let wall = spread(&record.wall_alone()).ok()?;
+    let wall = spread(&record.wall_alone())?;
     let error = worst_error(record, reference).filter(|_| record.status == Status::Ok)?;
     Some(TimedRun { record, error, wall, on_front: false })
 }
 
 /// Error of the pore pressure at the points in its first norm, the worst of all outputs.
 pub fn worst_error(record: &Record, reference: &str) -> Option<f64> {
-    let errors = record.case.time_factors.iter().filter(|factor| **factor > 0.0).map(|factor| {
-        let measure = pressure(reference, *factor);
-        record
-            .error(measure.quantity, measure.sample, measure.norm, reference, *factor)
-            .map(|row| row.value.abs())
-    });
+    let later = record.case.time_factors.iter().filter(|factor| **factor > 0.0);
+    let errors = later.map(|factor| Some(pressure(reference, *factor).error(record)?.value.abs()));
     errors.collect::<Option<Vec<_>>>()?.into_iter().reduce(f64::max)
 }
 
@@ -130,10 +126,10 @@ fn session_noise(runs: &[TimedRun<'_>]) -> Option<f64> {
             let half = wall.len() / 2;
             let every_other =
                 |first: usize| wall.iter().skip(first).step_by(2).take(half).copied().collect::<Vec<_>>();
-            paired_ratio(&every_other(0), &every_other(1)).ok().map(|ratio| noise_floor(&ratio))
+            paired_ratio(&every_other(0), &every_other(1)).map(|ratio| noise_floor(&ratio))
         })
         .collect();
-    crate::measure::wall_times::median(&floors).ok()
+    median(&floors)
 }
 
 fn next_levels(records: &[Record], reference: &str) -> Vec<NextLevel> {
@@ -166,11 +162,8 @@ fn next_levels(records: &[Record], reference: &str) -> Vec<NextLevel> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::{RunOptions, run_study};
-    use crate::case::tier::Tier;
+    use crate::campaign::runner::records_of;
     use crate::record::WallSample;
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
 
     const STUDY: &str = r#"title = "One more level"
 scene = "terzaghi"
@@ -187,9 +180,7 @@ time_step = [{ growth = 0.005 }]
 
     #[test]
     fn the_coarser_levels_predict_cost_and_error_of_the_finest() {
-        let source = StudySource { name: "levels.toml".to_owned(), text: STUDY.to_owned() };
-        let study = Study::check(&source).expect("a sound study");
-        let mut records = run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records;
+        let mut records = records_of(STUDY);
         for record in &mut records {
             // A cost that is the same on every machine.
             let seconds = 1e-9 * record.counters.point_updates as f64;

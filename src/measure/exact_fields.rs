@@ -4,8 +4,9 @@ use crate::case::Case;
 use crate::exact::cosine_layer::{LayerFields, LayerState};
 use crate::exact::exact_error::ExactError;
 use crate::exact::field_values::FieldValues;
-use crate::exact::reference::Reference;
+use crate::exact::reference::{Reference, ReferenceKind};
 use crate::mpm::run::snapshot::{PlaneSamples, Samples};
+use crate::scene::column::column_parameters;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -86,6 +87,14 @@ impl ExactFields {
         }
         Ok(exact)
     }
+}
+
+/// A reference for the column and soil of a case, prepared for time factors.
+///
+/// # Errors
+/// When it refuses them.
+pub fn reference_of(case: &Case, kind: ReferenceKind, times: &[f64]) -> Result<Reference, ExactError> {
+    Reference::new(kind, &column_parameters(&case.column, &case.material), times)
 }
 
 /// The exact fields at the Lagrangian places of a run's samples.

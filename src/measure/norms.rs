@@ -4,97 +4,35 @@
 //! every norm here carries its formula, and all are means over the volume: a pointwise `h²` error
 //! has norm `h²` times a constant, whatever the number of samples.
 
-use serde::{Deserialize, Serialize};
-use thiserror::Error;
-
 use crate::case::norm::Norm;
 use crate::elementary;
 
-/// Why a norm has no value.
-#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
-pub enum UndefinedNorm {
-    /// There are no samples.
-    #[error("the field has no samples")]
-    Empty,
-    /// The three lists are of different lengths.
-    #[error("{computed} computed values, {exact} exact values and {volumes} volumes do not match")]
-    LengthMismatch {
-        /// Number of computed values.
-        computed: usize,
-        /// Number of exact values.
-        exact: usize,
-        /// Number of volumes.
-        volumes: usize,
-    },
-    /// A value is NaN or infinite.
-    #[error("the {which} value of sample {index} is not finite")]
-    NotFinite {
-        /// `computed` or `exact`.
-        which: String,
-        /// Place in the list, from 0.
-        index: usize,
-    },
-    /// A volume is NaN, infinite or negative.
-    #[error("the volume of sample {index} is negative or not finite")]
-    BadVolume {
-        /// Place in the list, from 0.
-        index: usize,
-    },
-    /// The volumes add up to nothing.
-    #[error("the volumes add up to zero")]
-    NoVolume,
-    /// A relative norm was asked for, and the exact field is zero.
-    #[error("the exact field is zero: an error relative to it means nothing")]
-    ZeroExact,
-    /// [`Norm::Relative`] was asked of more than one number.
-    #[error("a relative error is of one number, not of {samples} samples")]
-    NotScalar {
-        /// Number of samples given.
-        samples: usize,
-    },
-    /// The result is beyond the range of a double.
-    #[error("the norm overflows")]
-    Overflow,
-}
-
-/// Norm of `computed − exact`, in the unit of the field ([`Norm::absolute_formula`]).
+/// Norm of `computed − exact` as a mean over the volume, in the unit of the field.
 ///
-/// Samples of zero volume count in no norm.
-///
-/// # Errors
-/// [`UndefinedNorm`] when the lists are empty, do not match, or hold what is not a number.
-pub fn absolute_error(
-    norm: Norm,
-    computed: &[f64],
-    exact: &[f64],
-    volumes: &[f64],
-) -> Result<f64, UndefinedNorm> {
-    check(norm, computed, exact, volumes)?;
-    let difference = differences(computed, exact);
+/// Samples of zero volume count in no norm. None where the lists are empty, do not match, hold what is not a
+/// number or no volume at all, or where the norm is beyond the range of a double.
+pub fn absolute_error(norm: Norm, computed: &[f64], exact: &[f64], volumes: &[f64]) -> Option<f64> {
+    let difference = differences(norm, computed, exact, volumes)?;
     finite(mean_norm(norm, &difference, volumes))
 }
 
-/// Norm of `computed − exact` over the same norm of `exact` ([`Norm::formula`]).
-///
-/// # Errors
-/// [`UndefinedNorm`] as for [`absolute_error`], and when the exact field is zero.
-pub fn relative_error(
-    norm: Norm,
-    computed: &[f64],
-    exact: &[f64],
-    volumes: &[f64],
-) -> Result<f64, UndefinedNorm> {
-    check(norm, computed, exact, volumes)?;
+/// Norm of `computed − exact` over the same norm of `exact` ([`Norm::formula`]); none as for
+/// [`absolute_error`], and where the exact field is zero.
+pub fn relative_error(norm: Norm, computed: &[f64], exact: &[f64], volumes: &[f64]) -> Option<f64> {
+    let difference = differences(norm, computed, exact, volumes)?;
     let size = finite(mean_norm(norm, exact, volumes))?;
-    if size == 0.0 {
-        return Err(UndefinedNorm::ZeroExact);
-    }
-    let difference = differences(computed, exact);
-    finite(finite(mean_norm(norm, &difference, volumes))? / size)
+    finite(finite(mean_norm(norm, &difference, volumes))? / size).filter(|_| size > 0.0)
 }
 
-fn differences(computed: &[f64], exact: &[f64]) -> Vec<f64> {
-    computed.iter().zip(exact).map(|(computed, exact)| computed - exact).collect()
+/// The differences of fields that can be measured: a relative error is of one number.
+fn differences(norm: Norm, computed: &[f64], exact: &[f64], volumes: &[f64]) -> Option<Vec<f64>> {
+    let is_measurable = computed.len() == exact.len()
+        && computed.len() == volumes.len()
+        && (norm != Norm::Relative || computed.len() == 1)
+        && computed.iter().chain(exact).all(|value| value.is_finite())
+        && volumes.iter().all(|volume| volume.is_finite() && *volume >= 0.0)
+        && volumes.iter().any(|volume| *volume > 0.0);
+    is_measurable.then(|| computed.iter().zip(exact).map(|(computed, exact)| computed - exact).collect())
 }
 
 /// The norm as a mean over the volume, scaled by the largest entry so that squares of very small
@@ -120,36 +58,8 @@ fn mean_norm(norm: Norm, field: &[f64], volumes: &[f64]) -> f64 {
     }
 }
 
-fn finite(value: f64) -> Result<f64, UndefinedNorm> {
-    if value.is_finite() { Ok(value) } else { Err(UndefinedNorm::Overflow) }
-}
-
-fn check(norm: Norm, computed: &[f64], exact: &[f64], volumes: &[f64]) -> Result<(), UndefinedNorm> {
-    if computed.len() != exact.len() || computed.len() != volumes.len() {
-        return Err(UndefinedNorm::LengthMismatch {
-            computed: computed.len(),
-            exact: exact.len(),
-            volumes: volumes.len(),
-        });
-    }
-    if computed.is_empty() {
-        return Err(UndefinedNorm::Empty);
-    }
-    if norm == Norm::Relative && computed.len() > 1 {
-        return Err(UndefinedNorm::NotScalar { samples: computed.len() });
-    }
-    for (which, values) in [("computed", computed), ("exact", exact)] {
-        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-            return Err(UndefinedNorm::NotFinite { which: which.to_owned(), index });
-        }
-    }
-    if let Some(index) = volumes.iter().position(|volume| !volume.is_finite() || *volume < 0.0) {
-        return Err(UndefinedNorm::BadVolume { index });
-    }
-    if !volumes.iter().any(|volume| *volume > 0.0) {
-        return Err(UndefinedNorm::NoVolume);
-    }
-    Ok(())
+fn finite(value: f64) -> Option<f64> {
+    Some(value).filter(|value| value.is_finite())
 }
 
 #[cfg(test)]

@@ -1,109 +1,26 @@
 //! How much of a computed profile is spurious oscillation.
 //!
-//! An error norm sees a checkerboard and a smooth offset of the same size as one and the same
-//! number. Two measures tell them apart: the variation of the profile beyond that of the exact
-//! one, and the share of the error's energy in the shortest wavelengths the cells can carry.
-
-use std::f64::consts::PI;
-
-use serde::{Deserialize, Serialize};
-use thiserror::Error;
-
-use crate::elementary;
-
-/// Measures of the oscillation of one profile.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Oscillation {
-    /// `TV(x) / TV(x̂) − 1`: total variation of the computed profile over that of the exact one at
-    /// the same places. A smeared profile may be slightly negative. `None` where the exact one is
-    /// flat.
-    pub variation_excess: Option<f64>,
-    /// `TV(x) / Σ |Δx| − 1` with the net changes `Δx` of the computed profile over the stretches
-    /// where the exact one is monotone: zero for every profile that rises and falls where the
-    /// exact one does, whatever its error. `None` where the computed profile has no net change.
-    pub reversal: Option<f64>,
-    /// `(TV(x) − TV(x̂)) / max|x̂|`: the excess in units of the exact profile's peak, defined
-    /// where the exact profile is flat too.
-    pub excess_over_peak: f64,
-    /// Share of the error's energy, from 0 to 1, in wavelengths of at most four cells: the
-    /// oscillatory half of the modes of a mesh (Briggs, Henson & `McCormick` 2000, chapter 2).
-    /// `None` where the error is zero.
-    pub short_wave_share: Option<f64>,
-}
-
-/// Why the oscillation of a profile has no value.
-#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
-pub enum UndefinedOscillation {
-    /// Fewer than three samples have no oscillation.
-    #[error("{samples} samples are too few: a wiggle needs three")]
-    TooFewSamples {
-        /// Number of samples given.
-        samples: usize,
-    },
-    /// The two profiles are of different lengths.
-    #[error("{computed} computed values and {exact} exact values do not match")]
-    LengthMismatch {
-        /// Number of computed values.
-        computed: usize,
-        /// Number of exact values.
-        exact: usize,
-    },
-    /// A value is NaN or infinite, or differences overflow.
-    #[error("the profile holds values that are not finite, or too large to subtract")]
-    NotFinite,
-    /// The exact profile is zero everywhere: nothing to compare with.
-    #[error("the exact profile is zero")]
-    ZeroExact,
-    /// The samples in a cell must be a positive, finite number.
-    #[error("the number of samples per cell is not a positive number")]
-    BadSamplesPerCell,
-}
+//! An error norm sees a checkerboard and a smooth offset of the same size as one and the same number; the
+//! variation of the profile beyond its net changes tells them apart.
 
 /// Reversals of the exact profile smaller than this share of its range are round-off, not turns.
 const TURN_TOLERANCE: f64 = 1e-9;
 
-/// Measures the oscillation of `computed` against `exact`, both along one line in order of place and
-/// nearly equally spaced, with `samples_per_cell` samples to a grid cell.
+/// Spurious oscillation of a computed profile, both profiles along one line in order of place:
+/// `TV(x) / Σ |Δx| − 1` with the net changes `Δx` of the computed one over the stretches where the exact one is
+/// monotone. Zero for every profile that rises and falls where the exact one does, whatever its error.
 ///
-/// # Errors
-/// [`UndefinedOscillation`] says what is missing.
-pub fn oscillation(
-    computed: &[f64],
-    exact: &[f64],
-    samples_per_cell: f64,
-) -> Result<Oscillation, UndefinedOscillation> {
-    if computed.len() != exact.len() {
-        let (computed, exact) = (computed.len(), exact.len());
-        return Err(UndefinedOscillation::LengthMismatch { computed, exact });
-    }
-    if computed.len() < 3 {
-        return Err(UndefinedOscillation::TooFewSamples { samples: computed.len() });
-    }
-    if !samples_per_cell.is_finite() || samples_per_cell <= 0.0 {
-        return Err(UndefinedOscillation::BadSamplesPerCell);
-    }
-    if computed.iter().chain(exact).any(|value| !value.is_finite()) {
-        return Err(UndefinedOscillation::NotFinite);
-    }
-    let peak = exact.iter().map(|value| value.abs()).fold(0.0, f64::max);
-    if peak == 0.0 {
-        return Err(UndefinedOscillation::ZeroExact);
-    }
-    let (variation, exact_variation) = (total_variation(computed), total_variation(exact));
-    let error: Vec<f64> = computed.iter().zip(exact).map(|(x, exact)| (x - exact) / peak).collect();
-    // Sums of finite values can overflow.
-    let sums = [variation, exact_variation, total_variation(&error), error.iter().sum()];
-    if sums.iter().any(|value: &f64| !value.is_finite()) {
-        return Err(UndefinedOscillation::NotFinite);
-    }
-    let flat = exact_variation <= TURN_TOLERANCE * peak;
-    let net = net_changes(computed, exact);
-    Ok(Oscillation {
-        variation_excess: (!flat).then(|| variation / exact_variation - 1.0),
-        reversal: (net > 0.0).then(|| (variation / net - 1.0).max(0.0)),
-        excess_over_peak: variation / peak - exact_variation / peak,
-        short_wave_share: short_wave_share(&error, samples_per_cell),
-    })
+/// None for fewer than three samples, lists that do not match, what is not a number or too large to subtract, an
+/// exact profile of zero, and a computed one without any net change.
+pub fn reversal(computed: &[f64], exact: &[f64]) -> Option<f64> {
+    let variation = total_variation(computed);
+    let is_measurable = computed.len() == exact.len()
+        && computed.len() > 2
+        && computed.iter().chain(exact).all(|value| value.is_finite())
+        && exact.iter().any(|value| *value != 0.0)
+        && variation.is_finite();
+    let net = if is_measurable { net_changes(computed, exact) } else { 0.0 };
+    (net > 0.0).then(|| (variation / net - 1.0).max(0.0))
 }
 
 /// Total variation `Σ |x_{i+1} − x_i|` of a profile, in its unit.
@@ -153,35 +70,6 @@ fn turning_points(profile: &[f64]) -> Vec<usize> {
         }
     }
     turns
-}
-
-/// Energy of the modes `cos(πk(i + ½)/N)` with wavelength `2N/k` samples of at most four cells,
-/// over the energy of all modes (discrete cosine transform, type II, orthonormal).
-fn short_wave_share(error: &[f64], samples_per_cell: f64) -> Option<f64> {
-    let count = error.len();
-    let largest = error.iter().map(|value| value.abs()).fold(0.0, f64::max);
-    if largest == 0.0 {
-        return None;
-    }
-    let first_short = count as f64 / (2.0 * samples_per_cell);
-    let (mut short, mut total) = (0.0, 0.0);
-    for mode in 0..count {
-        let amplitude: f64 = error
-            .iter()
-            .enumerate()
-            .map(|(index, value)| {
-                // The angle in whole half-steps of the period, so that large products stay exact.
-                let half_steps = (mode * (2 * index + 1)) % (4 * count);
-                value / largest * elementary::cos(PI * half_steps as f64 / (2 * count) as f64)
-            })
-            .sum();
-        let energy = amplitude * amplitude * if mode == 0 { 0.5 } else { 1.0 };
-        total += energy;
-        if mode as f64 >= first_short {
-            short += energy;
-        }
-    }
-    Some(short / total)
 }
 
 #[cfg(test)]

@@ -1,11 +1,9 @@
 //! The pressure of a plane run on the lattice of its points, beside the exact one.
 
 use crate::exact::exact_error::ExactError;
-use crate::exact::reference::Reference;
-use crate::measure::exact_fields::exact_samples;
+use crate::measure::exact_fields::{exact_samples, reference_of};
 use crate::measure::oscillation::total_variation;
 use crate::record::Record;
-use crate::scene::column::column_parameters;
 
 /// Pressures over the load at the points, row after row from the base, each from `x = 0` on.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,15 +28,13 @@ impl PlaneField {
     /// When the reference refuses the case.
     pub fn of(record: &Record, time_factor: f64) -> Result<Option<Self>, ExactError> {
         let case = &record.case;
-        let index = case.time_factors.iter().position(|factor| *factor == time_factor);
-        let Some(snapshot) = index.and_then(|index| record.snapshots.get(index)) else { return Ok(None) };
+        let Some(snapshot) = record.snapshot(time_factor) else { return Ok(None) };
         let Some(across) = case.column.cells_across(case.cells).filter(|_| snapshot.points.plane.is_some())
         else {
             return Ok(None);
         };
-        let parameters = column_parameters(&case.column, &case.material);
         let own = case.scene.references()[0].of_soil(&case.material);
-        let reference = Reference::new(own, &parameters, &[time_factor])?;
+        let reference = reference_of(case, own, &[time_factor])?;
         let exact = exact_samples(case, &reference, time_factor, &snapshot.points)?;
         let columns = across * case.points_per_cell;
         let rows = case.cells * case.points_per_cell;

@@ -3,9 +3,9 @@
 use crate::case::Case;
 use crate::elementary;
 use crate::exact::exact_error::ExactError;
-use crate::exact::reference::{Reference, ReferenceKind};
+use crate::exact::reference::ReferenceKind;
+use crate::measure::exact_fields::reference_of;
 use crate::record::Record;
-use crate::scene::column::column_parameters;
 
 /// Points of a theory line.
 const LINE_POINTS: u32 = 100;
@@ -21,8 +21,7 @@ pub fn theory_isochrone(
     kind: ReferenceKind,
     time_factor: f64,
 ) -> Result<Vec<(f64, f64)>, ExactError> {
-    let parameters = column_parameters(&case.column, &case.material);
-    let reference = Reference::new(kind, &parameters, &[time_factor])?;
+    let reference = reference_of(case, kind, &[time_factor])?;
     (0..=LINE_POINTS)
         .map(|i| {
             let zeta = f64::from(i) / f64::from(LINE_POINTS);
@@ -40,11 +39,10 @@ pub fn theory_consolidation(
     kind: ReferenceKind,
     end: f64,
 ) -> Result<Vec<(f64, f64)>, ExactError> {
-    let parameters = column_parameters(&case.column, &case.material);
     let growth = elementary::ln(end / CURVE_START) / f64::from(LINE_POINTS);
     let times: Vec<f64> =
         (0..=LINE_POINTS).map(|i| CURVE_START * elementary::exp(growth * f64::from(i))).collect();
-    let reference = Reference::new(kind, &parameters, &times)?;
+    let reference = reference_of(case, kind, &times)?;
     times.iter().map(|time| Ok((*time, reference.degree_of_consolidation(*time)?))).collect()
 }
 
@@ -53,14 +51,12 @@ pub fn theory_consolidation(
 /// # Errors
 /// When the reference refuses the case.
 pub fn theory_degree(case: &Case, kind: ReferenceKind, time_factor: f64) -> Result<f64, ExactError> {
-    let parameters = column_parameters(&case.column, &case.material);
-    Reference::new(kind, &parameters, &[time_factor])?.degree_of_consolidation(time_factor)
+    reference_of(case, kind, &[time_factor])?.degree_of_consolidation(time_factor)
 }
 
 /// A run's `p/q` at its points over depth, at the output of a time factor.
 pub fn computed_isochrone(record: &Record, time_factor: f64) -> Vec<(f64, f64)> {
-    let index = record.case.time_factors.iter().position(|factor| *factor == time_factor);
-    let Some(snapshot) = index.and_then(|index| record.snapshots.get(index)) else { return Vec::new() };
+    let Some(snapshot) = record.snapshot(time_factor) else { return Vec::new() };
     let points = &snapshot.points;
     let pairs = points.pressure.iter().zip(&points.initial_height);
     pairs

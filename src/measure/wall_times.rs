@@ -4,41 +4,10 @@
 //! medians of interleaved paired ratios by 4 %: so variants are timed in rounds, every sample is
 //! kept, and a difference counts only beyond what the code shows against itself.
 
-use serde::{Deserialize, Serialize};
-use thiserror::Error;
-
 use crate::elementary;
 
-/// Why a statistic has no value.
-#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
-pub enum UndefinedStatistic {
-    /// There are no samples.
-    #[error("there are no samples")]
-    Empty,
-    /// A sample is NaN or infinite.
-    #[error("sample {number} is not finite")]
-    NotFinite {
-        /// Number of the sample, from 1.
-        number: usize,
-    },
-    /// A time is not positive.
-    #[error("sample {number} is not a positive time")]
-    NotPositive {
-        /// Number of the sample, from 1.
-        number: usize,
-    },
-    /// The two lists of a pairing are of different lengths.
-    #[error("{first} and {second} samples cannot be paired")]
-    Unpaired {
-        /// Length of the first list.
-        first: usize,
-        /// Length of the second list.
-        second: usize,
-    },
-}
-
 /// A list of samples in a few numbers, in their unit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallSpread {
     /// Number of samples.
     pub count: usize,
@@ -54,7 +23,7 @@ pub struct WallSpread {
 }
 
 /// The ratio of two variants timed in rounds, one of each a round.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairedRatio {
     /// Spread of the ratios first over second, round by round.
     pub ratios: WallSpread,
@@ -63,23 +32,17 @@ pub struct PairedRatio {
     pub interval: Option<(f64, f64)>,
 }
 
-/// Median of samples; the mean of the middle two for an even number.
-///
-/// # Errors
-/// [`UndefinedStatistic`] when there are none, or one is not finite.
-pub fn median(samples: &[f64]) -> Result<f64, UndefinedStatistic> {
-    Ok(middle(&sorted(samples)?))
+/// Median of samples, the mean of the middle two for an even number; none for none, or what is no number.
+pub fn median(samples: &[f64]) -> Option<f64> {
+    Some(middle(&sorted(samples)?))
 }
 
-/// Median, deviation and extremes of samples.
-///
-/// # Errors
-/// [`UndefinedStatistic`] when there are none, or one is not finite.
-pub fn spread(samples: &[f64]) -> Result<WallSpread, UndefinedStatistic> {
+/// Median, deviation and extremes of samples; none for none, or what is no number.
+pub fn spread(samples: &[f64]) -> Option<WallSpread> {
     let ordered = sorted(samples)?;
     let median = middle(&ordered);
     let deviations: Vec<_> = ordered.iter().map(|sample| (sample - median).abs()).collect();
-    Ok(WallSpread {
+    Some(WallSpread {
         count: ordered.len(),
         median,
         deviation: 1.4826 * middle(&sorted(&deviations)?),
@@ -88,23 +51,15 @@ pub fn spread(samples: &[f64]) -> Result<WallSpread, UndefinedStatistic> {
     })
 }
 
-/// Ratios of times first over second, paired by round.
-///
-/// # Errors
-/// [`UndefinedStatistic`] when the lists cannot be paired or hold what is no positive time.
-pub fn paired_ratio(first: &[f64], second: &[f64]) -> Result<PairedRatio, UndefinedStatistic> {
-    if first.len() != second.len() {
-        return Err(UndefinedStatistic::Unpaired { first: first.len(), second: second.len() });
-    }
-    for times in [first, second] {
-        if let Some(index) = sorted(times).and(Ok(times.iter().position(|time| *time <= 0.0)))? {
-            return Err(UndefinedStatistic::NotPositive { number: index + 1 });
-        }
-    }
+/// Ratios of times first over second, paired by round; none where the lists cannot be paired or hold what is no
+/// positive time.
+pub fn paired_ratio(first: &[f64], second: &[f64]) -> Option<PairedRatio> {
+    let is_time = |time: &f64| time.is_finite() && *time > 0.0;
+    let are_times = first.len() == second.len() && first.iter().chain(second).all(is_time);
     let ratios: Vec<_> = first.iter().zip(second).map(|(a, b)| a / b).collect();
-    let ordered = sorted(&ratios)?;
+    let ordered = sorted(&ratios).filter(|_| are_times)?;
     let interval = median_rank(ordered.len()).map(|rank| (ordered[rank - 1], ordered[ordered.len() - rank]));
-    Ok(PairedRatio { ratios: spread(&ratios)?, interval })
+    Some(PairedRatio { ratios: spread(&ratios)?, interval })
 }
 
 /// How far from 1 the ratio of the same code against itself may lie: the far end of the median's
@@ -135,16 +90,10 @@ fn middle(ordered: &[f64]) -> f64 {
 }
 
 /// The samples in order; they are at least one, and finite.
-fn sorted(samples: &[f64]) -> Result<Vec<f64>, UndefinedStatistic> {
-    if samples.is_empty() {
-        return Err(UndefinedStatistic::Empty);
-    }
-    if let Some(index) = samples.iter().position(|sample| !sample.is_finite()) {
-        return Err(UndefinedStatistic::NotFinite { number: index + 1 });
-    }
+fn sorted(samples: &[f64]) -> Option<Vec<f64>> {
     let mut ordered = samples.to_vec();
     ordered.sort_by(f64::total_cmp);
-    Ok(ordered)
+    (!ordered.is_empty() && ordered.iter().all(|sample| sample.is_finite())).then_some(ordered)
 }
 
 #[cfg(test)]
@@ -153,8 +102,8 @@ mod tests {
 
     #[test]
     fn medians_and_spreads_are_those_of_the_definition() {
-        assert_eq!(median(&[3.0, 1.0, 2.0]), Ok(2.0));
-        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), Ok(2.5));
+        assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), Some(2.5));
         let found = spread(&[1.0, 2.0, 3.0, 4.0, 100.0]).unwrap();
         assert_eq!((found.median, found.minimum, found.maximum, found.count), (3.0, 1.0, 100.0, 5));
         assert!((found.deviation - 1.4826).abs() < 1e-12);
@@ -200,13 +149,13 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_value_is_named() {
-        use UndefinedStatistic as Undefined;
-        assert_eq!(median(&[]), Err(Undefined::Empty));
-        assert_eq!(spread(&[1.0, f64::NAN]), Err(Undefined::NotFinite { number: 2 }));
-        assert_eq!(paired_ratio(&[1.0], &[]), Err(Undefined::Unpaired { first: 1, second: 0 }));
-        assert_eq!(paired_ratio(&[], &[]), Err(Undefined::Empty));
-        assert_eq!(paired_ratio(&[1.0], &[0.0]), Err(Undefined::NotPositive { number: 1 }));
-        assert_eq!(paired_ratio(&[f64::NAN], &[1.0]), Err(Undefined::NotFinite { number: 1 }));
+    fn what_are_no_times_have_no_statistic() {
+        assert_eq!(median(&[]), None);
+        assert_eq!(spread(&[1.0, f64::NAN]), None);
+        for (first, second) in [(1.0, 0.0), (-1.0, 1.0), (f64::NAN, 1.0), (1.0, f64::INFINITY)] {
+            assert_eq!(paired_ratio(&[first], &[second]), None, "{first} {second}");
+        }
+        assert_eq!(paired_ratio(&[1.0], &[]), None);
+        assert_eq!(paired_ratio(&[], &[]), None);
     }
 }

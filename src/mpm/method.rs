@@ -1,6 +1,6 @@
 //! A method is a choice of four independent operators and of the configuration they live on.
 
-use crate::mpm::named::named;
+use crate::wording::words;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -48,13 +48,11 @@ pub enum StrainGradient {
     CmpmBbar,
 }
 
-named!(StrainGradient {
-    Standard = "standard",
-    Cmpm = "cmpm",
-    CmpmEnds = "cmpm-ends",
-    Bbar = "bbar",
-    CmpmBbar = "cmpm-bbar",
-});
+words!(StrainGradient: Standard "standard",
+    Cmpm "cmpm",
+    CmpmEnds "cmpm-ends",
+    Bbar "bbar",
+    CmpmBbar "cmpm-bbar",);
 
 impl StrainGradient {
     /// Whether the Lagrange interpolant is taken, at the points or between the ends of their domains.
@@ -83,7 +81,7 @@ pub enum PressureIntegration {
     Mean,
 }
 
-named!(PressureIntegration { Points = "points", Sri = "sri", Mean = "mean" });
+words!(PressureIntegration: Points "points", Sri "sri", Mean "mean");
 
 impl PressureIntegration {
     /// Whether there is one value a cell.
@@ -109,7 +107,7 @@ pub enum Recovery {
     NullSpace,
 }
 
-named!(Recovery { Constant = "constant", Patch = "patch", Nodal = "nodal", NullSpace = "null-space" });
+words!(Recovery: Constant "constant", Patch "patch", Nodal "nodal", NullSpace "null-space");
 
 impl Recovery {
     /// Why a recovery does not go with a place of the divergence, where it does not.
@@ -158,7 +156,7 @@ pub enum Configuration {
     Frozen,
 }
 
-named!(Configuration { Updated = "updated", Total = "total", Frozen = "frozen" });
+words!(Configuration: Updated "updated", Total "total", Frozen "frozen");
 
 impl Configuration {
     /// Whether points change place and weights follow.

@@ -16,7 +16,6 @@ pub mod explicit;
 pub mod implicit;
 pub mod method;
 pub mod momentum;
-pub mod named;
 pub mod operators;
 pub mod run;
 pub mod state;

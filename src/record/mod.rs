@@ -35,15 +35,20 @@ pub enum Status {
 impl Status {
     /// Whether the time was over before the case was.
     pub fn is_late(&self) -> bool {
-        matches!(self, Self::Failed(failure) if failure.kind == FailureKind::TimedOut)
+        self.failure().is_some_and(|failure| failure.kind == FailureKind::TimedOut)
+    }
+
+    /// How it failed, if it did.
+    pub fn failure(&self) -> Option<&Failure> {
+        match self {
+            Self::Ok => None,
+            Self::Failed(failure) => Some(failure),
+        }
     }
 
     /// `ok`, or the failure's name.
     pub fn name(&self) -> String {
-        match self {
-            Self::Ok => "ok".to_owned(),
-            Self::Failed(failure) => failure.kind.name().to_owned(),
-        }
+        self.failure().map_or("ok", |failure| failure.kind.name()).to_owned()
     }
 }
 
@@ -226,6 +231,12 @@ impl Record {
                 && row.reference == reference
                 && row.time_factor == time_factor
         })
+    }
+
+    /// The state at the output of a time factor, where the run came to it.
+    pub fn snapshot(&self, time_factor: f64) -> Option<&Snapshot> {
+        let index = self.case.time_factors.iter().position(|factor| *factor == time_factor)?;
+        self.snapshots.get(index)
     }
 
     /// Wall times of runs that had the machine to themselves, s.

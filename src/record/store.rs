@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::record::provenance::Provenance;
-use crate::record::whole_file::{remove_stale, write_renamed};
+use crate::record::whole_file::{StoreError, remove_stale, write_renamed};
 use crate::record::{Record, SCHEMA};
 use serde::Deserialize;
 use std::fs;
@@ -12,29 +12,6 @@ use std::path::{Path, PathBuf};
 const RECORD: &str = "record.json";
 /// File of its wall times, beside it.
 const WALL: &str = "wall.json";
-
-/// Why a record could not be read or written.
-#[derive(Debug, thiserror::Error)]
-pub enum StoreError {
-    /// The file system said no.
-    #[error("cannot {action} {path}: {source}")]
-    Io {
-        /// What was tried.
-        action: &'static str,
-        /// On what.
-        path: PathBuf,
-        /// Its answer.
-        source: std::io::Error,
-    },
-    /// A record cannot be put into JSON.
-    #[error("cannot write {path} as JSON: {source}")]
-    Json {
-        /// Which file.
-        path: PathBuf,
-        /// Why.
-        source: serde_json::Error,
-    },
-}
 
 /// What there is of a case to take up.
 #[derive(Clone, Debug, PartialEq)]

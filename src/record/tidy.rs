@@ -1,10 +1,10 @@
 //! One row a measure: the tidy CSV of a study.
 
 use crate::case::keys::Key;
-use crate::record::{ErrorRow, Record};
+use crate::record::{ERROR_COLUMNS, ErrorRow, Record};
 
-/// Columns of the tidy CSV: those with the name of a key have the value of that input.
-const COLUMNS: [&str; 21] = [
+/// First columns of the tidy CSV, before those of a measure; one with the name of a key has the value of that input.
+const CASE_COLUMNS: [&str; 15] = [
     "study",
     "case",
     "method",
@@ -20,15 +20,7 @@ const COLUMNS: [&str; 21] = [
     "point_updates",
     "status",
     "sources",
-    "time_factor",
-    "quantity",
-    "sample",
-    "norm",
-    "reference",
-    "value",
 ];
-/// The last of them, those of a measure.
-const MEASURE_COLUMNS: usize = 6;
 
 /// The measures of a study's records as CSV. A case that failed before its first output has one
 /// row without a measure, so that it is seen.
@@ -40,7 +32,7 @@ pub fn tidy_csv<'a>(
     records: impl IntoIterator<Item = &'a Record>,
 ) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(COLUMNS)?;
+    writer.write_record(CASE_COLUMNS.iter().chain(&ERROR_COLUMNS))?;
     for record in records {
         let case = case_fields(study, record);
         let mut write = |measure: &[String]| writer.write_record(case.iter().chain(measure));
@@ -48,7 +40,7 @@ pub fn tidy_csv<'a>(
             write(&measure_fields(row))?;
         }
         if record.errors.is_empty() {
-            write(&[const { String::new() }; MEASURE_COLUMNS])?;
+            write(&[const { String::new() }; ERROR_COLUMNS.len()])?;
         }
     }
     let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
@@ -57,7 +49,7 @@ pub fn tidy_csv<'a>(
 
 /// What all rows of a record begin with.
 fn case_fields(study: &str, record: &Record) -> Vec<String> {
-    let inputs = COLUMNS.iter().filter_map(|name| Key::named(name, "sweep"));
+    let inputs = CASE_COLUMNS.iter().filter_map(|name| Key::named(name, "sweep"));
     let mut fields = vec![study.to_owned(), record.hash.clone()];
     fields.extend(inputs.map(|key| key.get(&record.case).to_string()));
     fields.extend([
@@ -71,13 +63,7 @@ fn case_fields(study: &str, record: &Record) -> Vec<String> {
 }
 
 /// What a measure's row ends with.
-fn measure_fields(row: &ErrorRow) -> [String; MEASURE_COLUMNS] {
-    [
-        row.time_factor.to_string(),
-        row.quantity.name().to_owned(),
-        row.sample.name().to_owned(),
-        row.norm.name().to_owned(),
-        row.reference.clone(),
-        format!("{:e}", row.value),
-    ]
+fn measure_fields(row: &ErrorRow) -> [String; ERROR_COLUMNS.len()] {
+    let [time_factor, quantity, sample, norm, reference, _] = row.csv_fields();
+    [time_factor, quantity, sample, norm, reference, format!("{:e}", row.value)]
 }

@@ -1,6 +1,5 @@
 //! Files that are written whole or not at all: under a name of their own first, then renamed.
 
-use crate::record::store::StoreError;
 use std::collections::HashSet;
 use std::fs;
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -15,6 +14,29 @@ const PART: &str = ".part";
 const STALE: Duration = Duration::from_secs(24 * 3600);
 /// Letters of the host's name in a file's name.
 const HOST_LETTERS: usize = 32;
+
+/// Why a record could not be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// The file system said no.
+    #[error("cannot {action} {path}: {source}")]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// On what.
+        path: PathBuf,
+        /// Its answer.
+        source: std::io::Error,
+    },
+    /// A record cannot be put into JSON.
+    #[error("cannot write {path} as JSON: {source}")]
+    Json {
+        /// Which file.
+        path: PathBuf,
+        /// Why.
+        source: serde_json::Error,
+    },
+}
 
 /// Where this process runs: host name, and a tag of its boot and its namespace of process numbers, within which a
 /// number is one process. Shards in containers may share host name and process number both.

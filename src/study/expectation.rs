@@ -8,7 +8,9 @@ use crate::case::tier::Tier;
 use crate::convergence::series_demand::SeriesDemand as Demand;
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::method::Method;
+use crate::record::{ErrorRow, Record};
 use crate::wording::typed;
+use crate::wording::words;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -26,21 +28,15 @@ pub enum Axis {
     WaterBulkModulus,
 }
 
+words!(
+    Axis:
+    Cells "cells", TimeStep "time_step", PointsPerCell "points_per_cell",
+    WaterBulkModulus "water_bulk_modulus",
+);
+
 impl Axis {
-    /// Every axis.
-    pub const ALL: [Self; 4] = [Self::Cells, Self::TimeStep, Self::PointsPerCell, Self::WaterBulkModulus];
     /// Those along which a discretisation gets finer.
     pub const REFINEMENTS: [Self; 3] = [Self::Cells, Self::TimeStep, Self::PointsPerCell];
-
-    /// Name in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Cells => "cells",
-            Self::TimeStep => "time_step",
-            Self::PointsPerCell => "points_per_cell",
-            Self::WaterBulkModulus => "water_bulk_modulus",
-        }
-    }
 }
 
 /// The reference that is no other theory: the same run at the next finer level. Differences of
@@ -68,6 +64,13 @@ pub struct Measure {
     /// reference.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub probe: Option<f64>,
+}
+
+impl Measure {
+    /// The error of a record, where it was measured.
+    pub fn error<'a>(&self, record: &'a Record) -> Option<&'a ErrorRow> {
+        record.error(self.quantity, self.sample, self.norm, &self.reference, self.time_factor)
+    }
 }
 
 impl fmt::Display for Measure {

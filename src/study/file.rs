@@ -9,19 +9,15 @@ use crate::convergence::class::Class;
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
 use crate::scene::SceneKind;
+use crate::study::choice_tables::{Named, Placed, Typed, TypedList};
 use crate::study::diagnostic::{Diagnostic, StudyError, nearest};
 use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
-use crate::study::inputs::{InputTable, List, Named, One, OwnKeys, Placed};
+use crate::study::inputs::{InputTable, List, One, OwnKeys};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 
 choices!(Axis, Class, Configuration, Norm, PressureIntegration, Quantity, Recovery, Sample, SceneKind);
 choices!(StrainGradient, Task, Tier);
-
-/// A typed value with its place.
-type Typed<T> = Option<Placed<T>>;
-/// A typed list with the places of its values.
-type TypedList<T> = Option<Placed<Vec<Placed<T>>>>;
 
 /// Text of a study with a name for messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -133,40 +129,6 @@ pub struct SweepKeys {
     pub path: TypedList<String>,
     /// Smallest tier that has it.
     pub tier: Typed<Named<Tier>>,
-}
-
-/// A rule of the time step: exactly one of its keys.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TimeStepTable {
-    /// Share of the predicted critical step.
-    pub stable: Typed<f64>,
-    /// Share of a cell that the fastest wave crosses in a step.
-    pub courant: Typed<f64>,
-    /// Step, s.
-    pub seconds: Typed<f64>,
-    /// Step over the time that has passed.
-    pub growth: Typed<f64>,
-    /// Bound on the estimated error in time, relative to the load and to the settlement it makes.
-    pub tolerance: Typed<f64>,
-}
-
-/// A method, choice by choice.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MethodTable {
-    /// Weights between points and nodes.
-    pub basis: Typed<String>,
-    /// Gradient from which the effective stress takes its strain.
-    pub strain: Typed<Named<StrainGradient>>,
-    /// How the pore pressure is integrated.
-    pub pressure: Typed<Named<PressureIntegration>>,
-    /// How the pressure of a cell becomes a field again.
-    pub recovery: Typed<Named<Recovery>>,
-    /// Where the pressure is remembered.
-    pub memory: Typed<String>,
-    /// Configuration on which the operators live.
-    pub configuration: Typed<Named<Configuration>>,
 }
 
 /// What must be found of the series of the cases that its inputs name.
@@ -333,14 +295,6 @@ fn axes(_: &mut SchemaGenerator) -> Schema {
 
 impl StudySource {
     /// Reads TOML into tables, refusing unknown keys and wrong types at their place.
-    ///
-    /// # Errors
-    /// What the parser refuses, with the nearest key.
-    pub fn parse(&self) -> Result<StudyFile, StudyError> {
-        self.read()
-    }
-
-    /// Reads TOML into any tables, with the complaints of a study.
     ///
     /// # Errors
     /// What the parser refuses, with the nearest key.

@@ -2,28 +2,17 @@
 //!
 //! [`KEYS`]: crate::case::keys::KEYS
 
-use crate::case::keys::{Choice, Key, Kind};
+use crate::case::keys::{Key, Kind};
 use crate::mpm::method::Method;
-use crate::study::file::{MethodTable, TimeStepTable};
+use crate::study::choice_tables::{MethodTable, TimeStepTable};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, Visitor};
 use serde::{Deserialize, forward_to_deserialize_any};
 use std::borrow::Cow;
 use std::fmt;
-use std::marker::PhantomData;
 use std::ops::Deref;
 use toml::Spanned;
-
-/// A value with its place in the text.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(transparent)]
-pub struct Placed<T>(Spanned<T>);
-
-/// A word that names one of the choices of a type; judged later, at its place.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(transparent)]
-pub struct Named<T>(String, PhantomData<T>);
 
 /// The value of an input as it was typed.
 #[derive(Clone, Debug)]
@@ -71,20 +60,6 @@ pub trait HeldKey: Sized {
     ) -> Result<Self, A::Error>;
     /// Schema of what holds values of a schema.
     fn schema(value: Schema) -> Schema;
-}
-
-impl<T> Deref for Placed<T> {
-    type Target = Spanned<T>;
-    fn deref(&self) -> &Spanned<T> {
-        &self.0
-    }
-}
-
-impl<T> Named<T> {
-    /// The word.
-    pub fn word(&self) -> &str {
-        &self.0
-    }
 }
 
 impl<V, Own> Deref for InputTable<V, Own> {
@@ -279,24 +254,6 @@ impl<'de> Deserialize<'de> for MethodEntry {
             }
         }
         deserializer.deserialize_any(TypedEntry)
-    }
-}
-
-impl<T: JsonSchema> JsonSchema for Placed<T> {
-    fn schema_name() -> Cow<'static, str> {
-        T::schema_name()
-    }
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        T::json_schema(generator)
-    }
-}
-
-impl<T: Choice> JsonSchema for Named<T> {
-    fn schema_name() -> Cow<'static, str> {
-        std::any::type_name::<T>().into()
-    }
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "enum": T::words() })
     }
 }
 

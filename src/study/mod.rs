@@ -2,6 +2,7 @@
 
 pub mod case_expectation;
 pub mod check;
+pub mod choice_tables;
 pub mod diagnostic;
 pub mod expectation;
 pub mod file;

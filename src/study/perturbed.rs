@@ -1,6 +1,7 @@
 //! A study with the last digit of one input changed: what its results move by is round-off.
 
 use crate::study::check::{PlannedCase, Study};
+use crate::wording::words;
 
 /// The input whose last digit changes. Every operator's entries follow, and with them every rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,18 +12,12 @@ pub enum LastDigit {
     Conductivity,
 }
 
+words!(
+    LastDigit:
+    Stiffness "last digit of the stiffness", Conductivity "last digit of the conductivity",
+);
+
 impl LastDigit {
-    /// Every such input.
-    pub const ALL: [Self; 2] = [Self::Stiffness, Self::Conductivity];
-
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Stiffness => "last digit of the stiffness",
-            Self::Conductivity => "last digit of the conductivity",
-        }
-    }
-
     /// Changes the digit.
     pub fn change(self, youngs_modulus: &mut f64, hydraulic_conductivity: &mut f64) {
         match self {

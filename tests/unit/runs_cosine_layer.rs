@@ -1,7 +1,7 @@
 //! The undrained start of the cosine-loaded layer against the figures of an independent
 //! implementation: where volumetric locking shows.
 
-use crate::campaign::run_case;
+use crate::campaign::case_run::run_case;
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::mpm::run::Kernel;

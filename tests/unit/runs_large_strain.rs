@@ -1,6 +1,6 @@
 //! The scene `xie-leo` through the public door: what it refuses, where it starts, what it solves.
 
-use crate::campaign::run_case;
+use crate::campaign::case_run::run_case;
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::run::Kernel;

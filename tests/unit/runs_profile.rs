@@ -1,6 +1,6 @@
 //! Where the time goes, and which formulations an integrator takes: whole cases of every integrator.
 
-use crate::campaign::run_case;
+use crate::campaign::case_run::run_case;
 use crate::mpm::run::Kernel;
 use crate::mpm::run::profile::{Phase, PhaseTime, profiled};
 use crate::record::Record;

@@ -1,5 +1,6 @@
 use super::*;
-use crate::campaign::{RunOptions, run_study};
+use crate::campaign::run_options::RunOptions;
+use crate::campaign::runner::run_study;
 use crate::case::tier::Tier;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
@@ -157,7 +158,7 @@ fn every_record_keeps_to_the_schema_and_misses_nothing() {
 #[test]
 fn the_convention_of_a_mapping_keeps_to_the_schema() {
     let schema = schema_of(Document::Mapping);
-    for text in [crate::import::mapping::CONVENTION, crate::import::mapping::PLANE_CONVENTION] {
+    for text in [crate::import::convention::CONVENTION, crate::import::convention::PLANE_CONVENTION] {
         assert_eq!(breach(&schema, &study_value(text), "mapping"), None);
     }
     assert!(schema["properties"]["origin"]["description"].is_string());

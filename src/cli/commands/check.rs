@@ -1,6 +1,8 @@
 //! `oedometer check`: the CI tier again, judged by its expectations and by its golden values.
 
-use crate::campaign::{RunOptions, RunReport, Selected, run_studies};
+use crate::campaign::run_options::{RunOptions, Selected};
+use crate::campaign::run_report::RunReport;
+use crate::campaign::runner::run_studies;
 use crate::case::tier::Tier;
 use crate::cli::commands::run::{jobs_of, load_or_shipped};
 use crate::cli::destination::{append, is_on, path_in, write_document};

@@ -11,7 +11,7 @@ use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::scene::SceneKind;
 use crate::scene::column::column_parameters;
-use crate::study::check::Purpose;
+use crate::study::check::checker::Purpose;
 use clap::ValueEnum;
 
 /// Depths printed where none are asked for.

@@ -1,7 +1,7 @@
 //! `oedometer explain`: which norm and place carries the error of a case, how it stands among the
 //! other levels, what changed against the golden values, and the command that runs it again.
 
-use crate::campaign::run_case;
+use crate::campaign::case_run::run_case;
 use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::cli::commands::run::{DEFAULT_RESULTS, load_or_shipped};

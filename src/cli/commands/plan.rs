@@ -1,6 +1,6 @@
 //! `oedometer plan`: which cases there are, with their hashes, before anything runs.
 
-use crate::campaign::estimated_updates;
+use crate::campaign::work_estimate::estimated_updates;
 use crate::cli::commands::run::{TierArgument, load_or_shipped};
 use crate::cli::exit::Exit;
 use crate::cli::output::csv_of;

@@ -1,6 +1,6 @@
 //! `oedometer report`: run what is missing, render everything.
 
-use crate::campaign::RunOptions;
+use crate::campaign::run_options::RunOptions;
 use crate::case::tier::Tier;
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
 use crate::cli::exit::Exit;

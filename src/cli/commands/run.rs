@@ -1,6 +1,9 @@
 //! `oedometer run`: the cases of study files, their records and one tidy CSV a study.
 
-use crate::campaign::{RunError, RunOptions, RunReport, Selected, Shard, run_studies, time_study};
+use crate::campaign::run_options::{RunOptions, Selected, Shard};
+use crate::campaign::run_report::{RunError, RunReport};
+use crate::campaign::runner::run_studies;
+use crate::campaign::timing::time_study;
 use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::cli::exit::{Ended, Exit};
@@ -12,7 +15,8 @@ use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;
 use crate::record::tidy::tidy_csv;
 use crate::record::whole_file::write_whole;
-use crate::study::check::{Purpose, Study};
+use crate::study::check::Study;
+use crate::study::check::checker::Purpose;
 use crate::study::file::StudySource;
 use crate::study::shipped::shipped_studies;
 use clap::ValueEnum;

@@ -1,6 +1,7 @@
 //! `oedometer solve`: one case from the command line, its errors on standard output.
 
-use crate::campaign::{estimated_updates, run_case_within};
+use crate::campaign::case_run::run_case_within;
+use crate::campaign::work_estimate::estimated_updates;
 use crate::case::Case;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of};

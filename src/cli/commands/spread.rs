@@ -1,7 +1,7 @@
 //! `oedometer spread`: how far results scatter that should be equal, by number of threads, by the last
 //! digit of an input, by kernel and by build: what the tolerances of golden values are derived from.
 
-use crate::campaign::run_case;
+use crate::campaign::case_run::run_case;
 use crate::case::tier::Tier;
 use crate::cli::commands::accept::refuse_without_origin;
 use crate::cli::commands::check::run_quietly;

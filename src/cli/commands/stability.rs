@@ -1,6 +1,7 @@
 //! `oedometer stability`: the critical step of a case, predicted and observed.
 
-use crate::campaign::{RunOptions, run_study};
+use crate::campaign::run_options::RunOptions;
+use crate::campaign::runner::run_study;
 use crate::case::tier::Tier;
 use crate::cli::commands::run::jobs_of;
 use crate::cli::commands::solve::SolveFormat;

@@ -53,19 +53,17 @@ pub fn classify(series: &ErrorSeries, context: &Context) -> Classification {
 }
 
 fn wrong_context(context: &Context) -> Option<Classification> {
-    let wrong = |name: &str, value: Option<f64>, least: f64| {
-        value.filter(|value| !value.is_finite() || *value <= least).map(|value| {
-            let reason = format!("the {name} given, {}, is none", short(value));
-            plain(Class::NotEvaluable, reason)
-        })
-    };
     // A round-off or a reference error of exactly 0 is a claim, and a legal one.
-    wrong("formal order", context.formal_order, 0.0)
-        .or_else(|| wrong("round-off", context.round_off.filter(|value| *value != 0.0), 0.0))
-        .or_else(|| {
-            let accuracy = context.reference_accuracy.filter(|value| *value != 0.0);
-            wrong("reference accuracy", accuracy, 0.0)
-        })
+    let claimed = |value: Option<f64>| value.filter(|value| *value != 0.0);
+    let given = [
+        ("formal order", context.formal_order),
+        ("round-off", claimed(context.round_off)),
+        ("reference accuracy", claimed(context.reference_accuracy)),
+    ];
+    given.into_iter().find_map(|(name, value)| {
+        let wrong = value.filter(|value| !value.is_finite() || *value <= 0.0)?;
+        Some(plain(Class::NotEvaluable, format!("the {name} given, {}, is none", short(wrong))))
+    })
 }
 
 /// A body that reaches less than this share of its displacement on the finest mesh is locked.

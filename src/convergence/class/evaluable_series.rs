@@ -94,62 +94,52 @@ impl<'a> EvaluableSeries<'a> {
         self.points.first().copied().unwrap_or((f64::NAN, f64::NAN))
     }
 
-    /// A converging error and a floor of opposite sign that cancel at one level.
-    pub(crate) fn cancelled(&self, fit: &CancellingFit) -> Classification {
-        let limiter = identify(fit.floor, &self.limiters);
-        let limits_from = self.points.iter().find(|(_, error)| *error <= 2.0 * fit.floor);
+    /// A floor-limited classification: which levels a floor limits, its cause, and how to lower it to a target.
+    /// `told` is the reason up to what the floor limits.
+    fn over_floor(
+        &self,
+        told: &str,
+        order: Option<f64>,
+        target: Option<f64>,
+        floor: (f64, bool),
+    ) -> Classification {
+        let (value, fitted) = floor;
+        let limiter = identify(value, &self.limiters);
+        let limits_from = self.points.iter().find(|(_, error)| *error <= 2.0 * value);
         let limits_from = limits_from.map_or(self.finest().0, |point| point.0);
-        let target = 0.1 * fit.coefficient * elementary::powf(self.finest().0, fit.order);
         let cause = put_down_to(limiter);
         Classification {
             class: Class::FloorLimited,
-            reason: format!(
-                "the error falls, cancels near size {} and grows again to a floor of {} of opposite \
-                 sign, which limits the levels from size {} on{cause}",
-                short(fit.cancels_at),
-                short(fit.floor),
-                short(limits_from)
-            ),
-            advice: Some(advice(fit.floor, Some(target), limiter, &self.limiters)),
-            order: Some(fit.order),
-            floor: Some(Floor {
-                value: fit.floor,
-                fitted: true,
-                limits_from,
-                limiter: limiter.map(|limiter| limiter.kind),
-            }),
+            reason: format!("{told} limits the levels from size {} on{cause}", short(limits_from)),
+            advice: Some(advice(value, target.filter(|target| *target > 0.0), limiter, &self.limiters)),
+            order,
+            floor: Some(Floor { value, fitted, limits_from, limiter: limiter.map(|limiter| limiter.kind) }),
         }
+    }
+
+    /// A converging error and a floor of opposite sign that cancel at one level.
+    pub(crate) fn cancelled(&self, fit: &CancellingFit) -> Classification {
+        let target = 0.1 * fit.coefficient * elementary::powf(self.finest().0, fit.order);
+        let told = format!(
+            "the error falls, cancels near size {} and grows again to a floor of {} of opposite sign, which",
+            short(fit.cancels_at),
+            short(fit.floor)
+        );
+        self.over_floor(&told, Some(fit.order), Some(target), (fit.floor, true))
     }
 
     /// A series that goes to a limit which is not zero.
     pub(crate) fn approaching(&self, found: &Approach) -> Classification {
-        let (size, _) = self.finest();
-        let floor = found.limit.abs();
-        let limiter = identify(floor, &self.limiters);
-        let limits_from = self.points.iter().find(|(_, error)| *error <= 2.0 * floor);
-        let limits_from = limits_from.map_or(size, |point| point.0);
-        let target = 0.1 * (found.at(size) - found.limit).abs();
-        Classification {
-            class: Class::FloorLimited,
-            reason: format!(
-                "the error goes from {} to {} at order {} towards a limit of {}, and the finest level lies where \
-                 those before it say: a floor that limits the levels from size {} on{}",
-                short(self.values[0].1),
-                short(self.values[self.values.len() - 1].1),
-                order(found.order),
-                short(found.limit),
-                short(limits_from),
-                put_down_to(limiter)
-            ),
-            advice: Some(advice(floor, Some(target).filter(|target| *target > 0.0), limiter, &self.limiters)),
-            order: Some(found.order),
-            floor: Some(Floor {
-                value: floor,
-                fitted: true,
-                limits_from,
-                limiter: limiter.map(|limiter| limiter.kind),
-            }),
-        }
+        let target = 0.1 * (found.at(self.finest().0) - found.limit).abs();
+        let told = format!(
+            "the error goes from {} to {} at order {} towards a limit of {}, and the finest level lies where \
+             those before it say: a floor that",
+            short(self.values[0].1),
+            short(self.values[self.values.len() - 1].1),
+            order(found.order),
+            short(found.limit)
+        );
+        self.over_floor(&told, Some(found.order), Some(target), (found.limit.abs(), true))
     }
 
     /// A limit that the three finest levels suggest and none confirms.
@@ -195,28 +185,10 @@ impl<'a> EvaluableSeries<'a> {
         let fit = fit_floor(&series).ok().filter(|fit| fit.significant && fit.residual < 0.1);
         let (size, error) = self.finest();
         let value = fit.map_or(error, |fit| fit.floor);
-        let from = self.points.iter().find(|point| point.1 <= 2.0 * value);
         let converging = fit.map(|fit| fit.coefficient * elementary::powf(size, fit.order));
-        let limiter = identify(value, &self.limiters);
-        let target = converging.map(|part| 0.1 * part).filter(|target| *target > 0.0);
-        let limits_from = from.map_or(size, |point| point.0);
-        let cause = put_down_to(limiter);
         let height = if fit.is_some() { "a floor of" } else { "a floor not above" };
-        Classification {
-            class: Class::FloorLimited,
-            reason: format!(
-                "{reason}; {height} {} limits the levels from size {} on{cause}",
-                short(value),
-                short(limits_from)
-            ),
-            advice: Some(advice(value, target, limiter, &self.limiters)),
-            order: fit.map(|fit| fit.order),
-            floor: Some(Floor {
-                value,
-                fitted: fit.is_some(),
-                limits_from,
-                limiter: limiter.map(|limiter| limiter.kind),
-            }),
-        }
+        let told = format!("{reason}; {height} {}", short(value));
+        let target = converging.map(|part| 0.1 * part);
+        self.over_floor(&told, fit.map(|fit| fit.order), target, (value, fit.is_some()))
     }
 }

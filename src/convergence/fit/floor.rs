@@ -1,7 +1,5 @@
 //! The floor under a converging error, `e = C h^p + F`.
 
-use serde::{Deserialize, Serialize};
-
 use crate::convergence::fit::two_terms::{Exponent, TwoTerms, fit_two_terms};
 use crate::convergence::orders::slope_of;
 use crate::convergence::series::{ErrorSeries, Undefined};
@@ -15,7 +13,7 @@ pub const ORDER_RANGE: (f64, f64) = (0.1, 12.0);
 const NO_FLOOR: f64 = 1e-10;
 
 /// `e = C h^p + F` fitted with relative residuals, `C > 0`, `F ≥ 0`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FloorFit {
     /// `p` of the part that converges.
     pub order: f64,
@@ -28,11 +26,6 @@ pub struct FloorFit {
     pub significant: bool,
     /// Root mean square of the relative residuals.
     pub residual: f64,
-    /// Size at which the floor equals the converging part; the order holds well above it.
-    pub crossover: Option<f64>,
-    /// Sizes of the coarsest and the finest level at which the converging part is the larger: the
-    /// range in which the order holds. `None` where the floor governs every level.
-    pub order_holds: Option<(f64, f64)>,
 }
 
 impl FloorFit {
@@ -69,17 +62,12 @@ pub fn fit_floor(series: &ErrorSeries) -> Result<FloorFit, Undefined> {
         floor: fit.low_coefficient,
         significant: is_significant(&points, &fit)?,
         residual: fit.residual,
-        crossover: fit.crossover(),
-        order_holds: None,
     };
     if fit.share(finest) < NO_FLOOR {
         let straight = slope_of(&points)?;
         (fit.order, fit.coefficient) = (straight.order, straight.coefficient);
-        (fit.floor, fit.significant, fit.crossover) = (0.0, false, None);
+        (fit.floor, fit.significant) = (0.0, false);
     }
-    let holding = || points.iter().map(|point| point.0).filter(|size| fit.share(*size) <= 0.5);
-    let bounds = holding().next().zip(holding().next_back());
-    fit.order_holds = bounds;
     Ok(fit)
 }
 
@@ -111,13 +99,10 @@ mod tests {
     }
 
     #[test]
-    fn a_floor_is_found_and_its_range_named() {
+    fn a_floor_is_found() {
         let fit = fit_floor(&series(|h| h * h + 2e-4)).unwrap();
         assert!((fit.order - 2.0).abs() < 1e-9 && (fit.floor / 2e-4 - 1.0).abs() < 1e-9, "{fit:?}");
         assert!(fit.significant && (fit.coefficient - 1.0).abs() < 1e-8);
-        assert!((fit.crossover.unwrap() - 2e-4_f64.sqrt()).abs() < 1e-9);
-        // h² is above 2e-4 down to 1/40, where it is 6e-4; at 1/80 it is 1.6e-4.
-        assert_eq!(fit.order_holds, Some((0.2, 0.025)));
     }
 
     #[test]

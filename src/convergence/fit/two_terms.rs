@@ -6,13 +6,11 @@
 //! The coefficients are eliminated (variable projection, Golub & Pereyra 1973); only exponents
 //! are searched for.
 
-use serde::{Deserialize, Serialize};
-
 use crate::convergence::series::Undefined;
 use crate::elementary;
 
 /// Two powers fitted to an error.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoTerms {
     /// The lower exponent `a`.
     pub low: f64,

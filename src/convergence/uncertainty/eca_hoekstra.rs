@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::convergence::fit::least_squares::solve;
 use crate::convergence::fit::two_terms::{Exponent, minimum};
 use crate::convergence::series::Undefined;
+use crate::convergence::uncertainty::grid_convergence::check;
 use crate::elementary;
 
 /// The error models of the procedure.
@@ -181,14 +182,7 @@ fn checked(grids: &[(f64, f64)], formal_order: f64) -> Result<Vec<(f64, f64)>, U
     if !formal_order.is_finite() || formal_order < 0.5 {
         return Err(Undefined::NotDetermined);
     }
-    for (index, (size, value)) in grids.iter().enumerate() {
-        if !size.is_normal() || *size < 0.0 {
-            return Err(Undefined::BadSize { number: index + 1 });
-        }
-        if !value.is_finite() {
-            return Err(Undefined::NotFinite { size: *size });
-        }
-    }
+    check(grids)?;
     let mut grids = grids.to_vec();
     grids.sort_by(|a, b| b.0.total_cmp(&a.0));
     let same = grids.windows(2).find(|pair| pair[0].0 <= pair[1].0 * (1.0 + 1e-9));

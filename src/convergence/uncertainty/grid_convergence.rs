@@ -82,7 +82,10 @@ pub struct GridConvergence {
 /// beyond 50.
 pub fn three_grids(grids: [(f64, f64); 3], formal_order: Option<f64>) -> Result<ThreeGrids, Undefined> {
     let mut grids = grids;
-    check(&grids, formal_order)?;
+    check(&grids)?;
+    if formal_order.is_some_and(|order| !order.is_finite() || order <= 0.0) {
+        return Err(Undefined::NotDetermined);
+    }
     grids.sort_by(|a, b| a.0.total_cmp(&b.0));
     let [(h1, f1), (h2, f2), (h3, f3)] = grids;
     if h2 <= h1 * (1.0 + 1e-9) || h3 <= h2 * (1.0 + 1e-9) {
@@ -167,7 +170,8 @@ fn order_of(differences: f64, r21: f64, r32: f64) -> Option<f64> {
     Some(f64::midpoint(low, high))
 }
 
-fn check(grids: &[(f64, f64)], order: Option<f64>) -> Result<(), Undefined> {
+/// Refuses sizes and values that are no numbers.
+pub(crate) fn check(grids: &[(f64, f64)]) -> Result<(), Undefined> {
     for (index, (size, value)) in grids.iter().enumerate() {
         if !size.is_normal() || *size < 0.0 {
             return Err(Undefined::BadSize { number: index + 1 });
@@ -176,10 +180,7 @@ fn check(grids: &[(f64, f64)], order: Option<f64>) -> Result<(), Undefined> {
             return Err(Undefined::NotFinite { size: *size });
         }
     }
-    match order {
-        Some(order) if !order.is_finite() || order <= 0.0 => Err(Undefined::NotDetermined),
-        _ => Ok(()),
-    }
+    Ok(())
 }
 
 #[cfg(test)]

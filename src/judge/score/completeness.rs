@@ -7,6 +7,7 @@ use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::coverage;
 use crate::judge::score::coverage::Bare;
+use crate::judge::score::times::time_factors;
 
 /// Share by which volumes may differ beyond what consolidation explains: round-off of written
 /// numbers.
@@ -135,7 +136,7 @@ impl Whole<'_> {
         let nearest = self.volumes.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
         let scene = nearest.filter(|volume| self.is_declared || off(volume) <= ln(OTHER_UNIT));
         let whole = scene.unwrap_or(largest);
-        let times = crate::judge::score::time_factors(self.parameters, states);
+        let times = time_factors(self.parameters, states);
         let reference = Reference::new(self.reference, self.parameters, &times)?;
         let mut worst: Option<(usize, f64)> = None;
         for (place, (sum, time)) in sums.iter().zip(&times).enumerate() {
@@ -192,32 +193,16 @@ impl Whole<'_> {
     }
 
     fn bare_height(&self, state: &SampledState) -> Option<String> {
-        let height = self.parameters.height;
-        let lines = coverage::lines(&state.initial_height, height);
-        let is_scattered = !state.initial_distance.is_empty() && 2 * lines.len() > state.initial_height.len();
-        if lines.len() == 1 {
-            return None;
-        }
-        if is_scattered && lines.len() > 2 * PER_BIN {
-            return empty_band(&state.initial_height, height).map(|bare| stretch(bare, "over the base"));
-        }
-        coverage::bare(&lines, height).map(|bare| stretch(bare, "over the base"))
+        let is_one_height = |lines: &[f64]| lines.len() == 1;
+        let can_scatter = !state.initial_distance.is_empty();
+        let bare = bare_along(&state.initial_height, self.parameters.height, can_scatter, is_one_height);
+        bare.map(|bare| stretch(bare, "over the base"))
     }
 
     fn bare_length(&self, state: &SampledState) -> Option<String> {
-        if !self.is_plane() || state.initial_distance.is_empty() {
-            return None;
-        }
-        let length = self.parameters.length;
-        let lines = coverage::lines(&state.initial_distance, length);
-        if lines.len() <= PROFILES {
-            return None;
-        }
-        let bare = if 2 * lines.len() > state.initial_distance.len() && lines.len() > 2 * PER_BIN {
-            empty_band(&state.initial_distance, length)
-        } else {
-            coverage::bare(&lines, length)
-        };
+        let places = Some(&state.initial_distance).filter(|places| self.is_plane() && !places.is_empty())?;
+        let are_profiles = |lines: &[f64]| lines.len() <= PROFILES;
+        let bare = bare_along(places, self.parameters.length, true, are_profiles);
         bare.map(|bare| stretch(bare, "from the crest"))
     }
 
@@ -257,6 +242,23 @@ impl Whole<'_> {
 
     fn is_plane(&self) -> bool {
         matches!(self.reference, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible)
+    }
+}
+
+/// A bare stretch along one direction, of bands where the places lie without order; none where their lines were
+/// chosen to be looked at.
+fn bare_along(
+    places: &[f64],
+    extent: f64,
+    can_scatter: bool,
+    are_chosen: impl Fn(&[f64]) -> bool,
+) -> Option<Bare> {
+    let lines = coverage::lines(places, extent);
+    let is_scattered = can_scatter && 2 * lines.len() > places.len() && lines.len() > 2 * PER_BIN;
+    match (are_chosen(&lines), is_scattered) {
+        (true, _) => None,
+        (false, true) => empty_band(places, extent),
+        (false, false) => coverage::bare(&lines, extent),
     }
 }
 
@@ -309,7 +311,7 @@ pub fn uneven_meshes(
             let lines = coverage::lines(&state.initial_height, height);
             // Nodes have one more than there are spacings.
             let reaches = |line: Option<&f64>, end: f64| {
-                line.is_some_and(|y| (y - end).abs() <= crate::judge::score::RIM * height)
+                line.is_some_and(|y| (y - end).abs() <= coverage::SAME_PLACE * height)
             };
             let nodes = reaches(lines.first(), 0.0) && reaches(lines.last(), height);
             (lines.len() - usize::from(nodes)) as f64 / *cells as f64

@@ -6,7 +6,7 @@ const BARE: f64 = 1.5;
 /// it, or a whole one where the value at the end is prescribed.
 const BARE_AT_END: f64 = 1.25;
 /// Places closer than this share of the extent are one.
-const SAME_PLACE: f64 = 1e-6;
+pub(crate) const SAME_PLACE: f64 = 1e-6;
 /// Spacings closer than this, relative, are equal.
 const SAME_SPACING: f64 = 0.02;
 /// Neighbours on either side of a gap that tell the spacing around it.

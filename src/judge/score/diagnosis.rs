@@ -40,14 +40,6 @@ struct Mistake {
     left: f64,
 }
 
-/// One quantity of the states looked at: computed, exact, weights.
-struct Compared<'a> {
-    quantity: Quantity,
-    /// What a value of 1 is worth: the load, or the final settlement.
-    scale: f64,
-    states: &'a [&'a SampledState],
-}
-
 /// Sentences on what seems to be wrong with the numbers of a result, held against a reference.
 ///
 /// # Errors
@@ -62,28 +54,27 @@ pub fn diagnosis(
     let times: Vec<f64> = seen.iter().map(|state| parameters.time_factor(state.time)).collect();
     let solution = Reference::new(reference, parameters, &times)?;
     let exact = exact_of(&solution, parameters, &times, &seen)?;
-    let settled = parameters.final_settlement();
     let mut sentences: Vec<(String, Vec<&str>)> = Vec::new();
     for (quantity, column, scale) in [
         (Quantity::Pressure, "p", parameters.load),
         (Quantity::EffectiveStress, "effective_stress", parameters.load),
-        (Quantity::Displacement, "u_y", settled),
+        (Quantity::Displacement, "u_y", parameters.final_settlement()),
     ] {
-        let compared = Compared { quantity, scale, states: &seen };
-        let error = compared.error(&exact, |value| value);
-        let vanishes = compared.size(&exact) < VANISHED * scale;
-        let is_wrong = error > INACCURATE;
-        if vanishes || !is_wrong {
-            continue;
-        }
         let trials = Trials {
-            compared: &compared,
+            quantity,
+            scale,
+            states: &seen,
             exact: &exact,
             parameters,
             solution: &solution,
             times: &times,
             mapping,
         };
+        let error = trials.error(&exact, |value| value);
+        let is_wrong = error > INACCURATE;
+        if trials.size(&exact) < VANISHED * scale || !is_wrong {
+            continue;
+        }
         let mistakes = trials.all(error);
         let Some(mistake) = mistakes.into_iter().min_by(|a, b| a.left.total_cmp(&b.left)) else { continue };
         match sentences.iter_mut().find(|(sentence, _)| *sentence == mistake.sentence) {
@@ -116,7 +107,20 @@ fn exact_of(
     times.iter().zip(states).map(of).collect()
 }
 
-impl Compared<'_> {
+/// All that is tried on one quantity.
+struct Trials<'a> {
+    quantity: Quantity,
+    /// What a value of 1 is worth: the load, or the final settlement.
+    scale: f64,
+    states: &'a [&'a SampledState],
+    exact: &'a [ExactFields],
+    parameters: &'a ColumnParameters,
+    solution: &'a Reference,
+    times: &'a [f64],
+    mapping: &'a Mapping,
+}
+
+impl Trials<'_> {
     fn computed<'a>(&self, state: &'a SampledState) -> &'a [f64] {
         match self.quantity {
             Quantity::Pressure => &state.pressure,
@@ -125,7 +129,7 @@ impl Compared<'_> {
         }
     }
 
-    fn exact<'a>(&self, fields: &'a ExactFields) -> &'a [f64] {
+    fn exact_field<'a>(&self, fields: &'a ExactFields) -> &'a [f64] {
         match self.quantity {
             Quantity::Pressure => &fields.pressure,
             Quantity::EffectiveStress => &fields.effective_stress,
@@ -137,7 +141,7 @@ impl Compared<'_> {
     fn samples<'a>(&'a self, exact: &'a [ExactFields], height: f64) -> impl Iterator<Item = [f64; 4]> + 'a {
         self.states.iter().zip(exact).flat_map(move |(state, fields)| {
             let places = state.initial_height.iter().zip(&state.volume);
-            (self.computed(state).iter().zip(self.exact(fields)).zip(places))
+            (self.computed(state).iter().zip(self.exact_field(fields)).zip(places))
                 .map(move |((computed, exact), (y, volume))| [*computed, *exact, height - y, *volume])
         })
     }
@@ -149,8 +153,13 @@ impl Compared<'_> {
 
     /// The same where the depth below a height counts.
     fn error_over(&self, exact: &[ExactFields], height: f64, mended: impl Fn(f64, f64) -> f64) -> f64 {
+        self.error_of(self.samples(exact, height), mended)
+    }
+
+    /// The same over some samples.
+    fn error_of(&self, samples: impl Iterator<Item = [f64; 4]>, mended: impl Fn(f64, f64) -> f64) -> f64 {
         let (mut difference, mut size) = (0.0, 0.0);
-        for [computed, exact, depth, volume] in self.samples(exact, height) {
+        for [computed, exact, depth, volume] in samples {
             difference += volume * powi((mended(computed, depth) - exact) / self.scale, 2);
             size += volume * powi(exact / self.scale, 2);
         }
@@ -166,23 +175,10 @@ impl Compared<'_> {
         }
         (sum / volumes).sqrt() * self.scale
     }
-}
 
-/// All that is tried on one quantity.
-struct Trials<'a> {
-    compared: &'a Compared<'a>,
-    exact: &'a [ExactFields],
-    parameters: &'a ColumnParameters,
-    solution: &'a Reference,
-    times: &'a [f64],
-    mapping: &'a Mapping,
-}
-
-impl Trials<'_> {
     /// The mistakes that would explain the error.
     fn all(&self, error: f64) -> Vec<Mistake> {
-        let convinces =
-            |mistake: &Mistake, improved: f64| mistake.left <= MENDED && mistake.left <= improved * error;
+        let convinces = |mistake: &Mistake, share: f64| mistake.left <= MENDED.min(share * error);
         let mut mistakes = self.signs_and_units();
         mistakes.extend(self.total_stress());
         mistakes.extend(self.turned());
@@ -195,7 +191,7 @@ impl Trials<'_> {
 
     /// The exact field times −1, or in another unit.
     fn signs_and_units(&self) -> Vec<Mistake> {
-        let units: Vec<(&str, f64)> = if self.compared.quantity == Quantity::Displacement {
+        let units: Vec<(&str, f64)> = if self.quantity == Quantity::Displacement {
             let given = self.mapping.units.displacement.unwrap_or(self.mapping.units.length);
             LengthUnit::ALL.map(|unit| (unit.name(), unit.metres() / given.metres())).to_vec()
         } else {
@@ -203,6 +199,8 @@ impl Trials<'_> {
             StressUnit::ALL.map(|unit| (unit.name(), unit.pascals() / given.pascals())).to_vec()
         };
         let given = units.iter().find(|(_, factor)| *factor == 1.0).map_or("", |(name, _)| name);
+        // In a layer under a cosine the other end looks like the other sign.
+        let other_end = if self.solution.is_plane() { " Or does `x` count from the other end?" } else { "" };
         let mut mistakes = Vec::new();
         for (name, factor) in &units {
             for sign in [1.0, -1.0] {
@@ -211,48 +209,40 @@ impl Trials<'_> {
                 }
                 let unit = format!("is it in {name} where {given} is declared?");
                 let asked = match (*factor == 1.0, sign > 0.0) {
-                    (true, _) => format!("is the sign declared wrongly?{}", self.other_end()),
+                    (true, _) => format!("is the sign declared wrongly?{other_end}"),
                     (false, true) => unit,
                     (false, false) => format!("{unit} And is the sign declared wrongly?"),
                 };
                 mistakes.push(Mistake {
                     sentence: format!("is {} × the exact one: {asked}", short_factor(sign / factor)),
-                    left: self.compared.error(self.exact, |value| sign * factor * value),
+                    left: self.error(self.exact, |value| sign * factor * value),
                 });
             }
         }
         mistakes
     }
 
-    /// In a layer under a cosine the other end looks like the other sign.
-    fn other_end(&self) -> &'static str {
-        if self.solution.is_plane() { " Or does `x` count from the other end?" } else { "" }
-    }
-
     /// The total stress where the effective one is declared.
     fn total_stress(&self) -> Option<Mistake> {
-        if self.compared.quantity != Quantity::EffectiveStress {
+        if self.quantity != Quantity::EffectiveStress {
             return None;
         }
         let total = self.exact.iter().map(|fields| ExactFields {
-            effective_stress: fields
-                .effective_stress
-                .iter()
-                .zip(&fields.pressure)
+            effective_stress: (fields.effective_stress.iter().zip(&fields.pressure))
                 .map(|(s, p)| s - p)
                 .collect(),
             ..ExactFields::default()
         });
         Some(Mistake {
             sentence: "matches the exact total stress: is the pore pressure left in?".to_owned(),
-            left: self.compared.error(&total.collect::<Vec<_>>(), |value| value),
+            left: self.error(&total.collect::<Vec<_>>(), |value| value),
         })
     }
 
     /// The exact field with the height upside down.
     fn turned(&self) -> Option<Mistake> {
         let height = self.parameters.height;
-        let turned: Vec<SampledState> = (self.compared.states.iter())
+        let turned: Vec<SampledState> = (self.states.iter())
             .map(|state| SampledState {
                 initial_height: state.initial_height.iter().map(|y| (height - y).max(0.0)).collect(),
                 initial_distance: state.initial_distance.clone(),
@@ -263,7 +253,7 @@ impl Trials<'_> {
             exact_of(self.solution, self.parameters, self.times, &turned.iter().collect::<Vec<_>>()).ok()?;
         Some(Mistake {
             sentence: "matches the exact one upside down: is `y` counted from the other end?".to_owned(),
-            left: self.compared.error(&exact, |value| value),
+            left: self.error(&exact, |value| value),
         })
     }
 
@@ -285,7 +275,7 @@ impl Trials<'_> {
                     return None;
                 }
                 let solution = Reference::new(self.solution.kind(), self.parameters, &times).ok()?;
-                let exact = exact_of(&solution, self.parameters, &times, self.compared.states).ok()?;
+                let exact = exact_of(&solution, self.parameters, &times, self.states).ok()?;
                 Some(Mistake {
                     sentence: format!(
                         "matches the exact one at {} × the time: are times in {} where {} is declared?",
@@ -293,7 +283,7 @@ impl Trials<'_> {
                         unit.name(),
                         given.name()
                     ),
-                    left: self.compared.error(&exact, |value| value),
+                    left: self.error(&exact, |value| value),
                 })
             })
             .collect()
@@ -302,36 +292,31 @@ impl Trials<'_> {
     /// Places inside at which nothing was written: mid-side nodes of elements that carry the pressure
     /// at their corners.
     fn zeros(&self) -> Option<Mistake> {
-        let samples: Vec<[f64; 4]> = self.compared.samples(self.exact, 0.0).collect();
-        let is_inside = |exact: f64| exact.abs() > NOTABLE * self.compared.scale;
+        let samples: Vec<[f64; 4]> = self.samples(self.exact, 0.0).collect();
+        let is_inside = |exact: f64| exact.abs() > NOTABLE * self.scale;
         let inside = samples.iter().filter(|[_, exact, ..]| is_inside(*exact)).count();
         let is_zero = |sample: &&[f64; 4]| sample[0] == 0.0 && is_inside(sample[1]);
         let zeros = samples.iter().filter(is_zero).count();
         if zeros < 2 || 4 * zeros > 3 * inside {
             return None;
         }
-        let (mut difference, mut size) = (0.0, 0.0);
-        for [computed, exact, _, volume] in samples.iter().filter(|sample| !is_zero(sample)) {
-            difference += volume * powi((computed - exact) / self.compared.scale, 2);
-            size += volume * powi(exact / self.compared.scale, 2);
-        }
         Some(Mistake {
             sentence: format!(
                 "is exactly 0 at {zeros} of {inside} samples where it should not be, and right at the others: are they \
                  mid-side nodes without a value?"
             ),
-            left: (difference / size).sqrt(),
+            left: self.error_of(samples.iter().filter(|sample| !is_zero(sample)).copied(), |value, _| value),
         })
     }
 
     /// A constant gradient over the depth beside the exact pressure: the weight of the water.
     fn gradient(&self) -> Option<Mistake> {
-        if self.compared.quantity != Quantity::Pressure {
+        if self.quantity != Quantity::Pressure {
             return None;
         }
         let height = self.parameters.height;
         let (mut sums, mut offsets) = ([0.0; 3], [0.0; 2]);
-        for [computed, exact, depth, volume] in self.compared.samples(self.exact, height) {
+        for [computed, exact, depth, volume] in self.samples(self.exact, height) {
             let (depth, difference) = (depth / height, computed - exact);
             sums = [sums[0] + volume, sums[1] + volume * depth, sums[2] + volume * depth * depth];
             offsets = [offsets[0] + volume * difference, offsets[1] + volume * difference * depth];
@@ -343,8 +328,7 @@ impl Trials<'_> {
         let weight = self.parameters.unit_weight_of_water();
         let is_water = (gradient.abs() / weight - 1.0).abs() <= UNIT_WEIGHT;
         // By fit for the judgement, for a level of the water above or below the surface is a constant.
-        let left =
-            self.compared.error_over(self.exact, height, |value, depth| value - constant - gradient * depth);
+        let left = self.error_over(self.exact, height, |value, depth| value - constant - gradient * depth);
         is_water.then(|| Mistake {
             sentence: format!(
                 "differs from the exact one by a constant gradient of {} Pa/m: is the hydrostatic part left in?",
@@ -357,11 +341,8 @@ impl Trials<'_> {
 
 /// A factor as one says it: −1.00, 0.001, 60.
 fn short_factor(factor: f64) -> String {
-    if factor.abs() == 1.0 {
-        format!("{factor:.2}").replace('-', "−")
-    } else {
-        short(factor).replace('-', "−")
-    }
+    let digits = if factor.abs() == 1.0 { format!("{factor:.2}") } else { short(factor) };
+    digits.replace('-', "−")
 }
 
 #[cfg(test)]

@@ -6,12 +6,14 @@ pub mod diagnosis;
 pub mod score_series;
 pub mod times;
 
+use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::exact_error::ExactError;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::Finding;
+use crate::judge::score::times::time_factors;
 use crate::measure::error_contributions::contributions;
 use crate::measure::exact_fields::{ExactFields, SamplePlaces};
 use crate::measure::field_errors::{FieldError, LONG_AFTER, resolution, settlement_error};
@@ -78,10 +80,10 @@ pub struct ErrorIndex<'a> {
 }
 
 /// Time factor (its bits), quantity, sample, norm, reference.
-type ErrorKey<'a> = (u64, &'static str, &'static str, &'static str, &'a str);
+type ErrorKey<'a> = (u64, Quantity, Sample, Norm, &'a str);
 
 fn key(row: &ErrorRow) -> ErrorKey<'_> {
-    (row.time_factor.to_bits(), row.quantity.name(), row.sample.name(), row.norm.name(), &row.reference)
+    (row.time_factor.to_bits(), row.quantity, row.sample, row.norm, &row.reference)
 }
 
 impl<'a> ErrorIndex<'a> {
@@ -96,11 +98,6 @@ impl SampledState {
     fn places(&self, height: f64) -> SamplePlaces<'_> {
         SamplePlaces { height, heights: &self.initial_height, distances: &self.initial_distance }
     }
-}
-
-/// Time factors of states.
-pub fn time_factors(parameters: &ColumnParameters, states: &[SampledState]) -> Vec<f64> {
-    states.iter().map(|state| parameters.time_factor(state.time)).collect()
 }
 
 /// Holds states against references.
@@ -256,7 +253,6 @@ impl ScoredState<'_> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::case::norm::Norm;
 
     /// The exact fields on places, the pressure off by `error(ζ)`.
     pub(crate) fn state(places: usize, time_factor: f64, error: impl Fn(f64) -> f64) -> SampledState {

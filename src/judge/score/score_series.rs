@@ -1,6 +1,7 @@
 //! Orders and classes of external results on finer and finer meshes.
 
 use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::classify::classify;
 use crate::convergence::class::{Classification, Context};
 use crate::convergence::series::{ErrorSeries, SeriesLevel};
@@ -26,7 +27,7 @@ pub struct ScoredSeries {
 }
 
 /// What a series is of: the group of its times, quantity, sample, norm and reference.
-type SeriesKey = (usize, &'static str, &'static str, &'static str, String);
+type SeriesKey = (usize, Quantity, Sample, Norm, String);
 
 /// The series over results with numbers of cells over the height, coarsest first, the main norm of
 /// each quantity; `times` groups the times of the results in the same order. An error that a level
@@ -40,8 +41,7 @@ pub fn series_of(levels: &[(usize, &Score)], times: &TimeGroups, height: f64) ->
             .collect();
         for row in score.errors.iter().filter(|row| matches!(row.norm, Norm::L2 | Norm::Relative)) {
             let Some(group) = group_of.get(&row.time_factor.to_bits()) else { continue };
-            let names = (row.quantity.name(), row.sample.name(), row.norm.name());
-            let key = (*group, names.0, names.1, names.2, row.reference.clone());
+            let key = (*group, row.quantity, row.sample, row.norm, row.reference.clone());
             let rows = found.entry(key.clone()).or_insert_with(|| {
                 order.push(key);
                 vec![None; levels.len()]

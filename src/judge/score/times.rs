@@ -1,6 +1,14 @@
 //! Which times of several results are one time: no two programs, and no two meshes of an explicit
 //! one, stop at the same instant.
 
+use crate::exact::parameters::ColumnParameters;
+use crate::import::table::SampledState;
+
+/// Time factors of states.
+pub fn time_factors(parameters: &ColumnParameters, states: &[SampledState]) -> Vec<f64> {
+    states.iter().map(|state| parameters.time_factor(state.time)).collect()
+}
+
 /// Times of results by the time that they stand for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeGroups {

@@ -7,7 +7,7 @@
 //! Wanner 2003): second order for the same work. The drag must then be centred too.
 
 use crate::elementary;
-use crate::mpm::named::named;
+use crate::wording::words;
 use serde::{Deserialize, Serialize};
 
 /// Time levels of velocities and stresses.
@@ -21,7 +21,7 @@ pub enum Scheme {
     Leapfrog,
 }
 
-named!(Scheme { ForwardEuler = "forward-euler", Leapfrog = "leapfrog" });
+words!(Scheme: ForwardEuler "forward-euler", Leapfrog "leapfrog");
 
 impl Scheme {
     /// Whether this is the paper's; records of it say nothing of the scheme.
@@ -43,7 +43,7 @@ pub enum Drag {
     Centred,
 }
 
-named!(Drag { Explicit = "explicit", Implicit = "implicit", Centred = "centred" });
+words!(Drag: Explicit "explicit", Implicit "implicit", Centred "centred");
 
 impl Drag {
     /// Weight of the new relative velocity in the drag of a kick, `z` its duration times the rate at

@@ -1,7 +1,7 @@
 //! Time integrators by name.
 
-use crate::mpm::named::named;
 use crate::mpm::run::time_step_rule::TimeStepRule;
+use crate::wording::words;
 use serde::{Deserialize, Serialize};
 
 /// Share of the critical step where an explicit run names no rule.
@@ -26,7 +26,7 @@ pub enum IntegratorKind {
     Implicit,
 }
 
-named!(IntegratorKind { Explicit = "explicit", SemiImplicit = "semi-implicit", Implicit = "implicit" });
+words!(IntegratorKind: Explicit "explicit", SemiImplicit "semi-implicit", Implicit "implicit");
 
 impl IntegratorKind {
     /// Step rule where none is given.
@@ -89,4 +89,4 @@ pub enum Formulation {
     VW,
 }
 
-named!(Formulation { QuasiStatic = "quasi-static", UP = "u-p", VW = "v-w" });
+words!(Formulation: QuasiStatic "quasi-static", UP "u-p", VW "v-w");

@@ -1,7 +1,7 @@
 //! What a run leaves behind: its end by name, counters, step sizes and snapshots.
 
-use crate::mpm::named::named;
 use crate::mpm::run::snapshot::Snapshot;
+use crate::wording::words;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -26,15 +26,13 @@ pub enum FailureKind {
     TimedOut,
 }
 
-named!(FailureKind {
-    Unstable = "unstable",
-    PoresClosed = "pores-closed",
-    LeftGrid = "left-grid",
-    Singular = "singular",
-    NotConverged = "not-converged",
-    Stopped = "stopped",
-    TimedOut = "timed-out",
-});
+words!(FailureKind: Unstable "unstable",
+    PoresClosed "pores-closed",
+    LeftGrid "left-grid",
+    Singular "singular",
+    NotConverged "not-converged",
+    Stopped "stopped",
+    TimedOut "timed-out",);
 
 /// The end of a run that did not reach its last output.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]

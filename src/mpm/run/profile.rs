@@ -3,7 +3,7 @@
 //! A run says which phase it enters; nothing listens unless [`profiled`] does, and then the time
 //! between two words belongs to the phase that the first one named. Results know nothing of it.
 
-use crate::mpm::named::named;
+use crate::wording::words;
 use serde::{Deserialize, Serialize};
 use std::cell::{Cell, RefCell};
 use std::time::Instant;
@@ -42,22 +42,20 @@ pub enum Phase {
     Assessment,
 }
 
-named!(Phase {
-    Setup = "setup",
-    CriticalStep = "critical step",
-    BuildWeights = "build weights",
-    MapVelocities = "map velocities",
-    Forces = "forces",
-    Motion = "motion",
-    Stresses = "stresses",
-    Recovery = "pressures and recovery",
-    Balances = "balances of trial states",
-    Assembly = "assembly",
-    Factors = "factors",
-    Solve = "solve",
-    Outputs = "outputs",
-    Assessment = "exact solution and errors",
-});
+words!(Phase: Setup "setup",
+    CriticalStep "critical step",
+    BuildWeights "build weights",
+    MapVelocities "map velocities",
+    Forces "forces",
+    Motion "motion",
+    Stresses "stresses",
+    Recovery "pressures and recovery",
+    Balances "balances of trial states",
+    Assembly "assembly",
+    Factors "factors",
+    Solve "solve",
+    Outputs "outputs",
+    Assessment "exact solution and errors",);
 
 /// Time of a phase.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -195,9 +195,10 @@ const SAME_FLOOR: f64 = 1.1;
 /// One triangle for each order that a series comes near.
 fn add_triangles(chart: &mut Chart, summaries: &[SeriesSummary<'_>], labels: &[String]) {
     for slope in [1.0, 2.0] {
-        let near = summaries.iter().zip(labels).find(|(summary, _)| {
-            summary.finest.as_ref().is_ok_and(|finest| (finest.order - slope).abs() < 0.3)
-        });
+        let near = summaries
+            .iter()
+            .zip(labels)
+            .find(|(summary, _)| summary.finest.as_ref().is_ok_and(|order| (order - slope).abs() < 0.3));
         if let Some((_, label)) = near {
             chart.triangles.push(SlopeTriangle { slope, beside: label.clone() });
         }
@@ -285,7 +286,7 @@ fn orders_row(
         let pairs: Vec<String> = summary
             .pairs
             .iter()
-            .map(|pair| pair.order.as_ref().map_or("–".to_owned(), |order| format!("{order:.2}")))
+            .map(|order| order.as_ref().map_or("–".to_owned(), |order| format!("{order:.2}")))
             .collect();
         row.push(pairs.join(", ").as_str().into());
         row.push(match &summary.slope {
@@ -295,7 +296,7 @@ fn orders_row(
             Err(undefined) => Cell::Missing(undefined.to_string()),
         });
         row.push(match &summary.finest {
-            Ok(finest) => Cell::Order(finest.order),
+            Ok(order) => Cell::Order(*order),
             Err(undefined) => Cell::Missing(undefined.to_string()),
         });
     }

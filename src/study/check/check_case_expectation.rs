@@ -5,10 +5,10 @@ use crate::exact::reference::ReferenceKind;
 use crate::mpm::run::outcome::FailureKind;
 use crate::scene::SceneKind;
 use crate::study::case_expectation::{CaseDemand, CaseExpectation, ErrorRange};
-use crate::study::check::Checker;
+use crate::study::check::checker::Checker;
+use crate::study::choice_tables::Placed;
 use crate::study::expectation::Measure;
 use crate::study::file::{ExpectCaseTable, RangeTable};
-use crate::study::inputs::Placed;
 use toml::Spanned;
 
 impl Checker<'_> {

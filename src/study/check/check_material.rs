@@ -1,6 +1,6 @@
 //! Checks of what the soil is made of: the table `[material]`.
 
-use crate::study::check::Checker;
+use crate::study::check::checker::Checker;
 use crate::study::file::MaterialKeys;
 use crate::study::inputs::{InputTable, One, TypedInput};
 

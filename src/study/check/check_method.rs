@@ -3,10 +3,10 @@
 use crate::case::keys::Choice;
 use crate::mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery};
 use crate::scene::SceneKind;
-use crate::study::check::Checker;
+use crate::study::check::checker::Checker;
+use crate::study::choice_tables::{MethodTable, Named};
 use crate::study::diagnostic::one_of;
-use crate::study::file::MethodTable;
-use crate::study::inputs::{MethodEntry, Named};
+use crate::study::inputs::MethodEntry;
 use std::ops::Range;
 use toml::Spanned;
 

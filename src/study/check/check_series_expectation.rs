@@ -10,10 +10,11 @@ use crate::convergence::series_demand::{
 };
 use crate::exact::reference::ReferenceKind;
 use crate::scene::SceneKind;
-use crate::study::check::Checker;
+use crate::study::check::checker::Checker;
+use crate::study::choice_tables::Named;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE, Selection, SeriesExpectation};
 use crate::study::file::{ExpectTable, LevelTable};
-use crate::study::inputs::{Named, One};
+use crate::study::inputs::One;
 use toml::Spanned;
 
 /// Half-width of an order's band where an expectation names none.

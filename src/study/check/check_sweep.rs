@@ -1,37 +1,21 @@
 //! Checks of what is varied: the blocks `[[sweep]]`, axis by axis and together.
 
 use crate::case::Case;
-use crate::case::keys::{Key, Value};
+use crate::case::keys::Key;
 use crate::mpm::run::integrator::Formulation;
 use crate::scene::column::Column;
-use crate::study::check::{Checker, MOST_CASES};
+use crate::study::check::checker::{Checker, Common};
 use crate::study::file::SweepTable;
 use crate::study::inputs::{One, TypedInput};
 use crate::study::sweep::{Sweep, SweptKey};
 use std::ops::Range;
 use toml::Spanned;
 
+/// Cases that a study may have, counted as its sweeps multiply out: as many as a machine holds and a person
+/// can still mean.
+const MOST_CASES: usize = 1_000_000;
 /// Memory that a case may ask for, bytes: a workstation's.
 const MOST_BYTES: f64 = 32e9;
-
-/// What the cases of a study share where a sweep does not say otherwise.
-pub(crate) struct Common {
-    /// The seed values of the scene.
-    pub(crate) seed: Case,
-    /// What the study gives by its own tables.
-    pub(crate) given: Vec<(&'static Key, Value)>,
-}
-
-impl Common {
-    /// A case of the study before anything is swept.
-    pub(crate) fn base(&self) -> Case {
-        let mut case = self.seed.clone();
-        for (key, value) in &self.given {
-            key.set(&mut case, *value);
-        }
-        case
-    }
-}
 
 impl Checker<'_> {
     pub(crate) fn sweep(

@@ -6,7 +6,7 @@ use crate::elementary;
 use crate::exact::exact_error::ExactError;
 use crate::exact::xie_leo::XieLeo;
 use crate::scene::column::column_parameters;
-use crate::study::check::Checker;
+use crate::study::check::checker::Checker;
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::StudyFile;
 use toml::Spanned;

@@ -5,6 +5,7 @@ pub mod check_material;
 pub mod check_method;
 pub mod check_series_expectation;
 pub mod check_sweep;
+pub mod checker;
 pub mod geometry;
 pub mod step_rule;
 pub mod value;
@@ -18,15 +19,14 @@ use crate::record::Record;
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::study::case_expectation::CaseExpectation;
-use crate::study::check::check_sweep::Common;
-use crate::study::diagnostic::{Diagnostic, StudyError};
+use crate::study::check::checker::{Checker, Common, Purpose};
+use crate::study::choice_tables::Placed;
+use crate::study::diagnostic::StudyError;
 use crate::study::expectation::SeriesExpectation;
 use crate::study::file::{OutputTable, StudyFile, StudySource};
-use crate::study::inputs::Placed;
 use crate::study::name::name_of;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::ops::Range;
 use toml::Spanned;
 
 /// Time factors where a study names none.
@@ -35,9 +35,6 @@ const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
 const LEAST_TIME_FACTOR: f64 = 1e-15;
 /// Longest wall time of a case, s, where a study names none.
 const DEFAULT_CASE_SECONDS: f64 = 3600.0;
-/// Cases that a study may have, counted as its sweeps multiply out: as many as a machine holds and a person
-/// can still mean.
-const MOST_CASES: usize = 1_000_000;
 /// A case with the tier from which on it runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedCase {
@@ -88,7 +85,7 @@ impl Study {
     /// # Errors
     /// Every complaint with its place.
     pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
-        let file = source.parse()?;
+        let file: StudyFile = source.read()?;
         let mut checker =
             Checker { source, diagnostics: Vec::new(), column_height: None, multiplied_out: 0, purpose };
         let study = checker.study(&file);
@@ -109,31 +106,7 @@ impl Study {
     }
 }
 
-/// What a study is read for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    /// Its cases are to be solved.
-    Solving,
-    /// Only its problem is wanted, for an exact solution: no grid has to fit it.
-    Theory,
-}
-
-/// Complaints as they come up; every method gives a usable value or none.
-struct Checker<'a> {
-    source: &'a StudySource,
-    diagnostics: Vec<Diagnostic>,
-    /// Height by which the levels of expectations are sized, once it is known.
-    column_height: Option<f64>,
-    /// Cases that the sweeps seen so far multiply out to.
-    multiplied_out: usize,
-    purpose: Purpose,
-}
-
 impl Checker<'_> {
-    fn complain(&mut self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
-        self.diagnostics.push(Diagnostic::at(span, message, help));
-    }
-
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.named(&file.scene, "scene")?;
         let task = self.choice(file.task.as_deref(), "task", Task::default())?;

@@ -1,23 +1,33 @@
 //! Checks of the rules of step sizes.
 
 use crate::mpm::run::TimeStepRule;
-use crate::study::check::Checker;
-use crate::study::file::TimeStepTable;
+use crate::study::check::checker::Checker;
+use crate::study::choice_tables::TimeStepTable;
 use std::ops::Range;
+
+/// A rule of the step size: its name in study files, what it makes of a number, and the least number that a run
+/// comes to an end with, with the reason.
+type Rule = (&'static str, fn(f64) -> TimeStepRule, f64, &'static str);
+
+/// What steps that are too small for their share of a limit show.
+const NOTHING: &str = "no error in time is left that smaller steps would show";
+
+/// The rules in the order of a table's keys.
+const RULES: [Rule; 5] = [
+    ("stable", TimeStepRule::Stable, 1e-9, NOTHING),
+    ("courant", TimeStepRule::Courant, 1e-9, NOTHING),
+    ("seconds", TimeStepRule::Seconds, 0.0, ""),
+    ("growth", TimeStepRule::Growth, 1e-9, "steps that grow by less are too many for any run"),
+    ("tolerance", TimeStepRule::Tolerance, 1e-12, "round-off is an error of that size"),
+];
 
 impl Checker<'_> {
     /// The one rule that a table names.
     pub(crate) fn time_step(&mut self, table: &TimeStepTable, span: Range<usize>) -> Option<TimeStepRule> {
-        let given = [
-            (&table.stable, TimeStepRule::Stable as fn(f64) -> TimeStepRule),
-            (&table.courant, TimeStepRule::Courant),
-            (&table.seconds, TimeStepRule::Seconds),
-            (&table.growth, TimeStepRule::Growth),
-            (&table.tolerance, TimeStepRule::Tolerance),
-        ];
-        let given = given.into_iter().filter_map(|(typed, rule)| typed.as_ref().map(|typed| (rule, typed)));
-        let given: Vec<_> = given.map(|(rule, typed)| (rule(*typed.get_ref()), typed)).collect();
-        let [(rule, value)] = given.as_slice() else {
+        let typed = [&table.stable, &table.courant, &table.seconds, &table.growth, &table.tolerance];
+        let given = RULES.iter().zip(typed).filter_map(|(rule, typed)| Some((rule, typed.as_ref()?)));
+        let given: Vec<_> = given.collect();
+        let [((name, rule, least, why), value)] = given.as_slice() else {
             self.complain(
                 span,
                 format!("a time step by {} rules", given.len()),
@@ -26,46 +36,15 @@ impl Checker<'_> {
             );
             return None;
         };
-        let least = least_of(rule).filter(|(least, _)| (0.0..*least).contains(value.get_ref()));
-        if let Some((least, why)) = least.filter(|_| *value.get_ref() > 0.0) {
-            self.complain(
-                value.span(),
-                format!("a time step by `{} = {:e}`", name_of(rule), value.get_ref()),
-                format!("{why}: at least {least:e}"),
-            );
-            return None;
-        }
-        if value.get_ref().is_finite() && *value.get_ref() > 0.0 {
-            return Some(*rule);
-        }
-        self.complain(
-            value.span(),
-            format!("a time step of {}", value.get_ref()),
-            "it must be positive and finite",
-        );
+        let number = *value.get_ref();
+        let (message, help) = if number > 0.0 && number < *least {
+            (format!("a time step by `{name} = {number:e}`"), format!("{why}: at least {least:e}"))
+        } else if number.is_finite() && number > 0.0 {
+            return Some(rule(number));
+        } else {
+            (format!("a time step of {number}"), "it must be positive and finite".to_owned())
+        };
+        self.complain(value.span(), message, help);
         None
-    }
-}
-
-/// Least number of a rule that a run comes to an end with, and why.
-fn least_of(rule: &TimeStepRule) -> Option<(f64, &'static str)> {
-    match rule {
-        TimeStepRule::Growth(_) => Some((1e-9, "steps that grow by less are too many for any run")),
-        TimeStepRule::Tolerance(_) => Some((1e-12, "round-off is an error of that size")),
-        TimeStepRule::Stable(_) | TimeStepRule::Courant(_) => {
-            Some((1e-9, "no error in time is left that smaller steps would show"))
-        }
-        TimeStepRule::Seconds(_) => None,
-    }
-}
-
-/// Name of a rule in study files.
-fn name_of(rule: &TimeStepRule) -> &'static str {
-    match rule {
-        TimeStepRule::Stable(_) => "stable",
-        TimeStepRule::Courant(_) => "courant",
-        TimeStepRule::Seconds(_) => "seconds",
-        TimeStepRule::Growth(_) => "growth",
-        TimeStepRule::Tolerance(_) => "tolerance",
     }
 }

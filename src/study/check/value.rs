@@ -4,9 +4,10 @@ use crate::case::Case;
 use crate::case::keys::{Choice, Key, Kind, Range, Value};
 use crate::scene::SceneKind;
 use crate::soil::law::Law;
-use crate::study::check::Checker;
+use crate::study::check::checker::Checker;
+use crate::study::choice_tables::Named;
 use crate::study::diagnostic::one_of;
-use crate::study::inputs::{Named, One, TypedInput};
+use crate::study::inputs::{One, TypedInput};
 use std::ops::RangeInclusive;
 use toml::Spanned;
 

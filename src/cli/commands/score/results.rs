@@ -6,12 +6,14 @@ use crate::cli::exit::{Ended, Exit};
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::ReferenceKind;
 use crate::import::mapping::Mapping;
-use crate::import::table::{SampledState, SolvedBody, states_of};
+use crate::import::sample_row::SolvedBody;
+use crate::import::table::{SampledState, states_of};
 use crate::judge::score::completeness::{Whole, missing_times, uneven_meshes};
 use crate::judge::score::diagnosis::diagnosis;
 use crate::judge::score::score_series::{ScoredSeries, series_of};
 use crate::judge::score::times::TimeGroups;
-use crate::judge::score::{Score, score, time_factors};
+use crate::judge::score::times::time_factors;
+use crate::judge::score::{Score, score};
 use crate::scene::column::column_parameters;
 use std::path::PathBuf;
 

@@ -1,0 +1,149 @@
+//! Runs one case: from its inputs to its record.
+
+use crate::campaign::deadline::Deadline;
+use crate::campaign::work_estimate::MOST_PROBE_STEPS;
+use crate::case::{Case, Task};
+use crate::elementary;
+use crate::exact::exact_error::{ExactError, normal};
+use crate::exact::reference::ReferenceKind;
+use crate::measure::case_record::{record_of, record_of_critical_step, record_of_stopped_search};
+use crate::mpm::critical_step::formula;
+use crate::mpm::critical_step::observed::Stopped;
+use crate::mpm::run::outcome::FailureKind;
+use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::run::{Kernel, Schedule};
+use crate::record::{Record, Status, WallSample};
+use crate::scene::column::column_parameters;
+use crate::scene::problem::SceneProblem;
+use std::time::Instant;
+
+/// Points of the settlement curve of a run.
+const HISTORY_POINTS: usize = 48;
+/// First time factor of the settlement curve.
+const HISTORY_START: f64 = 1e-3;
+
+/// Runs one case for so many seconds at most: what takes longer has failed, by that name.
+///
+/// # Errors
+/// When the exact solutions refuse the case's parameters.
+pub fn run_case_within(
+    seconds: f64,
+    case: &Case,
+    references: &[ReferenceKind],
+    kernel: Kernel,
+    alone: bool,
+    observe: &dyn Fn(u64, u64) -> bool,
+) -> Result<Record, ExactError> {
+    let deadline = Deadline::after(seconds);
+    let in_time = |done: u64, expected: u64| observe(done, expected) && !deadline.is_over();
+    Ok(named_if_late(run_case(case, references, kernel, alone, &in_time)?, seconds))
+}
+
+/// The record of a case that was stopped because its time was over says so.
+fn named_if_late(mut record: Record, seconds: f64) -> Record {
+    if let Status::Failed(failure) = &mut record.status
+        && failure.kind == FailureKind::Stopped
+    {
+        failure.kind = FailureKind::TimedOut;
+        failure.reason = format!("it took longer than the {seconds} s that its study allows a case");
+    }
+    record
+}
+
+/// Runs one case; `alone` says whether nothing else competes for the cores meanwhile.
+///
+/// ```
+/// use oedometer::exact::ReferenceKind;
+/// use oedometer::{Kernel, Norm, Quantity, Sample, Study, StudySource, run_case};
+///
+/// let text = r#"
+/// title = "One column"
+/// scene = "terzaghi"
+/// output = { time_factors = [0.1] }
+/// sweep = [{ method = ["GC-SRI-patch"], integrator = ["implicit"], cells = [20] }]
+/// "#;
+/// let source = StudySource { name: "one.toml".to_owned(), text: text.to_owned() };
+/// let planned = &Study::check(&source).expect("a sound study").planned[0];
+/// let record = run_case(&planned.case, &[ReferenceKind::Terzaghi], Kernel::Fastest, true, &|_, _| true)?;
+/// let error = record.error(Quantity::Pressure, Sample::Centres, Norm::L2, "terzaghi", 0.1);
+/// assert!(error.expect("measured").value < 1e-2);
+/// # Ok::<(), oedometer::exact::ExactError>(())
+/// ```
+///
+/// # Errors
+/// When the exact solutions refuse the case's parameters.
+pub fn run_case(
+    case: &Case,
+    references: &[ReferenceKind],
+    kernel: Kernel,
+    alone: bool,
+    observe: &dyn Fn(u64, u64) -> bool,
+) -> Result<Record, ExactError> {
+    plausible(case)?;
+    if case.task == Task::Stability {
+        return stability_of(case, observe);
+    }
+    let problem = problem_of(case)?;
+    let schedule = schedule_of(case, kernel);
+    let start = Instant::now();
+    let outcome = problem.run(&schedule, observe);
+    let seconds = start.elapsed().as_secs_f64();
+    enter(Phase::Assessment);
+    let mut record = record_of(case, references, outcome)?;
+    record.wall.push(WallSample { seconds, alone });
+    Ok(record)
+}
+
+fn problem_of(case: &Case) -> Result<SceneProblem, ExactError> {
+    let Case { scene, column, material, method, cells, points_per_cell, .. } = case;
+    SceneProblem::new(*scene, column, material, *method, *cells, *points_per_cell)
+}
+
+/// Refuses numbers that no run can go on from, before anything is computed and whoever computes it.
+fn plausible(case: &Case) -> Result<(), ExactError> {
+    let parameters = column_parameters(&case.column, &case.material);
+    parameters.validate()?;
+    normal(
+        "critical time step",
+        formula::combined_limit(&case.material, case.cell_size(), case.settings.drag),
+    )?;
+    for factor in case.time_factors.iter().filter(|factor| **factor > 0.0) {
+        normal("time of an output", parameters.time(*factor))?;
+    }
+    Ok(())
+}
+
+/// Predicts and observes the critical step of a case.
+fn stability_of(case: &Case, observe: &dyn Fn(u64, u64) -> bool) -> Result<Record, ExactError> {
+    let problem = problem_of(case)?;
+    let end = case.time_factors.last().map_or(0.0, |factor| factor * case.seconds_per_time_factor());
+    // Of how many steps a search will be is not known: its work is told at its end.
+    let go_on = |_, _| observe(0, 1);
+    Ok(match problem.critical_step(&case.settings, end, MOST_PROBE_STEPS, &go_on) {
+        Ok(found) => record_of_critical_step(case, found),
+        Err(Stopped) => record_of_stopped_search(case),
+    })
+}
+
+fn schedule_of(case: &Case, kernel: Kernel) -> Schedule {
+    let parameters = column_parameters(&case.column, &case.material);
+    let end = case.time_factors.last().copied().unwrap_or(0.0);
+    let history = if end > HISTORY_START {
+        let growth = elementary::ln(end / HISTORY_START) / (HISTORY_POINTS - 1) as f64;
+        (0..HISTORY_POINTS)
+            .map(|i| parameters.time(HISTORY_START * elementary::exp(growth * i as f64)))
+            .collect()
+    } else {
+        Vec::new()
+    };
+    Schedule {
+        outputs: case.time_factors.iter().map(|factor| parameters.time(*factor)).collect(),
+        history,
+        rule: case.time_step,
+        settings: case.settings,
+        kernel,
+        integrator: case.integrator,
+        critical_step: None,
+        formulation: case.formulation,
+    }
+}

@@ -1,0 +1,88 @@
+//! What the runner tells: while it works, at its end, and where it could not go on.
+
+use crate::exact::exact_error::ExactError;
+use crate::record::origins::Origins;
+use crate::record::whole_file::StoreError;
+use crate::record::{Record, Status};
+
+/// What the runner tells while it works.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Progress {
+    /// Work ahead, in point updates as estimated before the runs.
+    Planned {
+        /// Cases to be run.
+        cases: usize,
+        /// Cases taken up from disk.
+        resumed: usize,
+        /// Estimated point updates; the largest number where there are more.
+        work: u64,
+    },
+    /// Work done since the last word.
+    Advanced(u64),
+    /// A case is done.
+    Finished {
+        /// Its study.
+        study: String,
+        /// Label of the case.
+        label: String,
+        /// Failure sentence, where it failed.
+        failure: Option<String>,
+    },
+}
+
+/// Why a study could not be run to its end.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// A result could not be kept.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// A case could not be set up.
+    #[error("{label}: {source}")]
+    Case {
+        /// Label of the case.
+        label: String,
+        /// Why.
+        source: ExactError,
+    },
+    /// A case crashed: a fault of this program.
+    #[error("{label}: crashed; please report it with the study file")]
+    Crashed {
+        /// Label of the case.
+        label: String,
+    },
+}
+
+impl RunError {
+    /// The case that has no record, with the reason; none where it is no case's own fault.
+    pub fn of_case(&self) -> Option<(&str, String)> {
+        match self {
+            Self::Store(_) => None,
+            Self::Case { label, source } => Some((label, source.to_string())),
+            Self::Crashed { label } => {
+                Some((label, "crashed; please report it with the study file".to_owned()))
+            }
+        }
+    }
+}
+
+/// What a run of a study gave.
+#[derive(Debug, Default)]
+pub struct RunReport {
+    /// Records in the order of the study.
+    pub records: Vec<Record>,
+    /// How many of them came from disk.
+    pub resumed: usize,
+    /// What made those.
+    pub origins: Origins,
+    /// Records of another program that were there, and whose cases were run again.
+    pub of_another_program: usize,
+    /// What went wrong beside failed cases; finished records are kept all the same.
+    pub errors: Vec<RunError>,
+}
+
+impl RunReport {
+    /// Records of cases that failed.
+    pub fn failed(&self) -> impl Iterator<Item = &Record> {
+        self.records.iter().filter(|record| record.status != Status::Ok)
+    }
+}

@@ -1,0 +1,55 @@
+//! Times the cases of a study alone.
+
+use crate::campaign::case_run::run_case;
+use crate::campaign::run_report::{Progress, RunError};
+use crate::campaign::work_estimate::estimated_work;
+use crate::mpm::run::Kernel;
+use crate::record::store::RecordStore;
+use crate::record::{Record, Status};
+use crate::study::check::Study;
+
+/// Repeats of a case that takes long end here: their spread is small, and they would make the study
+/// wait for what it knows.
+const REPEATS_OF_LONG_CASES: usize = 3;
+/// Seconds beyond which the repeats of a case took long.
+const LONG_REPEATS: f64 = 0.25;
+
+/// Whether the wall time of a case is not known yet as well as its study asks.
+fn wants_timing(record: &Record, repeats: usize) -> bool {
+    let wall = record.wall_alone();
+    let is_long = wall.iter().sum::<f64>() > LONG_REPEATS;
+    let enough = if is_long { repeats.min(REPEATS_OF_LONG_CASES) } else { repeats };
+    record.status == Status::Ok && wall.len() < enough
+}
+
+/// Times the cases of records alone, in rounds over all of them, until each has the study's number
+/// of samples: what drifts on the machine meets every case alike.
+///
+/// # Errors
+/// When a case cannot be run or its times not be kept.
+pub fn time_study(
+    study: &Study,
+    records: &mut [Record],
+    store: Option<&RecordStore>,
+    tell: &(dyn Fn(Progress) + Sync),
+) -> Result<(), RunError> {
+    let mut is_timed = false;
+    for _ in 0..study.timing_repeats {
+        for record in &mut *records {
+            if !wants_timing(record, study.timing_repeats) {
+                continue;
+            }
+            let timed = run_case(&record.case, &study.references, Kernel::Fastest, true, &|_, _| true)
+                .map_err(|source| RunError::Case { label: record.case.label(), source })?;
+            record.wall.extend(timed.wall);
+            is_timed = true;
+            tell(Progress::Advanced(estimated_work(&record.case)));
+        }
+    }
+    if let Some(store) = store.filter(|_| is_timed) {
+        for record in &*records {
+            store.write_wall(record)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,87 @@
+//! How much work a case will be, before it runs.
+
+use crate::case::{Case, Task};
+use crate::elementary;
+use crate::mpm::critical_step::formula;
+use crate::mpm::critical_step::observed::{BISECTIONS, OBSERVED_STEPS, SHARES};
+use crate::mpm::run::TimeStepRule;
+use crate::scene::column::column_parameters;
+
+/// Steps after which a run at a share of the critical step has shown that it is clean.
+pub(crate) const MOST_PROBE_STEPS: u64 = 1_000_000;
+
+/// Work of cases together: the largest number where there is more.
+pub(crate) fn work_of<'a>(cases: impl Iterator<Item = &'a Case>) -> u64 {
+    cases.fold(0, |sum, case| sum.saturating_add(estimated_work(case)))
+}
+
+/// Point updates, weighted with what one costs: operators that follow the points are built anew in
+/// every step.
+pub(crate) fn estimated_work(case: &Case) -> u64 {
+    let follows = case.method.configuration_or(case.scene.configuration()).deforms();
+    estimated_updates(case).saturating_mul(if follows { 30 } else { 1 })
+}
+
+/// Point updates that a case will take, by formula and before any operator is built.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, it is an estimate")]
+pub fn estimated_updates(case: &Case) -> u64 {
+    let parameters = column_parameters(&case.column, &case.material);
+    let end = parameters.time(case.time_factors.last().copied().unwrap_or(0.0));
+    let limit = formula::combined_limit(&case.material, case.cell_size(), case.settings.drag);
+    let step = match case.time_step {
+        TimeStepRule::Stable(share) => 1.5 * share * limit,
+        TimeStepRule::Courant(share) => {
+            share * case.cell_size() / formula::fastest_wave_speed(&case.material, case.material.porosity)
+        }
+        TimeStepRule::Seconds(seconds) => seconds,
+        TimeStepRule::Tolerance(tolerance) => end * tolerance.sqrt() / 20.0,
+        TimeStepRule::Growth(growth) => {
+            let first = parameters.time(elementary::powi(case.cells as f64, -2));
+            growth * end / (2.0 + elementary::ln((end / first).max(1.0)))
+        }
+    };
+    let steps = match case.task {
+        Task::Solve => end / step,
+        Task::Stability => {
+            // Runs of a fixed length bracket the limit; those beside it end with the scene, or before.
+            let observed = OBSERVED_STEPS as f64;
+            f64::from(BISECTIONS) * observed
+                + SHARES.len() as f64 * (end / step).clamp(observed, MOST_PROBE_STEPS as f64)
+        }
+    };
+    (steps * case.expected_points() as f64).max(1.0) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::tier::Tier;
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    fn cases(head: &str, sweep: &str) -> Vec<Case> {
+        let text =
+            format!("title = \"t\"\nscene = \"terzaghi\"\n{head}\n[[sweep]]\nmethod = [\"MPM\"]\n{sweep}\n");
+        let study = Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound");
+        study.cases(Tier::Full).into_iter().cloned().collect()
+    }
+
+    #[test]
+    fn work_beyond_counting_stays_the_largest_number() {
+        let endless = cases("", "cells = [3, 4]\ntime_step = [{ seconds = 1e-300 }]");
+        assert_eq!(endless.len(), 2);
+        assert!(endless.iter().all(|case| estimated_work(case) == u64::MAX));
+        assert_eq!(work_of(endless.iter()), u64::MAX);
+        let short = cases("", "cells = [3, 4]");
+        assert_eq!(work_of(short.iter()), estimated_work(&short[0]) + estimated_work(&short[1]));
+    }
+
+    #[test]
+    fn the_work_of_a_critical_step_has_an_end() {
+        let endless = cases("task = \"stability\"", "cells = [8]\nhydraulic_conductivity = [1e-300]");
+        let most = (u64::from(BISECTIONS) * OBSERVED_STEPS + 2 * MOST_PROBE_STEPS) * 16;
+        assert_eq!(estimated_updates(&endless[0]), most);
+        let short = cases("task = \"stability\"\n[output]\ntime_factors = [1e-9]", "cells = [8]");
+        assert_eq!(estimated_updates(&short[0]), (u64::from(BISECTIONS) + 2) * OBSERVED_STEPS * 16);
+    }
+}

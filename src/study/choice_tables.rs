@@ -1,0 +1,91 @@
+//! Typed values with their places, and the tables of choices that are a value themselves: a method, a step rule.
+
+use crate::case::keys::Choice;
+use crate::mpm::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
+use std::borrow::Cow;
+use std::marker::PhantomData;
+use std::ops::Deref;
+use toml::Spanned;
+
+/// A value with its place in the text.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(transparent)]
+pub struct Placed<T>(Spanned<T>);
+
+/// A word that names one of the choices of a type; judged later, at its place.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(transparent)]
+pub struct Named<T>(String, PhantomData<T>);
+
+/// A typed value with its place.
+pub type Typed<T> = Option<Placed<T>>;
+/// A typed list with the places of its values.
+pub type TypedList<T> = Option<Placed<Vec<Placed<T>>>>;
+
+impl<T> Deref for Placed<T> {
+    type Target = Spanned<T>;
+    fn deref(&self) -> &Spanned<T> {
+        &self.0
+    }
+}
+
+impl<T> Named<T> {
+    /// The word.
+    pub fn word(&self) -> &str {
+        &self.0
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Placed<T> {
+    fn schema_name() -> Cow<'static, str> {
+        T::schema_name()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        T::json_schema(generator)
+    }
+}
+
+impl<T: Choice> JsonSchema for Named<T> {
+    fn schema_name() -> Cow<'static, str> {
+        std::any::type_name::<T>().into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "enum": T::words() })
+    }
+}
+
+/// A rule of the time step: exactly one of its keys.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TimeStepTable {
+    /// Share of the predicted critical step.
+    pub stable: Typed<f64>,
+    /// Share of a cell that the fastest wave crosses in a step.
+    pub courant: Typed<f64>,
+    /// Step, s.
+    pub seconds: Typed<f64>,
+    /// Step over the time that has passed.
+    pub growth: Typed<f64>,
+    /// Bound on the estimated error in time, relative to the load and to the settlement it makes.
+    pub tolerance: Typed<f64>,
+}
+
+/// A method, choice by choice.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MethodTable {
+    /// Weights between points and nodes.
+    pub basis: Typed<String>,
+    /// Gradient from which the effective stress takes its strain.
+    pub strain: Typed<Named<StrainGradient>>,
+    /// How the pore pressure is integrated.
+    pub pressure: Typed<Named<PressureIntegration>>,
+    /// How the pressure of a cell becomes a field again.
+    pub recovery: Typed<Named<Recovery>>,
+    /// Where the pressure is remembered.
+    pub memory: Typed<String>,
+    /// Configuration on which the operators live.
+    pub configuration: Typed<Named<Configuration>>,
+}
