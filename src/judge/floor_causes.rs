@@ -7,10 +7,7 @@ use crate::exact::reference::{Reference, ReferenceKind};
 use crate::judge::paths::Path;
 use crate::measure::exact_fields::{exact_samples, reference_of};
 use crate::measure::norms::relative_error;
-use crate::mpm::explicit::Drag;
-use crate::mpm::explicit::scheme::Scheme;
 use crate::mpm::run::TimeStepRule;
-use crate::mpm::run::integrator::IntegratorKind;
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 
@@ -57,14 +54,7 @@ impl Path<'_> {
 /// The floor that the error in time puts under errors on ever finer meshes, where the step does not fall
 /// with the cells.
 fn step_limiter(case: &Case) -> Option<Limiter> {
-    let of_second_order = match case.integrator {
-        IntegratorKind::Implicit => true,
-        IntegratorKind::SemiImplicit => false,
-        IntegratorKind::Explicit => {
-            case.settings.scheme == Scheme::Leapfrog && case.settings.drag == Drag::Centred
-        }
-    };
-    let of_steps = if of_second_order { 2.0 } else { 1.0 };
+    let of_steps = case.integrator.order_in_time(&case.settings);
     let (name, order) = match case.time_step {
         TimeStepRule::Stable(_) | TimeStepRule::Courant(_) => return None,
         TimeStepRule::Seconds(_) => ("the time step", Some(of_steps)),
@@ -109,6 +99,7 @@ mod tests {
     use crate::case::quantity::Sample;
     use crate::convergence::class::{Class, Classification};
     use crate::judge::paths::{first_norm, paths};
+    use crate::mpm::run::integrator::IntegratorKind;
 
     fn records(rule: &str, cells: &str) -> Vec<Record> {
         let text = format!(

@@ -1,7 +1,6 @@
 //! Start checks and balances of a record, each with the bound that it is held to: what shows a mark
 //! in a table is judged here, and nowhere else.
 
-use crate::mpm::method::Basis;
 use crate::record::{Balance, Record};
 use crate::scene::arrangement::Arrangement;
 use crate::soil::continuity::Continuity;
@@ -54,8 +53,7 @@ pub fn start_checks(record: &Record) -> Vec<RecordCheck> {
     // follow points err in them from the start, and points integrate no spline exactly: of those a layer
     // alone, whose start is an equilibrium of its own operators, is judged.
     let rests = !case.scene.has_waves() && column.loading_time == 0.0 && column.points.is_regular();
-    let is_exact =
-        case.scene.start_is_solved() || !matches!(case.method.basis, Basis::Bspline2 | Basis::Bspline3);
+    let is_exact = case.scene.start_is_solved() || !case.method.basis.is_spline();
     let is_judged = rests && is_exact && !deforms(record);
     vec![
         RecordCheck::of(POINTS_MISSING, missing, 0.0),

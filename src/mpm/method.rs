@@ -23,11 +23,7 @@ pub enum Basis {
     Bspline3,
 }
 
-impl Basis {
-    /// Every basis.
-    pub const ALL: [Self; 6] =
-        [Self::Hat, Self::Ugimp, Self::Cpgimp, Self::Cpdi, Self::Bspline2, Self::Bspline3];
-}
+words!(Basis: Hat "hat", Ugimp "ugimp", Cpgimp "cpgimp", Cpdi "cpdi", Bspline2 "bspline2", Bspline3 "bspline3");
 
 /// Gradient from which the effective stress takes its strain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -132,10 +128,9 @@ pub enum Memory {
     Cells,
 }
 
-impl Memory {
-    /// Both, the paper's first.
-    pub const ALL: [Self; 2] = [Self::Points, Self::Cells];
+words!(Memory: Points "points", Cells "cells");
 
+impl Memory {
     /// Whether it is the paper's.
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     pub fn is_points(&self) -> bool {

@@ -1,7 +1,7 @@
 //! Typed values with their places, and the tables of choices that are a value themselves: a method, a step rule.
 
 use crate::case::keys::Choice;
-use crate::mpm::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
+use crate::mpm::method::{Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use std::borrow::Cow;
@@ -77,7 +77,7 @@ pub struct TimeStepTable {
 #[serde(deny_unknown_fields)]
 pub struct MethodTable {
     /// Weights between points and nodes.
-    pub basis: Typed<String>,
+    pub basis: Typed<Named<Basis>>,
     /// Gradient from which the effective stress takes its strain.
     pub strain: Typed<Named<StrainGradient>>,
     /// How the pore pressure is integrated.
@@ -85,7 +85,7 @@ pub struct MethodTable {
     /// How the pressure of a cell becomes a field again.
     pub recovery: Typed<Named<Recovery>>,
     /// Where the pressure is remembered.
-    pub memory: Typed<String>,
+    pub memory: Typed<Named<Memory>>,
     /// Configuration on which the operators live.
     pub configuration: Typed<Named<Configuration>>,
 }

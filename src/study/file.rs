@@ -7,7 +7,7 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
 use crate::convergence::class::Class;
 use crate::exact::reference::ReferenceKind;
-use crate::mpm::method::{Configuration, PressureIntegration, Recovery, StrainGradient};
+use crate::mpm::method::{Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient};
 use crate::scene::SceneKind;
 use crate::study::choice_tables::{Named, Placed, Typed, TypedList};
 use crate::study::diagnostic::{Diagnostic, StudyError, nearest};
@@ -17,7 +17,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 
 choices!(Axis, Class, Configuration, Norm, PressureIntegration, Quantity, Recovery, Sample, SceneKind);
-choices!(StrainGradient, Task, Tier);
+choices!(Basis, Memory, StrainGradient, Task, Tier);
 
 /// Text of a study with a name for messages.
 #[derive(Clone, Debug, PartialEq, Eq)]

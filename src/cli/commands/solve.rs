@@ -10,7 +10,7 @@ use crate::cli::overrides::StudyLines;
 use crate::cli::stream::{print_data, say};
 use crate::judge::soundness;
 use crate::mpm::run::Kernel;
-use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::integrator::{IntegratorKind, StepBound};
 use crate::mpm::run::outcome::{Failure, StepSizes};
 use crate::mpm::run::profile::{PhaseTime, profiled};
 use crate::record::provenance::Provenance;
@@ -134,11 +134,9 @@ fn tell_of_long(study: &Study) {
     if updates < LONG_WORK {
         return;
     }
-    let hint = match case.integrator {
-        IntegratorKind::Implicit => "larger steps take fewer",
-        IntegratorKind::Explicit | IntegratorKind::SemiImplicit => {
-            "`--integrator implicit` takes larger steps"
-        }
+    let hint = match case.integrator.step_bound() {
+        StepBound::Accuracy => "larger steps take fewer",
+        StepBound::AllWaves | StepBound::SkeletonWaves => "`--integrator implicit` takes larger steps",
     };
     say!(
         "note: about {:.1e} point updates, at least {:.0e} s; it ends after {} s (`--set case_seconds=…`) at the latest; \

@@ -6,7 +6,7 @@ use crate::mpm::implicit::residual::StageStart;
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::implicit::tangent::Pattern;
 use crate::mpm::implicit::trial::{Skeleton, Trial};
-use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::integrator::StepBound;
 use crate::mpm::run::outcome::FailureKind;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::mpm::run::run_plan::Plan;
@@ -63,9 +63,9 @@ pub struct NewtonStepper<const D: usize> {
 impl<const D: usize> NewtonStepper<D> {
     /// A body at its start.
     pub fn new(body: Body<D>, plan: &Plan<'_>) -> Self {
-        let (skeleton, stages) = match plan.schedule.integrator {
-            IntegratorKind::SemiImplicit => (Skeleton::Explicit, SINGLE_STAGE),
-            IntegratorKind::Explicit | IntegratorKind::Implicit => (Skeleton::Implicit, SDIRK_STAGES),
+        let (skeleton, stages) = match plan.schedule.integrator.step_bound() {
+            StepBound::SkeletonWaves => (Skeleton::Explicit, SINGLE_STAGE),
+            StepBound::AllWaves | StepBound::Accuracy => (Skeleton::Implicit, SDIRK_STAGES),
         };
         let trial = Trial::new(body, plan.schedule.formulation, skeleton);
         let pattern = Pattern::of(&trial.body, &trial.unknowns);

@@ -1,5 +1,6 @@
 //! Time integrators by name.
 
+use crate::mpm::explicit::scheme::{Drag, ExplicitSettings, Scheme};
 use crate::mpm::run::time_step_rule::TimeStepRule;
 use crate::wording::words;
 use serde::{Deserialize, Serialize};
@@ -28,7 +29,37 @@ pub enum IntegratorKind {
 
 words!(IntegratorKind: Explicit "explicit", SemiImplicit "semi-implicit", Implicit "implicit");
 
+/// What bounds the steps of an integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepBound {
+    /// Stability of all its waves: a critical step, predicted from the body's own operators.
+    AllWaves,
+    /// Stability of the skeleton's waves: a critical step by formula.
+    SkeletonWaves,
+    /// Nothing but accuracy.
+    Accuracy,
+}
+
 impl IntegratorKind {
+    /// What bounds its steps.
+    pub fn step_bound(self) -> StepBound {
+        match self {
+            Self::Explicit => StepBound::AllWaves,
+            Self::SemiImplicit => StepBound::SkeletonWaves,
+            Self::Implicit => StepBound::Accuracy,
+        }
+    }
+
+    /// Order of its error in time.
+    pub fn order_in_time(self, settings: &ExplicitSettings) -> f64 {
+        let is_centred = settings.scheme == Scheme::Leapfrog && settings.drag == Drag::Centred;
+        match self {
+            Self::Implicit => 2.0,
+            Self::Explicit if is_centred => 2.0,
+            Self::Explicit | Self::SemiImplicit => 1.0,
+        }
+    }
+
     /// Step rule where none is given.
     pub fn default_rule(self) -> TimeStepRule {
         match self {

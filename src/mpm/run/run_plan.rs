@@ -4,7 +4,7 @@ use crate::mpm::body::Problem;
 use crate::mpm::critical_step::formula;
 use crate::mpm::critical_step::predicted::predicted_critical_step;
 use crate::mpm::operators::surface_load::LoadedSurface;
-use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::integrator::StepBound;
 use crate::mpm::run::outcome::StepSizes;
 use crate::mpm::run::physical_bounds::PhysicalBounds;
 use crate::mpm::run::profile::{self, Phase, enter};
@@ -47,12 +47,12 @@ impl<'a> Plan<'a> {
     pub fn of<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
         let (soil, cell_size, settings) = (&problem.material, problem.grid.cell_size, &schedule.settings);
         let predicted = || predicted_critical_step(problem, settings);
-        let critical = match schedule.integrator {
-            IntegratorKind::Explicit => {
+        let critical = match schedule.integrator.step_bound() {
+            StepBound::AllWaves => {
                 schedule.critical_step.unwrap_or_else(|| profile::within(Phase::CriticalStep, predicted))
             }
-            IntegratorKind::SemiImplicit => formula::semi_implicit_limit(soil, cell_size, D),
-            IntegratorKind::Implicit => formula::combined_limit(soil, cell_size, settings.drag),
+            StepBound::SkeletonWaves => formula::semi_implicit_limit(soil, cell_size, D),
+            StepBound::Accuracy => formula::combined_limit(soil, cell_size, settings.drag),
         };
         enter(Phase::Setup);
         let sizes = StepSizes {
@@ -61,9 +61,9 @@ impl<'a> Plan<'a> {
             largest: 0.0,
         };
         // Steps that grow must not outgrow what an explicit skeleton can stand.
-        let most = match schedule.integrator {
-            IntegratorKind::SemiImplicit => LARGEST_SHARE * sizes.predicted_critical,
-            IntegratorKind::Explicit | IntegratorKind::Implicit => f64::INFINITY,
+        let most = match schedule.integrator.step_bound() {
+            StepBound::SkeletonWaves => LARGEST_SHARE * sizes.predicted_critical,
+            StepBound::AllWaves | StepBound::Accuracy => f64::INFINITY,
         };
         Self {
             limit: schedule.rule.limit(problem, sizes.target, most, &schedule.outputs),

@@ -2,7 +2,7 @@
 
 use crate::elementary;
 use crate::mpm::body::Body;
-use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::integrator::StepBound;
 use crate::mpm::run::outcome::{FailureKind, StepSizes};
 use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::stepper::{StepFailure, Stepper};
@@ -81,14 +81,14 @@ impl<'a> Watch<'a> {
     /// critical one.
     fn unstable(&self, reason: &str, sizes: &StepSizes) -> StepFailure {
         let (step, share) = (sizes.largest, sizes.largest / sizes.predicted_critical);
-        let blame = match self.plan.schedule.integrator {
-            IntegratorKind::Explicit => {
+        let blame = match self.plan.schedule.integrator.step_bound() {
+            StepBound::AllWaves => {
                 format!("; the step of {step:.4e} s is {share:.3} of the predicted critical one")
             }
-            IntegratorKind::SemiImplicit => {
+            StepBound::SkeletonWaves => {
                 format!("; the largest step is {share:.3} of the predicted critical one")
             }
-            IntegratorKind::Implicit => String::new(),
+            StepBound::Accuracy => String::new(),
         };
         StepFailure { kind: FailureKind::Unstable, reason: format!("{reason}{blame}") }
     }

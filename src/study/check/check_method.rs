@@ -1,7 +1,7 @@
 //! Checks of methods, by name or choice by choice.
 
 use crate::case::keys::Choice;
-use crate::mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery};
+use crate::mpm::method::{Memory, Method, PressureIntegration, Recovery};
 use crate::scene::SceneKind;
 use crate::study::check::checker::Checker;
 use crate::study::choice_tables::{MethodTable, Named};
@@ -66,11 +66,7 @@ impl Checker<'_> {
     }
 
     fn method_of_choices(&mut self, table: &MethodTable, span: &Range<usize>) -> Option<Method> {
-        const BASES: [&str; 6] = ["hat", "ugimp", "cpgimp", "cpdi", "bspline2", "bspline3"];
-        if table.basis.is_none() {
-            self.names_no("basis", &BASES, span);
-        }
-        let basis = table.basis.as_ref().and_then(|word| self.word(word, "basis", &BASES));
+        let basis = self.picked(table.basis.as_deref(), "basis", span);
         let strain = self.picked(table.strain.as_deref(), "strain", span);
         let pressure = self.picked(table.pressure.as_deref(), "pressure", span);
         let recovery = match (&table.recovery, pressure) {
@@ -78,7 +74,7 @@ impl Checker<'_> {
             (word, _) => self.picked(word.as_deref(), "recovery", span),
         };
         let memory = match &table.memory {
-            Some(word) => Memory::ALL[self.word(word, "memory", &["points", "cells"])?],
+            Some(word) => self.named(word, "memory")?,
             None => Memory::Points,
         };
         let configuration = match &table.configuration {
@@ -90,6 +86,6 @@ impl Checker<'_> {
             self.complain(word.span(), why, "leave the key out, or take another");
             return None;
         }
-        Some(Method { basis: Basis::ALL[basis?], strain: strain?, pressure, recovery, memory, configuration })
+        Some(Method { basis: basis?, strain: strain?, pressure, recovery, memory, configuration })
     }
 }
