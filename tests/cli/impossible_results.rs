@@ -258,8 +258,9 @@ fn times_and_rules_at_the_edge_of_the_numbers_are_refused_or_end_at_the_deadline
         // Legal and endless: the deadline ends them.
         let told = solve(&["--time-factor", "1e-15,0.1", "--time-step", "seconds=5e-324"]);
         assert_eq!(told.code, 3, "{}", told.err);
-        // So many steps of nothing may let round-off grow before.
-        assert!(told.err.contains("timed-out") || told.err.contains("unstable"), "{}", told.err);
+        // Steps of nothing may let round-off grow, or leave a tangent without a digit, before.
+        let named = ["timed-out", "unstable", "singular"].iter().any(|end| told.err.contains(end));
+        assert!(named, "{}", told.err);
     }
 }
 
