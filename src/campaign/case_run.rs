@@ -1,7 +1,7 @@
 //! Runs one case: from its inputs to its record.
 
 use crate::campaign::deadline::Deadline;
-use crate::campaign::work_estimate::MOST_PROBE_STEPS;
+use crate::case::work_estimate::MOST_PROBE_STEPS;
 use crate::case::{Case, Task};
 use crate::elementary;
 use crate::exact::exact_error::{ExactError, normal};

@@ -6,4 +6,3 @@ pub mod run_options;
 pub mod run_report;
 pub mod runner;
 pub mod timing;
-pub mod work_estimate;

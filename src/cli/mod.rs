@@ -2,6 +2,7 @@
 //!
 //! Data goes to standard output, everything else to standard error.
 
+pub mod calibrate;
 pub mod commands;
 pub mod destination;
 pub mod exit;
@@ -10,6 +11,7 @@ pub mod overrides;
 pub mod progress;
 pub mod stream;
 pub mod study_files;
+pub mod time_notes;
 
 use crate::cli::commands::{
     accept, check, completions, exact, explain, list, merge, plan, report, run, schema, score, solve, spread,

@@ -6,6 +6,7 @@ pub mod check_method;
 pub mod check_series_expectation;
 pub mod check_sweep;
 pub mod checker;
+pub mod default_integrator;
 pub mod geometry;
 pub mod step_rule;
 pub mod value;
@@ -86,8 +87,14 @@ impl Study {
     /// Every complaint with its place.
     pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
         let file: StudyFile = source.read()?;
-        let mut checker =
-            Checker { source, diagnostics: Vec::new(), column_height: None, multiplied_out: 0, purpose };
+        let mut checker = Checker {
+            source,
+            diagnostics: Vec::new(),
+            column_height: None,
+            multiplied_out: 0,
+            purpose,
+            warnings: Vec::new(),
+        };
         let study = checker.study(&file);
         match study {
             Some(study) if checker.diagnostics.is_empty() => Ok(study),
@@ -114,7 +121,7 @@ impl Checker<'_> {
         let mut base = common.base();
         self.column_height = Some(base.column.height);
         self.porosity_at_the_end(file, &base);
-        let warnings = self.large_for_small_strain(file, &base).into_iter().collect();
+        self.large_for_small_strain(file, &base);
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
@@ -133,15 +140,16 @@ impl Checker<'_> {
         let mut places: HashMap<String, usize> = HashMap::new();
         for block in &file.sweep {
             let table = block.get_ref();
-            let Some(sweep) = self.sweep(table, block.span(), &common, &base) else { continue };
-            if self.purpose == Purpose::Solving {
-                self.cells_fill_the_width(table, &base.column);
-                self.memory_fits(table, sweep.cases(&base));
-            }
             base.time_factors = match &table.time_factors {
                 Some(list) => self.time_factors(list),
                 None => time_factors.clone(),
             };
+            let Some(mut sweep) = self.sweep(table, block.span(), &common, &base) else { continue };
+            if self.purpose == Purpose::Solving {
+                self.cells_fill_the_width(table, &base.column);
+                self.memory_fits(table, sweep.cases(&base));
+                self.default_integrator(table, block.span().start, &common, &base, &mut sweep);
+            }
             let tier = self.choice(table.tier.as_deref(), "tier", Tier::default()).unwrap_or_default();
             for case in sweep.cases(&base) {
                 match places.entry(case.hash()) {
@@ -178,7 +186,7 @@ impl Checker<'_> {
             case_expectations,
             case_seconds,
             timing_repeats,
-            warnings,
+            warnings: std::mem::take(&mut self.warnings),
         })
     }
 
