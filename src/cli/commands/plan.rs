@@ -18,7 +18,7 @@ const COLUMNS: [&str; 5] = ["study", "case", "estimated_point_updates", "label",
 /// Arguments of `plan`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files, or names of shipped studies; every shipped one where none is named
+    /// Study files or names of shipped studies; every shipped one where none is named
     #[arg(value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
     /// How much of each study
