@@ -35,7 +35,7 @@ impl Checker<'_> {
         };
         let Case { task, scene, .. } = *base;
         let key = Key::named("integrator", "sweep").filter(|_| task == Task::Solve && !scene.has_waves());
-        let Some(key) = key.filter(|_| !CHOICES_OF_STEPS.iter().any(|key| is_named(&key))) else { return };
+        let Some(key) = key.filter(|_| !CHOICES_OF_STEPS.iter().any(is_named)) else { return };
         let slowest =
             |sweep: &Sweep| sweep.cases(base).map(|case| estimated_seconds(&case)).fold(0.0, f64::max);
         let explicit = slowest(sweep);

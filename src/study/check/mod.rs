@@ -8,6 +8,7 @@ pub mod check_sweep;
 pub mod checker;
 pub mod default_integrator;
 pub mod geometry;
+pub mod matching;
 pub mod step_rule;
 pub mod value;
 
@@ -164,13 +165,7 @@ impl Checker<'_> {
                 }
             }
         }
-        let expectations =
-            file.expect.iter().filter_map(|entry| self.expectation(entry, scene, &references)).collect();
-        let case_expectations = file
-            .expect_case
-            .iter()
-            .filter_map(|entry| self.case_expectation(entry, scene, &references))
-            .collect();
+        let (expectations, case_expectations) = self.expectations(file, scene, &references, &planned);
         let case_seconds =
             self.positive(file.case_seconds.as_deref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
         let timing_repeats =
@@ -188,6 +183,30 @@ impl Checker<'_> {
             timing_repeats,
             warnings: std::mem::take(&mut self.warnings),
         })
+    }
+
+    /// What the study expects of its series and of single cases; each must have something to judge.
+    fn expectations(
+        &mut self,
+        file: &StudyFile,
+        scene: SceneKind,
+        references: &[ReferenceKind],
+        planned: &[PlannedCase],
+    ) -> (Vec<SeriesExpectation>, Vec<CaseExpectation>) {
+        let (mut of_series, mut of_cases) = (Vec::new(), Vec::new());
+        for entry in &file.expect {
+            if let Some(found) = self.expectation(entry, scene, references) {
+                self.series_is_there(entry, &found, planned);
+                of_series.push(found);
+            }
+        }
+        for entry in &file.expect_case {
+            if let Some(found) = self.case_expectation(entry, scene, references) {
+                self.case_is_there(entry, &found, planned);
+                of_cases.push(found);
+            }
+        }
+        (of_series, of_cases)
     }
 
     /// What the tables of the study give its cases.
