@@ -88,12 +88,22 @@ macro_rules! tables_of_inputs {
 }
 
 tables_of_inputs!(
-    ColumnKeys: "column",
     LayerKeys: "layer",
     PointsKeys: "points",
     MaterialKeys: "material",
     IntegratorKeys: "integrator",
 );
+
+/// Geometry and load of a column.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ColumnKeys {
+    /// Vertical strain at the end, in place of the load that brings it about: 0.3 is a column that gets 30 % shorter.
+    pub strain: Typed<f64>,
+}
+impl OwnKeys for ColumnKeys {
+    const TABLE: &'static str = "column";
+}
 
 /// When results are kept, and what they are held against.
 #[derive(Debug, Default, Deserialize, JsonSchema)]

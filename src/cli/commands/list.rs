@@ -7,7 +7,7 @@ use crate::mpm::method::Method;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::SceneKind;
 use crate::study::check::Study;
-use crate::study::diagnostic::one_of;
+use crate::study::diagnostic::nearest;
 use crate::study::shipped::{shipped_names, shipped_studies, shipped_study};
 use std::fmt::Write;
 
@@ -25,10 +25,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let Some(study) = shipped_study(name) else {
             let names = shipped_names();
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            return Err(Ended::usage(format!(
-                "no shipped study is called `{name}`: {}",
-                one_of(name, &names)
-            )));
+            let near = nearest(name, names.iter().copied());
+            let help = near
+                .map_or("`oedometer list` names them".to_owned(), |near| format!("did you mean `{near}`?"));
+            return Err(Ended::usage(format!("no shipped study is called `{name}`: {help}")));
         };
         print_data(&study.text)?;
         return Ok(Exit::Pass);

@@ -59,6 +59,7 @@ impl Checker<'_> {
         if let Err(error @ ExactError::LoadClosesPores { limit, .. }) = XieLeo::new(&parameters) {
             let typed = file.column.typed("load").or(file.material.typed("porosity"));
             let typed = typed.or(file.material.typed("youngs_modulus")).map(Spanned::span);
+            let typed = typed.or(file.column.strain.as_ref().map(|strain| strain.span()));
             let most = limit * soil.oedometric_modulus();
             let least = -elementary::exp_m1(-column.load / soil.oedometric_modulus());
             self.complain(

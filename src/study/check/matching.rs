@@ -28,7 +28,7 @@ impl Checker<'_> {
         let Some(level) = table.at.as_ref().filter(|_| expectation.axis == Axis::Cells) else { return };
         let Some(wanted) = level.get_ref().cells.as_ref() else { return };
         let has = |case: &&Case| i64::try_from(case.cells) == Ok(*wanted.get_ref());
-        if !cases.iter().any(|case| has(&case)) {
+        if !cases.iter().any(has) {
             let levels = listed(cases.iter().map(|case| case.cells.to_string()));
             self.complain(
                 wanted.span(),

@@ -7,6 +7,7 @@ pub mod check_series_expectation;
 pub mod check_sweep;
 pub mod checker;
 pub mod default_integrator;
+pub mod end_state;
 pub mod geometry;
 pub mod matching;
 pub mod step_rule;
@@ -22,6 +23,7 @@ use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::study::case_expectation::CaseExpectation;
 use crate::study::check::checker::{Checker, Common, Purpose};
+use crate::study::check::end_state::load_of;
 use crate::study::choice_tables::Placed;
 use crate::study::diagnostic::StudyError;
 use crate::study::expectation::SeriesExpectation;
@@ -120,6 +122,10 @@ impl Checker<'_> {
         let task = self.choice(file.task.as_deref(), "task", Task::default())?;
         let common = self.common(file, Case::seed(task, scene));
         let mut base = common.base();
+        let strain = self.given_strain(file, &base);
+        if let Some(strain) = strain {
+            base.column.load = load_of(strain, &base);
+        }
         self.column_height = Some(base.column.height);
         self.porosity_at_the_end(file, &base);
         self.large_for_small_strain(file, &base);
@@ -152,7 +158,15 @@ impl Checker<'_> {
                 self.default_integrator(table, block.span().start, &common, &base, &mut sweep);
             }
             let tier = self.choice(table.tier.as_deref(), "tier", Tier::default()).unwrap_or_default();
-            for case in sweep.cases(&base) {
+            let mut cases: Vec<Case> = sweep.cases(&base).collect();
+            if let Some(strain) = strain {
+                for case in &mut cases {
+                    case.column.load = load_of(strain, case);
+                }
+            }
+            let start = block.span().start;
+            self.pores_stay_open(start..start + 1, cases.iter());
+            for case in cases {
                 match places.entry(case.hash()) {
                     Entry::Occupied(place) => {
                         let other = &mut planned[*place.get()];
