@@ -76,6 +76,10 @@ fn written_at(text: &str, span: &Range<usize>) -> String {
 /// The key whose value stands at a place, or around it: the word before the last `=` outside the value.
 fn key_before(text: &str, place: usize) -> Option<&str> {
     let before = text.get(..place)?;
+    let line = before.trim_end_matches([' ', '\t']);
+    if (line.is_empty() || line.ends_with('\n')) && text[place..].starts_with('[') {
+        return None;
+    }
     let statement = before.rfind("]\n").map_or(before, |end| &before[end + 1..]);
     let line = if before.ends_with(['=', ' ', '[', ',', '{', '\n']) { statement } else { "" };
     let (head, _) = line.rsplit_once('=')?;
