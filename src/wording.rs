@@ -28,6 +28,26 @@ pub fn typed(value: f64) -> String {
 /// Most characters of a number without a power of ten: all digits of a double, sign and point.
 const LONGEST: usize = 24;
 
+/// A time as a person says it: two digits, in the unit that fits.
+pub fn duration(seconds: f64) -> String {
+    const UNITS: [(f64, &str); 4] =
+        [(365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "h"), (60.0, "min")];
+    let two_digits = |value: f64| {
+        let rounded: f64 = format!("{value:.1e}").parse().unwrap_or(value);
+        if rounded >= 1e4 { format!("{rounded:e}") } else { format!("{rounded}") }
+    };
+    // A unit from two of it on: 90 s and 36 h say more than 1.5 min and 1.5 days.
+    match UNITS.into_iter().find(|(unit, _)| seconds >= 2.0 * unit) {
+        Some((unit, name)) => format!("{} {name}", two_digits(seconds / unit)),
+        None => format!("{} s", two_digits(seconds)),
+    }
+}
+
+/// A number of things: `1 case`, `3 cases`.
+pub fn count_of(count: usize, one: &str, several: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { several })
+}
+
 /// An order of convergence with two decimals; -0.00 is written 0.00.
 pub fn order(value: f64) -> String {
     let text = format!("{value:.2}");
@@ -70,6 +90,11 @@ mod tests {
         assert_eq!(short(-0.0), "0");
         assert_eq!(short(f64::NAN), "NaN");
         assert_eq!([0.05, 1e-4, -0.0, 50.0].map(typed), ["0.05", "0.0001", "0", "50"]);
+        assert_eq!(
+            [0.0123, 90.0, 130.0, 216e3, 36.0 * 3600.0, 40.0 * 86400.0, 1e12].map(duration),
+            ["0.012 s", "90 s", "2.2 min", "2.5 days", "36 h", "40 days", "3.2e4 years"]
+        );
+        assert_eq!([1, 0, 2].map(|n| count_of(n, "study", "studies")), ["1 study", "0 studies", "2 studies"]);
         assert_eq!([1e-300, 1e300].map(typed), ["1e-300", "1e300"]);
         assert_eq!(orders(&[2.0, -0.001, 1.234]), "2.00, 0.00, 1.23");
     }

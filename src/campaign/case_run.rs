@@ -1,7 +1,8 @@
 //! Runs one case: from its inputs to its record.
 
+use crate::campaign::cpu_clock::thread_seconds;
 use crate::campaign::deadline::Deadline;
-use crate::campaign::work_estimate::MOST_PROBE_STEPS;
+use crate::case::work_estimate::MOST_PROBE_STEPS;
 use crate::case::{Case, Task};
 use crate::elementary;
 use crate::exact::exact_error::{ExactError, normal};
@@ -85,12 +86,13 @@ pub fn run_case(
     }
     let problem = problem_of(case)?;
     let schedule = schedule_of(case, kernel);
-    let start = Instant::now();
+    let (start, worked) = (Instant::now(), thread_seconds());
     let outcome = problem.run(&schedule, observe);
     let seconds = start.elapsed().as_secs_f64();
+    let cpu_seconds = worked.zip(thread_seconds()).map(|(before, after)| after - before);
     enter(Phase::Assessment);
     let mut record = record_of(case, references, outcome)?;
-    record.wall.push(WallSample { seconds, alone });
+    record.wall.push(WallSample { seconds, alone, cpu_seconds });
     Ok(record)
 }
 

@@ -1,5 +1,6 @@
 //! What the runner tells: while it works, at its end, and where it could not go on.
 
+use crate::case::Case;
 use crate::exact::exact_error::ExactError;
 use crate::record::origins::Origins;
 use crate::record::whole_file::StoreError;
@@ -8,16 +9,20 @@ use crate::record::{Record, Status};
 /// What the runner tells while it works.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress {
-    /// Work ahead, in point updates as estimated before the runs.
+    /// Work ahead, as estimated before the runs.
     Planned {
         /// Cases to be run.
         cases: usize,
         /// Cases taken up from disk.
         resumed: usize,
-        /// Estimated point updates; the largest number where there are more.
+        /// Time that they will take on one core, as estimated, ns; the largest number where there is more.
         work: u64,
+        /// Cases at the same time.
+        jobs: usize,
+        /// The one that will take longest.
+        longest: Option<Box<LongestCase>>,
     },
-    /// Work done since the last word.
+    /// Work done since the last word, in the unit of the plan.
     Advanced(u64),
     /// A case is done.
     Finished {
@@ -28,6 +33,17 @@ pub enum Progress {
         /// Failure sentence, where it failed.
         failure: Option<String>,
     },
+}
+
+/// The case of a run that will take longest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LongestCase {
+    /// Its study.
+    pub study: String,
+    /// What will be run.
+    pub case: Case,
+    /// Time after which it is ended, s.
+    pub case_seconds: f64,
 }
 
 /// Why a study could not be run to its end.

@@ -2,9 +2,9 @@
 
 use crate::campaign::case_run::run_case_within;
 use crate::campaign::run_options::{RunOptions, Selected};
-use crate::campaign::run_report::{Progress, RunError, RunReport};
-use crate::campaign::work_estimate::{estimated_work, work_of};
+use crate::campaign::run_report::{LongestCase, Progress, RunError, RunReport};
 use crate::case::Case;
+use crate::case::work_estimate::{estimated_work, work_of};
 use crate::mpm::run::Kernel;
 use crate::record::Record;
 use crate::record::store::{Found, RecordStore};
@@ -13,12 +13,25 @@ use std::cell::Cell;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+/// Work between two words about a case, ns: what a person sees move.
+const LONGEST_SILENCE: u64 = 100_000_000;
+
 /// One case to run.
 #[derive(Clone, Copy)]
 struct Job<'a> {
     case: &'a Case,
     study: &'a Study,
     store: Option<&'a RecordStore>,
+}
+
+impl Job<'_> {
+    fn as_longest(&self) -> LongestCase {
+        LongestCase {
+            study: self.study.name.clone(),
+            case: self.case.clone(),
+            case_seconds: self.study.case_seconds,
+        }
+    }
 }
 
 /// Runs the cases of a study and keeps each record as soon as it is there.
@@ -94,7 +107,13 @@ fn run_jobs(
 ) -> Vec<Option<Result<Record, RunError>>> {
     let mut order: Vec<usize> = (0..jobs.len()).collect();
     order.sort_by_key(|index| std::cmp::Reverse(estimated_work(jobs[*index].case)));
-    tell(Progress::Planned { cases: jobs.len(), resumed, work: work_of(jobs.iter().map(|job| job.case)) });
+    tell(Progress::Planned {
+        cases: jobs.len(),
+        resumed,
+        work: work_of(jobs.iter().map(|job| job.case)),
+        jobs: threads.clamp(1, jobs.len().max(1)),
+        longest: order.first().map(|index| Box::new(jobs[*index].as_longest())),
+    });
     let results: Vec<Mutex<Option<Result<Record, RunError>>>> =
         jobs.iter().map(|_| Mutex::new(None)).collect();
     let next = AtomicUsize::new(0);
@@ -132,7 +151,7 @@ fn run_and_keep(
         let now = u64::try_from(u128::from(estimate) * u128::from(done) / u128::from(expected.max(1)))
             .unwrap_or(estimate)
             .min(estimate);
-        if now > told.get().saturating_add(estimate / 200) {
+        if now > told.get().saturating_add(LONGEST_SILENCE.min(estimate / 200)) {
             tell(Progress::Advanced(now - told.get()));
             told.set(now);
         }

@@ -2,7 +2,7 @@
 
 use crate::campaign::case_run::run_case;
 use crate::campaign::run_report::{Progress, RunError};
-use crate::campaign::work_estimate::estimated_work;
+use crate::case::work_estimate::estimated_work;
 use crate::mpm::run::Kernel;
 use crate::record::store::RecordStore;
 use crate::record::{Record, Status};

@@ -3,7 +3,9 @@
 pub mod keys;
 pub mod norm;
 pub mod quantity;
+pub mod step_cost;
 pub mod tier;
+pub mod work_estimate;
 
 use crate::elementary;
 use crate::mpm::explicit::ExplicitSettings;

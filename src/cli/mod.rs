@@ -2,6 +2,7 @@
 //!
 //! Data goes to standard output, everything else to standard error.
 
+pub mod calibrate;
 pub mod commands;
 pub mod destination;
 pub mod exit;
@@ -10,10 +11,11 @@ pub mod overrides;
 pub mod progress;
 pub mod stream;
 pub mod study_files;
+pub mod time_notes;
 
 use crate::cli::commands::{
-    accept, check, completions, exact, explain, list, merge, plan, report, run, schema, score, solve, spread,
-    stability,
+    accept, check, completions, exact, explain, list, merge, new, plan, report, run, schema, score, solve,
+    spread, stability,
 };
 use crate::cli::exit::Exit;
 use crate::cli::stream::{say, written};
@@ -52,7 +54,9 @@ enum Command {
     /// Bring the records of shards together, with the whole table of each study
     Merge(merge::Arguments),
     /// List scenes, methods, references and shipped studies
-    List,
+    List(list::Arguments),
+    /// Write a commented study to start from
+    New(new::Arguments),
     /// Say where the error of a case comes from and what changed
     Explain(explain::Arguments),
     /// Measure how far results scatter that should be equal
@@ -110,7 +114,8 @@ fn run(command: Command) -> anyhow::Result<Exit> {
         Command::Stability(arguments) => stability::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
-        Command::List => list::run(),
+        Command::List(arguments) => list::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Spread(arguments) => spread::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

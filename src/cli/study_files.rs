@@ -1,8 +1,10 @@
 //! Study files, read and named before any work begins: every result is kept under the name of its study.
 
 use crate::cli::exit::Ended;
+use crate::study::diagnostic::nearest;
 use crate::study::file::StudySource;
 use crate::study::name::{name_of, refused_name};
+use crate::study::shipped::{shipped_names, shipped_study};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -36,8 +38,32 @@ pub fn file_of(study: &str, named: &[PathBuf]) -> String {
     file.unwrap_or_else(|| format!("studies/{study}.toml"))
 }
 
+/// The shipped study that a path names: a plain name where no file has it.
+pub fn shipped_of(path: &Path) -> Option<StudySource> {
+    if path.is_file() { None } else { shipped_study(path.to_str()?) }
+}
+
+/// Whether a study came from inside the program: all did where none was named.
+pub fn is_shipped(study: &str, named: &[PathBuf]) -> bool {
+    named.is_empty() || named.iter().any(|path| path.as_os_str() == study && shipped_of(path).is_some())
+}
+
 /// The text of one file, or of a pipe.
 fn read(path: &Path) -> anyhow::Result<StudySource> {
+    if let Some(shipped) = shipped_of(path) {
+        return Ok(shipped);
+    }
+    if !path.exists() && path.extension().is_none() {
+        let names = shipped_names();
+        let told = path.display().to_string();
+        let near = nearest(&told, names.iter().map(String::as_str));
+        let help = near.map_or("`oedometer list` names those there are".to_owned(), |near| {
+            format!("did you mean `{near}`?")
+        });
+        return Err(Ended::usage(format!(
+            "cannot read the study {told}: No such file, and no shipped study: {help}"
+        )));
+    }
     let refused =
         |error: std::io::Error| Ended::usage(format!("cannot read the study {}: {error}", path.display()));
     let mut text = Vec::new();

@@ -29,6 +29,7 @@ pub mod bounds;
 pub mod case_changes;
 pub mod compare;
 pub mod difference_groups;
+mod embedded;
 mod file_text;
 pub mod references;
 pub mod tolerance;

@@ -3,6 +3,7 @@
 //! A record is plain data on disk. Tables, plots, verdicts and goldens read records and never a
 //! live solver, so that a report can be made again without solving.
 
+pub mod long_tables;
 pub mod origins;
 pub mod provenance;
 pub mod store;
@@ -59,6 +60,9 @@ pub struct WallSample {
     pub seconds: f64,
     /// Whether nothing else of this program ran meanwhile; only such samples are compared.
     pub alone: bool,
+    /// Seconds that the processor worked on it, where the system tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cpu_seconds: Option<f64>,
 }
 
 /// Dimensionless groups that say which theory can hold.

@@ -1,7 +1,7 @@
 //! One row a measure: the tidy CSV of a study.
 
-use crate::case::keys::Key;
-use crate::record::{ERROR_COLUMNS, ErrorRow, Record};
+use crate::case::keys::{KEYS, Key};
+use crate::record::{ERROR_COLUMNS, ErrorRow, Record, WallSample};
 
 /// First columns of the tidy CSV, before those of a measure; one with the name of a key has the value of that input.
 const CASE_COLUMNS: [&str; 15] = [
@@ -22,6 +22,21 @@ const CASE_COLUMNS: [&str; 15] = [
     "sources",
 ];
 
+/// Columns behind those of a measure that are no input of the case.
+const LAST_COLUMNS: [&str; 6] =
+    ["absolute_error", "scene", "task", "cell_size", "wall_seconds", "cpu_seconds"];
+
+/// The inputs that have no column among the first ones.
+fn other_inputs() -> impl Iterator<Item = &'static Key> {
+    KEYS.iter().filter(|key| !CASE_COLUMNS.contains(&key.name))
+}
+
+/// The columns of the table: those of a case, those of a measure, every other input, and what is known beside.
+pub fn columns() -> Vec<&'static str> {
+    let first = CASE_COLUMNS.iter().chain(&ERROR_COLUMNS).copied();
+    first.chain(other_inputs().map(|key| key.name)).chain(LAST_COLUMNS).collect()
+}
+
 /// The measures of a study's records as CSV. A case that failed before its first output has one
 /// row without a measure, so that it is seen.
 ///
@@ -32,15 +47,20 @@ pub fn tidy_csv<'a>(
     records: impl IntoIterator<Item = &'a Record>,
 ) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(CASE_COLUMNS.iter().chain(&ERROR_COLUMNS))?;
+    writer.write_record(columns())?;
     for record in records {
         let case = case_fields(study, record);
-        let mut write = |measure: &[String]| writer.write_record(case.iter().chain(measure));
+        let last = last_fields(record);
+        let mut write = |measure: &[String], absolute: String| {
+            writer.write_record(
+                case.iter().chain(measure).chain(&last.inputs).chain([&absolute]).chain(&last.others),
+            )
+        };
         for row in &record.errors {
-            write(&measure_fields(row))?;
+            write(&measure_fields(row), format!("{:e}", row.absolute))?;
         }
         if record.errors.is_empty() {
-            write(&[const { String::new() }; ERROR_COLUMNS.len()])?;
+            write(&[const { String::new() }; ERROR_COLUMNS.len()], String::new())?;
         }
     }
     let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
@@ -60,6 +80,37 @@ fn case_fields(study: &str, record: &Record) -> Vec<String> {
         record.provenance.sources.clone(),
     ]);
     fields
+}
+
+/// What all rows of a record end with, but for the absolute error between the two.
+struct LastFields {
+    inputs: Vec<String>,
+    others: [String; LAST_COLUMNS.len() - 1],
+}
+
+fn last_fields(record: &Record) -> LastFields {
+    let case = &record.case;
+    let wall = quickest(&record.wall);
+    let seconds = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
+    LastFields {
+        inputs: other_inputs().map(|key| key.get(case).to_string()).collect(),
+        others: [
+            case.scene.name().to_owned(),
+            case.task.name().to_owned(),
+            case.cell_size().to_string(),
+            seconds(wall.map(|sample| sample.seconds)),
+            seconds(wall.and_then(|sample| sample.cpu_seconds)),
+        ],
+    }
+}
+
+/// The shortest of the times that a case had for itself, or of all where it never was alone.
+fn quickest(samples: &[WallSample]) -> Option<&WallSample> {
+    let least = |alone: bool| {
+        let fit = samples.iter().filter(|sample| sample.alone || !alone);
+        fit.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    };
+    least(true).or_else(|| least(false))
 }
 
 /// What a measure's row ends with.

@@ -13,6 +13,7 @@ use crate::study::choice_tables::{Named, Placed, Typed, TypedList};
 use crate::study::diagnostic::{Diagnostic, StudyError, nearest};
 use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
 use crate::study::inputs::{InputTable, List, One, OwnKeys};
+use crate::study::mistakes;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 
@@ -87,12 +88,22 @@ macro_rules! tables_of_inputs {
 }
 
 tables_of_inputs!(
-    ColumnKeys: "column",
     LayerKeys: "layer",
     PointsKeys: "points",
     MaterialKeys: "material",
     IntegratorKeys: "integrator",
 );
+
+/// Geometry and load of a column.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ColumnKeys {
+    /// Vertical strain at the end, in place of the load that brings it about: 0.3 is a column that gets 30 % shorter.
+    pub strain: Typed<f64>,
+}
+impl OwnKeys for ColumnKeys {
+    const TABLE: &'static str = "column";
+}
 
 /// When results are kept, and what they are held against.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
@@ -316,6 +327,9 @@ impl StudySource {
 /// A parser's error with the nearest key, where the key is unknown.
 fn explained(error: &toml::de::Error, text: &str) -> Diagnostic {
     let message = error.message().trim().replace('\n', "; ");
+    if let Some((message, help)) = mistakes::explained(&message, error.span().as_ref(), text) {
+        return Diagnostic { message, span: error.span(), help: Some(help) };
+    }
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let help = match quoted.split_first() {
         Some((word, candidates)) if message.starts_with("unknown field") => {

@@ -7,6 +7,7 @@ pub mod diagnostic;
 pub mod expectation;
 pub mod file;
 pub mod inputs;
+pub mod mistakes;
 pub mod name;
 pub mod perturbed;
 pub mod shipped;

@@ -1,6 +1,7 @@
 //! The studies that ship, inside the program: it makes its report wherever it is run.
 
 use crate::study::file::StudySource;
+use crate::study::name::name_of;
 
 /// The studies by their names, each with its text.
 macro_rules! shipped {
@@ -24,6 +25,16 @@ const SHIPPED: &[(&str, &str)] = shipped! {
     "large-strain-half" "large-strain-start" "large-strain-ramp" "large-strain-ramp-half"
     "large-strain-ramp-steps" "large-strain-limit"
 };
+
+/// The shipped study of a name.
+pub fn shipped_study(name: &str) -> Option<StudySource> {
+    shipped_studies().into_iter().find(|source| name_of(&source.name) == name)
+}
+
+/// The names of the shipped studies.
+pub fn shipped_names() -> Vec<String> {
+    shipped_studies().iter().map(|source| name_of(&source.name).to_owned()).collect()
+}
 
 /// Every shipped study.
 pub fn shipped_studies() -> Vec<StudySource> {

@@ -59,6 +59,15 @@ pub fn folder_with(study: &str) -> TempDir {
     folder
 }
 
+/// The table of a study but for its times, which change from day to day: its last two columns.
+pub fn table_without_times(path: &Path) -> String {
+    let text = fs::read_to_string(path).expect("a table");
+    let header = text.lines().next().expect("a header");
+    assert!(header.ends_with(",wall_seconds,cpu_seconds"), "{header}");
+    let kept = text.lines().map(|line| line.rsplitn(3, ',').nth(2).expect("columns"));
+    kept.collect::<Vec<_>>().join("\n") + "\n"
+}
+
 /// Holds a text against its snapshot.
 pub fn assert_snapshot(name: &str, text: &str) {
     let text = without_wall_time(text);

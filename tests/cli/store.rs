@@ -1,7 +1,7 @@
 //! What is kept and taken together: names of studies, origins of records, sweeps that are too large, a disk
 //! that is full, a reference that refuses; and the list of faults that these tests are held against.
 
-use crate::program::{Told, call, folder_with};
+use crate::program::{Told, call, folder_with, table_without_times};
 use oedometer::exact::reference::ReferenceKind;
 use oedometer::{
     CheckEnd, Failure, FailureKind, GoldenFile, Origins, Record, RecordStore, RunOptions, Selected, Status,
@@ -260,7 +260,7 @@ fn resuming_runs_cases_of_other_sources_again_and_says_how_many() {
     let folder = folder_with(STUDY);
     let at = folder.path();
     assert_eq!(call(at, &["run", "short.toml"]).code, 0);
-    let table = fs::read(at.join("out/short/short.csv")).expect("a table");
+    let table = table_without_times(&at.join("out/short/short.csv"));
     change_records(&at.join("out"), |number, record| match number {
         0 | 1 => record.provenance.sources = "0123456789abcdef".to_owned(),
         2 => record.provenance.version = "0.0.1".to_owned(),
@@ -271,7 +271,7 @@ fn resuming_runs_cases_of_other_sources_again_and_says_how_many() {
     assert!(told.err.contains("8 cases (5 from disk"), "{}", told.err);
     let sentence = "short: 3 records of another version or of other sources were not taken up; their cases were run again";
     assert!(told.err.contains(sentence), "{}", told.err);
-    assert_eq!(fs::read(at.join("out/short/short.csv")).expect("a table"), table);
+    assert_eq!(table_without_times(&at.join("out/short/short.csv")), table);
     let told = call(at, &["run", "short.toml", "--resume"]);
     assert!(told.err.contains("(8 from disk") && !told.err.contains("taken up"), "{}", told.err);
 }
@@ -380,7 +380,7 @@ fn shards_of_several_builds_are_one_merge_that_says_so() {
     assert_eq!(lines.len(), 1, "{}", told.err);
     let named = lines[0].contains("target `elsewhere` in") || lines[0].contains("instead of `elsewhere`");
     assert!(named && (1..8).contains(&twos), "{}", lines[0]);
-    let table = |out: &str| fs::read(at.join(out).join("short/short.csv")).expect("a table");
+    let table = |out: &str| table_without_times(&at.join(out).join("short/short.csv"));
     assert_eq!(table("merged"), table("same"));
 }
 
@@ -391,8 +391,8 @@ fn every_column_of_the_table_is_what_the_record_says() {
     let folder = folder_with(STUDY);
     let at = folder.path();
     assert_eq!(call(at, &["run", "short.toml"]).code, 0);
-    let table = fs::read(at.join("out/short/short.csv")).expect("a table");
-    let mut rows = csv::Reader::from_reader(table.as_slice()).into_records();
+    let table = table_without_times(&at.join("out/short/short.csv"));
+    let mut rows = csv::Reader::from_reader(table.as_bytes()).into_records();
     let store = RecordStore::new(&at.join("out"), "short");
     for case in study().cases(Tier::Full) {
         let record = store.kept(case).expect("a record");

@@ -55,6 +55,8 @@ const CALLS: &[&[&str]] = &[
     &["plan"],
     &["merge", "short.toml", "out", "--out", "merged"],
     &["list"],
+    &["list", "--show", "terzaghi-mesh"],
+    &["new", "my study"],
     &["explain", "MPM cells=3", "short.toml"],
     &["spread", "short.toml", "--quick"],
     &["schema", "study"],

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 /// Arguments of `accept`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files
+    /// Study files, or names of shipped studies
     #[arg(required_unless_present = "references", value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
     /// Take the present values of the exact solutions too

@@ -11,18 +11,18 @@ use crate::cli::output::{TableFormat, coloured, json_of};
 use crate::cli::progress::StudyBar;
 use crate::cli::stream::{print_data, say};
 use crate::cli::study_files;
-use crate::golden::GoldenFile;
 use crate::golden::case_changes::CaseChange;
 use crate::golden::compare::Difference;
 use crate::golden::difference_groups::DifferenceGroup;
 use crate::golden::references::REFERENCES;
+use crate::golden::{GoldenError, GoldenFile};
 use crate::judge::paths::Judgement;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::record::Record;
 use crate::render::checks::annotations::annotations_of;
 use crate::render::checks::{junit, verdicts};
 use crate::study::check::Study;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Folder of the golden values.
 pub const GOLDEN: &str = "golden";
@@ -30,12 +30,13 @@ pub const GOLDEN: &str = "golden";
 /// Arguments of `check`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files; every shipped one and the exact solutions where none is named
+    /// Study files or names of shipped studies; every shipped one and the exact solutions where none is named
     #[arg(value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
     /// Folder of the golden values
-    #[arg(long, value_name = "DIR", default_value = GOLDEN)]
-    golden: PathBuf,
+    /// [default: golden; for shipped studies without a file there, those inside the program]
+    #[arg(long, value_name = "DIR")]
+    golden: Option<PathBuf>,
     /// Cases at the same time; all cores where not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
@@ -88,7 +89,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 
 /// The studies that have cases in the CI tier, and the exact solutions where they are wanted.
 fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<Vec<StudyCheck>> {
-    let read = |name: &str| GoldenFile::read(&arguments.golden, name);
+    let read = |name: &str| golden_of(arguments.golden.as_deref(), name, &arguments.studies);
     let mut checks = Vec::new();
     if arguments.references || arguments.studies.is_empty() {
         checks.push(StudyCheck::of_references(read(REFERENCES))?);
@@ -100,6 +101,18 @@ fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<Vec<Stu
         }
     }
     Ok(checks)
+}
+
+/// The golden values of a study: from a folder; for a study from inside the program from there, where no folder was
+/// named and the usual one has none.
+pub fn golden_of(folder: Option<&Path>, study: &str, named: &[PathBuf]) -> Result<GoldenFile, GoldenError> {
+    match folder {
+        Some(folder) => GoldenFile::read(folder, study),
+        None if study == REFERENCES || study_files::is_shipped(study, named) => {
+            GoldenFile::read_or_embedded(Path::new(GOLDEN), study)
+        }
+        None => GoldenFile::read(Path::new(GOLDEN), study),
+    }
 }
 
 /// Runs the CI tier of studies and keeps nothing; the records of each study.

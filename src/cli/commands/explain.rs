@@ -4,12 +4,13 @@
 use crate::campaign::case_run::run_case;
 use crate::case::Case;
 use crate::case::tier::Tier;
+use crate::cli::commands::check::golden_of;
 use crate::cli::commands::run::{DEFAULT_RESULTS, load_or_shipped};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
 use crate::cli::stream::{print_data, say};
 use crate::cli::study_files::file_of;
-use crate::golden::{GoldenError, GoldenFile};
+use crate::golden::GoldenError;
 use crate::judge::explanation::explain;
 use crate::mpm::run::Kernel;
 use crate::record::Record;
@@ -26,15 +27,16 @@ const MOST_NAMED: usize = 10;
 pub struct Arguments {
     /// Case: the first digits of its hash, words of its label, or a golden value as `check` names it
     case: String,
-    /// Study files; every shipped one where none is named
+    /// Study files or names of shipped studies; every shipped one where none is named
     #[arg(value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
     /// Folder of results: a record that this program made is taken from there, else the case is run
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
     /// Folder of the golden values
-    #[arg(long, value_name = "DIR", default_value = crate::cli::commands::check::GOLDEN)]
-    golden: PathBuf,
+    /// [default: golden; for shipped studies without a file there, those inside the program]
+    #[arg(long, value_name = "DIR")]
+    golden: Option<PathBuf>,
     /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]
     format: TableFormat,
@@ -49,7 +51,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let (study, case) = the_one(&studies, description)?;
     let record = record_of(study, case, &arguments.records)?;
-    let golden = match GoldenFile::read(&arguments.golden, &study.name) {
+    let golden = match golden_of(arguments.golden.as_deref(), &study.name, &arguments.studies) {
         Ok(golden) => Some(golden),
         Err(GoldenError::Missing(_)) => None,
         Err(error) => return Err(Ended::with(Exit::Golden, error.to_string())),

@@ -1,17 +1,38 @@
 //! `oedometer list`: what there is to choose from.
 
-use crate::cli::exit::Exit;
+use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::print_data;
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::method::Method;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::SceneKind;
 use crate::study::check::Study;
-use crate::study::shipped::shipped_studies;
+use crate::study::diagnostic::nearest;
+use crate::study::shipped::{shipped_names, shipped_studies, shipped_study};
 use std::fmt::Write;
 
-/// Prints scenes, methods, integrators, references and shipped studies.
-pub fn run() -> anyhow::Result<Exit> {
+/// Arguments of `list`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Print the file of a shipped study
+    #[arg(long, value_name = "STUDY")]
+    show: Option<String>,
+}
+
+/// Prints scenes, methods, integrators, references and shipped studies, or one of these.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    if let Some(name) = &arguments.show {
+        let Some(study) = shipped_study(name) else {
+            let names = shipped_names();
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let near = nearest(name, names.iter().copied());
+            let help = near
+                .map_or("`oedometer list` names them".to_owned(), |near| format!("did you mean `{near}`?"));
+            return Err(Ended::usage(format!("no shipped study is called `{name}`: {help}")));
+        };
+        print_data(&study.text)?;
+        return Ok(Exit::Pass);
+    }
     let mut out = String::new();
     writeln!(out, "scenes")?;
     for scene in SceneKind::ALL {

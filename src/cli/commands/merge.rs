@@ -1,7 +1,7 @@
 //! `oedometer merge`: the records of shards into one folder, with the whole table of each study.
 
 use crate::case::Case;
-use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped, write_table};
+use crate::cli::commands::run::{Beside, DEFAULT_RESULTS, TierArgument, load_or_shipped, write_table};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::record::Record;
@@ -102,7 +102,7 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
     }
     let there = cases.len() - holes.len();
     if there > 0 {
-        let table = write_table(study, &target, &[])?;
+        let table = write_table(study, &target, &[], Beside::Tables)?;
         say!("{}: {there} of {} cases, {}", study.name, cases.len(), table.display());
     }
     for case in holes.iter().take(MOST_HOLES) {

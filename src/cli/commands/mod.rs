@@ -7,6 +7,7 @@ pub mod exact;
 pub mod explain;
 pub mod list;
 pub mod merge;
+pub mod new;
 pub mod plan;
 pub mod report;
 pub mod run;

@@ -2,7 +2,7 @@
 
 use crate::campaign::run_options::RunOptions;
 use crate::case::tier::Tier;
-use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
+use crate::cli::commands::run::{Beside, DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
 use crate::cli::exit::Exit;
 use crate::cli::stream::say;
 use crate::record::whole_file::write_whole;
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files; every shipped one where none is named
+    /// Study files or names of shipped studies; every shipped one where none is named
     #[arg(value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
     /// Folder for the report
@@ -34,7 +34,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let studies = load_or_shipped(&arguments.studies)?;
     let options = RunOptions { resume: true, ..RunOptions::whole(Tier::Full, jobs_of(arguments.jobs)) };
-    let reports = run_and_store(&studies, &studies, &options, &arguments.records)?;
+    let reports = run_and_store(&studies, &studies, &options, &arguments.records, Beside::Nothing)?;
     let results: Vec<StudyResults<'_>> = studies
         .iter()
         .zip(&reports)

@@ -11,6 +11,7 @@ use crate::cli::progress::StudyBar;
 use crate::cli::stream::say;
 use crate::cli::study_files;
 use crate::record::Record;
+use crate::record::long_tables::{columns_csv, history_csv, profiles_csv};
 use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;
 use crate::record::tidy::tidy_csv;
@@ -19,6 +20,7 @@ use crate::study::check::Study;
 use crate::study::check::checker::Purpose;
 use crate::study::file::StudySource;
 use crate::study::shipped::shipped_studies;
+use crate::wording::count_of;
 use clap::ValueEnum;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -51,7 +53,7 @@ impl From<TierArgument> for Tier {
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files
+    /// Study files, or names of shipped studies
     #[arg(required = true, value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
     /// Folder for the results
@@ -94,7 +96,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         .map(|study| arguments.case.as_ref().map_or_else(|| study.clone(), |hash| with_case(study, hash)))
         .collect();
     let mut exit = Exit::NothingSelected;
-    for (study, report) in studies.iter().zip(run_and_store(&studies, &selected, &options, &arguments.out)?) {
+    for (study, report) in
+        studies.iter().zip(run_and_store(&studies, &selected, &options, &arguments.out, Beside::Tables)?)
+    {
         if !report.records.is_empty() && exit == Exit::NothingSelected {
             exit = Exit::Pass;
         }
@@ -115,6 +119,15 @@ fn with_case(study: &Study, hash: &str) -> Study {
     selected
 }
 
+/// What is written beside the tidy table of a study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beside {
+    /// Nothing.
+    Nothing,
+    /// Tables of profiles, of settlement over time, and of what every column means.
+    Tables,
+}
+
 /// Runs the selected cases of studies side by side, then times alone those of the studies that ask
 /// for it, and writes a CSV a study; one report a study. A case without a record is told of, and the others
 /// go on.
@@ -126,13 +139,14 @@ pub fn run_and_store(
     selected: &[Study],
     options: &RunOptions,
     results: &Path,
+    beside: Beside,
 ) -> anyhow::Result<Vec<RunReport>> {
     let stores: Vec<RecordStore> =
         studies.iter().map(|study| RecordStore::new(results, &study.name)).collect();
     let kept = selected.iter().zip(&stores).map(|(study, store)| Selected { study, store: Some(store) });
     let name = match studies {
         [study] => study.name.clone(),
-        _ => format!("{} studies", studies.len()),
+        _ => count_of(studies.len(), "study", "studies"),
     };
     let bar = StudyBar::new(&name);
     let tell = |progress| bar.tell(progress);
@@ -150,7 +164,7 @@ pub fn run_and_store(
             say!("{}: {error}", study.name);
         }
         if !report.records.is_empty() {
-            tell_of(study, report, &write_table(study, store, &report.records)?);
+            tell_of(study, report, &write_table(study, store, &report.records, beside)?);
         }
     }
     Ok(reports)
@@ -164,9 +178,9 @@ fn first_that_ends_all(report: &mut RunReport) -> Option<RunError> {
 
 fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     say!(
-        "{}: {} cases ({} from disk, {} failed), {}",
+        "{}: {} ({} from disk, {} failed), {}",
         study.name,
-        report.records.len() + report.errors.len(),
+        count_of(report.records.len() + report.errors.len(), "case", "cases"),
         report.resumed,
         report.failed().count() + report.errors.len(),
         table.display()
@@ -189,7 +203,12 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
 /// Writes the CSV of every record that a store keeps of a study, whichever run made it: a run of
 /// one tier or shard takes nothing away from what others found. Those that are at hand are not
 /// read again.
-pub fn write_table(study: &Study, store: &RecordStore, at_hand: &[Record]) -> anyhow::Result<PathBuf> {
+pub fn write_table(
+    study: &Study,
+    store: &RecordStore,
+    at_hand: &[Record],
+    beside: Beside,
+) -> anyhow::Result<PathBuf> {
     let at_hand: HashMap<&str, &Record> =
         at_hand.iter().map(|record| (record.hash.as_str(), record)).collect();
     let record_of = |case: &Case| match at_hand.get(case.hash().as_str()) {
@@ -204,6 +223,17 @@ pub fn write_table(study: &Study, store: &RecordStore, at_hand: &[Record]) -> an
     }
     let table = store.folder().join(format!("{}.csv", study.name));
     write_whole(&table, tidy_csv(&study.name, records.iter().map(AsRef::as_ref))?.as_bytes())?;
+    if beside == Beside::Nothing {
+        return Ok(table);
+    }
+    let beside = [
+        ("profiles", profiles_csv(records.iter().map(AsRef::as_ref))?),
+        ("history", history_csv(records.iter().map(AsRef::as_ref))?),
+        ("columns", columns_csv()?),
+    ];
+    for (name, text) in beside {
+        write_whole(&store.folder().join(format!("{name}.csv")), text.as_bytes())?;
+    }
     Ok(table)
 }
 

@@ -1,16 +1,16 @@
 //! `oedometer solve`: one case from the command line, its errors on standard output.
 
 use crate::campaign::case_run::run_case_within;
-use crate::campaign::work_estimate::estimated_updates;
+use crate::campaign::run_report::LongestCase;
 use crate::case::Case;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of};
 use crate::cli::overrides;
 use crate::cli::overrides::StudyLines;
 use crate::cli::stream::{print_data, say};
+use crate::cli::time_notes::note_on_solve;
 use crate::judge::soundness;
 use crate::mpm::run::Kernel;
-use crate::mpm::run::integrator::{IntegratorKind, StepBound};
 use crate::mpm::run::outcome::{Failure, StepSizes};
 use crate::mpm::run::profile::{PhaseTime, profiled};
 use crate::record::provenance::Provenance;
@@ -39,9 +39,9 @@ pub struct Arguments {
     /// Method by its name
     #[arg(long, default_value = "GC-SRI-patch")]
     method: String,
-    /// Time integrator
-    #[arg(long, default_value = IntegratorKind::Explicit.name())]
-    integrator: String,
+    /// Time integrator [default: explicit; implicit where that would take minutes and nothing asks for it]
+    #[arg(long)]
+    integrator: Option<String>,
     /// Cells over the height
     #[arg(long, default_value_t = 10, allow_negative_numbers = true)]
     cells: i64,
@@ -122,29 +122,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     Ok(Exit::Pass)
 }
 
-/// Point updates beyond which a person wants to know before the run what it will take.
-const LONG_WORK: u64 = 20_000_000_000;
-/// Point updates a second of a frozen column on a core of today, for an estimate.
-const UPDATES_A_SECOND: f64 = 2e8;
-
-/// Says before a long run that it is one, and when it ends at the latest.
+/// Says before a long run that it is one, and what takes less.
 fn tell_of_long(study: &Study) {
-    let Some(case) = study.planned.first().map(|planned| &planned.case) else { return };
-    let updates = estimated_updates(case);
-    if updates < LONG_WORK {
-        return;
+    let Some(planned) = study.planned.first() else { return };
+    let (study, case_seconds) = ("solve".to_owned(), study.case_seconds);
+    let longest = LongestCase { study, case: planned.case.clone(), case_seconds };
+    if let Some(note) = note_on_solve(&longest) {
+        say!("{note}");
     }
-    let hint = match case.integrator.step_bound() {
-        StepBound::Accuracy => "larger steps take fewer",
-        StepBound::AllWaves | StepBound::SkeletonWaves => "`--integrator implicit` takes larger steps",
-    };
-    say!(
-        "note: about {:.1e} point updates, at least {:.0e} s; it ends after {} s (`--set case_seconds=…`) at the latest; \
-         {hint}",
-        updates as f64,
-        updates as f64 / UPDATES_A_SECOND,
-        study.case_seconds
-    );
 }
 
 /// The study of one case that the command line describes.
@@ -163,10 +148,12 @@ fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
     }
     let mut sweep = vec![
         format!("method = [{}]", overrides::quoted(&arguments.method)),
-        format!("integrator = [{}]", overrides::quoted(&arguments.integrator)),
         format!("cells = [{}]", arguments.cells),
         format!("points_per_cell = [{}]", arguments.points_per_cell),
     ];
+    if let Some(integrator) = &arguments.integrator {
+        sweep.push(format!("integrator = [{}]", overrides::quoted(integrator)));
+    }
     if let Some(rule) = &arguments.time_step {
         sweep.push(format!("time_step = [{}]", overrides::step_rule(rule)?));
     }

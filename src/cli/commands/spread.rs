@@ -23,7 +23,7 @@ use std::path::PathBuf;
 /// Arguments of `spread`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files; every shipped one where none is named
+    /// Study files or names of shipped studies; every shipped one where none is named
     #[arg(value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
     /// Results of another build of the same sources, as by `cargo run -- run STUDY.toml --out DIR`

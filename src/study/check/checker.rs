@@ -24,6 +24,8 @@ pub(crate) struct Checker<'a> {
     /// Cases that the sweeps seen so far multiply out to.
     pub(crate) multiplied_out: usize,
     pub(crate) purpose: Purpose,
+    /// What is odd and runs all the same, as a person reads it.
+    pub(crate) warnings: Vec<String>,
 }
 
 impl Checker<'_> {

@@ -59,6 +59,7 @@ impl Checker<'_> {
         if let Err(error @ ExactError::LoadClosesPores { limit, .. }) = XieLeo::new(&parameters) {
             let typed = file.column.typed("load").or(file.material.typed("porosity"));
             let typed = typed.or(file.material.typed("youngs_modulus")).map(Spanned::span);
+            let typed = typed.or(file.column.strain.as_ref().map(|strain| strain.span()));
             let most = limit * soil.oedometric_modulus();
             let least = -elementary::exp_m1(-column.load / soil.oedometric_modulus());
             self.complain(
@@ -70,11 +71,11 @@ impl Checker<'_> {
     }
 
     /// A load under which a theory of small strain is off by more than a percent.
-    pub(crate) fn large_for_small_strain(&self, file: &StudyFile, base: &Case) -> Option<String> {
+    pub(crate) fn large_for_small_strain(&mut self, file: &StudyFile, base: &Case) {
         let Case { scene, column, material: soil, .. } = base;
         let strain = column.load / soil.oedometric_modulus();
         if scene.is_large_strain() || strain <= LARGEST_SMALL_STRAIN {
-            return None;
+            return;
         }
         let typed = file.column.typed("load").or(file.material.typed("youngs_modulus")).map(Spanned::span);
         let diagnostic = Diagnostic::at(
@@ -85,6 +86,6 @@ impl Checker<'_> {
             ),
             "the errors printed are against small-strain theory all the same; the scene `xie-leo` is of large strain",
         );
-        Some(diagnostic.warning(&self.source.name, &self.source.text))
+        self.warnings.push(diagnostic.warning(&self.source.name, &self.source.text));
     }
 }

@@ -6,7 +6,10 @@ pub mod check_method;
 pub mod check_series_expectation;
 pub mod check_sweep;
 pub mod checker;
+pub mod default_integrator;
+pub mod end_state;
 pub mod geometry;
+pub mod matching;
 pub mod step_rule;
 pub mod value;
 
@@ -20,6 +23,7 @@ use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::study::case_expectation::CaseExpectation;
 use crate::study::check::checker::{Checker, Common, Purpose};
+use crate::study::check::end_state::load_of;
 use crate::study::choice_tables::Placed;
 use crate::study::diagnostic::StudyError;
 use crate::study::expectation::SeriesExpectation;
@@ -86,8 +90,14 @@ impl Study {
     /// Every complaint with its place.
     pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
         let file: StudyFile = source.read()?;
-        let mut checker =
-            Checker { source, diagnostics: Vec::new(), column_height: None, multiplied_out: 0, purpose };
+        let mut checker = Checker {
+            source,
+            diagnostics: Vec::new(),
+            column_height: None,
+            multiplied_out: 0,
+            purpose,
+            warnings: Vec::new(),
+        };
         let study = checker.study(&file);
         match study {
             Some(study) if checker.diagnostics.is_empty() => Ok(study),
@@ -112,9 +122,13 @@ impl Checker<'_> {
         let task = self.choice(file.task.as_deref(), "task", Task::default())?;
         let common = self.common(file, Case::seed(task, scene));
         let mut base = common.base();
+        let strain = self.given_strain(file, &base);
+        if let Some(strain) = strain {
+            base.column.load = load_of(strain, &base);
+        }
         self.column_height = Some(base.column.height);
         self.porosity_at_the_end(file, &base);
-        let warnings = self.large_for_small_strain(file, &base).into_iter().collect();
+        self.large_for_small_strain(file, &base);
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
@@ -133,17 +147,26 @@ impl Checker<'_> {
         let mut places: HashMap<String, usize> = HashMap::new();
         for block in &file.sweep {
             let table = block.get_ref();
-            let Some(sweep) = self.sweep(table, block.span(), &common, &base) else { continue };
-            if self.purpose == Purpose::Solving {
-                self.cells_fill_the_width(table, &base.column);
-                self.memory_fits(table, sweep.cases(&base));
-            }
             base.time_factors = match &table.time_factors {
                 Some(list) => self.time_factors(list),
                 None => time_factors.clone(),
             };
+            let Some(mut sweep) = self.sweep(table, block.span(), &common, &base) else { continue };
+            if self.purpose == Purpose::Solving {
+                self.cells_fill_the_width(table, &base.column);
+                self.memory_fits(table, sweep.cases(&base));
+                self.default_integrator(table, block.span().start, &common, &base, &mut sweep);
+            }
             let tier = self.choice(table.tier.as_deref(), "tier", Tier::default()).unwrap_or_default();
-            for case in sweep.cases(&base) {
+            let mut cases: Vec<Case> = sweep.cases(&base).collect();
+            if let Some(strain) = strain {
+                for case in &mut cases {
+                    case.column.load = load_of(strain, case);
+                }
+            }
+            let start = block.span().start;
+            self.pores_stay_open(start..start + 1, cases.iter());
+            for case in cases {
                 match places.entry(case.hash()) {
                     Entry::Occupied(place) => {
                         let other = &mut planned[*place.get()];
@@ -156,13 +179,7 @@ impl Checker<'_> {
                 }
             }
         }
-        let expectations =
-            file.expect.iter().filter_map(|entry| self.expectation(entry, scene, &references)).collect();
-        let case_expectations = file
-            .expect_case
-            .iter()
-            .filter_map(|entry| self.case_expectation(entry, scene, &references))
-            .collect();
+        let (expectations, case_expectations) = self.expectations(file, scene, &references, &planned);
         let case_seconds =
             self.positive(file.case_seconds.as_deref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
         let timing_repeats =
@@ -178,8 +195,32 @@ impl Checker<'_> {
             case_expectations,
             case_seconds,
             timing_repeats,
-            warnings,
+            warnings: std::mem::take(&mut self.warnings),
         })
+    }
+
+    /// What the study expects of its series and of single cases; each must have something to judge.
+    fn expectations(
+        &mut self,
+        file: &StudyFile,
+        scene: SceneKind,
+        references: &[ReferenceKind],
+        planned: &[PlannedCase],
+    ) -> (Vec<SeriesExpectation>, Vec<CaseExpectation>) {
+        let (mut of_series, mut of_cases) = (Vec::new(), Vec::new());
+        for entry in &file.expect {
+            if let Some(found) = self.expectation(entry, scene, references) {
+                self.series_is_there(entry, &found, planned);
+                of_series.push(found);
+            }
+        }
+        for entry in &file.expect_case {
+            if let Some(found) = self.case_expectation(entry, scene, references) {
+                self.case_is_there(entry, &found, planned);
+                of_cases.push(found);
+            }
+        }
+        (of_series, of_cases)
     }
 
     /// What the tables of the study give its cases.

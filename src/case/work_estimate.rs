@@ -1,10 +1,12 @@
 //! How much work a case will be, before it runs.
 
+use crate::case::step_cost::{CASE_SECONDS, seconds_per_step};
 use crate::case::{Case, Task};
 use crate::elementary;
 use crate::mpm::critical_step::formula;
 use crate::mpm::critical_step::observed::{BISECTIONS, OBSERVED_STEPS, SHARES};
 use crate::mpm::run::TimeStepRule;
+use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::column::column_parameters;
 
 /// Steps after which a run at a share of the critical step has shown that it is clean.
@@ -15,21 +17,34 @@ pub(crate) fn work_of<'a>(cases: impl Iterator<Item = &'a Case>) -> u64 {
     cases.fold(0, |sum, case| sum.saturating_add(estimated_work(case)))
 }
 
-/// Point updates, weighted with what one costs: operators that follow the points are built anew in
-/// every step.
+/// Work of a case: the time that it will take on one core, ns.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, it is an estimate")]
 pub(crate) fn estimated_work(case: &Case) -> u64 {
-    let follows = case.method.configuration_or(case.scene.configuration()).deforms();
-    estimated_updates(case).saturating_mul(if follows { 30 } else { 1 })
+    (1e9 * estimated_seconds(case)).max(1.0) as u64
+}
+
+/// Time that a case will take on one core of the machine that [`step_cost`](crate::case::step_cost) names, s.
+pub fn estimated_seconds(case: &Case) -> f64 {
+    CASE_SECONDS + estimated_steps(case) * seconds_per_step(case)
 }
 
 /// Point updates that a case will take, by formula and before any operator is built.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, it is an estimate")]
 pub fn estimated_updates(case: &Case) -> u64 {
+    (estimated_steps(case) * case.expected_points() as f64).max(1.0) as u64
+}
+
+/// Steps that a case will take, by formula.
+pub fn estimated_steps(case: &Case) -> f64 {
     let parameters = column_parameters(&case.column, &case.material);
     let end = parameters.time(case.time_factors.last().copied().unwrap_or(0.0));
-    let limit = formula::combined_limit(&case.material, case.cell_size(), case.settings.drag);
     let step = match case.time_step {
-        TimeStepRule::Stable(share) => 1.5 * share * limit,
+        TimeStepRule::Stable(share) if case.integrator == IntegratorKind::SemiImplicit => {
+            share * formula::semi_implicit_limit(&case.material, case.cell_size(), case.column.dimensions)
+        }
+        TimeStepRule::Stable(share) => {
+            1.5 * share * formula::combined_limit(&case.material, case.cell_size(), case.settings.drag)
+        }
         TimeStepRule::Courant(share) => {
             share * case.cell_size() / formula::fastest_wave_speed(&case.material, case.material.porosity)
         }
@@ -40,7 +55,7 @@ pub fn estimated_updates(case: &Case) -> u64 {
             growth * end / (2.0 + elementary::ln((end / first).max(1.0)))
         }
     };
-    let steps = match case.task {
+    match case.task {
         Task::Solve => end / step,
         Task::Stability => {
             // Runs of a fixed length bracket the limit; those beside it end with the scene, or before.
@@ -48,8 +63,7 @@ pub fn estimated_updates(case: &Case) -> u64 {
             f64::from(BISECTIONS) * observed
                 + SHARES.len() as f64 * (end / step).clamp(observed, MOST_PROBE_STEPS as f64)
         }
-    };
-    (steps * case.expected_points() as f64).max(1.0) as u64
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,29 @@
+//! How long the processor has worked on a thread: what other programs take of the machine does not count.
+
+/// Seconds that this thread has been on a processor, where the system tells: Linux does, in the first number of
+/// `schedstat`, ns.
+pub fn thread_seconds() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: u64 = text.split_whitespace().next()?.parse().ok()?;
+    (nanoseconds > 0).then_some(1e-9 * nanoseconds as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::{Duration, Instant};
+
+    #[test]
+    fn work_counts_and_sleep_does_not() {
+        let Some(start) = thread_seconds() else { return };
+        std::thread::sleep(Duration::from_millis(60));
+        let slept = thread_seconds().expect("told before") - start;
+        assert!(slept < 0.05, "{slept} s of sleep");
+        let clock = Instant::now();
+        let mut sum = 0_u64;
+        while thread_seconds().expect("told before") - start < 0.02 && clock.elapsed().as_secs() < 60 {
+            sum = (0..10_000).fold(sum, |sum, one| std::hint::black_box(sum ^ one));
+        }
+        assert!(thread_seconds().expect("told before") - start >= 0.02);
+    }
+}

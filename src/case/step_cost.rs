@@ -1,0 +1,127 @@
+//! What a step costs, by kind of step: the constants from which times are estimated before anything runs.
+//!
+//! They are nanoseconds on one core of a quiet two-core Xeon at 2.5 GHz, program built with `--release`, least
+//! of three runs each. `oedometer plan --calibrate` measures the same cases where it is called and prints its
+//! own numbers beside these: a machine of other speed shows as one ratio in every row, a change of a kernel as
+//! one row that departs from the others.
+
+use crate::case::Case;
+use crate::mpm::method::{Configuration, Memory, Recovery, StrainGradient};
+use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+
+/// Kinds of steps that differ in what they cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepKind {
+    /// Explicit, as one sparse map: nothing moves.
+    Assembled,
+    /// Explicit, point by point: operators follow the points.
+    PointWise,
+    /// Implicit with one linear system.
+    Linear,
+    /// Implicit, by Newton's iteration.
+    Newton,
+}
+
+/// Cost of a step: `fixed + points · (point + band · width²)`, ns, with the width in cells of the narrower
+/// side: elimination in a band grows with its square.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepCost {
+    /// Whatever the size.
+    pub fixed: f64,
+    /// Per point.
+    pub point: f64,
+    /// Per point and squared width.
+    pub band: f64,
+}
+
+/// Time of a case beside its steps, s: set-up, exact solutions, the record.
+pub const CASE_SECONDS: f64 = 1e-3;
+/// A point-wise or Newton step with a fit over patches or a composite gradient, over one without.
+const FIT_FACTOR: f64 = 1.3;
+/// The same for a pressure that cells remember.
+const MEMORY_FACTOR: f64 = 1.5;
+
+impl StepKind {
+    /// The kind of step that a case takes.
+    pub fn of(case: &Case) -> Self {
+        let frozen = case.method.configuration_or(case.scene.configuration()) == Configuration::Frozen;
+        match case.integrator {
+            IntegratorKind::Explicit if frozen => Self::Assembled,
+            IntegratorKind::Explicit => Self::PointWise,
+            _ if frozen && case.formulation == Formulation::QuasiStatic => Self::Linear,
+            IntegratorKind::SemiImplicit | IntegratorKind::Implicit => Self::Newton,
+        }
+    }
+
+    /// Its cost in one or two dimensions.
+    pub fn cost(self, dimensions: usize) -> StepCost {
+        let [fixed, point, band] = match (self, dimensions) {
+            (Self::Assembled, 1) => [100.0, 10.0, 0.0],
+            (Self::Assembled, _) => [200.0, 25.0, 0.0],
+            (Self::PointWise, 1) => [200.0, 40.0, 0.0],
+            (Self::PointWise, _) => [400.0, 160.0, 0.0],
+            (Self::Linear, 1) => [1000.0, 80.0, 0.0],
+            (Self::Linear, _) => [2000.0, 200.0, 1.2],
+            (Self::Newton, 1) => [5000.0, 1500.0, 0.0],
+            (Self::Newton, _) => [10_000.0, 2000.0, 12.0],
+        };
+        StepCost { fixed, point, band }
+    }
+}
+
+/// Time of one step of a case on one core, s.
+pub fn seconds_per_step(case: &Case) -> f64 {
+    let kind = StepKind::of(case);
+    let cost = kind.cost(case.column.dimensions);
+    let points = case.expected_points() as f64;
+    let width = case.column.cells_across(case.cells).unwrap_or(1).min(case.cells) as f64;
+    let method = &case.method;
+    let follows = matches!(kind, StepKind::PointWise | StepKind::Newton);
+    let fits = method.recovery == Recovery::Patch || method.strain != StrainGradient::Standard;
+    let mut factor = 1.0;
+    if follows && fits {
+        factor *= FIT_FACTOR;
+    }
+    if follows && method.memory == Memory::Cells {
+        factor *= MEMORY_FACTOR;
+    }
+    1e-9 * factor * (cost.fixed + points * (cost.point + cost.band * width * width))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Task;
+    use crate::mpm::method::Method;
+    use crate::scene::SceneKind;
+
+    fn case(scene: SceneKind, method: &str, integrator: IntegratorKind, cells: usize) -> Case {
+        let method = Method::named(method).expect("a method");
+        let formulation = integrator.default_formulation();
+        Case { method, integrator, formulation, cells, ..Case::seed(Task::Solve, scene) }
+    }
+
+    #[test]
+    fn the_kind_of_step_follows_what_moves_and_who_integrates() {
+        use IntegratorKind::{Explicit, Implicit, SemiImplicit};
+        let kind = |scene, method, integrator| StepKind::of(&case(scene, method, integrator, 10));
+        assert_eq!(kind(SceneKind::Terzaghi, "MPM", Explicit), StepKind::Assembled);
+        assert_eq!(kind(SceneKind::XieLeo, "MPM", Explicit), StepKind::PointWise);
+        assert_eq!(kind(SceneKind::Terzaghi, "MPM", Implicit), StepKind::Linear);
+        assert_eq!(kind(SceneKind::XieLeo, "MPM", Implicit), StepKind::Newton);
+        assert_eq!(kind(SceneKind::Terzaghi, "MPM", SemiImplicit), StepKind::Newton);
+    }
+
+    #[test]
+    fn a_step_costs_more_with_points_with_width_and_with_fits() {
+        let column = |method, cells| {
+            seconds_per_step(&case(SceneKind::XieLeo, method, IntegratorKind::Explicit, cells))
+        };
+        assert!(column("MPM", 100) > 5.0 * column("MPM", 10));
+        assert!((column("GIMP-SRI-patch", 10) / column("MPM", 10) - FIT_FACTOR).abs() < 1e-12);
+        let layer =
+            |cells| seconds_per_step(&case(SceneKind::CosineLayer, "MPM", IntegratorKind::Implicit, cells));
+        // Four times the points and four times the square of the width.
+        assert!(layer(80) > 8.0 * layer(40), "{} for {}", layer(80), layer(40));
+    }
+}

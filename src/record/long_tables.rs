@@ -1,0 +1,189 @@
+//! The tables beside the tidy one: profiles, settlement over time, and what every column means.
+
+use crate::case::keys::KEYS;
+use crate::mpm::run::snapshot::Samples;
+use crate::record::{Record, tidy};
+
+/// Columns of the profiles.
+const PROFILE_COLUMNS: [(&str, &str, &str); 10] = [
+    ("case", "", "hash of the case"),
+    ("time_factor", "", "T_v = c_v t/H², with the drained c_v"),
+    ("time", "s", "time since the load"),
+    ("sample", "", "points, centres (means over a cell's points) or nodes"),
+    ("distance", "m", "initial place along a layer; empty in one dimension"),
+    ("height", "m", "initial height above the base"),
+    ("pressure", "Pa", "excess pore pressure, compression positive"),
+    ("effective_stress", "Pa", "vertical effective stress, tension positive"),
+    ("displacement_height", "m", "initial height of the place of the displacement"),
+    ("displacement", "m", "vertical displacement, upward positive"),
+];
+
+/// Columns of the settlement over time.
+const HISTORY_COLUMNS: [(&str, &str, &str); 3] = [
+    ("case", "", "hash of the case"),
+    ("time_factor", "", "T_v = c_v t/H², with the drained c_v"),
+    ("degree_of_consolidation", "", "settlement over the final one of the scene's own reference"),
+];
+
+/// Columns of the tidy table that are no input: name, unit, meaning.
+const TIDY_COLUMNS: [(&str, &str, &str); 17] = [
+    ("study", "", "name of the study"),
+    ("case", "", "hash of the case: its identity"),
+    ("largest_step_seconds", "s", "largest step that was taken"),
+    ("steps", "", "steps that were taken"),
+    ("point_updates", "", "steps times points"),
+    ("status", "", "ok, or how the case failed"),
+    ("sources", "", "hash of the program's sources"),
+    ("time_factor", "", "T_v = c_v t/H², with the drained c_v"),
+    ("quantity", "", "what is compared"),
+    ("sample", "", "where it is compared"),
+    ("norm", "", "how the error becomes one number"),
+    ("reference", "", "exact solution that it is held against"),
+    ("value", "", "relative error; that of the settlement with its sign"),
+    ("absolute_error", "", "error over the load, or over the final settlement"),
+    ("cell_size", "m", "edge of a cell"),
+    ("wall_seconds", "s", "time that the case took, the least of its runs"),
+    ("cpu_seconds", "s", "time that the processor worked on it, where the system tells"),
+];
+
+fn csv_of(header: Vec<&str>, rows: impl IntoIterator<Item = Vec<String>>) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header)?;
+    for row in rows {
+        writer.write_record(row)?;
+    }
+    let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Fields over the height at every output: a row per case, time and place.
+///
+/// # Errors
+/// Never for plain numbers and words; the writer's own otherwise.
+pub fn profiles_csv<'a>(records: impl IntoIterator<Item = &'a Record>) -> Result<String, csv::Error> {
+    let mut rows = Vec::new();
+    for record in records {
+        for (factor, snapshot) in record.case.time_factors.iter().zip(&record.snapshots) {
+            let of_kind =
+                [("points", &snapshot.points), ("centres", &snapshot.centres), ("nodes", &snapshot.nodes)];
+            for (sample, samples) in of_kind {
+                let first = [
+                    record.hash.clone(),
+                    factor.to_string(),
+                    format!("{:e}", snapshot.time),
+                    sample.to_owned(),
+                ];
+                rows.extend(
+                    (0..samples.initial_height.len()).map(|place| profile_row(&first, samples, place)),
+                );
+            }
+        }
+    }
+    csv_of(PROFILE_COLUMNS.iter().map(|(name, _, _)| *name).collect(), rows)
+}
+
+fn profile_row(first: &[String; 4], samples: &Samples, place: usize) -> Vec<String> {
+    let number = |values: &[f64]| values.get(place).map_or(String::new(), |value| format!("{value:e}"));
+    let distance = samples.plane.as_ref().map_or(String::new(), |plane| number(&plane.initial_distance));
+    let mut row = first.to_vec();
+    row.extend([
+        distance,
+        number(&samples.initial_height),
+        number(&samples.pressure),
+        number(&samples.effective_stress),
+        number(samples.displacement_height.as_deref().unwrap_or(&samples.initial_height)),
+        number(&samples.displacement),
+    ]);
+    row
+}
+
+/// Settlement over time: a row per case and time.
+///
+/// # Errors
+/// As [`profiles_csv`].
+pub fn history_csv<'a>(records: impl IntoIterator<Item = &'a Record>) -> Result<String, csv::Error> {
+    let rows = records.into_iter().flat_map(|record| {
+        let row = |factor: f64, degree: f64| {
+            vec![record.hash.clone(), format!("{factor:e}"), format!("{degree:e}")]
+        };
+        record.history.iter().map(move |one| row(one.time_factor, one.degree_of_consolidation))
+    });
+    csv_of(HISTORY_COLUMNS.iter().map(|(name, _, _)| *name).collect(), rows)
+}
+
+/// Every column of the three tables with its unit and meaning.
+///
+/// # Errors
+/// As [`profiles_csv`].
+pub fn columns_csv() -> Result<String, csv::Error> {
+    let row = |table: &str, name: &str, unit: &str, meaning: &str| {
+        [table, name, unit, meaning].map(str::to_owned).to_vec()
+    };
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for name in tidy::columns() {
+        let input = KEYS.iter().find(|key| key.name == name).map(|key| (key.unit, key.meaning));
+        let other =
+            TIDY_COLUMNS.iter().find(|(own, _, _)| *own == name).map(|(_, unit, meaning)| (*unit, *meaning));
+        let (unit, meaning) = input.or(other).unwrap_or(match name {
+            "scene" => ("", "physical problem"),
+            _ => ("", "what was done with the case"),
+        });
+        rows.push(row("", name, unit, meaning));
+    }
+    for (table, columns) in
+        [("profiles", PROFILE_COLUMNS.as_slice()), ("history", HISTORY_COLUMNS.as_slice())]
+    {
+        rows.extend(columns.iter().map(|(name, unit, meaning)| row(table, name, unit, meaning)));
+    }
+    csv_of(vec!["table", "column", "unit", "meaning"], rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+
+    const STUDY: &str = "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
+                         method = [\"MPM\"]\nintegrator = [\"implicit\"]\ncells = [3]\npoisson_ratio = []\n";
+
+    fn rows(text: &str) -> Vec<csv::StringRecord> {
+        csv::Reader::from_reader(text.as_bytes()).records().map(|row| row.expect("a row")).collect()
+    }
+
+    #[test]
+    fn every_place_of_every_output_has_a_row_and_every_column_a_meaning() {
+        let records = records_of(&STUDY.replace("poisson_ratio = []\n", "poissons_ratio = [0.1, 0.4]\n"));
+        let profiles = rows(&profiles_csv(&records).expect("a table"));
+        // Two cases of 6 points, 3 centres and 4 nodes.
+        assert_eq!(profiles.len(), 2 * (6 + 3 + 4));
+        let snapshot = &records[0].snapshots[0];
+        assert_eq!(profiles[0][6].parse::<f64>().ok(), Some(snapshot.points.pressure[0]));
+        assert_eq!(rows(&history_csv(&records).expect("a table")).len(), 2 * records[0].history.len());
+        let meanings = rows(&columns_csv().expect("a table"));
+        for column in tidy::columns() {
+            let found = meanings.iter().filter(|row| row[0].is_empty() && &row[1] == column).count();
+            assert_eq!(found, 1, "{column}");
+        }
+        assert!(meanings.iter().all(|row| !row[3].is_empty()));
+        let modulus = meanings.iter().find(|row| &row[1] == "youngs_modulus").expect("a row");
+        assert_eq!(&modulus[2], "Pa");
+    }
+
+    #[test]
+    fn what_is_swept_tells_the_rows_apart() {
+        let records = records_of(&STUDY.replace("poisson_ratio = []\n", "poissons_ratio = [0.1, 0.4]\n"));
+        let table = tidy::tidy_csv("s", &records).expect("a table");
+        let place = |name: &str| tidy::columns().iter().position(|column| *column == name).expect("a column");
+        let all = rows(&table);
+        let values: std::collections::BTreeSet<&str> =
+            all.iter().map(|row| &row[place("poissons_ratio")]).collect();
+        assert_eq!(values.into_iter().collect::<Vec<_>>(), ["0.1", "0.4"]);
+        let row = &all[0];
+        assert_eq!((&row[place("scene")], &row[place("task")]), ("terzaghi", "solve"));
+        assert_eq!(row[place("cell_size")].parse::<f64>().ok(), Some(1.0 / 3.0));
+        assert!(row[place("wall_seconds")].parse::<f64>().is_ok_and(|seconds| seconds > 0.0));
+        let error = &records[0].errors[0];
+        assert_eq!(row[place("absolute_error")].parse::<f64>().ok(), Some(error.absolute));
+        assert_eq!(row[place("value")].parse::<f64>().ok(), Some(error.value));
+    }
+}
