@@ -3,6 +3,7 @@
 mod bad_input;
 mod check;
 mod critical_step;
+mod foreign;
 mod impossible_results;
 mod planted_damage;
 mod portable;

@@ -7,6 +7,7 @@ use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::coverage;
 use crate::judge::score::coverage::Bare;
+use crate::judge::score::interior_zeros::interior_zeros;
 use crate::judge::score::times::time_factors;
 
 /// Share by which volumes may differ beyond what consolidation explains: round-off of written
@@ -39,6 +40,8 @@ pub enum Lack {
     SamplesDiffer,
     /// A time is missing that another result has, or that was asked for.
     TimeMissing,
+    /// Pressures of exactly 0 stand inside the body.
+    ZerosInside,
 }
 
 impl Lack {
@@ -52,6 +55,7 @@ impl Lack {
             Self::RowsRepeated => "rows-repeated",
             Self::SamplesDiffer => "samples-differ",
             Self::TimeMissing => "time-missing",
+            Self::ZerosInside => "zeros-inside",
         }
     }
 }
@@ -105,6 +109,7 @@ impl Whole<'_> {
             })
         }));
         findings.extend(self.counts(states));
+        findings.extend(interior_zeros(self.parameters, states));
         Ok(findings)
     }
 
