@@ -4,7 +4,7 @@ use crate::import::formats::frame::{Array, Association, Frame};
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::{RawRow, is_at};
-use crate::import::sample_row::{SampleRow, SolvedBody};
+use crate::import::raw_row::{SampleRow, SolvedBody};
 use std::collections::{BTreeSet, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;

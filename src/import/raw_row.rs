@@ -3,11 +3,35 @@
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::mapping_parts::StressKind;
-use crate::import::sample_row::{SampleRow, SolvedBody};
 use crate::import::units::{HorizontalSense, StatedPlace, StressSign, StressUnit, VerticalSense};
 
 /// Share of the height by which a place may lie outside: round-off of a written number.
 const RIM: f64 = 1e-6;
+
+/// What was solved, as far as it takes to read a result of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolvedBody {
+    /// Height, m.
+    pub height: f64,
+    /// Length along a layer, m; a column has none.
+    pub length: Option<f64>,
+    /// Seconds at which `T_v = 1`.
+    pub seconds_per_time_factor: f64,
+}
+
+/// One row in SI.
+pub struct SampleRow {
+    pub time: f64,
+    pub initial_distance: Option<f64>,
+    pub initial_height: f64,
+    pub volume: f64,
+    pub pressure: Option<f64>,
+    pub effective_stress: Option<f64>,
+    pub displacement: Option<f64>,
+    pub horizontal_displacement: Option<f64>,
+    /// What tells it from other rows at its place and time, as a hash.
+    pub others: u64,
+}
 
 /// A row in the units and signs of its file; the time is in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -6,7 +6,7 @@ use crate::import::formats::steps::{Kind, Step, frame_of, steps_of};
 use crate::import::frame_rows::{FrameReader, Start, cells_over_height, wanted_names};
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::sample_row::{SampleRow, SolvedBody};
+use crate::import::raw_row::{SampleRow, SolvedBody};
 use crate::import::settlement_series::attach;
 use crate::import::step_times::{declared_time, fits, step_of};
 use crate::import::table::{SampledState, states_of, states_of_rows};

@@ -2,35 +2,10 @@
 
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::raw_row::{RawRow, is_at};
+use crate::import::raw_row::{RawRow, SampleRow, SolvedBody, is_at};
 use crate::import::step_times::declared_time;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
-
-/// What was solved, as far as it takes to read a result of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SolvedBody {
-    /// Height, m.
-    pub height: f64,
-    /// Length along a layer, m; a column has none.
-    pub length: Option<f64>,
-    /// Seconds at which `T_v = 1`.
-    pub seconds_per_time_factor: f64,
-}
-
-/// One row in SI.
-pub struct SampleRow {
-    pub time: f64,
-    pub initial_distance: Option<f64>,
-    pub initial_height: f64,
-    pub volume: f64,
-    pub pressure: Option<f64>,
-    pub effective_stress: Option<f64>,
-    pub displacement: Option<f64>,
-    pub horizontal_displacement: Option<f64>,
-    /// What tells it from other rows at its place and time, as a hash.
-    pub others: u64,
-}
 
 /// Places of the columns in a file's header.
 struct Places {

@@ -3,7 +3,7 @@
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::mapping_parts::SettlementSeries;
-use crate::import::sample_row::SolvedBody;
+use crate::import::raw_row::SolvedBody;
 use crate::import::table::SampledState;
 use crate::import::units::VerticalSense;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Times of files that hold one step: by name, from a list, or from the number of the step.
 
 use crate::import::mapping::Mapping;
-use crate::import::sample_row::SolvedBody;
+use crate::import::raw_row::SolvedBody;
 use std::path::Path;
 
 /// The time that the mapping declares for a file, the so many-th of its run, s.

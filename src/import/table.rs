@@ -2,7 +2,8 @@
 
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::sample_row::{SampleRow, SolvedBody, rows_of};
+use crate::import::raw_row::{SampleRow, SolvedBody};
+use crate::import::sample_row::rows_of;
 use std::path::PathBuf;
 
 /// Rows closer than this share of their time are of one time.

@@ -295,7 +295,7 @@ fn claims_of_ten_gigabytes_are_refused_at_once() {
     let many = text.replace("NumberOfPoints=\"8\"", &format!("NumberOfPoints=\"{claim}\""));
     assert!(vtu::read(many.as_bytes(), Wanted(&names)).is_err());
     // Blocks that claim ten gigabytes each.
-    let start = file.iter().position(|symbol| *symbol == b'_').expect("a mark") + 1;
+    let start = file.windows(2).position(|mark| mark == b"\n_").expect("a mark") + 2;
     let mut packed = file;
     packed[start + 8..start + 16].copy_from_slice(&(8 * claim).to_le_bytes());
     assert!(vtu::read(&packed, Wanted(&names)).is_err());

@@ -7,7 +7,6 @@ use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::coverage;
 use crate::judge::score::coverage::Bare;
-use crate::judge::score::interior_zeros::interior_zeros;
 use crate::judge::score::times::time_factors;
 
 /// Share by which volumes may differ beyond what consolidation explains: round-off of written
@@ -109,7 +108,6 @@ impl Whole<'_> {
             })
         }));
         findings.extend(self.counts(states));
-        findings.extend(interior_zeros(self.parameters, states));
         Ok(findings)
     }
 

@@ -1,40 +1,53 @@
 //! What is scored: the meaning of the files, and their runs with numbers of cells.
 
 use crate::case::Case;
-use crate::cli::commands::score::Arguments;
 use crate::cli::exit::Ended;
 use crate::cli::stream::say;
 use crate::import::mapping::Mapping;
 use crate::import::preset::Preset;
+use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Given, Run, are_tables, files_of, run_of_tables, runs_of_arrays};
-use crate::import::sample_row::SolvedBody;
 use crate::study::file::StudySource;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// What a user types of files and their meaning.
+pub struct Typed<'a> {
+    /// Files and patterns.
+    pub results: &'a [PathBuf],
+    /// Numbers of cells, one a result.
+    pub cells: Option<&'a str>,
+    /// The program that wrote the files.
+    pub preset: Option<Preset>,
+    /// A mapping of one's own.
+    pub mapping: Option<&'a Path>,
+    /// Seconds from one numbered step to the next.
+    pub time_step: Option<f64>,
+}
 
 /// The meaning of the files that were named, and their runs.
-pub fn of(arguments: &Arguments, case: &Case) -> anyhow::Result<(Mapping, Vec<Run>)> {
+pub fn of(typed: &Typed, case: &Case) -> anyhow::Result<(Mapping, Vec<Run>)> {
     let column = &case.column;
     let body = SolvedBody {
         height: column.height,
         length: case.scene.has_plane_fields().then_some(column.horizontal_extent),
         seconds_per_time_factor: case.seconds_per_time_factor(),
     };
-    let given = files_of(&arguments.results)?;
+    let given = files_of(typed.results)?;
     let is_tables = are_tables(&given)?;
-    let mut mapping = mapping_of(arguments, case, is_tables)?;
-    if let Some(step) = arguments.set_time_step {
+    let mut mapping = mapping_of(typed, case, is_tables)?;
+    if let Some(step) = typed.time_step {
         if !(step.is_finite() && step > 0.0) {
             return Err(Ended::usage(format!("`--set-time-step {step}` is no step: give seconds above 0")));
         }
         mapping.time.step = Some(step);
     }
     let mut runs = if is_tables {
-        tables(arguments.cells.as_deref(), given, &mapping, body)?
+        tables(typed.cells, given, &mapping, body)?
     } else {
         runs_of_arrays(&given, &mapping, body)?
     };
-    if let Some(typed) = arguments.cells.as_deref() {
-        let cells = cells_of(typed, runs.len())?;
+    if let Some(cells) = typed.cells {
+        let cells = cells_of(cells, runs.len())?;
         for (run, cells) in runs.iter_mut().zip(cells) {
             run.cells = Some(cells);
         }
@@ -64,12 +77,12 @@ fn tables(
 }
 
 /// The declared meaning of the columns or arrays.
-fn mapping_of(arguments: &Arguments, case: &Case, is_tables: bool) -> anyhow::Result<Mapping> {
+fn mapping_of(typed: &Typed, case: &Case, is_tables: bool) -> anyhow::Result<Mapping> {
     let is_plane = case.scene.has_plane_fields();
-    let own = arguments.mapping.as_deref().map(source_of).transpose()?;
-    let preset = arguments.preset.or_else(|| (!is_tables && own.is_none()).then_some(Preset::Meshio));
+    let own = typed.mapping.map(source_of).transpose()?;
+    let preset = typed.preset.or_else(|| (!is_tables && own.is_none()).then_some(Preset::Meshio));
     if let Some(preset) = preset {
-        if arguments.preset.is_none() {
+        if typed.preset.is_none() {
             say!(
                 "note: no --preset and no --mapping, so the arrays are looked for by the names of --preset meshio: \
                  pressure, displacement and their like, in SI, pressure positive in compression"

@@ -5,6 +5,7 @@ pub mod inputs;
 pub mod results;
 
 use crate::case::Case;
+use crate::cli::commands::score::inputs::Typed;
 use crate::cli::commands::score::results::{Held, Results};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, csv_of, json_of, print_tables};
@@ -93,7 +94,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Err(Ended::usage("the assignments leave no column"));
     };
     let case = &planned.case;
-    let (mapping, runs) = inputs::of(arguments, case)?;
+    let typed = Typed {
+        results: &arguments.results,
+        cells: arguments.cells.as_deref(),
+        preset: arguments.preset,
+        mapping: arguments.mapping.as_deref(),
+        time_step: arguments.set_time_step,
+    };
+    let (mapping, runs) = inputs::of(&typed, case)?;
     let names: Vec<PathBuf> = runs.iter().filter_map(|run| run.files.first().cloned()).collect();
     let held = Held {
         case,

@@ -10,6 +10,7 @@ use crate::import::runs::Run;
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::{Whole, missing_times, uneven_meshes};
 use crate::judge::score::diagnosis::diagnosis;
+use crate::judge::score::interior_zeros::interior_zeros;
 use crate::judge::score::score_series::{ScoredSeries, series_of};
 use crate::judge::score::times::TimeGroups;
 use crate::judge::score::times::time_factors;
@@ -182,6 +183,7 @@ impl Read {
                 has_volumes: held.mapping.columns.volume.is_some(),
             };
             self.score.warnings.extend(whole.findings(&self.states)?);
+            self.score.warnings.extend(interior_zeros(parameters, &self.states));
             self.notes.extend(whole.unit_of_volume(&self.states));
             self.notes.extend(whole.profiles(&self.states));
             self.score.diagnosis = diagnosis(parameters, *own, &self.states, held.mapping)?;
