@@ -7,15 +7,20 @@ use crate::study::file::StudySource;
 /// A program whose files are known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Preset {
-    /// `OpenGeoSys` 6
+    /// `OpenGeoSys` 6.
+    #[value(help = "OpenGeoSys 6")]
     Ogs,
-    /// `KratosMultiphysics` with its `GeoMechanicsApplication`
+    /// `KratosMultiphysics` with its `GeoMechanicsApplication`.
+    #[value(help = "KratosMultiphysics with its GeoMechanicsApplication")]
     Kratos,
-    /// `PorePy`
+    /// `PorePy`.
+    #[value(help = "PorePy")]
     Porepy,
-    /// `GeoTaichi`'s material points
+    /// `GeoTaichi`'s material points.
+    #[value(help = "GeoTaichi's material points")]
     Geotaichi,
-    /// meshio, scikit-fem, `FEniCS` and others with a pressure and a displacement
+    /// meshio, scikit-fem, `FEniCS` and others with a pressure and a displacement.
+    #[value(help = "meshio, scikit-fem, FEniCS and others with a pressure and a displacement")]
     Meshio,
 }
 

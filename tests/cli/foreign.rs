@@ -1,6 +1,7 @@
 //! `score` on real files of other programs: their errors, and what is said of their pitfalls.
 
 use crate::program::{Told, call};
+use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -245,7 +246,7 @@ fn several_files_of_one_mesh_are_one_pattern() {
             let entries: Vec<f64> =
                 row.split(',').take(3).map(|entry| entry.parse().expect("a number")).collect();
             let pressure = entries[2] * (1.0 + 1.0 / f64::from(cells * cells));
-            text += &format!("{time},{},{pressure},0\n", 1.0 - entries[1]);
+            writeln!(text, "{time},{},{pressure},0", 1.0 - entries[1]).expect("a line");
         }
         fs::create_dir_all(at.join(format!("mesh-{cells}"))).expect("a folder");
         fs::write(at.join(format!("mesh-{cells}/step_{step}.csv")), text).expect("a file");
