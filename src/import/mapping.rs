@@ -1,13 +1,15 @@
 //! The declared meaning of a file's columns.
 
 use crate::case::quantity::Sample;
+use crate::import::mapping_parts::{
+    DisplacementSource, Hydrostatic, RowFilter, SettlementSeries, StressKind, StressMeaning, Time,
+};
 use crate::import::units::{
     HorizontalSense, LengthUnit, StatedPlace, StressSign, StressUnit, TimeUnit, VerticalSense,
 };
-use crate::study::diagnostic::StudyError;
+use crate::study::diagnostic::{Diagnostic, StudyError};
 use crate::study::file::StudySource;
 use serde::Deserialize;
-use std::collections::BTreeMap;
 
 /// What the columns of a file mean.
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
@@ -20,13 +22,18 @@ pub struct Mapping {
     /// no volume of the scene, they are mere weights.
     #[serde(default)]
     pub whole_volume: Option<f64>,
-    /// Names of the columns, as the header spells them.
+    /// Names of the columns, as the header spells them, or of arrays: `displacement[1]` is the second component,
+    /// `cells:pressure` the array on cells, `coordinates[1]` the height of points or centres.
+    #[serde(default)]
     pub columns: ColumnNames,
-    /// Units of the columns.
+    /// Units of the columns; SI where they are left out.
+    #[serde(default)]
     pub units: Units,
     /// Directions that count as positive; of x and y with the end from which they count.
+    #[serde(default)]
     pub sign: Signs,
     /// Whether places are initial or present ones, of x as of y.
+    #[serde(default)]
     pub position: Position,
     /// What the file writes at the end from which x and y count, in its unit of length.
     #[serde(default)]
@@ -34,19 +41,40 @@ pub struct Mapping {
     /// Where the time stands, where it is no column.
     #[serde(default)]
     pub time: Time,
+    /// Which rows count; all where nothing is said.
+    #[serde(default)]
+    pub rows: RowFilter,
+    /// Where the displacement comes from, where it is no column.
+    #[serde(default)]
+    pub displacement: Option<DisplacementSource>,
+    /// A hydrostatic part of the pressure, which is taken off.
+    #[serde(default)]
+    pub hydrostatic: Option<Hydrostatic>,
+    /// What the column of the effective stress holds.
+    #[serde(default)]
+    pub stress: StressMeaning,
+    /// A settlement curve in a file of its own.
+    #[serde(default)]
+    pub settlement: Option<SettlementSeries>,
     /// Layout of the file.
     #[serde(default)]
     pub csv: TableLayout,
     /// Whether nobody declared it: a layer's horizontal displacement then may be missing.
     #[serde(skip)]
     pub is_convention: bool,
+    /// Columns of a preset that a file may lack, by their keys.
+    #[serde(skip)]
+    pub optional: Vec<String>,
+    /// Whether the kind of the places is to be found out from the files.
+    #[serde(skip)]
+    pub is_sample_open: bool,
 }
 
 fn points() -> Sample {
     Sample::Points
 }
 
-/// Names of columns as the header spells them.
+/// Names of columns as the header spells them, or of arrays.
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ColumnNames {
@@ -54,7 +82,8 @@ pub struct ColumnNames {
     pub t: Option<String>,
     /// Distance along a layer.
     pub x: Option<String>,
-    /// Height or depth.
+    /// Height or depth; `y` where it is left out.
+    #[serde(default = "height_column")]
     pub y: String,
     /// Excess pore pressure.
     pub p: Option<String>,
@@ -68,44 +97,64 @@ pub struct ColumnNames {
     pub volume: Option<String>,
 }
 
+fn height_column() -> String {
+    "y".to_owned()
+}
+
+impl Default for ColumnNames {
+    fn default() -> Self {
+        let named = |name: &str| Some(name.to_owned());
+        Self {
+            t: named("t"),
+            x: None,
+            y: height_column(),
+            p: named("p"),
+            u_x: None,
+            u_y: named("u_y"),
+            effective_stress: None,
+            volume: None,
+        }
+    }
+}
+
 /// Units of columns.
-#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub struct Units {
-    /// Unit of the time.
+    /// Unit of the time; seconds where it is left out.
     pub time: TimeUnit,
-    /// Unit of the places.
+    /// Unit of the places; metres where it is left out.
     pub length: LengthUnit,
-    /// Unit of the displacement, where it is a column.
+    /// Unit of the displacement; that of the places where it is left out.
     pub displacement: Option<LengthUnit>,
-    /// Unit of pressure and stress, where they are columns.
+    /// Unit of pressure and stress; pascals where it is left out.
     pub stress: Option<StressUnit>,
 }
 
 /// Directions that count as positive.
-#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub struct Signs {
-    /// `right` from the scene's `x = 0` (the crest of a layer's load), or `left` from its other end;
-    /// where `x` is a column.
+    /// `right` from the scene's `x = 0` (the crest of a layer's load), or `left` from its other end; `right` where it
+    /// is left out.
     pub x: Option<HorizontalSense>,
-    /// `up` from the base, or `down` from the initial surface.
+    /// `up` from the base, or `down` from the initial surface; `up` where it is left out.
     pub y: VerticalSense,
-    /// Sign of the pore pressure, where it is a column.
+    /// Sign of the pore pressure; positive in compression where it is left out.
     pub p: Option<StressSign>,
-    /// Sign of the horizontal displacement, where it is a column.
+    /// Sign of the horizontal displacement; `right` where it is left out.
     pub u_x: Option<HorizontalSense>,
-    /// Sign of the vertical displacement, where it is a column.
+    /// Sign of the vertical displacement; `up` where it is left out.
     pub u_y: Option<VerticalSense>,
-    /// Sign of the effective stress, where it is a column.
+    /// Sign of the effective stress; positive in compression where it is left out.
     pub effective_stress: Option<StressSign>,
 }
 
 /// Whose places the coordinates are.
-#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub struct Position {
-    /// Initial places, or present ones; of `x` as of `y`.
+    /// Initial places, or present ones; of `x` as of `y`. Initial where it is left out.
     pub y: StatedPlace,
 }
 
@@ -118,15 +167,6 @@ pub struct Origin {
     pub x: f64,
     /// At the base, or at the initial surface.
     pub y: f64,
-}
-
-/// Times that stand beside the rows.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Time {
-    /// Time of each file that holds one step, by its file name.
-    #[serde(default)]
-    pub files: BTreeMap<String, f64>,
 }
 
 /// Layout of a file.
@@ -145,25 +185,23 @@ impl Default for TableLayout {
     }
 }
 
-/// What is not declared, and how to declare it.
-type Undeclared = (String, String);
-
-fn undeclared(what: &str, help: &str) -> Undeclared {
-    (what.to_owned(), help.to_owned())
-}
-
 impl Mapping {
     /// The mapping of a text.
     ///
     /// # Errors
-    /// What is wrong, at its place: an unknown key or word, or a column whose unit or sign is not
-    /// declared.
+    /// What is wrong, at its place: an unknown key or word; or everything in it that no file can have.
     pub fn read(source: &StudySource) -> Result<Self, StudyError> {
         let mapping: Self = source.read()?;
-        match mapping.undeclared() {
-            None => Ok(mapping),
-            Some((message, help)) => Err(source.complaint(message, help)),
-        }
+        mapping.checked(source)
+    }
+
+    /// The mapping, where nothing in it is wrong.
+    ///
+    /// # Errors
+    /// All faults together.
+    pub fn checked(self, source: &StudySource) -> Result<Self, StudyError> {
+        let faults = self.faults();
+        if faults.is_empty() { Ok(self) } else { Err(source.error(faults)) }
     }
 
     /// What a mapping lacks for a layer: its fields depend on the place along it.
@@ -181,78 +219,99 @@ impl Mapping {
         ))
     }
 
-    /// A column that lacks a declaration, and how to give it.
-    fn undeclared(&self) -> Option<Undeclared> {
-        self.undeclared_column().or_else(|| self.undeclared_place()).or_else(|| self.undeclared_layout())
-    }
-
-    /// A column without its unit, sign or end; or no column at all.
-    fn undeclared_column(&self) -> Option<Undeclared> {
+    /// What a file is taken to mean where the mapping says nothing, of the columns that it names.
+    pub fn taken_for_granted(&self) -> Option<String> {
         let (columns, units, sign) = (&self.columns, &self.units, &self.sign);
-        let stress = (units.stress.is_some(), "stress = \"kPa\"");
-        let displacement = (units.displacement.is_some(), "displacement = \"mm\"");
-        let (is_stress, compressive) = (columns.effective_stress.is_some(), "compression-positive");
-        let rows = [
-            ("p", columns.p.is_some(), stress, sign.p.is_some(), compressive),
-            ("u_y", columns.u_y.is_some(), displacement, sign.u_y.is_some(), "up"),
-            ("u_x", columns.u_x.is_some(), displacement, sign.u_x.is_some(), "right"),
-            ("effective_stress", is_stress, stress, sign.effective_stress.is_some(), compressive),
-        ];
-        for (name, given, (has_unit, unit), has_sign, word) in rows {
-            if given && !has_unit {
-                let what = format!("the unit of the column `{name}` is not declared");
-                return Some((what, format!("add `{unit}` to [units]")));
-            }
-            if given && !has_sign {
-                let what = format!("the sign of the column `{name}` is not declared");
-                return Some((what, format!("add `{name} = \"{word}\"` to [sign]")));
-            }
-        }
-        if columns.x.is_some() && sign.x.is_none() {
-            return Some(undeclared(
-                "the end from which `x` counts is not declared",
-                "add `x = \"right\"` to [sign] where x = 0 is under the crest of the load, `x = \"left\"` where it is \
-                 at the other end",
-            ));
-        }
-        rows.iter().all(|(_, given, ..)| !given).then(|| {
-            let help = "name `p`, `u_y`, `u_x` or `effective_stress` in [columns]";
-            undeclared("no column to score is named", help)
-        })
+        let is_stress = columns.p.is_some() || columns.effective_stress.is_some();
+        let taken: Vec<&str> = [
+            (is_stress && units.stress.is_none(), "the unit of stresses, taken as Pa"),
+            (columns.p.is_some() && sign.p.is_none(), "the sign of `p`, taken as compression-positive"),
+            (
+                columns.effective_stress.is_some() && sign.effective_stress.is_none(),
+                "the sign of `effective_stress`, taken as compression-positive",
+            ),
+            (columns.u_y.is_some() && sign.u_y.is_none(), "the sign of `u_y`, taken as up"),
+            (columns.u_x.is_some() && sign.u_x.is_none(), "the sign of `u_x`, taken as right"),
+            (columns.x.is_some() && sign.x.is_none(), "the end from which `x` counts, taken as the crest"),
+        ]
+        .into_iter()
+        .filter_map(|(is_taken, words)| is_taken.then_some(words))
+        .collect();
+        (!taken.is_empty()).then(|| taken.join("; "))
     }
 
-    /// Places, volumes and times that cannot be found.
-    fn undeclared_place(&self) -> Option<Undeclared> {
+    /// Everything in it that no file can have, and what would be right.
+    fn faults(&self) -> Vec<Diagnostic> {
         let columns = &self.columns;
-        let is_current = self.position.y == StatedPlace::Current;
+        let mut faults = Vec::new();
+        let mut refuse = |is_wrong: bool, message: &str, help: &str| {
+            if is_wrong {
+                faults.push(Diagnostic {
+                    message: message.to_owned(),
+                    span: None,
+                    help: Some(help.to_owned()),
+                });
+            }
+        };
+        let quantities = [&columns.p, &columns.u_y, &columns.u_x, &columns.effective_stress];
+        refuse(
+            quantities.iter().all(|name| name.is_none()) && self.displacement.is_none(),
+            "no column to score is named",
+            "name `p`, `u_y`, `u_x` or `effective_stress` in [columns]",
+        );
+        let is_current = self.position.y == StatedPlace::Current && self.displacement.is_none();
         for (place, given, component, has_component) in [
             ("y", true, "u_y", columns.u_y.is_some()),
             ("x", columns.x.is_some(), "u_x", columns.u_x.is_some()),
         ] {
-            if is_current && given && !has_component {
-                return Some((
-                    format!("present places need the displacement to find the initial `{place}`"),
-                    format!("name `{component}` in [columns], or give initial places"),
-                ));
-            }
+            refuse(
+                is_current && given && !has_component,
+                &format!("present places need the displacement to find the initial `{place}`"),
+                &format!("name `{component}` in [columns], or give initial places"),
+            );
         }
-        if !(self.origin.x.is_finite() && self.origin.y.is_finite()) {
-            return Some(undeclared("an origin is no finite number", "write it as in the file"));
-        }
-        if self.whole_volume.is_some_and(|volume| !(volume.is_finite() && volume > 0.0)) {
-            let help = "give what the volumes of all samples add up to";
-            return Some(undeclared("`whole_volume` is not positive", help));
-        }
-        (columns.t.is_none() && self.time.files.is_empty()).then(|| {
-            let help = "name the column `t`, or give [time] files = { \"step_10.csv\" = 8.175 }";
-            undeclared("no time is declared", help)
-        })
-    }
-
-    /// Marks of the file that no file can have.
-    fn undeclared_layout(&self) -> Option<Undeclared> {
-        (!self.csv.delimiter.is_ascii() || !self.csv.comment.is_none_or(|mark| mark.is_ascii()))
-            .then(|| undeclared("a delimiter or comment mark is no ASCII character", "use \",\" or \";\""))
+        refuse(
+            !(self.origin.x.is_finite() && self.origin.y.is_finite()),
+            "an origin is no finite number",
+            "write it as in the file",
+        );
+        refuse(
+            self.whole_volume.is_some_and(|volume| !(volume.is_finite() && volume > 0.0)),
+            "`whole_volume` is not positive",
+            "give what the volumes of all samples add up to",
+        );
+        refuse(
+            !self.csv.delimiter.is_ascii() || !self.csv.comment.is_none_or(|mark| mark.is_ascii()),
+            "a delimiter or comment mark is no ASCII character",
+            "use \",\" or \";\"",
+        );
+        refuse(
+            self.time.step.is_some_and(|step| !(step.is_finite() && step > 0.0)),
+            "the `step` of [time] is not positive",
+            "give the seconds from one numbered step to the next",
+        );
+        refuse(
+            self.time.list.iter().chain(self.time.files.values()).any(|time| !time.is_finite()),
+            "a time in [time] is no finite number",
+            "give times in the unit of [units]",
+        );
+        refuse(
+            self.time.pattern.as_ref().is_some_and(|pattern| pattern.matches("{step}").count() != 1),
+            "the `pattern` of [time] does not have `{step}` once",
+            "write it like \"column_0_{step}.vtk\", with `*` for what differs",
+        );
+        refuse(
+            self.hydrostatic.is_some_and(|water| !(water.unit_weight.is_finite() && water.unit_weight > 0.0)),
+            "the `unit_weight` of [hydrostatic] is not positive",
+            "give it in Pa per m, like 9810.0",
+        );
+        refuse(
+            self.stress.is == StressKind::Total
+                && (columns.p.is_none() || columns.effective_stress.is_none()),
+            "a total stress needs the pore pressure to become effective",
+            "name both `p` and `effective_stress` in [columns]",
+        );
+        faults
     }
 }
 
@@ -277,33 +336,33 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_declared_is_asked_for() {
-        for (remove, told) in [
-            ("p = \"compression-positive\"\n", "sign of the column `p` is not declared"),
-            ("u_y = \"up\"\n", "sign of the column `u_y`"),
-            ("stress = \"Pa\"\n", "unit of the column `p`"),
-            ("displacement = \"m\"\n", "unit of the column `u_y`"),
-            ("t = \"t\"\n", "no time is declared"),
-            ("time = \"s\"\n", "missing field `time`"),
-            ("y = \"reference\"\n", "missing field `y`"),
-        ] {
-            let error = read(&CONVENTION.replacen(remove, "", 1)).expect_err(remove);
-            assert!(error.contains(told), "{remove}: {error}");
-        }
-        for (remove, told) in [
-            ("x = \"right\"\n", "the end from which `x` counts is not declared"),
-            ("u_x = \"right\"\n", "sign of the column `u_x`"),
-        ] {
-            let error = read(&PLANE_CONVENTION.replacen(&format!("\n{remove}"), "\n", 1)).expect_err(remove);
-            assert!(error.contains(told), "{remove}: {error}");
-        }
+    fn what_is_left_out_is_that_of_the_convention() {
+        let short =
+            read("[columns]\nt = \"t\"\np = \"p\"\nu_y = \"u_y\"\n").expect("all the rest is left out");
+        let convention = Mapping::convention(false).expect("a constant");
+        assert_eq!((short.columns, short.position), (convention.columns, convention.position));
+        assert_eq!((short.units.time, short.units.length), (convention.units.time, convention.units.length));
+        assert_eq!(read("").expect("an empty file").columns.p.as_deref(), Some("p"));
+    }
+
+    #[test]
+    fn all_faults_are_told_at_once() {
         let current =
             PLANE_CONVENTION.replace("\"reference\"", "\"current\"").replacen("u_x = \"u_x\"\n", "", 1);
-        assert!(read(&current).is_err_and(|error| error.contains("to find the initial `x`")));
-        let volume = format!("whole_volume = 0.0\n{CONVENTION}");
-        assert!(read(&volume).is_err_and(|error| error.contains("`whole_volume` is not positive")));
+        let wrong =
+            format!("whole_volume = 0.0\nstress = {{ is = \"total\" }}\n{current}[time]\nstep = -1.0\n");
+        let error = read(&wrong).expect_err("four faults");
+        for told in [
+            "to find the initial `x`",
+            "`whole_volume` is not positive",
+            "`step` of [time]",
+            "a total stress needs the pore pressure",
+        ] {
+            assert!(error.contains(told), "{told}: {error}");
+        }
         let current = CONVENTION.replace("\"reference\"", "\"current\"").replacen("u_y = \"u_y\"\n", "", 1);
         assert!(read(&current).is_err_and(|error| error.contains("present places need the displacement")));
+        assert!(read("[columns]\ny = \"y\"\n").is_err_and(|error| error.contains("no column to score")));
     }
 
     #[test]

@@ -1,11 +1,19 @@
-//! An external result: a CSV file of samples, with a declared meaning.
+//! An external result: tables or files of other programs, with a declared meaning.
 //!
 //! Programs differ in units, signs, the origins of their coordinates and the place where they keep
 //! the time; a mapping file declares all of these, and nothing is guessed from the numbers.
 
 pub mod convention;
+pub mod formats;
+pub mod frame_rows;
 pub mod import_error;
 pub mod mapping;
+pub mod mapping_parts;
+pub mod preset;
+pub mod raw_row;
+pub mod runs;
 pub mod sample_row;
+pub mod settlement_series;
+pub mod step_times;
 pub mod table;
 pub mod units;

@@ -2,37 +2,10 @@
 
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::units::{HorizontalSense, StatedPlace, StressSign, StressUnit, VerticalSense};
+use crate::import::raw_row::{RawRow, SampleRow, SolvedBody, is_at};
+use crate::import::step_times::declared_time;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
-
-/// Share of the height by which a place may lie outside: round-off of a written number.
-const RIM: f64 = 1e-6;
-
-/// What was solved, as far as it takes to read a result of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SolvedBody {
-    /// Height, m.
-    pub height: f64,
-    /// Length along a layer, m; a column has none.
-    pub length: Option<f64>,
-    /// Seconds at which `T_v = 1`.
-    pub seconds_per_time_factor: f64,
-}
-
-/// One row in SI.
-pub struct SampleRow {
-    pub time: f64,
-    pub initial_distance: Option<f64>,
-    pub initial_height: f64,
-    pub volume: f64,
-    pub pressure: Option<f64>,
-    pub effective_stress: Option<f64>,
-    pub displacement: Option<f64>,
-    pub horizontal_displacement: Option<f64>,
-    /// What tells it from other rows at its place and time, as a hash.
-    pub others: u64,
-}
 
 /// Places of the columns in a file's header.
 struct Places {
@@ -44,6 +17,8 @@ struct Places {
     effective_stress: Option<usize>,
     horizontal_displacement: Option<usize>,
     volume: Option<usize>,
+    /// Columns with the value that a row must have to count.
+    equals: Vec<(usize, f64)>,
     /// Columns of which nothing is declared: they tell rows apart.
     others: Vec<usize>,
 }
@@ -81,8 +56,15 @@ impl Places {
                 name => find_some(name)?,
             },
             volume: find_some(&columns.volume)?,
+            equals: Vec::new(),
             others: Vec::new(),
         };
+        if mapping.rows.corners {
+            return Err(ImportError::table(path, "a table has no cells: take `corners` out of [rows]"));
+        }
+        for (name, value) in &mapping.rows.equals {
+            places.equals.push((find(name)?, *value));
+        }
         places.others = (0..header.len()).filter(|place| !places.has(*place)).collect();
         Ok(places)
     }
@@ -102,11 +84,16 @@ impl Places {
     }
 }
 
-/// The rows of one file.
+/// The rows of one file, the so many-th of its run.
 ///
 /// # Errors
 /// What cannot be read or taken, with its line.
-pub fn rows_of(path: &Path, mapping: &Mapping, frame: SolvedBody) -> Result<Vec<SampleRow>, ImportError> {
+pub fn rows_of(
+    path: &Path,
+    place_of_file: usize,
+    mapping: &Mapping,
+    frame: SolvedBody,
+) -> Result<Vec<SampleRow>, ImportError> {
     let file =
         std::fs::File::open(path).map_err(|source| ImportError::Io { path: path.to_owned(), source })?;
     let as_byte = |mark: char| u8::try_from(mark).unwrap_or(b',');
@@ -120,17 +107,23 @@ pub fn rows_of(path: &Path, mapping: &Mapping, frame: SolvedBody) -> Result<Vec<
     let places = Places::of(&header, mapping, path)?;
     let time_of_file = match places.time {
         Some(_) => None,
-        None => Some(time_of_file(path, mapping)?),
+        None => Some(time_of_file(path, place_of_file, mapping, frame)?),
     };
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(wrong)?;
         let line = RowReader { path, header: &header, record: &record };
-        let time = match time_of_file {
-            Some(time) => time,
-            None => line.number(places.time.unwrap_or_default())?,
+        if !line.counts(&places, mapping)? {
+            continue;
+        }
+        let seconds = if let Some(seconds) = time_of_file {
+            seconds
+        } else {
+            let time = line.number(places.time.unwrap_or_default())?;
+            mapping.units.time.seconds(time, frame.seconds_per_time_factor)
         };
-        rows.push(line.row(&places, mapping, frame, time)?);
+        let refused = |reason: String| line.error(reason);
+        rows.push(line.row(&places, seconds)?.sample(mapping, frame, &refused)?);
     }
     if rows.is_empty() {
         return Err(ImportError::table(path, "there are no rows"));
@@ -138,12 +131,17 @@ pub fn rows_of(path: &Path, mapping: &Mapping, frame: SolvedBody) -> Result<Vec<
     Ok(rows)
 }
 
-/// The declared time of a file that holds one step.
-fn time_of_file(path: &Path, mapping: &Mapping) -> Result<f64, ImportError> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let time = mapping.time.files.get(&name).copied();
-    let nowhere = || format!("its time is declared nowhere; add \"{name}\" = … to [time] files");
-    time.ok_or_else(|| ImportError::table(path, nowhere()))
+/// The declared time of a file that holds one step, s.
+fn time_of_file(path: &Path, place: usize, mapping: &Mapping, frame: SolvedBody) -> Result<f64, ImportError> {
+    let declared = declared_time(path, place, mapping, frame).map_err(|why| ImportError::table(path, why))?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let nowhere = || {
+        format!(
+            "its time is declared nowhere; add \"{name}\" = … to [time] files, name a column `t`, or give \
+             --set-time-step where the name has the number of a step"
+        )
+    };
+    declared.ok_or_else(|| ImportError::table(path, nowhere()))
 }
 
 /// One line of a file.
@@ -154,9 +152,9 @@ struct RowReader<'a> {
 }
 
 impl RowReader<'_> {
-    fn refused<T>(&self, reason: String) -> Result<T, ImportError> {
+    fn error(&self, reason: String) -> ImportError {
         let line = self.record.position().map_or(0, csv::Position::line);
-        Err(ImportError::Row { path: self.path.to_owned(), line, reason })
+        ImportError::Row { path: self.path.to_owned(), line, reason }
     }
 
     fn number(&self, place: usize) -> Result<f64, ImportError> {
@@ -165,102 +163,39 @@ impl RowReader<'_> {
             Ok(number) if number.is_finite() => Ok(number),
             _ => {
                 let column = self.header.get(place).unwrap_or_default();
-                self.refused(format!("`{typed}` in the column `{column}` is no finite number"))
+                Err(self.error(format!("`{typed}` in the column `{column}` is no finite number")))
             }
         }
     }
 
-    fn not_negative(&self, number: f64, what: &str) -> Result<f64, ImportError> {
-        if number < 0.0 {
-            return self.refused(format!("{what} is negative"));
-        }
-        Ok(number)
-    }
-
-    /// The row in SI with the signs of this program.
-    fn row(
-        &self,
-        places: &Places,
-        mapping: &Mapping,
-        frame: SolvedBody,
-        time: f64,
-    ) -> Result<SampleRow, ImportError> {
-        let (units, sign) = (&mapping.units, &mapping.sign);
-        let scaled = |place: Option<usize>, factor: f64| {
-            place.map(|place| Ok(self.number(place)? * factor)).transpose()
-        };
-        let stress = units.stress.map_or(1.0, StressUnit::pascals);
-        let length = units.displacement.unwrap_or(units.length).metres();
-        let upward = |direction: Option<VerticalSense>| {
-            if direction == Some(VerticalSense::Down) { -1.0 } else { 1.0 }
-        };
-        let compressive =
-            |sign: Option<StressSign>| if sign == Some(StressSign::TensionPositive) { -1.0 } else { 1.0 };
-        let rightward =
-            |side: Option<HorizontalSense>| if side == Some(HorizontalSense::Left) { -1.0 } else { 1.0 };
-        let displacement = scaled(places.displacement, length * upward(sign.u_y))?;
-        let horizontal = scaled(places.horizontal_displacement, length * rightward(sign.u_x))?;
-        let y = (self.number(places.height)? - mapping.origin.y) * units.length.metres();
-        let height = match sign.y {
-            VerticalSense::Up => y,
-            VerticalSense::Down => frame.height - y,
-        };
-        let initial_height = match mapping.position.y {
-            StatedPlace::Reference => height,
-            StatedPlace::Current => height - displacement.unwrap_or(0.0),
-        };
-        if !(-RIM * frame.height..=(1.0 + RIM) * frame.height).contains(&initial_height) {
-            return self.refused(format!(
-                "the initial height {initial_height} m is outside the column of {} m: look at the unit and the sign of \
-                 `y`, and at whose places they are",
-                frame.height
-            ));
-        }
-        let distance = match places.distance {
-            Some(place) => {
-                let x = (self.number(place)? - mapping.origin.x) * units.length.metres();
-                Some(self.distance(x, mapping, frame, horizontal.unwrap_or(0.0))?)
-            }
-            None => None,
-        };
-        let volume = scaled(places.volume, 1.0)?.unwrap_or(1.0);
-        Ok(SampleRow {
-            time: self.not_negative(units.time.seconds(time, frame.seconds_per_time_factor), "the time")?,
-            initial_distance: distance,
-            initial_height: initial_height.clamp(0.0, frame.height),
-            volume: self.not_negative(volume, "the volume")?,
-            pressure: scaled(places.pressure, stress * compressive(sign.p))?,
-            effective_stress: scaled(places.effective_stress, -stress * compressive(sign.effective_stress))?,
-            displacement,
-            horizontal_displacement: horizontal,
+    /// The row as it stands in the file.
+    fn row(&self, places: &Places, time: f64) -> Result<RawRow, ImportError> {
+        let read = |place: Option<usize>| place.map(|place| self.number(place)).transpose();
+        Ok(RawRow {
+            time,
+            x: read(places.distance)?,
+            y: self.number(places.height)?,
+            volume: read(places.volume)?,
+            pressure: read(places.pressure)?,
+            stress: read(places.effective_stress)?,
+            displacement: read(places.displacement)?,
+            horizontal_displacement: read(places.horizontal_displacement)?,
+            moved: None,
             others: self.others(places),
         })
     }
 
-    /// Initial distance from the scene's `x = 0`, m; a column has no ends that it could miss.
-    fn distance(
-        &self,
-        x: f64,
-        mapping: &Mapping,
-        frame: SolvedBody,
-        displacement: f64,
-    ) -> Result<f64, ImportError> {
-        let length = frame.length.unwrap_or(0.0);
-        let distance = match mapping.sign.x {
-            Some(HorizontalSense::Left) => length - x,
-            _ => x,
-        };
-        let initial = match mapping.position.y {
-            StatedPlace::Reference => distance,
-            StatedPlace::Current => distance - displacement,
-        };
-        if frame.length.is_some() && !(-RIM * length..=(1.0 + RIM) * length).contains(&initial) {
-            return self.refused(format!(
-                "the initial distance {initial} m from the crest is outside the layer of {length} m: look at the unit, \
-                 the sign and the origin of `x`, and at whose places they are"
-            ));
+    /// Whether the row counts.
+    fn counts(&self, places: &Places, mapping: &Mapping) -> Result<bool, ImportError> {
+        for (place, value) in &places.equals {
+            if self.number(*place)? != *value {
+                return Ok(false);
+            }
         }
-        Ok(initial)
+        match (mapping.rows.x, places.distance) {
+            (Some(x), Some(place)) => Ok(is_at(self.number(place)?, x)),
+            _ => Ok(true),
+        }
     }
 
     /// What stands in the columns of which nothing is declared, as one number.

@@ -2,7 +2,8 @@
 
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::sample_row::{SampleRow, SolvedBody, rows_of};
+use crate::import::raw_row::{SampleRow, SolvedBody};
+use crate::import::sample_row::rows_of;
 use std::path::PathBuf;
 
 /// Rows closer than this share of their time are of one time.
@@ -29,6 +30,8 @@ pub struct SampledState {
     pub displacement: Vec<f64>,
     /// Horizontal displacement, m.
     pub horizontal_displacement: Vec<f64>,
+    /// Displacement of the surface, m, where it is known by itself: from a settlement curve.
+    pub surface_displacement: Option<f64>,
     /// Rows that stand at the place of another, and that no other column tells from it.
     pub repeated: usize,
 }
@@ -43,9 +46,17 @@ pub fn states_of(
     frame: SolvedBody,
 ) -> Result<Vec<SampledState>, ImportError> {
     let mut rows = Vec::new();
-    for path in paths {
-        rows.extend(rows_of(path, mapping, frame)?);
+    for (place, path) in paths.iter().enumerate() {
+        rows.extend(rows_of(path, place, mapping, frame)?);
     }
+    states_of_rows(rows)
+}
+
+/// States of rows, by time.
+///
+/// # Errors
+/// When a component stands in some rows only.
+pub fn states_of_rows(mut rows: Vec<SampleRow>) -> Result<Vec<SampledState>, ImportError> {
     if rows
         .iter()
         .any(|row| row.horizontal_displacement.is_some() != rows[0].horizontal_displacement.is_some())

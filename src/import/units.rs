@@ -5,10 +5,11 @@ use crate::wording::words;
 use serde::Deserialize;
 
 /// A unit of time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum TimeUnit {
     /// Second.
+    #[default]
     S,
     /// Minute.
     Min,
@@ -23,9 +24,10 @@ pub enum TimeUnit {
 }
 
 /// A unit of length.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 pub enum LengthUnit {
     /// Metre.
+    #[default]
     #[serde(rename = "m")]
     Metre,
     /// Centimetre.
@@ -51,10 +53,11 @@ pub enum StressUnit {
 }
 
 /// A vertical direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum VerticalSense {
     /// Against gravity.
+    #[default]
     Up,
     /// With gravity.
     Down,
@@ -81,10 +84,11 @@ pub enum StressSign {
 }
 
 /// A configuration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum StatedPlace {
     /// Places before the load came.
+    #[default]
     Reference,
     /// Places at the time of the row.
     Current,

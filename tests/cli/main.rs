@@ -4,6 +4,7 @@ mod bad_input;
 mod check;
 mod critical_step;
 mod first_hour;
+mod foreign;
 mod impossible_results;
 mod planted_damage;
 mod portable;

@@ -39,6 +39,8 @@ pub enum Lack {
     SamplesDiffer,
     /// A time is missing that another result has, or that was asked for.
     TimeMissing,
+    /// Pressures of exactly 0 stand inside the body.
+    ZerosInside,
 }
 
 impl Lack {
@@ -52,6 +54,7 @@ impl Lack {
             Self::RowsRepeated => "rows-repeated",
             Self::SamplesDiffer => "samples-differ",
             Self::TimeMissing => "time-missing",
+            Self::ZerosInside => "zeros-inside",
         }
     }
 }

@@ -3,6 +3,7 @@
 pub mod completeness;
 pub mod coverage;
 pub mod diagnosis;
+pub mod interior_zeros;
 pub mod score_series;
 pub mod times;
 
@@ -237,10 +238,13 @@ impl ScoredState<'_> {
         })
     }
 
-    /// Vertical displacement of the surface, of a layer under the crest of its load, where a sample lies
-    /// there.
+    /// Vertical displacement of the surface, of a layer under the crest of its load: that of a curve of its own, or
+    /// where a sample lies there.
     fn displacement_of_surface(&self) -> Option<f64> {
         let (state, parameters) = (self.state, self.parameters);
+        if state.surface_displacement.is_some() {
+            return state.surface_displacement;
+        }
         let is_at_surface = |place: &usize| {
             state.initial_height[*place] > (1.0 - RIM) * parameters.height
                 && (!self.reference.is_plane() || state.initial_distance[*place] < RIM * parameters.length)

@@ -1,9 +1,11 @@
 //! `oedometer score`: hold an external result against the references of a scene.
 
 pub mod gate;
+pub mod inputs;
 pub mod results;
 
 use crate::case::Case;
+use crate::cli::commands::score::inputs::Typed;
 use crate::cli::commands::score::results::{Held, Results};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, csv_of, json_of, print_tables};
@@ -11,29 +13,35 @@ use crate::cli::overrides;
 use crate::cli::overrides::StudyLines;
 use crate::cli::stream::{print_data, say};
 use crate::import::convention::{CONVENTION, PLANE_CONVENTION};
-use crate::import::mapping::Mapping;
+use crate::import::preset::Preset;
 use crate::judge::score::Score;
 use crate::record::ERROR_COLUMNS;
 use crate::render::tables::scores;
 use crate::scene::SceneKind;
 use crate::study::check::Study;
-use crate::study::file::StudySource;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Arguments of `score`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// CSV files of one result; with --cells one file a mesh
-    #[arg(required_unless_present = "show_mapping", value_name = "RESULT.csv")]
+    /// Files of a result: CSV, VTU, PVD, .series, legacy VTK, NPZ, HDF5, XDMF. CSV files are one result, with --cells
+    /// one argument a mesh; other files are grouped by their meshes. `*` and `?` stand for several
+    #[arg(required_unless_present = "show_mapping", value_name = "FILE")]
     results: Vec<PathBuf>,
     /// Scene that the result is of, like `terzaghi`
     #[arg(long, required_unless_present = "show_mapping", default_value = "")]
     scene: String,
+    /// Program that wrote the files: what its arrays mean; a --mapping goes over it
+    #[arg(long, value_enum)]
+    preset: Option<Preset>,
+    /// Seconds from one numbered step to the next, where file names have the number of the step
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    set_time_step: Option<f64>,
     /// What the columns mean; see --show-mapping. Where none is given, the columns are t, y, p, `u_y`
     #[arg(long, value_name = "FILE.toml")]
     mapping: Option<PathBuf>,
     /// Print the mapping that holds where none is given, as a start for one's own; with --scene that
-    /// of the scene
+    /// of the scene, with --preset that of the program
     #[arg(long)]
     show_mapping: bool,
     /// Hold the result against this reference only
@@ -67,6 +75,10 @@ pub struct Arguments {
 /// Scores and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.show_mapping {
+        if let Some(preset) = arguments.preset {
+            print_data(preset.text())?;
+            return Ok(Exit::Pass);
+        }
         let is_plane = SceneKind::named(&arguments.scene).is_some_and(SceneKind::has_plane_fields);
         print_data(if is_plane { PLANE_CONVENTION } else { CONVENTION })?;
         return Ok(Exit::Pass);
@@ -82,17 +94,27 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Err(Ended::usage("the assignments leave no column"));
     };
     let case = &planned.case;
+    let typed = Typed {
+        results: &arguments.results,
+        cells: arguments.cells.as_deref(),
+        preset: arguments.preset,
+        mapping: arguments.mapping.as_deref(),
+        time_step: arguments.set_time_step,
+    };
+    let (mapping, runs) = inputs::of(&typed, case)?;
+    let names: Vec<PathBuf> = runs.iter().filter_map(|run| run.files.first().cloned()).collect();
     let held = Held {
         case,
-        mapping: &mapping_of(arguments.mapping.as_deref(), case)?,
+        mapping: &mapping,
         references: &study.references.iter().map(|kind| kind.of_soil(&case.material)).collect::<Vec<_>>(),
         requested: &requested,
         tolerance,
+        are_cells_found: arguments.cells.is_none(),
     };
-    let results = Results::of(&arguments.results, arguments.cells.as_deref(), &held)?;
+    let results = Results::of(runs, &held)?;
     match arguments.format {
         TableFormat::Json => print_data(&json_of(&results.scores())?)?,
-        TableFormat::Csv => print_data(&errors_csv(&results.scores(), &arguments.results)?)?,
+        TableFormat::Csv => print_data(&errors_csv(&results.scores(), &names)?)?,
         _ => {
             let mut tables = Vec::new();
             for one in &results.all {
@@ -107,31 +129,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     say!("{}", groups_of(case));
     gate::judge(&results, arguments.below, arguments.strict, held.references)
-}
-
-/// The declared meaning of the columns.
-fn mapping_of(path: Option<&Path>, case: &Case) -> anyhow::Result<Mapping> {
-    let is_plane = case.scene.has_plane_fields();
-    let Some(path) = path else {
-        let along = if is_plane {
-            ", x is the initial distance from the crest of the load in m, u_x is in m and positive away from it"
-        } else {
-            ""
-        };
-        say!(
-            "note: no --mapping, so t is in s, y is the initial height over the base in m, p is in Pa and positive \
-             in compression, u_y is in m and positive upward{along}; --show-mapping prints this as a file to change"
-        );
-        return Ok(Mapping::convention(is_plane)?);
-    };
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| Ended::usage(format!("cannot read the mapping {}: {error}", path.display())))?;
-    let source = StudySource { name: path.display().to_string(), text };
-    let mapping = Mapping::read(&source)?;
-    if is_plane {
-        mapping.check_plane(&source)?;
-    }
-    Ok(mapping)
 }
 
 /// The scene with the column that the result is of, as a study with one case, and the time factors

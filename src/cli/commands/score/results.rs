@@ -6,10 +6,11 @@ use crate::cli::exit::{Ended, Exit};
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::ReferenceKind;
 use crate::import::mapping::Mapping;
-use crate::import::sample_row::SolvedBody;
-use crate::import::table::{SampledState, states_of};
+use crate::import::runs::Run;
+use crate::import::table::SampledState;
 use crate::judge::score::completeness::{Whole, missing_times, uneven_meshes};
 use crate::judge::score::diagnosis::diagnosis;
+use crate::judge::score::interior_zeros::interior_zeros;
 use crate::judge::score::score_series::{ScoredSeries, series_of};
 use crate::judge::score::times::TimeGroups;
 use crate::judge::score::times::time_factors;
@@ -29,6 +30,8 @@ pub struct Held<'a> {
     pub requested: &'a [f64],
     /// How far, relative, a time may lie from the one that it stands for.
     pub tolerance: f64,
+    /// Whether the files tell their cells, and not the user.
+    pub are_cells_found: bool,
 }
 
 /// One result.
@@ -53,20 +56,15 @@ pub struct Results {
     times: TimeGroups,
     /// Whether times were asked for.
     is_requested: bool,
+    /// Whether the files tell their cells, and not the user.
+    pub are_cells_found: bool,
 }
 
 impl Results {
-    /// Reads and scores the files: one result, or with numbers of cells one a file.
-    pub fn of(files: &[PathBuf], cells: Option<&str>, held: &Held) -> anyhow::Result<Self> {
+    /// Scores runs, each with its number of cells where that was told or found.
+    pub fn of(runs: Vec<Run>, held: &Held) -> anyhow::Result<Self> {
         let parameters = column_parameters(&held.case.column, &held.case.material);
-        let mut all = match cells {
-            None => vec![Read::of(files.to_vec(), None, held)?],
-            Some(typed) => cells_of(typed, files.len())?
-                .into_iter()
-                .zip(files)
-                .map(|(cells, file)| Read::of(vec![file.clone()], Some(cells), held))
-                .collect::<anyhow::Result<_>>()?,
-        };
+        let mut all: Vec<Read> = runs.into_iter().map(Read::of).collect();
         let mut order: Vec<usize> = (0..all.len()).collect();
         order.sort_by_key(|place| all[*place].cells);
         let times_of = |all: &[Read]| {
@@ -101,7 +99,9 @@ impl Results {
         for one in &mut all {
             one.assess(held, &parameters)?;
         }
-        let results = Self { all, order, times, is_requested: !held.requested.is_empty() };
+        let is_requested = !held.requested.is_empty();
+        let are_cells_found = held.are_cells_found;
+        let results = Self { all, order, times, is_requested, are_cells_found };
         Ok(results.with_uneven_meshes(&parameters))
     }
 
@@ -138,26 +138,29 @@ impl Results {
             .iter()
             .map(|place| Some((self.all[*place].cells?, &self.all[*place].score)))
             .collect::<Option<_>>()?;
+        let is_rising = levels.windows(2).all(|pair| pair[0].0 < pair[1].0);
+        if (levels.len() < 2 || !is_rising) && self.are_cells_found {
+            return None;
+        }
         let cells = levels.iter().map(|(cells, _)| *cells).collect();
         Some((series_of(&levels, &self.times, case.column.height), cells))
     }
 }
 
 impl Read {
-    fn of(files: Vec<PathBuf>, cells: Option<usize>, held: &Held) -> anyhow::Result<Self> {
-        let column = &held.case.column;
-        let frame = SolvedBody {
-            height: column.height,
-            length: held.case.scene.has_plane_fields().then_some(column.horizontal_extent),
-            seconds_per_time_factor: held.case.seconds_per_time_factor(),
-        };
-        let states = states_of(&files, held.mapping, frame)?;
-        Ok(Self { files, cells, states, score: Score::default(), notes: Vec::new() })
+    fn of(run: Run) -> Self {
+        let Run { files, cells, states, notes, .. } = run;
+        Self { files, cells, states, score: Score::default(), notes }
     }
 
     /// Its files.
     pub fn name(&self) -> String {
-        self.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(", ")
+        match &self.files[..] {
+            [first, _, _, .., last] => {
+                format!("{} … {} ({} files)", first.display(), last.display(), self.files.len())
+            }
+            files => files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(", "),
+        }
     }
 
     /// Holds it against the references and asks whether it is whole.
@@ -180,6 +183,7 @@ impl Read {
                 has_volumes: held.mapping.columns.volume.is_some(),
             };
             self.score.warnings.extend(whole.findings(&self.states)?);
+            self.score.warnings.extend(interior_zeros(parameters, &self.states));
             self.notes.extend(whole.unit_of_volume(&self.states));
             self.notes.extend(whole.profiles(&self.states));
             self.score.diagnosis = diagnosis(parameters, *own, &self.states, held.mapping)?;
@@ -207,20 +211,4 @@ impl Read {
             );
         }
     }
-}
-
-/// Numbers of cells, one a result.
-fn cells_of(typed: &str, results: usize) -> anyhow::Result<Vec<usize>> {
-    let cells: Vec<usize> = typed
-        .split(',')
-        .map(|entry| entry.trim().parse().ok().filter(|cells| *cells > 0))
-        .collect::<Option<_>>()
-        .ok_or_else(|| Ended::usage(format!("`--cells {typed}` is no list of numbers from 1 on")))?;
-    if cells.len() == results {
-        return Ok(cells);
-    }
-    Err(Ended::usage(format!(
-        "`--cells {typed}` has {} numbers for {results} results: give one a result",
-        cells.len()
-    )))
 }

@@ -1,0 +1,236 @@
+//! HDF5: data sets by their paths, states over times, and tables of records.
+
+use crate::import::formats::bytes::{Budget, Scalar};
+use crate::import::formats::frame::{Array, Association, Frame, Wanted};
+use hdf5_pure::{Datatype, DatatypeByteOrder, File, Group};
+use std::path::Path;
+
+/// Deepest group that is looked into.
+const DEEPEST: usize = 16;
+/// Most data sets of a file that are looked at.
+const MOST: usize = 10_000;
+
+/// An open file.
+pub struct Store {
+    file: File,
+    budget: Budget,
+}
+
+/// A data set as it lies in a file.
+struct Listed {
+    path: String,
+    shape: Vec<u64>,
+}
+
+impl Store {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// When it is damaged.
+    pub fn open(path: &Path) -> Result<Self, String> {
+        let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+        let budget = Budget::of_file(bytes.len());
+        Ok(Self { file: File::from_bytes(bytes).map_err(|error| damaged(&error))?, budget })
+    }
+
+    /// Shape of a data set, and the numbers of all its rows or of some: first, and how many.
+    ///
+    /// # Errors
+    /// When there is no such set, or it is damaged or too large.
+    pub fn numbers(&mut self, path: &str, rows: Option<(u64, u64)>) -> Result<(Vec<u64>, Vec<f64>), String> {
+        let named = |why: String| format!("the data set `{path}`: {why}");
+        let set = self.file.dataset(path).map_err(|error| named(damaged(&error)))?;
+        let shape = set.shape().map_err(|error| named(damaged(&error)))?;
+        let per_row = product(shape.get(1..).unwrap_or_default()).map_err(named)?;
+        let (first, count) = rows.unwrap_or((0, shape.first().copied().unwrap_or(1)));
+        let total = per_row.checked_mul(count).ok_or_else(|| named("it claims too much".to_owned()))?;
+        let width = set.element_size().map_err(|error| named(damaged(&error)))?.max(8);
+        self.budget.take(total.saturating_mul(width)).map_err(named)?;
+        let numbers = match rows {
+            Some(_) => set.read_f64_rows(first, count),
+            None => set.read_f64(),
+        };
+        let numbers = numbers.map_err(|error| named(damaged(&error)))?;
+        if numbers.len() as u64 != total {
+            return Err(named(format!("it holds {} numbers, and {total} are declared", numbers.len())));
+        }
+        Ok((shape, numbers))
+    }
+
+    /// Times of the states of a file, where it has a list of them.
+    ///
+    /// # Errors
+    /// When it is damaged.
+    pub fn times(&mut self) -> Result<Vec<f64>, String> {
+        let all = self.listed()?;
+        let is_list = |set: &&Listed| is_named(set, &["times", "time"]) && set.shape.len() == 1;
+        match all.iter().find(is_list) {
+            Some(set) => Ok(self.numbers(&set.path, None)?.1),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    /// The state of a place in the list of times; the only one where there is no list.
+    ///
+    /// # Errors
+    /// When it is damaged or too large.
+    pub fn frame(&mut self, place: usize, wanted: Wanted) -> Result<Frame, String> {
+        let times = self.times()?;
+        let steps = times.len() as u64;
+        let mut frame = Frame { time: times.get(place).copied(), ..Frame::default() };
+        for set in self.listed()? {
+            if is_named(&set, &["times", "time"]) || set.shape.is_empty() {
+                continue;
+            }
+            if self.records(&set, wanted, &mut frame)? {
+                continue;
+            }
+            let is_place = is_named(&set, &["geometry", "coordinates", "points", "nodes"]);
+            let name = set.path.rsplit('/').next().unwrap_or_default().to_owned();
+            let by_time = steps > 0 && set.shape[0] == steps;
+            let is_once = set.shape[0] == 1 && set.shape.len() > 1 && is_place;
+            let shape = if by_time || is_once { &set.shape[1..] } else { &set.shape[..] };
+            let tuples =
+                usize::try_from(shape.first().copied().unwrap_or(1)).map_err(|_| "it claims too much")?;
+            let components =
+                usize::try_from(product(shape.get(1..).unwrap_or_default())?).unwrap_or(1).max(1);
+            let rows = match (by_time, is_once) {
+                (true, _) => Some((place as u64, 1)),
+                (_, true) => Some((0, 1)),
+                _ => None,
+            };
+            if is_place && (2..=3).contains(&components) {
+                let numbers = self.numbers(&set.path, rows)?.1;
+                let third = |place: &[f64]| place.get(2).copied().unwrap_or(0.0);
+                frame.coordinates =
+                    numbers.chunks_exact(components).map(|at| [at[0], at[1], third(at)]).collect();
+            }
+            let mut array = Array { name, on: Association::Points, components, tuples, values: Vec::new() };
+            if wanted.has(&array.name) {
+                array.values = self.numbers(&set.path, rows)?.1;
+            }
+            frame.arrays.push(array);
+        }
+        if frame.arrays.is_empty() {
+            return Err("it has no data set of numbers".to_owned());
+        }
+        Ok(frame)
+    }
+
+    /// Takes the columns of a table of records; whether the set is one.
+    fn records(&mut self, listed: &Listed, wanted: Wanted, frame: &mut Frame) -> Result<bool, String> {
+        let set = self.file.dataset(&listed.path).map_err(|error| damaged(&error))?;
+        let Ok(Datatype::Compound { size, members }) = set.datatype() else { return Ok(false) };
+        let rows = product(&listed.shape)?;
+        let tuples = usize::try_from(rows).map_err(|_| "it claims too much")?;
+        let any = members.iter().any(|member| wanted.has(&member.name));
+        let bytes = if any {
+            self.budget.take(rows.saturating_mul(u64::from(size)))?;
+            set.read_raw().map_err(|error| damaged(&error))?
+        } else {
+            Vec::new()
+        };
+        for member in members {
+            let Some((scalar, is_little)) = scalar_of(&member.datatype) else { continue };
+            let mut array = Array {
+                name: member.name,
+                on: Association::Points,
+                components: 1,
+                tuples,
+                values: Vec::new(),
+            };
+            if wanted.has(&array.name) {
+                let from =
+                    usize::try_from(member.byte_offset).map_err(|_| "a field lies outside its record")?;
+                for record in bytes.chunks_exact(size as usize) {
+                    let field =
+                        record.get(from..from + scalar.size()).ok_or("a field lies outside its record")?;
+                    array.values.extend(scalar.decode(field, is_little));
+                }
+            }
+            frame.arrays.push(array);
+        }
+        Ok(true)
+    }
+
+    fn listed(&self) -> Result<Vec<Listed>, String> {
+        let mut all = Vec::new();
+        list(&self.file.root(), "", 0, &mut all)?;
+        Ok(all)
+    }
+}
+
+fn list(group: &Group, path: &str, depth: usize, all: &mut Vec<Listed>) -> Result<(), String> {
+    if depth > DEEPEST || all.len() > MOST {
+        return Err(format!("it has groups deeper than {DEEPEST}, or more than {MOST} data sets"));
+    }
+    for name in group.datasets().map_err(|error| damaged(&error))? {
+        let set = group.dataset(&name).map_err(|error| damaged(&error))?;
+        let shape = set.shape().map_err(|error| damaged(&error))?;
+        all.push(Listed { path: format!("{path}{name}"), shape });
+    }
+    for name in group.groups().map_err(|error| damaged(&error))? {
+        let below = group.group(&name).map_err(|error| damaged(&error))?;
+        list(&below, &format!("{path}{name}/"), depth + 1, all)?;
+    }
+    Ok(())
+}
+
+fn is_named(set: &Listed, names: &[&str]) -> bool {
+    let name = set.path.rsplit('/').next().unwrap_or_default().to_ascii_lowercase();
+    names.contains(&name.as_str())
+}
+
+fn product(shape: &[u64]) -> Result<u64, String> {
+    let all = shape.iter().try_fold(1_u64, |all, one| all.checked_mul(*one));
+    all.ok_or_else(|| "its shape has more numbers than any file".to_owned())
+}
+
+fn damaged(error: &hdf5_pure::Error) -> String {
+    format!("it is no sound HDF5: {error}")
+}
+
+/// Kind of the numbers of a field, and whether the lowest byte stands first.
+fn scalar_of(kind: &Datatype) -> Option<(Scalar, bool)> {
+    let (size, order, is_float, is_signed) = match kind {
+        Datatype::FixedPoint { size, byte_order, layout } => (*size, byte_order, false, layout.signed),
+        Datatype::FloatingPoint { size, byte_order, .. } => (*size, byte_order, true, true),
+        _ => return None,
+    };
+    let scalar = match (size, is_float, is_signed) {
+        (8, true, _) => Scalar::F64,
+        (4, true, _) => Scalar::F32,
+        (8, false, true) => Scalar::I64,
+        (8, false, false) => Scalar::U64,
+        (4, false, true) => Scalar::I32,
+        (4, false, false) => Scalar::U32,
+        (2, false, true) => Scalar::I16,
+        (2, false, false) => Scalar::U16,
+        (1, false, true) => Scalar::I8,
+        (1, false, false) => Scalar::U8,
+        _ => return None,
+    };
+    Some((scalar, *order == DatatypeByteOrder::LittleEndian))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hdf5_pure::FileBuilder;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn a_table_of_records_has_its_fields_as_arrays() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = folder.path().join("particles.h5");
+        let mut builder = FileBuilder::new();
+        let records: Vec<(i8, u64, f32)> = vec![(-1, 5, 0.5), (2, 6, 1.5)];
+        builder.create_dataset("table").with_compound_values(&records).expect("records");
+        builder.write(&path).expect("a file");
+        let mut store = Store::open(&path).expect("a file");
+        let names = BTreeSet::from(["0", "1", "2"].map(str::to_owned));
+        let frame = store.frame(0, Wanted(&names)).expect("a state");
+        let values: Vec<&[f64]> = frame.arrays.iter().map(|array| &array.values[..]).collect();
+        assert_eq!(values, [[-1.0, 2.0], [5.0, 6.0], [0.5, 1.5]]);
+    }
+}

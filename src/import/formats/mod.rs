@@ -1,0 +1,21 @@
+//! Files of other programs: recognised by their content, each format read by its own file into one form.
+
+pub mod bytes;
+pub mod collections;
+pub mod frame;
+#[cfg(feature = "hdf5")]
+pub mod hdf5;
+#[cfg(not(feature = "hdf5"))]
+#[path = "without_hdf5.rs"]
+pub mod hdf5;
+pub mod legacy_vtk;
+pub mod numpy;
+pub mod steps;
+pub mod vtk_data;
+pub mod vtu;
+pub mod xdmf;
+pub mod xml;
+
+#[cfg(test)]
+#[path = "../../../tests/unit/import_formats.rs"]
+mod tests;

@@ -1,0 +1,256 @@
+//! From a file to its states: what kind it is, which states it holds or names, and one of them read.
+
+use crate::import::formats::collections::{Member, of_blocks, of_pvd, of_series};
+use crate::import::formats::frame::{Frame, Wanted};
+use crate::import::formats::hdf5::Store;
+use crate::import::formats::{legacy_vtk, numpy, vtu, xdmf};
+use crate::import::import_error::ImportError;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// How far files may name files.
+const DEEPEST: usize = 8;
+/// Bytes by which a file is recognised.
+const LOOK: u64 = 4096;
+/// Most files that a collection may name.
+const MOST: usize = 100_000;
+
+/// Kind of a file, by its content.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Rows of a text.
+    Table,
+    /// VTK's XML of points and cells.
+    Vtu,
+    /// VTK's legacy format.
+    LegacyVtk,
+    /// PVD: files by times.
+    Collection,
+    /// Files by times, in JSON.
+    Series,
+    /// `.vtm`: files of one time.
+    Blocks,
+    /// A zip of arrays of `NumPy`.
+    Npz,
+    /// An array of `NumPy`.
+    Npy,
+    /// HDF5.
+    Hdf5,
+    /// XDMF.
+    Xdmf,
+}
+
+impl Kind {
+    /// The kind of a file.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn of(path: &Path) -> Result<Self, ImportError> {
+        let io = |source| ImportError::Io { path: path.to_owned(), source };
+        let mut head = Vec::new();
+        std::fs::File::open(path).map_err(io)?.take(LOOK).read_to_end(&mut head).map_err(io)?;
+        Ok(Self::of_head(&head))
+    }
+
+    /// The kind of what begins so.
+    pub fn of_head(head: &[u8]) -> Self {
+        if head.starts_with(b"\x89HDF\r\n\x1a\n") {
+            return Self::Hdf5;
+        }
+        if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
+            return Self::Npz;
+        }
+        if head.starts_with(b"\x93NUMPY") {
+            return Self::Npy;
+        }
+        if head.starts_with(b"# vtk DataFile") {
+            return Self::LegacyVtk;
+        }
+        let text = String::from_utf8_lossy(head);
+        let text = text.trim_start_matches('\u{feff}').trim_start();
+        if text.starts_with('{') && text.contains("\"files\"") {
+            return Self::Series;
+        }
+        if !text.starts_with('<') {
+            return Self::Table;
+        }
+        if text.contains("<Xdmf") {
+            return Self::Xdmf;
+        }
+        match text.split_once("<VTKFile") {
+            Some((_, rest)) => {
+                let tag = rest.split('>').next().unwrap_or_default();
+                if tag.contains("vtkMultiBlockDataSet") {
+                    Self::Blocks
+                } else if tag.contains("\"Collection\"") {
+                    Self::Collection
+                } else {
+                    Self::Vtu
+                }
+            }
+            None => Self::Table,
+        }
+    }
+}
+
+/// One state of a result: a file, or a place in one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// The file.
+    pub file: PathBuf,
+    /// Its kind.
+    pub kind: Kind,
+    /// Its place among the states of the file.
+    pub place: usize,
+    /// Its time, where something tells it before the state is read.
+    pub time: Option<f64>,
+    /// The file that the user named: a collection, or the file itself.
+    pub named: PathBuf,
+}
+
+/// All states of a file, with what is to be said of them.
+///
+/// # Errors
+/// What cannot be read.
+pub fn steps_of(path: &Path, notes: &mut Vec<String>) -> Result<Vec<Step>, ImportError> {
+    let mut steps = Vec::new();
+    list(path, None, &mut vec![path.to_owned()], &mut steps, notes)?;
+    for step in &mut steps {
+        path.clone_into(&mut step.named);
+    }
+    Ok(steps)
+}
+
+fn list(
+    path: &Path,
+    time: Option<f64>,
+    above: &mut Vec<PathBuf>,
+    steps: &mut Vec<Step>,
+    notes: &mut Vec<String>,
+) -> Result<(), ImportError> {
+    let refused = |why: String| ImportError::table(path, why);
+    let kind = Kind::of(path)?;
+    let step = |place: usize, time: Option<f64>| Step {
+        file: path.to_owned(),
+        kind,
+        place,
+        time,
+        named: PathBuf::new(),
+    };
+    if steps.len() > MOST {
+        return Err(refused(format!("it names more than {MOST} files")));
+    }
+    let members = match kind {
+        Kind::Collection => of_pvd(path, &read(path)?).map_err(refused)?,
+        Kind::Series => of_series(path, &read(path)?).map_err(refused)?,
+        Kind::Hdf5 => {
+            let times = Store::open(path).and_then(|mut store| store.times()).map_err(refused)?;
+            let of_place = |(place, own): (usize, &f64)| step(place, Some(*own));
+            steps.extend(times.iter().enumerate().map(of_place));
+            steps.extend(times.is_empty().then(|| step(0, time)));
+            return Ok(());
+        }
+        Kind::Xdmf => {
+            let times = xdmf::times(&read(path)?).map_err(refused)?;
+            steps.extend(times.iter().enumerate().map(|(place, own)| step(place, own.or(time))));
+            return Ok(());
+        }
+        _ => {
+            steps.push(step(0, time));
+            return Ok(());
+        }
+    };
+    let mut absent = 0;
+    for Member { file, time: own } in &members {
+        if above.contains(file) || above.len() > DEEPEST {
+            return Err(refused(format!("it names {}, which names it again", file.display())));
+        }
+        if !file.is_file() {
+            absent += 1;
+            continue;
+        }
+        above.push(file.clone());
+        list(file, own.or(time), above, steps, notes)?;
+        above.pop();
+    }
+    if absent == members.len() {
+        return Err(refused(format!("none of the {absent} files that it names is there")));
+    }
+    if absent > 0 {
+        notes.push(format!(
+            "{}: {absent} of the {} files that it names are not there, and left out",
+            path.display(),
+            members.len()
+        ));
+    }
+    Ok(())
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
+    std::fs::read(path).map_err(|source| ImportError::Io { path: path.to_owned(), source })
+}
+
+/// Reads a state.
+///
+/// # Errors
+/// What is damaged, cut or claims too much.
+pub fn frame_of(step: &Step, wanted: Wanted) -> Result<Frame, ImportError> {
+    let path = step.file.as_path();
+    let refused = |why: String| ImportError::table(path, why);
+    match step.kind {
+        Kind::Vtu => vtu::read(&read(path)?, wanted).map_err(refused),
+        Kind::LegacyVtk => legacy_vtk::read(&read(path)?, wanted).map_err(refused),
+        Kind::Npz => numpy::read_npz(&read(path)?, wanted).map_err(refused),
+        Kind::Npy => {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            numpy::read_npy(&read(path)?, &name, wanted).map_err(refused)
+        }
+        Kind::Hdf5 => {
+            Store::open(path).and_then(|mut store| store.frame(step.place, wanted)).map_err(refused)
+        }
+        Kind::Xdmf => xdmf::read(path, &read(path)?, step.place, wanted).map_err(refused),
+        Kind::Blocks => blocks(path, wanted, 0),
+        Kind::Table | Kind::Collection | Kind::Series => Err(refused("it holds no arrays".to_owned())),
+    }
+}
+
+/// The blocks of the highest dimension, joined: loads on edges are blocks too, and repeat points.
+fn blocks(path: &Path, wanted: Wanted, depth: usize) -> Result<Frame, ImportError> {
+    let refused = |why: String| ImportError::table(path, why);
+    if depth > DEEPEST {
+        return Err(refused("its blocks name each other".to_owned()));
+    }
+    let mut parts = Vec::new();
+    for file in of_blocks(path, &read(path)?).map_err(refused)? {
+        let kind = Kind::of(&file)?;
+        let frame = match kind {
+            Kind::Blocks => blocks(&file, wanted, depth + 1)?,
+            Kind::Collection | Kind::Series | Kind::Table => {
+                return Err(refused(format!("the block {} holds no arrays", file.display())));
+            }
+            _ => {
+                let step = Step { file: file.clone(), kind, place: 0, time: None, named: PathBuf::new() };
+                frame_of(&step, wanted)?
+            }
+        };
+        parts.push((file, frame));
+    }
+    let dimension = |frame: &Frame| frame.cells.as_ref().map_or(0, |cells| cells.dimension() + 1);
+    let highest = parts.iter().map(|(_, frame)| dimension(frame)).max().unwrap_or(0);
+    let mut whole: Option<Frame> = None;
+    let mut notes = Vec::new();
+    for (file, frame) in parts {
+        if dimension(&frame) < highest {
+            let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            notes.push(format!("left out the block {name}: its cells are edges or faces of others"));
+            continue;
+        }
+        match &mut whole {
+            Some(whole) => whole.append(frame).map_err(refused)?,
+            None => whole = Some(frame),
+        }
+    }
+    let mut whole = whole.ok_or_else(|| refused("it names no block".to_owned()))?;
+    whole.notes.extend(notes);
+    Ok(whole)
+}

@@ -1,0 +1,177 @@
+//! The payload of one `DataArray` of VTK's XML files: text, base64, appended, packed or not.
+
+use crate::import::formats::bytes::{Budget, Scalar, base64, counts, numbers_of_text, unzlib};
+
+/// How a file keeps its data.
+#[derive(Clone, Debug)]
+pub struct Payloads<'a> {
+    /// Whether the lowest byte stands first.
+    pub is_little: bool,
+    /// Kind of the numbers in the headers.
+    pub header: Scalar,
+    /// Whether blocks are packed by zlib.
+    pub is_packed: bool,
+    /// What stands behind the underscore of `AppendedData`, and whether it is raw.
+    pub appended: Option<(&'a [u8], bool)>,
+}
+
+/// Where the numbers of an array stand.
+#[derive(Clone, Copy, Debug)]
+pub enum Place<'a> {
+    /// In a text, as written numbers.
+    Ascii(&'a [u8]),
+    /// In a text, as base64.
+    Inline(&'a [u8]),
+    /// So many bytes into the appended data.
+    Appended(usize),
+}
+
+impl Payloads<'_> {
+    /// The numbers at a place; `expected` of them, where that is known.
+    ///
+    /// # Errors
+    /// When they are damaged, cut, or not as many as expected.
+    pub fn numbers(
+        &self,
+        place: Place,
+        scalar: Scalar,
+        expected: Option<usize>,
+        budget: &mut Budget,
+    ) -> Result<Vec<f64>, String> {
+        let numbers = match place {
+            Place::Ascii(text) => {
+                budget.take(4 * text.len() as u64)?;
+                numbers_of_text(text, expected.unwrap_or(usize::MAX))?
+            }
+            Place::Inline(text) => {
+                let bytes = self.of_base64(text.trim_ascii(), budget)?;
+                self.decoded(&bytes, scalar, budget)?
+            }
+            Place::Appended(offset) => {
+                let (data, is_raw) = self.appended.ok_or("its data are appended, and nothing is")?;
+                let data = data.get(offset..).ok_or_else(|| {
+                    format!(
+                        "an array begins at the byte {offset} of {} appended ones: the file is cut",
+                        data.len()
+                    )
+                })?;
+                if is_raw {
+                    self.of_raw(data, scalar, budget)?
+                } else {
+                    let bytes = self.of_base64(data, budget)?;
+                    self.decoded(&bytes, scalar, budget)?
+                }
+            }
+        };
+        match expected {
+            Some(expected) if expected != numbers.len() => {
+                Err(format!("it holds {} numbers, and {expected} are declared", numbers.len()))
+            }
+            _ => Ok(numbers),
+        }
+    }
+
+    fn decoded(&self, bytes: &[u8], scalar: Scalar, budget: &mut Budget) -> Result<Vec<f64>, String> {
+        if !bytes.len().is_multiple_of(scalar.size()) {
+            return Err(format!("its {} bytes are no whole numbers of {} bytes", bytes.len(), scalar.size()));
+        }
+        budget.take(8 * (bytes.len() / scalar.size()) as u64)?;
+        Ok(scalar.decode(bytes, self.is_little))
+    }
+
+    fn sizes(&self, bytes: &[u8]) -> Result<Vec<usize>, String> {
+        counts(&self.header.decode(bytes, self.is_little))
+    }
+
+    /// Numbers of raw bytes that begin with a header.
+    fn of_raw(&self, data: &[u8], scalar: Scalar, budget: &mut Budget) -> Result<Vec<f64>, String> {
+        let width = self.header.size();
+        let part = |from: usize, length: usize| {
+            from.checked_add(length).and_then(|end| data.get(from..end)).ok_or_else(|| {
+                format!(
+                    "{length} bytes are declared and {} are there: the file is cut",
+                    data.len().saturating_sub(from)
+                )
+            })
+        };
+        let first = self.sizes(part(0, width)?)?[0];
+        if !self.is_packed {
+            return self.decoded(part(width, first)?, scalar, budget);
+        }
+        let head = packed_head(first, width, data.len())?;
+        let header = self.sizes(part(0, head)?)?;
+        let packed = part(head, blocks_of(&header)?)?;
+        let bytes = unpacked(&header, packed, budget)?;
+        self.decoded(&bytes, scalar, budget)
+    }
+
+    /// Bytes of base64 that begins with a header, unpacked.
+    fn of_base64(&self, text: &[u8], budget: &mut Budget) -> Result<Vec<u8>, String> {
+        let spaced = text.iter().take(1 << 16).any(u8::is_ascii_whitespace) && self.appended.is_none();
+        let joined: Vec<u8>;
+        let text = if spaced {
+            joined = text.iter().copied().filter(|symbol| !symbol.is_ascii_whitespace()).collect();
+            &joined
+        } else {
+            text
+        };
+        let width = self.header.size();
+        let part = |from: usize, bytes: usize| {
+            let symbols = bytes.div_ceil(3).checked_mul(4).and_then(|symbols| symbols.checked_add(from));
+            let text = symbols.and_then(|end| text.get(from..end)).ok_or_else(|| {
+                let there = text.len().saturating_sub(from) / 4 * 3;
+                format!("{bytes} bytes are declared and {there} are there: the file is cut")
+            })?;
+            let found = base64(text)?;
+            match found.len().checked_sub(bytes) {
+                Some(_) => Ok(found),
+                None => Err(format!("{bytes} bytes are declared and {} are there", found.len())),
+            }
+        };
+        let first = self.sizes(&part(0, width)?[..width])?[0];
+        let symbols = width.div_ceil(3) * 4;
+        if !self.is_packed {
+            // Some writers encode the header by itself, which then ends with padding.
+            let is_alone = text[..symbols].ends_with(b"=");
+            let (from, skip) = if is_alone { (symbols, 0) } else { (0, width) };
+            let length = first.checked_add(skip).ok_or("it declares more bytes than there can be")?;
+            let mut bytes = part(from, length)?;
+            bytes.truncate(length);
+            bytes.drain(..skip);
+            return Ok(bytes);
+        }
+        let head = packed_head(first, width, text.len())?;
+        let header = self.sizes(&part(0, head)?[..head])?;
+        let packed = part(head.div_ceil(3) * 4, blocks_of(&header)?)?;
+        unpacked(&header, &packed, budget)
+    }
+}
+
+/// Bytes of the header of packed data: number of blocks, size of one, size of the last, packed sizes.
+fn packed_head(blocks: usize, width: usize, there: usize) -> Result<usize, String> {
+    let head = blocks.checked_add(3).and_then(|entries| entries.checked_mul(width));
+    head.filter(|head| *head <= there.max(3 * width)).ok_or_else(|| {
+        format!("{blocks} packed blocks are declared in {there} bytes: the file is damaged or cut")
+    })
+}
+
+/// Bytes of all packed blocks together.
+fn blocks_of(header: &[usize]) -> Result<usize, String> {
+    let sum = header[3..].iter().try_fold(0_usize, |sum, size| sum.checked_add(*size));
+    sum.ok_or_else(|| "the packed blocks are larger than any file".to_owned())
+}
+
+/// The blocks of a header, unpacked one after the other.
+fn unpacked(header: &[usize], packed: &[u8], budget: &mut Budget) -> Result<Vec<u8>, String> {
+    let (block, last, sizes) = (header[1], header[2], &header[3..]);
+    let mut bytes = Vec::new();
+    let mut from = 0;
+    for (place, size) in sizes.iter().enumerate() {
+        let is_last = place + 1 == sizes.len();
+        let length = if is_last && last > 0 { last } else { block };
+        budget.take(length as u64)?;
+        unzlib(&packed[from..from + size], length, &mut bytes)?;
+        from += size;
+    }
+    Ok(bytes)
+}

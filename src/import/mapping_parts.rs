@@ -1,0 +1,108 @@
+//! Parts of a mapping: which rows count, where times stand, and what is derived from columns.
+
+use crate::import::units::VerticalSense;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// Which rows count.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RowFilter {
+    /// Only points at corners of cells: programs write 0, or nothing of use, at the middle of sides.
+    pub corners: bool,
+    /// Only rows at this place along `x`, in the file's unit: one column of nodes of several.
+    pub x: Option<f64>,
+    /// Only rows where a column has this value, like a material.
+    pub equals: BTreeMap<String, f64>,
+}
+
+/// Where the time stands, where it is no column.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Time {
+    /// Time of each file that holds one step, by its file name.
+    pub files: BTreeMap<String, f64>,
+    /// Times of the files, in the order in which they are given.
+    pub list: Vec<f64>,
+    /// Seconds from one numbered step to the next, where file names have the number of the step.
+    pub step: Option<f64>,
+    /// The file name with `{step}` where the number of the step stands and `*` for what differs; the last number of
+    /// the name where it is left out.
+    pub pattern: Option<String>,
+}
+
+/// Whence the displacement.
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DisplacementSource {
+    /// What is subtracted from the present place.
+    pub from: ZeroState,
+    /// Column that names each point; the order of the rows where it is left out.
+    pub id: Option<String>,
+}
+
+/// Places that displacements count from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ZeroState {
+    /// Those of the first state.
+    FirstFrame,
+}
+
+/// Water at rest.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Hydrostatic {
+    /// Its unit weight, Pa per m.
+    pub unit_weight: f64,
+    /// Height of its table over the base, m; the surface where it is left out.
+    pub surface: Option<f64>,
+}
+
+/// What a column of stress holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct StressMeaning {
+    /// The effective stress, or the total one.
+    pub is: StressKind,
+}
+
+/// A stress of a soil.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum StressKind {
+    /// Of the skeleton.
+    #[default]
+    Effective,
+    /// Of skeleton and water together.
+    Total,
+}
+
+/// A settlement curve.
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SettlementSeries {
+    /// CSV file, beside the mapping's results or from the folder in which the program is called.
+    pub file: String,
+    /// Column of the time, in the unit of [units]; `t` where it is left out.
+    #[serde(default = "time_column")]
+    pub t: String,
+    /// Column of the settlement, in the unit of displacements; `s` where it is left out.
+    #[serde(default = "settlement_column")]
+    pub s: String,
+    /// `down` where a settlement is positive, `up` where the displacement of the surface is given.
+    #[serde(default = "downward")]
+    pub sign: VerticalSense,
+}
+
+fn time_column() -> String {
+    "t".to_owned()
+}
+
+fn settlement_column() -> String {
+    "s".to_owned()
+}
+
+fn downward() -> VerticalSense {
+    VerticalSense::Down
+}

@@ -1,0 +1,68 @@
+//! A settlement curve in a file of its own.
+
+use crate::import::import_error::ImportError;
+use crate::import::mapping::Mapping;
+use crate::import::mapping_parts::SettlementSeries;
+use crate::import::raw_row::SolvedBody;
+use crate::import::table::SampledState;
+use crate::import::units::VerticalSense;
+use std::path::Path;
+
+/// How far, relative, a time of the curve may lie from that of a state.
+const NEAR: f64 = 1e-3;
+
+/// Gives each state the displacement of the surface at the curve's nearest time; how many got one.
+///
+/// # Errors
+/// What cannot be read or is no number.
+pub fn attach(
+    series: &SettlementSeries,
+    folder: &Path,
+    states: &mut [SampledState],
+    mapping: &Mapping,
+    frame: SolvedBody,
+) -> Result<usize, ImportError> {
+    let beside = folder.join(&series.file);
+    let path = if beside.is_file() { beside } else { Path::new(&series.file).to_owned() };
+    let file = std::fs::File::open(&path).map_err(|source| ImportError::Io { path: path.clone(), source })?;
+    let as_byte = |mark: char| u8::try_from(mark).unwrap_or(b',');
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(as_byte(mapping.csv.delimiter))
+        .comment(mapping.csv.comment.map(as_byte))
+        .trim(csv::Trim::All)
+        .from_reader(file);
+    let wrong = |source: csv::Error| ImportError::Csv { path: path.clone(), source };
+    let header = reader.headers().map_err(wrong)?.clone();
+    let place = |name: &str| {
+        let found = header.iter().position(|column| column == name);
+        found.ok_or_else(|| {
+            ImportError::table(&path, format!("there is no column `{name}` of the settlement curve"))
+        })
+    };
+    let (time, settlement) = (place(&series.t)?, place(&series.s)?);
+    let unit = mapping.units.displacement.unwrap_or(mapping.units.length).metres();
+    let upward = if series.sign == VerticalSense::Down { -unit } else { unit };
+    let mut curve = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(wrong)?;
+        let number = |place: usize| {
+            let typed = record.get(place).unwrap_or_default();
+            typed.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| ImportError::Row {
+                path: path.clone(),
+                line: record.position().map_or(0, csv::Position::line),
+                reason: format!("`{typed}` is no finite number"),
+            })
+        };
+        let seconds = mapping.units.time.seconds(number(time)?, frame.seconds_per_time_factor);
+        curve.push((seconds, number(settlement)? * upward));
+    }
+    let mut matched = 0;
+    for state in states {
+        let off = |point: &&(f64, f64)| (point.0 - state.time).abs();
+        let nearest = curve.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+        state.surface_displacement =
+            nearest.filter(|point| off(point) <= NEAR * state.time).map(|(_, displacement)| *displacement);
+        matched += usize::from(state.surface_displacement.is_some());
+    }
+    Ok(matched)
+}
