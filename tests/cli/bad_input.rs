@@ -366,6 +366,9 @@ fn impossible_arguments_of_exact_are_refused() {
         (&["terzaghi", "--zeta", "deep"], ["`deep` in", "is no number"]),
         (&["terzaghi", "--time-factor", "-1"], ["time factor must be finite and not negative", "got -1"]),
         (&["terzaghi", "--time-factor", "inf"], ["time factor must be finite and not negative", "got inf"]),
+        (&["mandel", "--x", "1.5"], ["distance x/a must lie between 0", "got 1.5"]),
+        (&["mandel", "--zeta", "0.5"], ["depend on the distance from the middle", "--x"]),
+        (&["terzaghi", "--x", "0.5"], ["depends on the depth alone", "`mandel`"]),
         (&["terzaghi", "--degree", "1.5"], ["degree of consolidation", "below 1"]),
         (&["terzaghi", "--degree", "0.5", "--time-factor", "1"], ["--degree", "cannot be used with"]),
     ] {
