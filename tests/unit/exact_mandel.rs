@@ -6,7 +6,7 @@ use crate::exact::cosine_layer::talbot;
 use core::f64::consts::PI;
 use nalgebra::Complex;
 
-/// The two materials of tests/reference/make_mandel.py.
+/// The two materials of `tests/reference/make_mandel.py`.
 fn slab(case: &str) -> Mandel {
     let seed = ColumnParameters::default();
     let water_bulk_modulus = if case == "seed" { seed.water_bulk_modulus } else { 6e5 };
@@ -24,7 +24,7 @@ fn extremes() -> Vec<Mandel> {
         for water_bulk_modulus in [1e3, 6e5, 2.2e9, 1e13] {
             for porosity in [0.01, 0.3, 0.99] {
                 let seed = ColumnParameters::default();
-                let parameters = ColumnParameters { poissons_ratio, water_bulk_modulus, porosity, ..seed };
+                let parameters = ColumnParameters { poissons_ratio, porosity, water_bulk_modulus, ..seed };
                 slabs.push(Mandel::new(&parameters).expect("a possible slab"));
             }
         }

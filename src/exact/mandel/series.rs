@@ -7,6 +7,8 @@ use crate::exact::mandel::ratios::{Groups, MandelRatios, Sums};
 
 /// What the terms left out may add up to.
 const NEGLIGIBLE: f64 = 1e-18;
+/// More terms than the shortest time asks for: a dozen are enough from `T = 0.02` on, two thousand at 1e-6.
+const MOST_TERMS: usize = 10_000;
 /// Newton's iterations for a root: it gains twice its digits from each, and begins with one.
 const MOST_ITERATIONS: usize = 60;
 
@@ -31,7 +33,7 @@ pub(super) fn gap_below_pole(kappa: f64, index: usize) -> f64 {
 
 /// Terms after which the rest is negligible.
 pub(super) fn terms(time: f64) -> usize {
-    (1..).find(|terms| bound(time, *terms) <= NEGLIGIBLE).unwrap_or(1)
+    (1..MOST_TERMS).find(|terms| bound(time, *terms) <= NEGLIGIBLE).unwrap_or(MOST_TERMS)
 }
 
 /// Bound on what any of the ratios loses without the terms from `terms` on.
