@@ -145,6 +145,7 @@ fn impossible_materials_are_refused_with_what_is_possible() {
         ("water_bulk_modulus = 2.2", ["2.2 Pa is no liquid's", "give pascals"]),
         ("law = \"linaer\"", ["no law is called `linaer`", "did you mean `linear`?"]),
         ("continuity = \"exact\"", ["no continuity is called `exact`", "`conservative`"]),
+        ("conductivity_mean = \"chord\"", ["at small strain the conductivity is the same", "large strain"]),
     ] {
         let told = refused_with("porosity = 0.3", line);
         assert_says(&told, &parts);
