@@ -38,6 +38,8 @@
 //! | 13 | Xie & Leo's column | `src/exact/xie_leo.rs:fields` |
 //! | 14 | modes of the dynamic column | `src/exact/dynamic_column/modes.rs:amplitude` |
 //! | 15 | large strain in general | `src/exact/large_strain/diffusion.rs:coefficients` |
+//! | 16 | Mandel's slab | `src/exact/mandel/series.rs:sum`, `src/exact/mandel/early.rs:ratios` |
+//! | 17 | chord mean of the conductivity | `src/mpm/operators/chord_mean.rs:take_chord_drag`, `src/soil/conductivity_mean.rs:flow_potential` |
 //!
 //! # The step
 //!

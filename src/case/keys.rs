@@ -10,6 +10,7 @@ use crate::mpm::explicit::scheme::Scheme;
 use crate::mpm::method::Method;
 use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::soil::conductivity_mean::ConductivityMean;
 use crate::soil::continuity::Continuity;
 use crate::soil::law::Law;
 use std::fmt;
@@ -109,7 +110,7 @@ macro_rules! choices {
 }
 pub(crate) use choices;
 
-choices!(Base, Continuity, Drag, Formulation, IntegratorKind, Law, Scheme);
+choices!(Base, ConductivityMean, Continuity, Drag, Formulation, IntegratorKind, Law, Scheme);
 
 /// A type of the fields of a case: its value as an input, and back.
 trait Field: Sized {
@@ -230,6 +231,8 @@ keys! {
     gravity in &["sweep", "material"], POSITIVE, "m/s²", material.gravity; "Gravity in the drag"
     continuity in &["sweep", "material"], word::<Continuity>(), "", material.continuity;
         "Form of the water's continuity"
+    conductivity_mean in &["sweep", "material"], word::<ConductivityMean>(), "", material.conductivity_mean;
+        "Mean of the hydraulic conductivity at a node"
     offset in &["sweep", "points"], SHIFT, "", column.points.offset;
         "Shift of all points upward, in spacings of the points"
     jitter in &["sweep", "points"], SHIFT, "", column.points.jitter, then |case| {

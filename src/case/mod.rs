@@ -16,6 +16,7 @@ pub use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::SceneKind;
 use crate::scene::arrangement::Arrangement;
 use crate::scene::column::Column;
+use crate::soil::conductivity_mean::ConductivityMean;
 use crate::soil::continuity::Continuity;
 use crate::soil::material::Material;
 use crate::wording::words;
@@ -171,6 +172,7 @@ impl Case {
             (self.column.dimensions == 2 && !self.scene.needs_two_dimensions(), "two dimensions".to_owned()),
             (self.material.law != self.scene.default_law(), format!("{} law", self.material.law.name())),
             (self.material.continuity != Continuity::Conservative, "porosity gradient dropped".to_owned()),
+            (self.material.conductivity_mean == ConductivityMean::Chord, "chord mean".to_owned()),
         ];
         let mut parts: Vec<String> =
             named.into_iter().filter(|(is_special, _)| *is_special).map(|(_, name)| name).collect();
@@ -297,7 +299,7 @@ mod tests {
     #[test]
     fn the_hash_follows_every_input() {
         let mut hashes = vec![seed().hash()];
-        let changes: [fn(&mut Case); 37] = [
+        let changes: [fn(&mut Case); 38] = [
             |case| case.task = Task::Stability,
             |case| case.scene = SceneKind::XieLeo,
             |case| case.column.height = 2.0,
@@ -319,6 +321,7 @@ mod tests {
             |case| case.material.hydraulic_conductivity = 2.0,
             |case| case.material.gravity = 2.0,
             |case| case.material.continuity = Continuity::ConstantPorosityGradient,
+            |case| case.material.conductivity_mean = ConductivityMean::Chord,
             |case| case.method = Method::named("GIMP").expect("a method"),
             |case| case.method = Method::named("GIMP-SRI").expect("a method"),
             |case| case.integrator = IntegratorKind::Implicit,

@@ -25,6 +25,9 @@ pub enum ExactError {
     /// Relative depth outside [0, 1].
     #[error("the relative depth must lie between 0 (drained surface) and 1 (base), got {0}")]
     Depth(f64),
+    /// Relative distance outside [0, 1].
+    #[error("the distance x/a must lie between 0 (middle) and 1 (drained side), got {0}")]
+    Distance(f64),
     /// Degree of consolidation outside [0, 1).
     #[error("the degree of consolidation must be at least 0 and below 1, got {0}")]
     Degree(f64),

@@ -23,6 +23,7 @@ pub mod dynamic_column;
 pub(crate) mod exact_error;
 pub(crate) mod field_values;
 pub mod large_strain;
+pub mod mandel;
 pub(crate) mod parameters;
 pub(crate) mod quadrature;
 pub mod reference;

@@ -1,6 +1,7 @@
 //! Saturated soil: its parameters and what follows from them.
 
 use crate::elementary;
+use crate::soil::conductivity_mean::ConductivityMean;
 use crate::soil::continuity::Continuity;
 use crate::soil::law::{Law, Stiffness};
 use serde::{Deserialize, Serialize};
@@ -28,6 +29,9 @@ pub struct Material {
     pub gravity: f64,
     /// Continuity equation.
     pub continuity: Continuity,
+    /// Mean of the conductivity at a node. Left out of the identity of a case where it is the paper's.
+    #[serde(default, skip_serializing_if = "ConductivityMean::is_paper")]
+    pub conductivity_mean: ConductivityMean,
 }
 
 impl Default for Material {
@@ -45,6 +49,7 @@ impl Default for Material {
             hydraulic_conductivity: 1e-4,
             gravity: 9.81,
             continuity: Continuity::Conservative,
+            conductivity_mean: ConductivityMean::Points,
         }
     }
 }

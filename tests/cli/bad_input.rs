@@ -145,6 +145,7 @@ fn impossible_materials_are_refused_with_what_is_possible() {
         ("water_bulk_modulus = 2.2", ["2.2 Pa is no liquid's", "give pascals"]),
         ("law = \"linaer\"", ["no law is called `linaer`", "did you mean `linear`?"]),
         ("continuity = \"exact\"", ["no continuity is called `exact`", "`conservative`"]),
+        ("conductivity_mean = \"chord\"", ["at small strain the conductivity is the same", "large strain"]),
     ] {
         let told = refused_with("porosity = 0.3", line);
         assert_says(&told, &parts);
@@ -369,6 +370,9 @@ fn impossible_arguments_of_exact_are_refused() {
         (&["terzaghi", "--zeta", "deep"], ["`deep` in", "is no number"]),
         (&["terzaghi", "--time-factor", "-1"], ["time factor must be finite and not negative", "got -1"]),
         (&["terzaghi", "--time-factor", "inf"], ["time factor must be finite and not negative", "got inf"]),
+        (&["mandel", "--x", "1.5"], ["distance x/a must lie between 0", "got 1.5"]),
+        (&["mandel", "--zeta", "0.5"], ["depend on the distance from the middle", "--x"]),
+        (&["terzaghi", "--x", "0.5"], ["depends on the depth alone", "`mandel`"]),
         (&["terzaghi", "--degree", "1.5"], ["degree of consolidation", "below 1"]),
         (&["terzaghi", "--degree", "0.5", "--time-factor", "1"], ["--degree", "cannot be used with"]),
     ] {

@@ -6,8 +6,9 @@ use std::process::Command;
 use tempfile::TempDir;
 
 /// What is solved: every way to values that led through a logarithm, an exponential or a power.
-const CALLS: [&[&str]; 5] = [
+const CALLS: [&[&str]; 6] = [
     &["exact", "dynamic-column", "--set", "column.loading_time=0.002", "--format", "json"],
+    &["exact", "mandel", "--time-factor", "0.001,0.01,0.1,1", "--format", "json"],
     &["exact", "cosine-layer", "--along", "0,0.5", "--format", "json"],
     &["exact", "xie-leo", "--set", "column.load=2e5", "--format", "json"],
     &["exact", "large-strain", "--set", "column.load=2e5", "--time-factor", "0.1", "--format", "json"],
@@ -86,6 +87,24 @@ fn matrices_are_multiplied_by_no_instruction_that_only_some_processors_have() {
     assert_eq!(nalgebra["default-features"].as_bool(), Some(false));
     let features = nalgebra["features"].as_array().expect("features");
     assert!(features.iter().all(|feature| feature.as_str() != Some("std")), "{features:?}");
+}
+
+#[test]
+fn the_exact_slab_is_printed_from_its_middle_to_its_side() {
+    let folder = TempDir::new().expect("a folder");
+    let arguments = ["exact", "mandel", "--time-factor", "0.05000818181818182", "--x", "0,1"];
+    let told = call_with(folder.path(), &[], &arguments);
+    assert_eq!(told.code, 0, "{}", told.err);
+    let lines: Vec<&str> = told.out.lines().collect();
+    assert_eq!(lines[0], "time_factor,x,pressure_ratio,stress_ratio,displacement_ratio,strain_ratio");
+    let row: Vec<f64> = lines[1].split(',').map(|cell| cell.parse().expect("a number")).collect();
+    // tests/reference/mandel.csv, the seed at T = 0.05.
+    for (found, exact) in row[2..].iter().zip([0.543_317_759_436, 1.088_902_890_715, 0.0, 0.272_509_144_159])
+    {
+        assert!((found - exact).abs() < 1e-12, "{found} for {exact}");
+    }
+    assert_eq!(lines.len(), 3);
+    assert!(told.err.contains("terms, tail below"), "{}", told.err);
 }
 
 #[test]

@@ -16,6 +16,7 @@ use crate::mpm::state::points::Points;
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::scene::problem::column_problem;
+use crate::soil::conductivity_mean::ConductivityMean;
 use crate::soil::continuity::Continuity;
 use crate::soil::law::Law;
 use crate::soil::material::Material;
@@ -164,6 +165,29 @@ fn newton_on_a_frozen_body_is_the_linear_system() {
         assert!((rates[0] / rates[1] - 1.0).abs() < 1e-6, "{name}");
         let flux = one.totals.surface_flux - other.totals.surface_flux;
         assert!(flux.abs() < 1e-8 * one.settlement, "{name}");
+    }
+}
+
+#[test]
+fn the_chord_mean_ends_where_the_explicit_integrator_does_and_keeps_a_fresh_tangent() {
+    let chord = Material { conductivity_mean: ConductivityMean::Chord, ..xie_leo_soil() };
+    for method in ["TL-GIMP-SRI-patch", "CE-SRI-patch-cells"] {
+        let problem = || large_strain(method, &chord, 4);
+        let fine = implicit(problem(), 0.02, &[0.01]);
+        let paper = implicit(large_strain(method, &xie_leo_soil(), 4), 0.02, &[0.01]);
+        let (pressure, papers) = (&fine.snapshots[0].points.pressure, &paper.snapshots[0].points.pressure);
+        let moved = difference(pressure, papers);
+        assert!(moved > 1e-2, "{method}: the mean decides, {moved}");
+        // A pattern that missed what the means of cells feel would iterate on.
+        let more = fine.counters.iterations as f64 / paper.counters.iterations as f64;
+        assert!(more < 1.3, "{method}: {more} times the iterations of the paper's mean");
+        if method.starts_with("CE") {
+            let rule = TimeStepRule::Stable(0.8);
+            let explicit = solve(problem(), IntegratorKind::Explicit, rule, &[0.01]);
+            // What is left is the inertia.
+            let off = difference(pressure, &explicit.snapshots[0].points.pressure);
+            assert!(off < 2e-3, "{method}: {off}");
+        }
     }
 }
 

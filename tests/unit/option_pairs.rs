@@ -37,6 +37,7 @@ fn options() -> Vec<(&'static str, Vec<&'static str>)> {
         ("water", vec!["seed", "softer", "stiffer"]),
         words("law"),
         words("continuity"),
+        words("conductivity_mean"),
         words("integrator"),
         words("formulation"),
         ("step", vec!["stable", "courant", "seconds", "growth", "tolerance"]),
@@ -101,7 +102,10 @@ fn choices_of(case: &Case) -> BTreeSet<Choice> {
         ("configuration", method.configuration_or(case.scene.configuration()).name()),
     ]
     .into();
-    choices.extend(["law", "continuity", "integrator", "formulation"].map(|name| word_of(case, name)));
+    choices.extend(
+        ["law", "continuity", "conductivity_mean", "integrator", "formulation"]
+            .map(|name| word_of(case, name)),
+    );
     choices.insert((
         "step",
         match case.time_step {
@@ -187,7 +191,7 @@ fn study_with(pair: [Choice; 2], scene: &str, integrator: &str, pressure: &str) 
     let factor = if load == "while it grows" { "1e-3" } else { "0.1" };
     let _ = writeln!(text, "output.time_factors = [{factor}]\n[[sweep]]\ncells = [10]");
     let _ = writeln!(text, "integrator = [\"{}\"]", asked("integrator").unwrap_or(integrator));
-    for option in ["law", "continuity", "formulation", "scheme", "drag"] {
+    for option in ["law", "continuity", "conductivity_mean", "formulation", "scheme", "drag"] {
         if let Some(word) = asked(option) {
             let _ = writeln!(text, "{option} = [\"{word}\"]");
         }

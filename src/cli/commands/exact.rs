@@ -7,6 +7,8 @@ use crate::cli::overrides::StudyLines;
 use crate::cli::stream::{print_data, say};
 use crate::exact::consolidation;
 use crate::exact::cosine_layer::LayerFields;
+use crate::exact::field_values::Accuracy;
+use crate::exact::mandel::Mandel;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::scene::SceneKind;
@@ -14,6 +16,8 @@ use crate::scene::column::column_parameters;
 use crate::study::check::checker::Purpose;
 use clap::ValueEnum;
 
+/// Distances from the middle of a slab printed where none are asked for.
+const DEFAULT_DISTANCES: &str = "0,0.25,0.5,0.75,1";
 /// Depths printed where none are asked for.
 const DEFAULT_DEPTHS: &str = "0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1";
 
@@ -43,7 +47,8 @@ pub struct Arguments {
     /// Lagrangian depths ζ below the drained surface, comma-separated
     #[arg(long, default_value = DEFAULT_DEPTHS, value_name = "LIST", allow_hyphen_values = true)]
     zeta: String,
-    /// Distances x/L from the crest of a layer's cosine load, comma-separated: adds columns
+    /// Distances x/L from the crest of a layer's cosine load, comma-separated: adds columns; x/a from the
+    /// middle of Mandel's slab
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     x: Option<String>,
     /// Older name of --x, under which the column is called xi
@@ -97,8 +102,9 @@ impl Distances {
         };
         if !matches!(kind, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible) {
             return Err(Ended::usage(format!(
-                "`{option}` is of a layer: `{kind}` depends on the depth alone; leave it out, or ask for `{}`",
-                ReferenceKind::CosineLayer
+                "`{option}` is of a layer: `{kind}` depends on the depth alone; leave it out, or ask for `{}` or `{}`",
+                ReferenceKind::CosineLayer,
+                ReferenceKind::Mandel
             )));
         }
         Ok(Some(Self { column, ratios: overrides::numbers(option, typed)? }))
@@ -136,6 +142,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         Some(degrees) => time_factors_of(kind, &parameters, &overrides::numbers("--degree", degrees)?)?,
         None => overrides::numbers("--time-factor", &arguments.time_factor)?,
     };
+    if kind == ReferenceKind::Mandel {
+        let (rows, accuracy) = slab_rows(&Mandel::new(&parameters)?, &time_factors, arguments)?;
+        return print(kind.name(), &rows, &accuracy, arguments.format);
+    }
     let distances = Distances::of(arguments, kind)?;
     let reference = Reference::new(kind, &parameters, &time_factors)?;
     let mut rows = Vec::new();
@@ -170,10 +180,46 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let truncation = reference.accuracy(time_factor)?;
         accuracy.push(Truncation { time_factor, terms: truncation.terms, tail_bound: truncation.tail_bound });
     }
-    match arguments.format {
+    print(reference.name(), &rows, &accuracy, arguments.format)
+}
+
+/// The rows of Mandel's slab, which depend on the distance from its middle.
+fn slab_rows(
+    slab: &Mandel,
+    time_factors: &[f64],
+    arguments: &Arguments,
+) -> anyhow::Result<(Vec<PrintedRow>, Vec<Truncation>)> {
+    if arguments.zeta != DEFAULT_DEPTHS || arguments.along.is_some() {
+        return Err(Ended::usage(
+            "the fields of `mandel` depend on the distance from the middle: give it by `--x`",
+        ));
+    }
+    let distances = overrides::numbers("--x", arguments.x.as_deref().unwrap_or(DEFAULT_DISTANCES))?;
+    let (mut rows, mut accuracy) = (Vec::new(), Vec::new());
+    for &time_factor in time_factors {
+        for &distance in &distances {
+            let ratios = slab.ratios(time_factor, distance)?;
+            rows.push(PrintedRow(vec![
+                ("time_factor", time_factor),
+                ("x", distance),
+                ("pressure_ratio", ratios.pressure),
+                ("stress_ratio", ratios.stress),
+                ("displacement_ratio", ratios.displacement),
+                ("strain_ratio", ratios.strain),
+            ]));
+        }
+        let Accuracy { terms, tail_bound } = slab.accuracy(time_factor)?;
+        accuracy.push(Truncation { time_factor, terms, tail_bound });
+    }
+    Ok((rows, accuracy))
+}
+
+/// Prints rows, and how far they can be trusted.
+fn print(name: &str, rows: &[PrintedRow], accuracy: &[Truncation], format: Format) -> anyhow::Result<Exit> {
+    match format {
         Format::Csv => {
-            print_data(&rows_csv(&rows)?)?;
-            for one in &accuracy {
+            print_data(&rows_csv(rows)?)?;
+            for one in accuracy {
                 say!(
                     "T_v = {}: {} terms, tail below {:.1e}, round-off below {ROUND_OFF:.0e}",
                     one.time_factor,
@@ -183,7 +229,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             }
         }
         Format::Json => {
-            let json = ExactJson { reference: reference.name(), rows: &rows, accuracy: &accuracy };
+            let json = ExactJson { reference: name, rows, accuracy };
             print_data(&json_of(&json)?)?;
         }
     }

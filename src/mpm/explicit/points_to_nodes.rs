@@ -5,6 +5,7 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::operators::stencil::{Blocks, with_stencils};
+use crate::soil::conductivity_mean::ConductivityMean;
 use crate::soil::tensor::product_with_transpose;
 
 impl<const D: usize> Body<D> {
@@ -27,6 +28,9 @@ impl<const D: usize> Body<D> {
         let basis = std::mem::take(&mut self.basis);
         with_stencils!(&basis, stencils => self.map_points_by::<MASSES, VELOCITIES, _>(stencils.blocks()));
         self.basis = basis;
+        if MASSES && self.material.conductivity_mean == ConductivityMean::Chord {
+            self.take_chord_drag();
+        }
     }
 
     fn map_points_by<const MASSES: bool, const VELOCITIES: bool, const W: usize>(

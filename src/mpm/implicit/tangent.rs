@@ -8,6 +8,7 @@
 use crate::mpm::body::Body;
 use crate::mpm::implicit::banded::Banded;
 use crate::mpm::implicit::unknowns::Unknowns;
+use crate::soil::conductivity_mean::ConductivityMean;
 
 /// Difference by which a scaled unknown is moved: the square root of the round-off leaves eight
 /// digits of a tangent whose unknowns are strains.
@@ -125,6 +126,9 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
     for (point, felt) in by_point.iter().enumerate() {
         body.basis.visit(stride, point, |node, _, _| by_node[node].extend_from_slice(felt));
     }
+    if body.material.conductivity_mean == ConductivityMean::Chord {
+        feel_cells(body, &by_point, &mut by_node);
+    }
     for (node, felt) in by_node.iter_mut().enumerate() {
         felt.extend(unknowns.displacement[node].into_iter().flatten());
         felt.sort_unstable();
@@ -154,6 +158,24 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
         row.dedup();
     }
     rows
+}
+
+/// Adds what the drag of a node feels by the means of the cells: all points of a cell with one that reaches
+/// the node.
+fn feel_cells<const D: usize>(body: &Body<D>, by_point: &[Vec<usize>], by_node: &mut [Vec<usize>]) {
+    let mut by_cell = vec![Vec::new(); body.grid.cell_count()];
+    for (cell, felt) in body.cells.of_point.iter().zip(by_point) {
+        by_cell[*cell].extend_from_slice(felt);
+    }
+    for felt in &mut by_cell {
+        felt.sort_unstable();
+        felt.dedup();
+    }
+    for (point, cell) in body.cells.of_point.iter().enumerate() {
+        body.basis.visit(body.grid.node_stride(), point, |node, _, _| {
+            by_node[node].extend_from_slice(&by_cell[*cell]);
+        });
+    }
 }
 
 /// Each unknown goes to the first group with none that shares a row with it.

@@ -2,6 +2,7 @@
 //! divergence, recovery, surface load.
 
 pub mod basis;
+pub mod chord_mean;
 pub mod recovery;
 pub mod row;
 pub mod sparse_rows;

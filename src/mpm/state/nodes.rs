@@ -69,6 +69,9 @@ pub struct NodalSums<const D: usize> {
     pub momenta: Vec<[Vector<D>; 2]>,
     /// Forces on the mixture and on the water, N.
     pub forces: Vec<[Vector<D>; 2]>,
+    /// Forces of the flow potential and of the stress, and the size of the latter, where the drag is of
+    /// their ratio.
+    pub chords: Vec<[f64; 3]>,
 }
 
 /// Faces of the grid whose normal velocity is zero for both phases.
@@ -141,6 +144,7 @@ impl<const D: usize> Nodes<D> {
                 masses: vec![[0.0; 4]; count],
                 momenta: vec![[[0.0; D]; 2]; count],
                 forces: vec![[[0.0; D]; 2]; count],
+                chords: vec![[0.0; 3]; count],
             },
             external_force: vectors.clone(),
             mixture_force: vectors.clone(),

@@ -3,6 +3,7 @@
 use crate::case::Case;
 use crate::case::keys::{Choice, Key, Kind, Range, Value};
 use crate::scene::SceneKind;
+use crate::soil::conductivity_mean::ConductivityMean;
 use crate::soil::law::Law;
 use crate::study::check::checker::Checker;
 use crate::study::choice_tables::Named;
@@ -24,7 +25,9 @@ impl Checker<'_> {
             (TypedInput::Word(word), Kind::Word(words)) => {
                 let words = words();
                 let word = words[self.word_at(span.clone(), word, key.name, &words)?];
-                self.law_fits(word, span, key, seed.scene).then_some(Value::Word(word))
+                (self.law_fits(word, span.clone(), key, seed.scene)
+                    && self.mean_fits(word, span, key, seed.scene))
+                .then_some(Value::Word(word))
             }
             (TypedInput::Flag(flag), _) => Some(Value::Flag(*flag)),
             (TypedInput::Count(count), Kind::Count(most)) => {
@@ -89,6 +92,23 @@ impl Checker<'_> {
         let names: Vec<&str> = fit.map(Law::name).collect();
         self.complain(span, why, format!("the scene `{}` takes {}", scene.name(), names.join(", ")));
         false
+    }
+
+    /// Whether a scene takes a word where it is a mean of the conductivity.
+    fn mean_fits(&mut self, word: &str, span: TextSpan, key: &Key, scene: SceneKind) -> bool {
+        let is_chord = key.name == "conductivity_mean" && word == ConductivityMean::Chord.name();
+        let fits = !is_chord || scene.is_large_strain();
+        if !fits {
+            self.complain(
+                span,
+                "at small strain the conductivity is the same everywhere, and so is every mean of it",
+                format!(
+                    "leave it out, or take a scene of large strain: the scene `{}` has none",
+                    scene.name()
+                ),
+            );
+        }
+        fits
     }
 
     /// A whole number in a range.

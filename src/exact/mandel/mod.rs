@@ -1,0 +1,120 @@
+//! Mandel's problem: a slab between two rigid plates, drained at its sides.
+//!
+//! Plane strain, incompressible grains, compressible water: a slab of half width `a` between rigid,
+//! smooth, impermeable plates that take the force `2F` per length at once, drained and without stress
+//! at `x = ±a` (Mandel 1953; Cheng & Detournay 1988; docs/theory.md, Eq. 16). The pressure in the middle
+//! rises above its start before it falls: the sides drain, soften and leave their load to the core.
+//!
+//! `early` is the closed form of short times, `series` the sum over the roots of `tan α/α = 1/κ`.
+
+mod early;
+mod ratios;
+mod series;
+
+use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor};
+use crate::exact::field_values::{Accuracy, FieldValues};
+use crate::exact::mandel::ratios::{Groups, MandelRatios};
+use crate::exact::parameters::ColumnParameters;
+
+/// `T = B_1 T_v` from which on a handful of terms of the series is exact to round-off; the closed form
+/// leaves out `e^{−1/T}`, 2e-22 there.
+const SERIES_FROM: f64 = 0.02;
+
+/// Mandel's slab. A column's height is the half width `a`, so that the time factor is
+/// `T_v = c_v t/a²` with the drained `c_v`; its load is the mean stress `F/a` under the plates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mandel {
+    parameters: ColumnParameters,
+    groups: Groups,
+}
+
+impl Mandel {
+    /// The slab of a column's material, with its height as the half width.
+    ///
+    /// # Errors
+    /// When the parameters are impossible.
+    pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
+        parameters.validate()?;
+        Ok(Self { parameters: *parameters, groups: Groups::of(parameters) })
+    }
+
+    /// The ratios at a relative distance `x/a` from the middle.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite, or the distance outside [0, 1].
+    pub fn ratios(&self, time_factor: f64, distance: f64) -> Result<MandelRatios, ExactError> {
+        let time = self.groups.storage_ratio * checked_time_factor(time_factor)?;
+        if !(0.0..=1.0).contains(&distance) {
+            return Err(ExactError::Distance(distance));
+        }
+        if time < SERIES_FROM {
+            return Ok(early::ratios(&self.groups, time, distance));
+        }
+        Ok(series::ratios(&self.groups, time, distance))
+    }
+
+    /// Shear modulus `G`, Pa.
+    fn shear_modulus(&self) -> f64 {
+        self.parameters.youngs_modulus / (2.0 * (1.0 + self.parameters.poissons_ratio))
+    }
+
+    /// Pressure, effective stress and displacement towards the drained side at the depth `zeta` below it:
+    /// `1 − x/a`.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
+    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        let ratios = self.ratios(time_factor, 1.0 - checked_depth(zeta)?)?;
+        let load = self.parameters.load;
+        Ok(FieldValues {
+            pressure: load * ratios.pressure,
+            // No total stress acts towards the drained side: σ'_xx = p.
+            effective_stress: load * ratios.pressure,
+            displacement: load * self.parameters.height * ratios.displacement / self.shear_modulus(),
+        })
+    }
+
+    /// Strain `ε_yy` across the plates, compression negative: the same everywhere.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn strain_across(&self, time_factor: f64) -> Result<f64, ExactError> {
+        Ok(-self.parameters.load * self.ratios(time_factor, 0.0)?.strain / self.shear_modulus())
+    }
+
+    /// What the drained side has gone inward, m: negative, for it bulges.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        Ok(-self.fields(time_factor, 0.0)?.displacement)
+    }
+
+    /// Degree of consolidation: how far the plates have come of the way that they go in the end,
+    /// `ε_yy(t)/ε_yy(∞)`.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
+        let end = 0.5 * (1.0 - self.groups.poissons_ratio);
+        Ok(self.ratios(time_factor, 0.0)?.strain / end)
+    }
+
+    /// Terms of the series, or 0 of the closed form, and a bound on what they leave out of any of the
+    /// ratios.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        let time = self.groups.storage_ratio * checked_time_factor(time_factor)?;
+        if time < SERIES_FROM {
+            return Ok(Accuracy { terms: 0, tail_bound: early::bound(&self.groups, time) });
+        }
+        let terms = series::terms(time);
+        Ok(Accuracy { terms, tail_bound: series::bound(time, terms) })
+    }
+}
+
+#[cfg(test)]
+#[path = "../../../tests/unit/exact_mandel.rs"]
+mod tests;
