@@ -55,7 +55,7 @@ pub fn answer(changes: Option<&[(String, Difference)]>) -> Section {
     );
     let rest = changes.len().saturating_sub(MOST_ROWS);
     let table =
-        if rest > 0 { table.note(format!("and {rest} more: `oedometer check` lists them")) } else { table };
+        if rest > 0 { table.note(format!("and {rest} more, listed by oedometer check")) } else { table };
     section(
         HEADING,
         "changes",

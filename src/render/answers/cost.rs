@@ -6,7 +6,7 @@ use crate::judge::peers::{self, Peer};
 use crate::judge::work_precision::{TimedRun, WorkPrecision};
 use crate::render::answers::question::{Links, link, section, unanswered};
 use crate::render::answers::regime::PAPERS;
-use crate::render::chart::describe::{Chart, ChartAxis, PointName, Series, Style};
+use crate::render::chart::describe::{Chart, ChartAxis, PointName, Series, Size, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure, Section};
 use crate::render::report::StudyResults;
@@ -71,6 +71,7 @@ fn chart_of(precision: &WorkPrecision<'_>, has_peers: bool) -> Chart {
         ChartAxis::log10("wall time, s"),
         ChartAxis::log10("error of the pore pressure, worst of the outputs (–)"),
     );
+    chart.size = Size { width: 1000.0, plot_height: 460.0, equal_units: false };
     for kind in IntegratorKind::ALL {
         let runs = precision.runs.iter().filter(|run| run.record.case.integrator == kind);
         let points: Vec<_> = runs.map(point).collect();
@@ -140,7 +141,8 @@ fn equal_cells(precision: &WorkPrecision<'_>) -> String {
             })
             .collect();
         if !better.is_empty() && peer.time_scheme.starts_with("SDIRK") {
-            ahead.push(format!("{} ({}): {}", name_of_peer(peer), peer.kind, better.join(", ")));
+            let cells = peer.cells.unwrap_or_default();
+            ahead.push(format!("{}, {} on {cells} cells: {}", peer.name, peer.kind, better.join(", ")));
         }
     }
     if ahead.is_empty() {
@@ -149,9 +151,9 @@ fn equal_cells(precision: &WorkPrecision<'_>) -> String {
         );
     }
     format!(
-        "**On equal cells mixed elements are ahead of `{PAPERS}` where both step alike**, in the error of the pressure: {} cells. \
+        "**On equal cells mixed elements are ahead of `{PAPERS}` where both step alike**, in the error of the pressure: {}. \
          The time to an error is another matter: the figure shows it.",
-        ahead.join(" cells; ")
+        ahead.join("; ")
     )
 }
 

@@ -138,18 +138,32 @@ fn mesh_of_most(all: &[MethodPath<'_>]) -> Option<usize> {
         .find(|cells| *cells as f64 == finest)
 }
 
-/// One path a method: one with the quoted mesh, whose pressure has an order that has settled, and of
-/// most levels.
+/// What a path must converge in to stand for its method.
+const CONVERGES: [(Quantity, Sample); 4] = [
+    (Quantity::Pressure, Sample::Points),
+    (Quantity::Pressure, Sample::Centres),
+    (Quantity::EffectiveStress, Sample::Points),
+    (Quantity::Settlement, Sample::Surface),
+];
+
+/// What speaks for a path: three levels, the quoted mesh, how many of its series have a settled order, levels.
+type Worth = (bool, bool, usize, usize);
+
+/// One path a method, that for which most speaks.
 fn best_of_each<'a>(all: Vec<MethodPath<'a>>, reference: &str, time_factor: f64) -> Vec<MethodPath<'a>> {
-    let pressure = first_measure(Quantity::Pressure, Sample::Points, reference, time_factor);
     let worth = |one: &MethodPath<'_>| {
-        let summary = one.path.summary(&pressure);
+        let series = CONVERGES.map(|(quantity, sample)| {
+            one.path.summary(&first_measure(quantity, sample, reference, time_factor))
+        });
+        let is_settled = |summary: &&SeriesSummary<'_>| {
+            matches!(summary.classification.class, Class::Asymptotic | Class::Superconvergent)
+        };
+        let settled = series.iter().filter(is_settled).count();
+        let levels = series[0].series.levels().iter().filter(|level| level.error.is_some()).count();
         let has_quoted = one.path.records.iter().any(|record| record.case.cells == QUOTED_CELLS);
-        let is_settled = has_order(&summary) && summary.classification.class != Class::FloorLimited;
-        let levels = summary.series.levels().iter().filter(|level| level.error.is_some()).count();
-        (levels >= WINDOW, has_quoted, is_settled, levels)
+        (levels >= WINDOW, has_quoted, settled, levels)
     };
-    let mut best: Vec<((bool, bool, bool, usize), MethodPath<'a>)> = Vec::new();
+    let mut best: Vec<(Worth, MethodPath<'a>)> = Vec::new();
     for one in all {
         let own = worth(&one);
         match best.iter_mut().find(|(_, other)| other.method == one.method) {
@@ -159,11 +173,6 @@ fn best_of_each<'a>(all: Vec<MethodPath<'a>>, reference: &str, time_factor: f64)
         }
     }
     best.into_iter().map(|(_, one)| one).collect()
-}
-
-/// Whether the class of a series allows an order.
-pub fn has_order(summary: &SeriesSummary<'_>) -> bool {
-    summary.classification.order.is_some()
 }
 
 impl Regime<'_> {

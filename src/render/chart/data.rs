@@ -1,6 +1,7 @@
 //! What a figure draws, as rows of numbers.
 use crate::render::chart::describe::Chart;
 use crate::render::number;
+use std::fmt::Write;
 
 impl Chart {
     /// The data of the figure as CSV: one row a point of a series, with all of its digits; of a field one row a
@@ -9,14 +10,19 @@ impl Chart {
         let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
         let mut out = format!("series,{},{}", quoted(&self.x.label), quoted(&self.y.label));
         if let Some(field) = &self.field {
-            out += &format!(",{}", quoted(&field.label));
+            let _ = write!(out, ",{}", quoted(&field.label));
         }
         out.push('\n');
         for series in &self.series {
             for (x, y) in &series.points {
                 let end = if self.field.is_some() { "," } else { "" };
-                out +=
-                    &format!("{},{},{}{end}\n", quoted(&series.name), number::exact(*x), number::exact(*y));
+                let _ = writeln!(
+                    out,
+                    "{},{},{}{end}",
+                    quoted(&series.name),
+                    number::exact(*x),
+                    number::exact(*y)
+                );
             }
         }
         if let Some((field, (columns, rows))) =
@@ -27,7 +33,7 @@ impl Chart {
                 for column in 0..columns {
                     let value = number::exact(field.values[row * columns + column]);
                     let (x, y) = (middle(&field.x_edges, column), middle(&field.y_edges, row));
-                    out += &format!("{},{x},{y},{value}\n", quoted(&self.title));
+                    let _ = writeln!(out, "{},{x},{y},{value}", quoted(&self.title));
                 }
             }
         }

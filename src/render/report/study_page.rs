@@ -11,6 +11,7 @@ use crate::render::report::{
 use crate::render::table::Mood;
 use crate::render::tables::uncertainties;
 use crate::study::expectation::Axis;
+use std::fmt::Write;
 
 /// Reasons that the red box names before the rest is only counted.
 const MOST_REASONS: usize = 5;
@@ -59,15 +60,18 @@ fn verdict(results: &StudyResults<'_>) -> Callout {
         _ => format!("{} of {judged} expectations are met.", results.met()),
     };
     if let Some((case, sentence)) = results.unsound.first() {
-        text +=
-            &format!(" {} checks of its runs fail, the first of {case}: {sentence}.", results.unsound.len());
+        let _ = write!(
+            text,
+            " {} checks of its runs fail, the first of {case}: {sentence}.",
+            results.unsound.len()
+        );
     }
     let failing = failing(results);
     for judgement in failing.iter().take(MOST_REASONS) {
-        text += &format!("\n\n`{}`: {}", judgement.subject, judgement.verdict.reason);
+        let _ = write!(text, "\n\n`{}`: {}", judgement.subject, judgement.verdict.reason);
     }
     if failing.len() > MOST_REASONS {
-        text += &format!("\n\nAnd {} more, below.", failing.len() - MOST_REASONS);
+        let _ = write!(text, "\n\nAnd {} more, below.", failing.len() - MOST_REASONS);
     }
     let mood = if judged == 0 && results.passes() { Mood::Note } else { Mood::of(results.passes()) };
     (mood, text)

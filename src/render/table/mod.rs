@@ -171,8 +171,12 @@ impl Cell {
     /// The number that a cell is sorted by, where its words do not tell it.
     pub(crate) fn value(&self) -> Option<f64> {
         match self {
-            Self::Error(v) | Self::Order(v) | Self::OrderWithin(v, _) | Self::Percent(v) => Some(*v),
-            Self::Seconds(v) | Self::Number(v) => Some(*v),
+            Self::Error(v)
+            | Self::Order(v)
+            | Self::OrderWithin(v, _)
+            | Self::Percent(v)
+            | Self::Seconds(v)
+            | Self::Number(v) => Some(*v),
             Self::Count(n) => Some(*n as f64),
             _ => None,
         }

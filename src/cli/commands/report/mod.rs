@@ -5,6 +5,7 @@ mod machine;
 
 use crate::campaign::run_options::RunOptions;
 use crate::campaign::run_report::RunReport;
+use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::cli::commands::check::GOLDEN;
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
@@ -19,6 +20,7 @@ use crate::record::store::RecordStore;
 use crate::render::answers::making::Making;
 use crate::render::report::StudyResults;
 use crate::study::check::Study;
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -111,8 +113,8 @@ fn changes(
     for (study, report) in studies.iter().zip(reports) {
         let Ok(golden) = GoldenFile::read(&arguments.golden, &study.name) else { continue };
         held = true;
-        let of_tier = study.cases(Tier::Ci);
-        let is_of_tier = |record: &&Record| of_tier.iter().any(|case| **case == record.case);
+        let of_tier: HashSet<String> = study.cases(Tier::Ci).into_iter().map(Case::hash).collect();
+        let is_of_tier = |record: &&Record| of_tier.contains(&record.hash);
         let records: Vec<Record> = report.records.iter().filter(is_of_tier).cloned().collect();
         if !records.is_empty() {
             let check = StudyCheck::new(study, &records, Tier::Ci, Ok(golden));

@@ -39,9 +39,14 @@ pub(crate) fn draw_rules(canvas: &mut Canvas, space: &mut Space, chart: &Chart, 
     }
 }
 
-/// Names of single points: beside, above or below them, where least is in the way.
+/// Names of single points: beside, above or below them, where least is in the way; none where there is no room.
 pub(crate) fn draw_names(canvas: &mut Canvas, space: &mut Space, chart: &Chart, layout: &ChartLayout) {
+    let mut written: Vec<&str> = Vec::new();
     for one in &chart.names {
+        // Points of one name that lie together have it once.
+        if written.contains(&one.name.as_str()) {
+            continue;
+        }
         let (x, y) = (layout.x.ruler.px(one.at.0), layout.y.ruler.px(one.at.1));
         let (Ok(x), Ok(y)) = (x, y) else { continue };
         if !layout.plot.grown(0.5).holds((x, y)) {
@@ -60,9 +65,11 @@ pub(crate) fn draw_names(canvas: &mut Canvas, space: &mut Space, chart: &Chart, 
         ];
         let rooms: Vec<Offer> =
             away.iter().map(|&(at, penalty)| Offer { room: around(at, w, h), penalty }).collect();
-        if let Some(i) = space.best(&rooms) {
+        // A name on another name is none.
+        if let Some(i) = space.best(&rooms).filter(|i| space.is_free(&rooms[*i].room)) {
             space.take(rooms[i].room);
             write(canvas, &one.name, away[i].0, TEXT);
+            written.push(&one.name);
         }
     }
 }
