@@ -49,6 +49,8 @@ fn small_study() -> (Study, Vec<Record>) {
             compiler: "COMPILER".to_owned(),
             target: "TARGET".to_owned(),
             profile: "PROFILE".to_owned(),
+            commit: "COMMIT".to_owned(),
+            dirty: false,
             ..record.provenance.clone()
         };
     }

@@ -21,6 +21,7 @@ use crate::render::answers::question::Links;
 use crate::render::page::{Callout, Page};
 use crate::render::report::StudyResults;
 use crate::render::table::Mood;
+use crate::render::tables::golden_changes::count_of;
 use std::fmt::Write;
 
 /// What the answer page is made of.
@@ -77,8 +78,10 @@ fn verdict(results: &[StudyResults<'_>]) -> Callout {
     let unsound: usize = results.iter().map(|one| one.unsound.len()).sum();
     let failing: Vec<&str> =
         results.iter().filter(|one| !one.passes()).map(|one| one.study.name.as_str()).collect();
-    let mut text =
-        format!("**{met} of {judged} expectations met** in {} studies of {runs} runs.", results.len());
+    let mut text = format!(
+        "**{met} of {judged} expectations met** in {} of {runs} runs.",
+        count_of(results.len(), "study", "studies")
+    );
     if unsound > 0 {
         let _ = write!(text, " {unsound} checks of runs fail.");
     }
