@@ -16,10 +16,30 @@ pub struct Peer {
     pub name: String,
     /// What it is.
     pub kind: String,
+    /// Cells over the height, where they are known.
+    pub cells: Option<usize>,
+    /// Where its errors were sampled.
+    pub samples: String,
+    /// How it steps through time.
+    pub time_scheme: String,
     /// Errors at the time factors, where they were measured.
     pub errors: [Option<f64>; 3],
-    /// Seconds, where the run ended.
+    /// CPU seconds, where the run ended.
     pub seconds: Option<f64>,
+    /// Wall seconds, where they were taken.
+    pub wall_seconds: Option<f64>,
+}
+
+impl Peer {
+    /// The worst of its errors, where it has all of them.
+    pub fn worst_error(&self) -> Option<f64> {
+        self.errors.into_iter().collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
+    }
+}
+
+/// Every program that was measured.
+pub fn all() -> &'static [Peer] {
+    &PEERS
 }
 
 /// The programs that were measured.
@@ -27,11 +47,13 @@ static PEERS: LazyLock<Vec<Peer>> =
     LazyLock::new(|| read(include_str!("peers.csv")).expect("a test reads the table of the sources"));
 
 fn read(text: &str) -> Result<Vec<Peer>, csv::Error> {
-    type Columns = (String, String, Option<f64>, Option<f64>, Option<f64>, Option<f64>);
+    type Number = Option<f64>;
+    type Columns = (String, String, Option<usize>, String, String, Number, Number, Number, Number, Number);
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
     let peer = |columns: Result<Columns, csv::Error>| {
-        let (name, kind, early, middle, late, seconds) = columns?;
-        Ok(Peer { name, kind, errors: [early, middle, late], seconds })
+        let (name, kind, cells, samples, time_scheme, early, middle, late, seconds, wall_seconds) = columns?;
+        let errors = [early, middle, late];
+        Ok(Peer { name, kind, cells, samples, time_scheme, errors, seconds, wall_seconds })
     };
     reader.deserialize().map(peer).collect()
 }
@@ -100,13 +122,14 @@ mod tests {
 
     #[test]
     fn the_table_is_read_and_a_broken_one_is_refused_with_its_line() {
-        assert_eq!(PEERS.len(), 7);
+        assert_eq!(PEERS.len(), 12);
         let errors = |name: &str| PEERS.iter().find(|peer| peer.name == name).expect("a peer").errors;
-        assert_eq!(errors("GeoTaichi"), [Some(0.03), None, None]);
+        assert_eq!(errors("GeoTaichi"), [Some(0.065), None, None]);
         assert!(
             PEERS.iter().all(|peer| peer.errors.iter().flatten().all(|error| (0.0..1.0).contains(error)))
         );
-        let broken = read("# a note\na,b,c,d,e,f\nx,y,many,,,\n").expect_err("no number").to_string();
+        let broken =
+            read("# a note\na,b,c,d,e,f,g,h,i,j\nx,y,10,,,many,,,,\n").expect_err("no number").to_string();
         assert!(broken.contains("line: 3"), "{broken}");
     }
 

@@ -56,6 +56,34 @@ pub(crate) fn markdown(text: &str) -> String {
     out
 }
 
+/// Text for LaTeX: what it reads as commands is spelled, symbols become mathematics.
+pub(crate) fn latex(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars().filter(|c| !c.is_control()) {
+        match c {
+            '\\' => out.push_str("\\textbackslash{}"),
+            '~' => out.push_str("\\textasciitilde{}"),
+            '^' => out.push_str("\\textasciicircum{}"),
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => {
+                out.push('\\');
+                out.push(c);
+            }
+            '−' => out.push_str("$-$"),
+            '±' => out.push_str("$\\pm$"),
+            '×' => out.push_str("$\\times$"),
+            '≤' => out.push_str("$\\le$"),
+            '…' => out.push_str("\\ldots{}"),
+            'σ' => out.push_str("$\\sigma$"),
+            'ν' => out.push_str("$\\nu$"),
+            'Δ' => out.push_str("$\\Delta$"),
+            '′' => out.push_str("$'$"),
+            '\u{2011}' => out.push('-'),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,7 @@
 //! Tables, charts and pages out of plain data. Nothing here computes science, and nothing here
 //! knows a solver: the same description always gives the same bytes.
 
+pub mod answers;
 pub mod chart;
 pub mod checks;
 pub mod escape;

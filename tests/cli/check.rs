@@ -439,17 +439,41 @@ fn a_report_shows_verdicts_and_does_not_gate_on_them() {
     let told = place.call(&[], &["report", "short.toml", "--out", "made"]);
     assert_eq!(told.code, 0, "{}", told.err);
     let html = fs::read_to_string(place.path().join("made/index.html")).expect("a page");
-    let markdown = fs::read_to_string(place.path().join("made/report.md")).expect("a page");
-    let front = fs::read_to_string(place.path().join("made/README.md")).expect("a front page");
-    assert!(front.len() < markdown.len(), "the front page is the shorter one");
-    for page in [&html, &markdown, &front] {
-        assert!(page.contains("GIMP-SRI") && page.contains("A short study"));
+    let read = |file: &str| fs::read_to_string(place.path().join("made").join(file)).expect(file);
+    let front = read("README.md");
+    for page in [&html, &front] {
+        assert!(page.contains("GIMP-SRI") && page.contains("Not as expected:"), "{page}");
+        assert!(page.contains("Not in these records: "), "what was not studied is not answered");
+        assert!(page.contains("oedometer report short.toml --out made"), "how it was made stands on top");
+    }
+    let study = read("studies/short.html");
+    let failing = study.split("<nav").next().expect("the head of the page");
+    assert!(
+        failing.contains("callout fail") && failing.contains("pressure"),
+        "the red box says why: {failing}"
+    );
+    assert!(read("studies/short.md").contains("oedometer run short.toml"), "the path that was given");
+    for page in [&html, &front, &study] {
         assert!(!page.contains(place.path().to_str().expect("a path")), "no absolute path");
     }
-    assert!(place.path().join("made/figures").read_dir().expect("figures").count() > 0);
+    assert!(
+        read("studies/index.html").contains("short.html") && read("studies/README.md").contains("short.md")
+    );
+    assert!(read("studies/tables/short-table-1.tex").contains("\\toprule"));
+    // Every file that a page leads to is there.
+    for (folder, page) in [("", &html), ("studies/", &study)] {
+        let targets = page.split("<a href=\"").skip(1).filter_map(|rest| rest.split('"').next());
+        for target in targets.filter(|target| !target.starts_with('#')) {
+            assert!(place.path().join("made").join(folder).join(target).is_file(), "{folder}{target}");
+        }
+    }
     assert!(place.path().join("out/short/short.csv").is_file(), "records are kept");
     let again = place.call(&[], &["report", "short.toml", "--out", "made"]);
     assert!(again.err.contains("3 cases (3 from disk"), "{}", again.err);
+    let kept = place.call(&[], &["report", "short.toml", "--out", "other", "--from-records"]);
+    assert_eq!(kept.code, 0, "{}", kept.err);
+    let none = place.call(&[], &["report", "short.toml", "--from-records", "--records", "nowhere"]);
+    assert!(none.code == 4 && none.err.contains("there is no record"), "{}", none.err);
 }
 
 /// Every fault of the judge stands in the sources exactly once, and the test that catches it exists.

@@ -4,7 +4,8 @@
 use crate::program::call;
 use oedometer::{
     FailureKind, Kernel, Quantity, Record, RunOptions, Sample, Status, Study, StudyResults, StudySource,
-    Tier, balance_checks, measures, page_of, render_markdown, run_case, run_study, soundness, start_checks,
+    Tier, balance_checks, measures, render_markdown, run_case, run_study, soundness, start_checks,
+    study_page,
 };
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -138,13 +139,13 @@ fn a_check_that_fails_stands_at_the_head_of_the_report() {
                 integrator = ['implicit']\ncells = [4]";
     let (study, mut records) = (study(text), vec![record(text)]);
     let page = |records: &[Record]| {
-        let page = page_of(&[StudyResults::new(&study, records, Tier::Full)]).expect("a page");
+        let page = study_page(&StudyResults::new(&study, records, Tier::Full)).expect("a page");
         render_markdown(&page).expect("Markdown")
     };
-    assert!(!page(&records).contains("checks of runs failed"));
+    assert!(!page(&records).contains("checks of its runs fail"));
     records[0].balance[0].water_imbalance = 0.3;
     let told = page(&records);
-    assert!(told.contains("1 checks of runs failed"), "{told}");
+    assert!(told.contains("1 checks of its runs fail"), "{told}");
     assert!(told.contains("the first of GC-SRI-patch implicit"), "{told}");
 }
 

@@ -5,9 +5,9 @@
 
 use crate::program::assert_snapshot;
 use oedometer::{
-    Block, GoldenFile, Page, Provenance, Record, RunOptions, Study, StudyCheck, StudyResults, StudySource,
-    Table, Tier, WallSample, figures, junit, measures, page_of, render_html, render_markdown, run_study,
-    values_of, verdicts,
+    Answers, Block, GoldenFile, Making, Page, Provenance, Record, RunOptions, Study, StudyCheck,
+    StudyResults, StudySource, Table, Tier, WallSample, answer_page, figures, junit, measures, render_html,
+    render_markdown, run_study, study_page, values_of, verdicts,
 };
 
 const STUDY: &str = r#"
@@ -49,6 +49,8 @@ fn small_study() -> (Study, Vec<Record>) {
             compiler: "COMPILER".to_owned(),
             target: "TARGET".to_owned(),
             profile: "PROFILE".to_owned(),
+            commit: "COMMIT".to_owned(),
+            dirty: false,
             ..record.provenance.clone()
         };
     }
@@ -57,7 +59,7 @@ fn small_study() -> (Study, Vec<Record>) {
 
 fn page_of_small() -> Page {
     let (study, records) = small_study();
-    page_of(&[StudyResults::new(&study, &records, Tier::Full)]).expect("a page")
+    study_page(&StudyResults::new(&study, &records, Tier::Full)).expect("a page")
 }
 
 fn tables(blocks: &[Block]) -> Vec<&Table> {
@@ -97,6 +99,41 @@ fn html_and_markdown_come_from_the_same_page_with_all_figures() {
         assert!(markdown.contains(&format!("figures/{name}")), "{name}");
         assert!(!svg.contains("NaN"), "{name}");
     }
+}
+
+fn making() -> Making {
+    Making {
+        date: "2026-11-22".to_owned(),
+        processor: "2 × PROCESSOR".to_owned(),
+        command: "oedometer report".to_owned(),
+        seconds: 1.0,
+        cases_run: 0,
+    }
+}
+
+#[test]
+fn the_answer_page_answers_from_records_and_says_what_they_do_not_answer() {
+    let (study, records) = small_study();
+    let results = [StudyResults::new(&study, &records, Tier::Full)];
+    let (making, links) = (making(), |study: &str| format!("studies/{study}.html"));
+    let answers = Answers {
+        results: &results,
+        changes: Some(&[]),
+        making: &making,
+        links: &links,
+        index: "studies/index.html",
+    };
+    let page = answer_page(&answers).expect("a page");
+    let markdown = render_markdown(&page).expect("a page");
+    assert_eq!(markdown.matches("Not in these records: ").count(), 4, "{markdown}");
+    assert!(markdown.contains("[`small`](studies/small.html)"), "{markdown}");
+    assert!(render_html(&page).expect("a page").contains("<a href=\"studies/small.html\">small</a>"));
+    assert_snapshot("answers_markdown", &markdown);
+    // Without records of several methods nothing is recommended.
+    let alone: Vec<Record> = records.iter().take(1).cloned().collect();
+    let results = [StudyResults::new(&study, &alone, Tier::Full)];
+    let page = answer_page(&Answers { results: &results, changes: None, ..answers }).expect("a page");
+    assert_eq!(render_markdown(&page).expect("a page").matches("Not in these records: ").count(), 7);
 }
 
 #[test]

@@ -48,6 +48,7 @@ fn page() -> Page {
             Section { heading: "End".into(), id: "end".into(), mood: Some(Mood::Fail), blocks: vec![] },
         ],
         footer: "Made by `oedometer`.".into(),
+        ..Page::default()
     }
 }
 

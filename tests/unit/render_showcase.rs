@@ -99,6 +99,7 @@ fn page() -> Page {
         lead: "How the error of pore pressure, effective stress and settlement falls with cells, points and steps, for five methods, against the exact solution *of the equations that are solved*.".into(),
         sections,
         footer: "Made by `oedometer` 0.1.0 from 120 records; study `terzaghi-mesh`, case hashes 3f2a… to 99c1….".into(),
+        ..Page::default()
     }
 }
 

@@ -178,7 +178,7 @@ mod tests {
         canvas.text("<b> T_v & 10⁻³ s", (1.0, 2.0), PLAIN);
         let svg = canvas.finish("a <title>", "").unwrap_or_default();
         assert!(svg.contains("&lt;b&gt; T<tspan dy=\"0.28em\" font-size=\"0.72em\">v</tspan>"), "{svg}");
-        assert!(svg.contains("<tspan dy=\"-0.202em\">\u{a0}&amp; 10</tspan>"), "{svg}");
+        assert!(svg.contains("<tspan dx=\"0.3em\" dy=\"-0.202em\">&amp; 10</tspan>"), "{svg}");
         assert!(svg.contains(r#"font-size="120""#), "{svg}");
         assert!(svg.contains("<title>a &lt;title&gt;</title>"), "{svg}");
     }

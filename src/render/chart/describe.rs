@@ -21,6 +21,8 @@ pub struct Chart {
     pub rules: Vec<Rule>,
     /// Triangles that show what an order looks like.
     pub triangles: Vec<SlopeTriangle>,
+    /// Words beside single points.
+    pub names: Vec<PointName>,
     /// Outer width and height of the plotting area.
     pub size: Size,
 }
@@ -37,6 +39,7 @@ impl Chart {
             series: Vec::new(),
             rules: Vec::new(),
             triangles: Vec::new(),
+            names: Vec::new(),
             size: Size::default(),
         }
     }
@@ -180,6 +183,15 @@ pub struct Rule {
     pub at: f64,
     /// Words at the line.
     pub label: String,
+}
+
+/// The name of a point, written beside it where there is room.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointName {
+    /// The point.
+    pub at: (f64, f64),
+    /// Its name.
+    pub name: String,
 }
 
 /// A triangle on doubly logarithmic axes whose upper side has a given slope.

@@ -10,7 +10,7 @@ use crate::render::chart::palette::{QUIET, WHITE, marker};
 use crate::render::chart::parts::axes::{draw_axes, draw_bar, draw_grid};
 use crate::render::chart::parts::legend::{Legend, Look, looks, stroke};
 use crate::render::chart::parts::triangle::draw_triangles;
-use crate::render::chart::parts::words::draw_rules;
+use crate::render::chart::parts::words::{draw_names, draw_rules};
 use crate::render::render_error::RenderError;
 
 /// Radius of markers. Later ones are smaller, so that points that coincide are seen to be several,
@@ -124,6 +124,7 @@ impl Chart {
         }
         draw_triangles(canvas, &mut space, self, layout, places);
         draw_rules(canvas, &mut space, self, layout);
+        draw_names(canvas, &mut space, self, layout);
     }
 
     /// What the figure shows, for those who cannot see it.

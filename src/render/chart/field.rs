@@ -8,6 +8,9 @@ use crate::render::chart::layout::scale::{Range, Ruler, Scale, Span, drawable};
 pub struct ColourField {
     /// What the colours mean, with its unit; written at the colour bar.
     pub label: String,
+    /// How far the colours reach on both sides of zero, where fields share them; the field's own largest value where
+    /// not given. What lies beyond has the last colour.
+    pub reach: Option<f64>,
     /// The lines between the columns of cells, one more than columns.
     pub x_edges: Vec<f64>,
     /// The lines between the rows of cells, one more than rows.
@@ -43,7 +46,8 @@ impl ColourField {
     /// What the colours span: as far on both sides of zero.
     pub(crate) fn span(&self) -> Span {
         let span = Span::over(Scale::Linear, Range::Auto, self.values.iter().copied(), 0.0);
-        let reach = span.high.abs().max(span.low.abs());
+        let own = span.high.abs().max(span.low.abs());
+        let reach = self.reach.filter(|reach| *reach > 0.0).unwrap_or(own);
         Span { low: -reach, high: reach, ..span }
     }
 
@@ -102,7 +106,13 @@ mod tests {
     use super::*;
 
     fn field(values: Vec<f64>) -> ColourField {
-        ColourField { label: "p/q".into(), x_edges: vec![0.0, 1.0, 2.0], y_edges: vec![0.0, 1.0], values }
+        ColourField {
+            label: "p/q".into(),
+            reach: None,
+            x_edges: vec![0.0, 1.0, 2.0],
+            y_edges: vec![0.0, 1.0],
+            values,
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! Nothing is hidden silently: what cannot be drawn is counted below the figure.
 
 pub mod canvas;
+pub mod data;
 pub mod describe;
 pub mod draw;
 pub mod field;

@@ -14,6 +14,9 @@ const SUBSCRIPT: [&str; 2] = ["0.28em", "-0.202em"];
 /// The same of a superscript.
 const SUPERSCRIPT: [&str; 2] = ["-0.5em", "0.36em"];
 
+/// Width of a space, in font sizes.
+const SPACE: f64 = 0.3;
+
 type SvgWritten = Result<(), DrawingErrorKind<fmt::Error>>;
 
 /// The elements of a document in the making.
@@ -192,13 +195,20 @@ fn hexadecimal(colour: BackendColor) -> String {
 fn with_scripts(text: &str) -> String {
     let span = |attributes: String, words: &str| format!("<tspan {attributes}>{words}</tspan>");
     let climb = |back: &str, words: &str| span(format!("dy=\"{back}\""), words);
+    // White space at the start of a span is lost to some readers: the pen moves by as much.
+    let climb_on = |back: &str, text: &str| {
+        let spaces = text.chars().take_while(|c| *c == ' ').count();
+        let shift = format!("{}em", SPACE * spaces as f64);
+        let moved = if spaces > 0 { format!("dx=\"{shift}\" ") } else { String::new() };
+        span(format!("{moved}dy=\"{back}\""), &plain_html(&edges_kept(&text[spaces..])))
+    };
     let mut out = String::new();
     let mut way_back = None;
     for run in runs(text) {
         let words = plain_html(&edges_kept(&run.text));
         let [shift, back] = match run.level {
             ScriptLevel::Base => {
-                out += &way_back.take().map_or_else(|| words.clone(), |back| climb(back, &words));
+                out += &way_back.take().map_or_else(|| words.clone(), |back| climb_on(back, &run.text));
                 continue;
             }
             ScriptLevel::Sub => SUBSCRIPT,

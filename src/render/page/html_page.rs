@@ -1,15 +1,25 @@
 //! Pages as one HTML file. What stands around the sections is in `page.html` and `page.css`.
 use crate::render::escape;
 use crate::render::page::marked_text::{paragraphs, to_html};
-use crate::render::page::{Block, Figure, Page, check};
+use crate::render::page::{Block, Figure, Page, check, table_file};
 use crate::render::render_error::RenderError;
-use crate::render::table::Mood;
+use crate::render::table::{Mood, Table};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::{Environment, Value, context};
 use std::fmt::Write as _;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
+/// Sorting and filtering: what a page has without it is all there, in the order of its making.
+const SCRIPT: &str = include_str!("page.js");
+
+/// What was written so far, to be counted on, and the name of the page's files.
+#[derive(Default)]
+struct Written<'a> {
+    figures: usize,
+    tables: usize,
+    files: Option<&'a str>,
+}
 
 /// The page as one HTML file that needs nothing else.
 ///
@@ -20,11 +30,11 @@ pub fn render_html(page: &Page) -> Result<String, RenderError> {
     let fail =
         |e: minijinja::Error| RenderError::Template { title: page.title.clone(), reason: e.to_string() };
     let mut sections = Vec::new();
-    let mut number = 0;
+    let mut written = Written { files: page.files.as_deref(), ..Written::default() };
     for section in &page.sections {
         let mut body = String::new();
         for block in &section.blocks {
-            write_block(block, &mut body, &mut number)?;
+            write_block(block, &mut body, &mut written)?;
         }
         sections.push(context! {
             id => section.id.as_str(),
@@ -46,7 +56,11 @@ pub fn render_html(page: &Page) -> Result<String, RenderError> {
             heading => safe(escape::html(&page.title)),
             style => safe(STYLE.to_owned()),
             lead => safe(running(&page.lead)),
+            callout => page.callout.as_ref().map(|(mood, text)| safe(callout(*mood, text))),
             footer => safe(running(&page.footer)),
+            is_wide => page.is_wide,
+            filter => page.filter.as_deref(),
+            script => safe(SCRIPT.to_owned()),
             sections => Value::from(sections),
         })
         .map_err(fail)
@@ -64,7 +78,31 @@ fn running(text: &str) -> String {
     })
 }
 
-fn write_block(block: &Block, out: &mut String, number: &mut usize) -> Result<(), RenderError> {
+/// A sentence in a box of the colour of its mood.
+fn callout(mood: Mood, text: &str) -> String {
+    format!(
+        "<aside class=\"callout {}\"><span class=\"mark\" aria-hidden=\"true\">{}</span><div>{}</div></aside>\n",
+        mood.class(),
+        mood.mark(),
+        running(text).trim_end()
+    )
+}
+
+/// A table, and where it is to be had as a file.
+fn write_table(table: &Table, out: &mut String, written: &mut Written<'_>) -> Result<(), RenderError> {
+    written.tables += 1;
+    out.push_str(&table.to_html()?);
+    if let Some(page) = written.files {
+        let file = table_file(page, written.tables);
+        let _ = writeln!(
+            out,
+            "<p class=\"files\"><a href=\"tables/{file}.csv\">CSV</a> <a href=\"tables/{file}.tex\">LaTeX</a></p>"
+        );
+    }
+    Ok(())
+}
+
+fn write_block(block: &Block, out: &mut String, written: &mut Written<'_>) -> Result<(), RenderError> {
     match block {
         Block::Paragraph(text) => out.push_str(&running(text)),
         Block::Heading(text) => {
@@ -77,28 +115,20 @@ fn write_block(block: &Block, out: &mut String, number: &mut usize) -> Result<()
             }
             out.push_str("</ul>\n");
         }
-        Block::Table(table) => out.push_str(&table.to_html()?),
-        Block::Figure(figure) => write_figure(figure, out, number)?,
+        Block::Table(table) => write_table(table, out, written)?,
+        Block::Figure(figure) => write_figure(figure, out, written)?,
         Block::Figures(figures) => {
             out.push_str("<div class=\"row\">\n");
             for figure in figures {
-                write_figure(figure, out, number)?;
+                write_figure(figure, out, written)?;
             }
             out.push_str("</div>\n");
         }
-        Block::Callout(mood, text) => {
-            let _ = writeln!(
-                out,
-                "<aside class=\"callout {}\"><span class=\"mark\" aria-hidden=\"true\">{}</span><div>{}</div></aside>",
-                mood.class(),
-                mood.mark(),
-                running(text).trim_end()
-            );
-        }
+        Block::Callout(mood, text) => out.push_str(&callout(*mood, text)),
         Block::Details { summary, blocks } => {
             let _ = writeln!(out, "<details>\n<summary>{}</summary>", escape::html(summary));
             for block in blocks {
-                write_block(block, out, number)?;
+                write_block(block, out, written)?;
             }
             out.push_str("</details>\n");
         }
@@ -106,8 +136,13 @@ fn write_block(block: &Block, out: &mut String, number: &mut usize) -> Result<()
     Ok(())
 }
 
-fn write_figure(figure: &Figure, out: &mut String, number: &mut usize) -> Result<(), RenderError> {
-    *number += 1;
+fn write_figure(figure: &Figure, out: &mut String, written: &mut Written<'_>) -> Result<(), RenderError> {
+    written.figures += 1;
+    let number = written.figures;
+    let name = &figure.name;
+    let files = written.files.map_or(String::new(), |_| {
+        format!(" <span class=\"files\"><a href=\"figures/{name}.svg\">SVG</a> <a href=\"figures/{name}.csv\">data</a></span>")
+    });
     let svg = figure.chart.svg()?;
     // No screen makes a figure larger than it was meant to be.
     let own = natural_width(&svg).map_or(String::new(), |w| format!(" style=\"--own: {w}px\""));
@@ -115,7 +150,7 @@ fn write_figure(figure: &Figure, out: &mut String, number: &mut usize) -> Result
     let _ = write!(
         out,
         "<figure id=\"figure-{}\">\n<div class=\"card\"{own}>{svg}</div>\n\
-         <figcaption><b>Figure {number}.</b> {caption}</figcaption>\n</figure>\n",
+         <figcaption><b>Figure {number}.</b> {caption}{files}</figcaption>\n</figure>\n",
         figure.name,
     );
     Ok(())

@@ -13,6 +13,9 @@ pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
     check(page)?;
     let mut out = vec![format!("# {}", escape::markdown(&page.title))];
     out.extend(running(&page.lead));
+    if let Some((mood, text)) = &page.callout {
+        out.push(write_block(&Block::Callout(*mood, text.clone()))?);
+    }
     if page.sections.len() > 2 {
         let entry = |s: &Section| format!("- [{}](#{}){}", escape::markdown(&s.heading), s.id, mark_of(s));
         let entries = page.sections.iter().map(entry);

@@ -19,11 +19,22 @@ pub struct Page {
     pub title: String,
     /// What the reader should know first.
     pub lead: String,
+    /// What must not be overlooked, below the lead.
+    pub callout: Option<Callout>,
     /// The sections, in order.
     pub sections: Vec<Section>,
     /// Small print at the end: what made the page, out of what.
     pub footer: String,
+    /// Whether it takes the width of a screen, without a list of its sections beside it.
+    pub is_wide: bool,
+    /// Words of a box that hides the rows of tables which do not have what is typed; none for no box.
+    pub filter: Option<String>,
+    /// Name of its files: its tables and figures are then to be had as files, and the page links to them.
+    pub files: Option<String>,
 }
+
+/// A sentence that must not be overlooked, lightly marked.
+pub type Callout = (Mood, String);
 
 /// A section with a heading and an anchor.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -109,6 +120,28 @@ pub(crate) fn all_figures(page: &Page) -> Vec<&Figure> {
     let mut out = Vec::new();
     page.sections.iter().for_each(|s| collect(&s.blocks, &mut out));
     out
+}
+
+/// The tables of a page with the names of their files, without an ending, in order.
+pub fn tables(page: &Page) -> Vec<(String, &Table)> {
+    fn collect<'a>(blocks: &'a [Block], out: &mut Vec<&'a Table>) {
+        for block in blocks {
+            match block {
+                Block::Table(table) => out.push(table),
+                Block::Details { blocks, .. } => collect(blocks, out),
+                _ => {}
+            }
+        }
+    }
+    let mut out = Vec::new();
+    page.sections.iter().for_each(|section| collect(&section.blocks, &mut out));
+    let name = page.files.as_deref().unwrap_or("page");
+    out.into_iter().enumerate().map(|(place, table)| (table_file(name, place + 1), table)).collect()
+}
+
+/// The name of the file of a page's table, counted from one.
+pub(crate) fn table_file(page: &str, number: usize) -> String {
+    format!("{page}-table-{number}")
 }
 
 /// Names become files and anchors: they must be safe, and each its own.

@@ -3,7 +3,7 @@
 
 use crate::case::IntegratorKind;
 use crate::judge::peers;
-use crate::judge::peers::Comparison;
+use crate::judge::peers::{Comparison, Peer};
 use crate::judge::work_precision::{NextLevel, TimedRun, WorkPrecision};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Style};
 use crate::render::page::Block;
@@ -149,10 +149,16 @@ fn next_table(levels: &[NextLevel]) -> Table {
     .note("the cost grows as h^−exponent; the error falls with the order and the floor of its class")
 }
 
+/// What a program is, on how many cells, by which steps, and where its errors were sampled.
+fn words_of_peer(peer: &Peer) -> String {
+    let cells = peer.cells.map_or(String::new(), |cells| format!(", {cells} cells"));
+    format!("{}: {}{cells}, {}, at {}", peer.name, peer.kind, peer.time_scheme, peer.samples)
+}
+
 fn peers_table(compared: &[Comparison<'_, '_>]) -> Table {
     let measured = |value: Option<f64>, kind| Cell::of(value, kind, "not measured");
     let rows = compared.iter().map(|one| {
-        let mut row = vec![Cell::Text(format!("{}: {}", one.peer.name, one.peer.kind))];
+        let mut row = vec![Cell::Text(words_of_peer(one.peer))];
         row.extend(one.peer.errors.map(|error| measured(error, Cell::Error)));
         row.push(measured(one.peer.seconds, Cell::Number));
         match &one.ahead {

@@ -1,34 +1,19 @@
-//! The first screen: what each method converges to and how fast, in one table.
+//! What each method of a study converges to and how fast, in one table.
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::Class;
 use crate::convergence::orders::WINDOW;
 use crate::judge::paths::{Path, paths};
 use crate::render::number;
-use crate::render::page::{Block, Section};
+use crate::render::page::Block;
 use crate::render::report::labels::first_measure;
 use crate::render::report::{StudyResults, labels};
-use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
+use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure};
 use crate::wording::typed;
 
 /// Cells at which an error is quoted.
 const QUOTED_CELLS: usize = 10;
-
-/// What a reader should know first.
-pub fn lead(results: &[StudyResults<'_>]) -> String {
-    let judged: usize = results.iter().map(|one| one.judgements.len()).sum();
-    let met: usize = results.iter().map(StudyResults::met).sum();
-    let runs: usize = results.iter().map(|one| one.records.len()).sum();
-    let unsound: usize = results.iter().map(|one| one.unsound.len()).sum();
-    let checks = if unsound == 0 { String::new() } else { format!(", {unsound} checks of runs failed") };
-    format!(
-        "{} studies, {runs} runs, {met} of {judged} expectations met{checks}. Every error is held against an exact solution \
-         whose own truncation is bounded, and names its norm, its place and its time; no order is quoted before the \
-         series has been given a class.",
-        results.len()
-    )
-}
 
 /// What is quoted of every path.
 const QUOTED: [(Quantity, Sample); 4] = [
@@ -38,80 +23,60 @@ const QUOTED: [(Quantity, Sample); 4] = [
     (Quantity::Settlement, Sample::Surface),
 ];
 
-/// One row a path: order and error on ten cells of each measure, and the floors there are.
-pub fn section(results: &[StudyResults<'_>]) -> Section {
-    let mut columns = columns("study | method | against");
+/// One row a path: order and error on ten cells of each measure, and the floors there are; nothing where
+/// no mesh was refined.
+pub fn blocks(one: &StudyResults<'_>) -> Vec<Block> {
+    let mut columns = columns("method | against");
     columns.extend(QUOTED.map(|(quantity, sample)| {
         TableColumn::text(format!("{} {}", labels::quantity(quantity), labels::sample(sample)))
     }));
     let mut rows = Vec::new();
     let mut floors = Vec::new();
-    for one in results {
-        let mut all = paths(one.records, Axis::Cells);
-        all.retain(|path| path.records.len() >= WINDOW);
-        // A layer's other soils have their place in its own section.
-        all.retain(|path| !one.study.scene.shows_locking() || path.records[0].case.variant().is_empty());
-        let labels = labels::path_labels(&all);
-        for (path, label) in all.iter().zip(&labels.each) {
-            let times = &path.records[0].case.time_factors;
-            let Some(time_factor) = times.get((times.len() - 1) / 2) else { continue };
-            for reference in &one.study.references {
-                let cells = QUOTED.map(|(quantity, sample)| {
-                    let measure = first_measure(quantity, sample, reference.name(), *time_factor);
-                    quote(&one.study.name, path, &measure, &mut floors)
-                });
-                // Against another theory than its own a run is quoted where that is the question.
-                if *reference == one.study.references[0] || one.asks_for(reference.name()) {
-                    let mut row: Vec<Cell> = vec![
-                        one.study.name.as_str().into(),
-                        Cell::Code(label.clone()),
-                        reference.name().into(),
-                    ];
-                    row.extend(cells);
-                    rows.push(row);
-                }
+    let mut all = paths(one.records, Axis::Cells);
+    all.retain(|path| path.records.len() >= WINDOW);
+    // A layer's other soils have their place in its own section.
+    all.retain(|path| !one.study.scene.shows_locking() || path.records[0].case.variant().is_empty());
+    let labels = labels::path_labels(&all);
+    for (path, label) in all.iter().zip(&labels.each) {
+        let times = &path.records[0].case.time_factors;
+        let Some(time_factor) = times.get((times.len() - 1) / 2) else { continue };
+        for reference in &one.study.references {
+            let cells = QUOTED.map(|(quantity, sample)| {
+                let measure = first_measure(quantity, sample, reference.name(), *time_factor);
+                quote(path, &measure, &mut floors)
+            });
+            // Against another theory than its own a run is quoted where that is the question.
+            if *reference == one.study.references[0] || one.asks_for(reference.name()) {
+                let mut row: Vec<Cell> = vec![Cell::Code(label.clone()), reference.name().into()];
+                row.extend(cells);
+                rows.push(row);
             }
         }
     }
-    let table = Table::of(
-        "What converges to what: order on the finest three meshes, error on ten cells",
-        columns,
-        rows,
-    )
-    .note(
-        "at the middle output time of each study; relative L_2 norm over the volume; a class \
-             stands where it allows no order",
-    );
-    let unmet: usize = results.iter().map(|one| one.judgements.len() - one.met()).sum();
-    let mut blocks = Vec::new();
-    if unmet > 0 {
-        blocks.push(Block::Callout(
-            Mood::Fail,
-            format!("{unmet} expectations are not met: see their studies."),
-        ));
+    if rows.is_empty() {
+        return Vec::new();
     }
-    blocks.push(Block::Table(table));
+    let title = "Order on the finest three meshes, error on ten cells";
+    let table = Table::of(title, columns, rows).note(
+        "at the middle output time; relative L_2 norm over the volume; a class stands where it allows no order",
+    );
+    let mut blocks = vec![Block::Heading("What converges to what".to_owned()), Block::Table(table)];
     if !floors.is_empty() {
-        blocks.push(Block::Heading("Floors".to_owned()));
+        blocks.push(Block::Paragraph("Floors:".to_owned()));
         blocks.push(Block::List(floors));
     }
-    Section {
-        heading: "Findings".to_owned(),
-        id: "findings".to_owned(),
-        mood: Some(Mood::of(unmet == 0)),
-        blocks,
-    }
+    blocks
 }
 
 /// Order and error of one series in a few characters; its floor, where there is one, is told at
-/// length, with its study.
-fn quote(study: &str, path: &Path<'_>, measure: &Measure, floors: &mut Vec<String>) -> Cell {
+/// length.
+fn quote(path: &Path<'_>, measure: &Measure, floors: &mut Vec<String>) -> Cell {
     let summary = path.summary(measure);
     let class = &summary.classification;
     let is_pressure = (measure.quantity, measure.sample) == (Quantity::Pressure, Sample::Points);
     if let Some(floor) = class.floor.as_ref().filter(|_| is_pressure) {
         floors.push(format!(
-            "`{study}`, **{}**, {} at T_v = {} against `{}`: {}. {}",
+            "**{}**, {} at T_v = {} against `{}`: {}. {}",
             path.label(),
             labels::measure(measure),
             typed(measure.time_factor),

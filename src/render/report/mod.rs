@@ -1,4 +1,4 @@
-//! The report: one page over the records of studies, as HTML and as Markdown.
+//! The pages behind the answers: one a study over its records, and the list of all.
 
 pub mod appendix;
 pub mod critical_step_maps;
@@ -10,7 +10,7 @@ pub mod pages;
 pub mod plane_fields;
 pub mod refinement;
 pub mod stiffness_sweeps;
-pub mod study_section;
+pub mod study_page;
 pub mod survival;
 pub mod theory_lines;
 pub mod worst_checks;
@@ -33,6 +33,8 @@ pub struct StudyResults<'a> {
     pub judgements: Vec<Judgement>,
     /// What no record may be, of those that are: the case and a sentence.
     pub unsound: Vec<(String, String)>,
+    /// The file of the study, as it was given.
+    pub file: String,
 }
 
 impl<'a> StudyResults<'a> {
@@ -42,7 +44,21 @@ impl<'a> StudyResults<'a> {
         let unsound = finished.flat_map(|record| {
             soundness::complaints(record).into_iter().map(|sentence| (record.case.label(), sentence))
         });
-        Self { study, records, judgements: judge_study(study, records, tier), unsound: unsound.collect() }
+        let file = format!("studies/{}.toml", study.name);
+        Self {
+            study,
+            records,
+            judgements: judge_study(study, records, tier),
+            unsound: unsound.collect(),
+            file,
+        }
+    }
+
+    /// The same of a study that came from another file.
+    #[must_use]
+    pub fn from_file(mut self, file: String) -> Self {
+        self.file = file;
+        self
     }
 
     /// Whether an expectation of the study is about a reference.
@@ -62,7 +78,7 @@ impl<'a> StudyResults<'a> {
 
     /// What runs the study again.
     pub(crate) fn run_command(&self) -> String {
-        format!("oedometer run studies/{}.toml", self.study.name)
+        format!("oedometer run {}", self.file)
     }
 
     /// Whether every expectation is met, by records that are sound.

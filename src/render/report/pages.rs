@@ -1,76 +1,64 @@
-//! The pages of a report: the whole, and a front page with what a reader sees first, short enough for a
-//! repository to keep.
+//! The list of all studies, in groups, before their pages.
 
-use crate::exact::exact_error::ExactError;
-use crate::render::page::{Block, Figure, Page, Section, all_figures};
-use crate::render::report::{StudyResults, appendix, findings, study_section, survival};
+use crate::render::page::{Block, Page, Section, slug};
+use crate::render::report::{StudyResults, appendix};
 use crate::render::table::{Cell, Mood, Table, columns};
 
-/// What the front page shows a figure of: its name there, and what the names of the report's figures
-/// have in them. The first figure of each kind is shown.
-const SHOWN: [(&str, &str); 7] = [
-    ("readme-mesh", "-cells-pressure-points-"),
-    ("readme-isochrones", "-isochrones-gc-sri-patch"),
-    ("readme-large-strain", "large-strain-mesh-isochrones-"),
-    ("readme-consolidation", "-consolidation"),
-    ("readme-layer", "-displacement-skeleton"),
-    ("readme-critical-step", "-drag"),
-    ("readme-wall-time", "-wall-time"),
-];
-
-/// The page over the results of studies.
-///
-/// # Errors
-/// When a reference refuses a case.
-pub fn page_of(results: &[StudyResults<'_>]) -> Result<Page, ExactError> {
-    let mut sections = vec![findings::section(results)];
-    for one in results {
-        sections.push(study_section::of_study(one)?);
-    }
-    sections.extend(survival::section(results));
+/// The list of studies, and how their numbers were made. `ending` is that of their pages.
+pub fn index_page(results: &[StudyResults<'_>], ending: &str) -> Page {
+    let groups = groups(results);
+    let mut sections: Vec<Section> = groups
+        .iter()
+        .map(|(name, studies)| Section {
+            heading: capitalised(name),
+            id: slug(name),
+            mood: Some(Mood::of(studies.iter().all(|one| one.passes()))),
+            blocks: vec![Block::Table(studies_table(studies, ending))],
+        })
+        .collect();
     sections.push(appendix::section(results));
-    Ok(Page {
-        title: "Convergence report".to_owned(),
-        lead: findings::lead(results),
+    let up = if ending == "html" { "../index.html" } else { "../README.md" };
+    Page {
+        title: "All studies".to_owned(),
+        lead: format!("{} studies in {} groups. [The answers]({up}).", results.len(), groups.len()),
         sections,
         footer: appendix::footer(results),
-    })
-}
-
-/// The findings, a figure of each kind and the verdict on every study; the rest is in the `whole` report.
-pub fn front_page(results: &[StudyResults<'_>], whole: &Page) -> Page {
-    let mut findings = findings::section(results);
-    findings.blocks.retain(|block| matches!(block, Block::Callout(..) | Block::Table(_)));
-    let all = all_figures(whole);
-    let shown = SHOWN.iter().filter_map(|(name, kind)| {
-        let figure = all.iter().find(|figure| figure.name.contains(kind))?;
-        Some(Block::Figure(Figure { name: (*name).to_owned(), ..(*figure).clone() }))
-    });
-    let shown: Vec<Block> = shown.collect();
-    let mut sections = vec![findings];
-    if !shown.is_empty() {
-        sections.push(section("Figures", "figures", shown));
-    }
-    sections.push(section("Studies", "studies", vec![Block::Table(studies_table(results))]));
-    let made_by = "`oedometer report` makes this page, `index.html` with every figure and table of every study, and \
-                   the same as `report.md`; a repository keeps this page alone.";
-    Page {
-        title: whole.title.clone(),
-        lead: format!("{}\n\nMade by {}. {made_by}", whole.lead, appendix::footer(results)),
-        sections,
-        footer: String::new(),
+        filter: Some("Words that a study has".to_owned()),
+        files: Some("studies".to_owned()),
+        ..Page::default()
     }
 }
 
-fn section(heading: &str, id: &str, blocks: Vec<Block>) -> Section {
-    Section { heading: heading.to_owned(), id: id.to_owned(), mood: None, blocks }
+/// Studies by the first word of their names where several share it; the others together.
+fn groups<'b, 'a>(results: &'b [StudyResults<'a>]) -> Vec<(String, Vec<&'b StudyResults<'a>>)> {
+    let first_word = |one: &StudyResults<'_>| one.study.name.split('-').next().unwrap_or_default().to_owned();
+    let mut groups: Vec<(String, Vec<&StudyResults<'a>>)> = Vec::new();
+    for one in results {
+        let word = first_word(one);
+        let shared = results.iter().filter(|other| first_word(other) == word).count() > 1;
+        let name = if shared { word } else { "other".to_owned() };
+        match groups.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, studies)) => studies.push(one),
+            None => groups.push((name, vec![one])),
+        }
+    }
+    groups.sort_by_key(|(name, _)| name == "other");
+    groups
+}
+
+fn capitalised(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
 }
 
 /// One row per study: how many of its expectations are met, and what runs it.
-fn studies_table(results: &[StudyResults<'_>]) -> Table {
-    let rows = results.iter().map(|one| {
+fn studies_table(studies: &[&StudyResults<'_>], ending: &str) -> Table {
+    let rows = studies.iter().map(|one| {
         vec![
-            one.study.title.as_str().into(),
+            Cell::Link {
+                words: one.study.title.clone(),
+                target: format!("{}.{ending}", slug(&one.study.name)),
+            },
             Cell::Count(one.records.len() as u64),
             Cell::Verdict(Mood::of(one.passes()), format!("{} of {}", one.met(), one.judgements.len())),
             Cell::Code(one.run_command()),

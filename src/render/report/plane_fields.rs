@@ -74,6 +74,7 @@ fn figure(
     time_factor: f64,
     oscillation: Option<f64>,
 ) -> Figure {
+    let reach = shared_reach(field);
     let mut chart = Chart::new(
         name.to_owned(),
         ChartAxis::linear("x/H (–)"),
@@ -81,21 +82,36 @@ fn figure(
     );
     chart.field = Some(ColourField {
         label: "p/q (–)".to_owned(),
+        reach: Some(reach),
         x_edges: field.x_edges.clone(),
         y_edges: field.y_edges.clone(),
         values: values.to_vec(),
     });
     chart.size = Size { width: 380.0, plot_height: 240.0, equal_units: true };
+    let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+    let beyond = if largest > reach {
+        format!(" Values reach {}, beyond the scale that all these fields share.", number::number(largest))
+    } else {
+        String::new()
+    };
     let caption = match oscillation {
-        None => format!("Theory at T_v = {time_factor}."),
+        None => format!("Theory at T_v = {time_factor}. All these fields share one scale."),
         Some(index) => {
-            format!("{name} at T_v = {time_factor}: oscillation index {}.", number::fixed(index, 2))
+            format!("{name} at T_v = {time_factor}: oscillation index {}.{beyond}", number::fixed(index, 2))
         }
     };
     results.figure(&format!("field-{name}"), chart, caption)
 }
 
-/// The findings in sentences, each from the numbers.
+/// Colours reach this far beyond the largest exact value.
+const REACH: f64 = 1.25;
+
+/// How far the colours of all fields reach: a little beyond the exact one.
+fn shared_reach(field: &PlaneField) -> f64 {
+    REACH * field.exact.iter().map(|value| value.abs()).fold(0.0, f64::max)
+}
+
+/// The findings in sentences, each from the numbers; of what was not swept there is none.
 fn verdicts(standings: &[Standing]) -> Vec<String> {
     let names = |is: &dyn Fn(&Standing) -> bool| -> String {
         let found: Vec<String> =
@@ -104,17 +120,19 @@ fn verdicts(standings: &[Standing]) -> Vec<String> {
     };
     let is_independent =
         |one: &Standing| one.spread.is_some_and(|spread| spread < 0.02) && one.class != Some(Class::Locked);
-    vec![
-        format!(
-            "**Locked under the water's incompressibility** (less than half of the displacement on every mesh): {}.",
-            names(&|one| one.class == Some(Class::Locked))
-        ),
-        format!(
+    let mut sentences = vec![format!(
+        "**Locked under the water's incompressibility** (less than half of the displacement on every mesh): {}.",
+        names(&|one| one.class == Some(Class::Locked))
+    )];
+    if standings.iter().any(|one| one.spread.is_some()) {
+        sentences.push(format!(
             "**Displacement error independent of the water's stiffness** (within 2 % from K_w/E = 10³ on, and not \
              locked): {}.",
             names(&is_independent)
-        ),
-        format!(
+        ));
+    }
+    if standings.iter().any(|one| one.stiff_skeleton.is_some()) {
+        sentences.push(format!(
             "**Holds where the skeleton is nearly incompressible too** (of those, no more than twice the errors of \
              displacement and pressure at ν = 0.25): {}.",
             names(&|one| {
@@ -125,8 +143,9 @@ fn verdicts(standings: &[Standing]) -> Vec<String> {
                     && keeps(one.stiff_skeleton, one.displacement)
                     && keeps(one.stiff_skeleton_pressure, one.pressure)
             })
-        ),
-    ]
+        ));
+    }
+    sentences
 }
 
 /// Errors and orders at the start, the best mean rank first.

@@ -80,6 +80,19 @@ pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
     blocks
 }
 
+/// The figure of one error over the mesh, against the scene's own solution; none where it was not refined.
+pub fn mesh_figure(
+    results: &StudyResults<'_>,
+    quantity: Quantity,
+    sample: Sample,
+    time_factor: f64,
+) -> Option<Figure> {
+    let all = longest_paths(results, Axis::Cells);
+    let own = results.study.references.first()?.name();
+    let few = drawn(&all);
+    if few.is_empty() { None } else { figure(results, &few, Axis::Cells, quantity, sample, own, time_factor) }
+}
+
 /// Paths of at least three levels; in a study of variants with two levels there is no order.
 fn longest_paths<'a>(results: &StudyResults<'a>, axis: Axis) -> Vec<Path<'a>> {
     let mut all = paths(results.records, axis);
@@ -138,7 +151,7 @@ fn figure(
     chart.subtitle = Some(format!("T_v = {time_factor}, against {reference}{}", labels.subtitle_end()));
     chart.size = Size::PANEL;
     for (summary, label) in summaries.iter().zip(&labels.each) {
-        let points =
+        let points: Vec<(f64, f64)> =
             summary.series.levels().iter().filter_map(|level| Some((level.size, level.error?))).collect();
         chart.series.push(Series::new(label.clone(), points));
     }
@@ -157,7 +170,7 @@ fn figure(
     }
     let name = format!("{}-{}-{}-{reference}", axis.name(), quantity.name(), sample.name());
     let caption = match axis {
-        Axis::Cells | Axis::TimeStep | Axis::WaterBulkModulus => captions(&summaries),
+        Axis::Cells | Axis::TimeStep | Axis::WaterBulkModulus => captions(&summaries, &labels.each),
         Axis::PointsPerCell => {
             "More points refine the quadrature, not the mesh: the error tends to the mesh's own.".to_owned()
         }
@@ -206,15 +219,15 @@ fn add_triangles(chart: &mut Chart, summaries: &[SeriesSummary<'_>], labels: &[S
 }
 
 /// The class of every series of a figure, those that share a class together.
-fn captions(summaries: &[SeriesSummary<'_>]) -> String {
+fn captions(summaries: &[SeriesSummary<'_>], labels: &[String]) -> String {
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
-    for summary in summaries {
+    for (summary, label) in summaries.iter().zip(labels) {
         let class = summary.classification.class.name().to_owned();
         let order = match (&summary.classification.order, summary.path.axis) {
             (Some(order), axis) if shows_orders(axis, &summary.measure.reference) => {
-                format!("{} (order {order:.2})", summary.path.records[0].case.method)
+                format!("{label} (order {order:.2})")
             }
-            _ => summary.path.records[0].case.method.to_string(),
+            _ => label.clone(),
         };
         match said.iter_mut().find(|(known, _)| *known == class) {
             Some((_, labels)) => labels.push(order),
@@ -222,8 +235,8 @@ fn captions(summaries: &[SeriesSummary<'_>]) -> String {
         }
     }
     let parts: Vec<String> =
-        said.iter().map(|(class, labels)| format!("*{class}*: {}", labels.join(", "))).collect();
-    parts.join("; ") + "."
+        said.iter().map(|(class, labels)| format!("*{class}*: {}", labels.join("; "))).collect();
+    parts.join(". ") + "."
 }
 
 /// Errors at every level with pairwise orders, fit, finest window and class.

@@ -1,55 +1,37 @@
-//! What each method survives: how every hard case ended, with its error where it has one.
+//! How every case of a hard study ended, with its error where it has one.
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::first_norm;
 use crate::record::{Record, Status};
 use crate::render::number;
-use crate::render::page::{Block, Section};
+use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 
 /// An error as large as the answer: the run went on, and its result is none.
 const MEANINGLESS: f64 = 1.0;
 
-/// One table over the studies that say how their cases are to end; none where there are none.
-pub fn section(results: &[StudyResults<'_>]) -> Option<Section> {
-    let hard: Vec<&StudyResults<'_>> = results.iter().filter(|one| is_hard(one)).collect();
-    if hard.is_empty() {
+/// How every case of a study ended that says how its cases are to end; none for others.
+pub fn block(one: &StudyResults<'_>) -> Option<Block> {
+    if !is_hard(one) {
         return None;
     }
-    let methods = distinct(hard.iter().flat_map(|one| one.records).map(runner_of));
-    let mut columns = columns("hard case | mesh");
+    let methods = distinct(one.records.iter().map(runner_of));
+    let mut columns = columns("case");
     columns.extend(methods.iter().map(|method| TableColumn::text(method.clone())));
-    let mut rows = Vec::new();
-    for one in &hard {
-        for setup in distinct(one.records.iter().map(setup_of)) {
-            let mut row: Vec<Cell> = vec![one.study.title.as_str().into(), setup.as_str().into()];
-            row.extend(methods.iter().map(|method| {
-                let of_setup = |record: &&Record| setup_of(record) == setup && runner_of(record) == *method;
-                one.records.iter().find(of_setup).map_or(Cell::missing("not tried"), end_of)
-            }));
-            rows.push(row);
-        }
-    }
+    let rows = distinct(one.records.iter().map(setup_of)).into_iter().map(|setup| {
+        let mut row: Vec<Cell> = vec![setup.as_str().into()];
+        row.extend(methods.iter().map(|method| {
+            let of_setup = |record: &&Record| setup_of(record) == setup && runner_of(record) == *method;
+            one.records.iter().find(of_setup).map_or(Cell::missing("not tried"), end_of)
+        }));
+        row
+    });
     let table = Table::of("How each case ended", columns, rows).note(
-        "a number is the relative L_2 error of the pressure at the points at the last output, ✗ \
-             where it is as large as the answer; ✗ with the name of a failure and its step. What each \
-             study expects stands in its own section.",
+        "a number is the relative L_2 error of the pressure at the points at the last output, ✗ where it is as large \
+         as the answer; ✗ with the name of a failure and its step",
     );
-    let moods = hard.iter().all(|one| one.passes());
-    Some(Section {
-        heading: "What each method survives".to_owned(),
-        id: "survival".to_owned(),
-        mood: Some(Mood::of(moods)),
-        blocks: vec![
-            Block::Paragraph(
-                "Every case ends in a state with a name: all outputs reached, or the failure with its step, its time \
-                 and the growth that was seen. Nothing that is not a number enters a record."
-                    .to_owned(),
-            ),
-            Block::Table(table),
-        ],
-    })
+    Some(Block::Table(table))
 }
 
 /// Names in the order of their first appearance.

@@ -11,6 +11,7 @@ use crate::record::{Record, Status};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
+use crate::render::report::labels::first_measure;
 
 /// Cells of the runs whose profiles are drawn: the paper's column.
 const SHOWN_CELLS: usize = 10;
@@ -30,10 +31,27 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     for record in compared(&shown) {
         figures.push(isochrones(results, record)?);
     }
-    figures.push(consolidation(results, &shown)?);
+    if !coincide(results, &shown) {
+        figures.push(consolidation(results, &shown)?);
+    }
     blocks.push(Block::Figures(figures));
     blocks.extend(sampling_note(&shown).map(Block::Paragraph));
     Ok(blocks)
+}
+
+/// Settlements within this of one another are one marker.
+const ONE_MARKER: f64 = 0.01;
+
+/// Whether the settlements of all runs lie on one another at every output: then their curves tell nothing apart.
+fn coincide(results: &StudyResults<'_>, shown: &[&Record]) -> bool {
+    let own = results.study.references[0].name();
+    shown[0].case.time_factors.iter().all(|time| {
+        let measure = first_measure(Quantity::Settlement, Sample::Surface, own, *time);
+        let errors = shown.iter().filter_map(|record| Some(measure.error(record)?.value));
+        let (low, high) = errors
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), error| (low.min(error), high.max(error)));
+        high - low < ONE_MARKER
+    })
 }
 
 /// The first sound run of each method on the paper's mesh.
@@ -73,7 +91,7 @@ fn isochrone_name(
 }
 
 /// The paper's Figs 3a and 4a: `p/q` against depth.
-fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, ExactError> {
+pub fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, ExactError> {
     let own = results.study.references[0];
     let mut chart = Chart::new(
         format!("Isochrones, {}", record.case.method),
@@ -106,7 +124,7 @@ fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, Exa
 }
 
 /// The paper's Figs 3b and 4b: degree of consolidation against the time factor.
-fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Figure, ExactError> {
+pub fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Figure, ExactError> {
     let own = results.study.references[0];
     let case = &shown[0].case;
     let end = case.time_factors.last().copied().unwrap_or(1.0);

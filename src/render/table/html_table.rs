@@ -31,7 +31,9 @@ impl Table {
         for row in &self.rows {
             out.push_str("<tr>");
             for (cell, column) in row.iter().zip(&self.columns) {
-                let _ = write!(out, "<td class=\"{}\">{}</td>", class(column.align), show(cell, &footnotes));
+                let value = cell.value().map_or(String::new(), |value| format!(" data-v=\"{value:.5e}\""));
+                let shown = show(cell, &footnotes);
+                let _ = write!(out, "<td class=\"{}\"{value}>{shown}</td>", class(column.align));
             }
             out.push_str("</tr>\n");
         }
@@ -55,6 +57,9 @@ fn show(cell: &Cell, footnotes: &[&str]) -> String {
     match (cell, marked(cell, footnotes)) {
         (Cell::Code(name), _) => format!("<code>{}</code>", plain_html(name)),
         (Cell::Text(text), _) => html(text),
+        (Cell::Link { words, target }, _) => {
+            format!("<a href=\"{}\">{}</a>", plain_html(target), html(words))
+        }
         (Cell::Verdict(mood, text), _) => {
             format!("<span class=\"{}\">{} {}</span>", mood.class(), mood.mark(), html(text))
         }

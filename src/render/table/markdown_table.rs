@@ -44,6 +44,9 @@ fn show(cell: &Cell, footnotes: &[&str]) -> String {
     match (cell, marked(cell, footnotes)) {
         (Cell::Code(name), _) => code(name),
         (Cell::Verdict(mood, text), _) => format!("{} {}", mood.mark(), escape::markdown(text)),
+        (Cell::Link { words, target }, _) => {
+            format!("[{}]({})", escape::markdown(words), target.replace('|', "%7C"))
+        }
         (_, (text, Some(mark))) => format!("{text} <sup>{mark}</sup>"),
         // A number may well start with a minus.
         (Cell::Text(_), (text, None)) => escape::markdown(&text),

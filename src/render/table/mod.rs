@@ -1,7 +1,8 @@
-//! A table as plain data, and its writers: text, Markdown, HTML and CSV.
+//! A table as plain data, and its writers: text, Markdown, HTML, CSV and LaTeX.
 
 pub mod csv_table;
 pub mod html_table;
+pub mod latex_table;
 pub mod markdown_table;
 pub mod text_table;
 
@@ -104,6 +105,13 @@ pub enum Cell {
     Number(f64),
     /// A judgement.
     Verdict(Mood, String),
+    /// Words that lead to a page.
+    Link {
+        /// What is read.
+        words: String,
+        /// Where it leads: a path or an address.
+        target: String,
+    },
     /// Nothing, and why.
     Missing(String),
 }
@@ -160,10 +168,24 @@ impl Cell {
         value.map_or_else(|| Self::missing(why), kind)
     }
 
+    /// The number that a cell is sorted by, where its words do not tell it.
+    pub(crate) fn value(&self) -> Option<f64> {
+        match self {
+            Self::Error(v)
+            | Self::Order(v)
+            | Self::OrderWithin(v, _)
+            | Self::Percent(v)
+            | Self::Seconds(v)
+            | Self::Number(v) => Some(*v),
+            Self::Count(n) => Some(*n as f64),
+            _ => None,
+        }
+    }
+
     /// What the cell says; why something is missing is left to the footnotes.
     fn show(&self) -> String {
         match self {
-            Self::Text(text) | Self::Code(text) => text.clone(),
+            Self::Text(text) | Self::Code(text) | Self::Link { words: text, .. } => text.clone(),
             Self::Error(v) => number::error(*v),
             Self::Order(v) => number::order(*v),
             Self::OrderWithin(v, half) => {

@@ -1,6 +1,6 @@
 //! What a chart could not show, in words.
 use crate::render::chart::canvas::Px;
-use crate::render::chart::describe::{Chart, Style};
+use crate::render::chart::describe::{Chart, Series, Style};
 use crate::render::chart::layout::clip::PixelFrame;
 use crate::render::chart::layout::scale::{Reason, Ruler};
 use std::collections::BTreeMap;
@@ -46,6 +46,7 @@ pub(crate) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &PixelFrame) -> 
         points.push(places);
     }
     let mut notes = sentence(&lost).into_iter().collect::<Vec<_>>();
+    notes.extend(without_data(chart));
     notes.extend(chart.field.as_ref().and_then(|field| match (field.shape(), field.missing()) {
         (None, _) => Some("The field's edges and values do not belong together.".to_owned()),
         (_, 0) => None,
@@ -53,6 +54,22 @@ pub(crate) fn place(chart: &Chart, x: &Ruler, y: &Ruler, frame: &PixelFrame) -> 
         (_, n) => Some(format!("{n} cells without a value are grey.")),
     }));
     PlacedNote { points, notes }
+}
+
+/// One sentence on the series that have no points at all, where others have.
+fn without_data(chart: &Chart) -> Option<String> {
+    let mut names: Vec<&str> = Vec::new();
+    for series in &chart.series {
+        let has_data = |other: &&Series| other.name == series.name && !other.points.is_empty();
+        if !series.name.is_empty()
+            && !chart.series.iter().any(|other| has_data(&other))
+            && !names.contains(&series.name.as_str())
+        {
+            names.push(&series.name);
+        }
+    }
+    let some = chart.series.iter().any(|series| !series.points.is_empty());
+    (some && !names.is_empty()).then(|| format!("Without data here: {}.", names.join(", ")))
 }
 
 fn sentence(lost: &Lost<'_>) -> Option<String> {

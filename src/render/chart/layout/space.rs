@@ -68,6 +68,11 @@ impl Space {
         self.taken.push(room);
     }
 
+    /// Whether a room meets nothing that is taken.
+    pub fn is_free(&self, room: &PixelFrame) -> bool {
+        !self.taken.iter().any(|taken| taken.meets(room))
+    }
+
     /// The offer with the least in its way; the first of equals. Offers that leave the frame count only
     /// if there is no other.
     pub fn best(&self, offers: &[Offer]) -> Option<usize> {

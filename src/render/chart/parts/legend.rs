@@ -2,7 +2,7 @@
 use crate::elementary;
 use crate::render::chart::canvas::{Canvas, Hold, Px, Rgb, Type};
 use crate::render::chart::describe::{Chart, Style};
-use crate::render::chart::palette::{DARK, QUIET, TEXT, colour, dash, marker};
+use crate::render::chart::palette::{DARK, TEXT, colour, dash, marker};
 use crate::render::script::{width, wrap};
 
 pub(crate) const FONT: f64 = 12.0;
@@ -59,9 +59,9 @@ impl Legend {
     pub fn of(chart: &Chart, looks: &[Look], drawn: &[usize]) -> Self {
         let mut seen: Vec<(Look, String)> = Vec::new();
         for ((series, look), &count) in chart.series.iter().zip(looks).zip(drawn) {
-            let text = if count == 0 { format!("{} (no data)", series.name) } else { series.name.clone() };
-            if !series.name.is_empty() && !seen.contains(&(*look, text.clone())) {
-                seen.push((*look, text));
+            let entry = (*look, series.name.clone());
+            if count > 0 && !series.name.is_empty() && !seen.contains(&entry) {
+                seen.push(entry);
             }
         }
         let entries = seen.into_iter().map(|(look, text)| (look, wrap(&text, 22.0))).collect();
@@ -137,8 +137,7 @@ fn draw_entry(canvas: &mut Canvas, look: Look, lines: &[String], at: Px) {
     }
     let plain = Type { size: FONT, ink: TEXT, bold: false, hold: Hold::Start, upright: false };
     for (i, line) in lines.iter().enumerate() {
-        let ink = if line.ends_with("(no data)") { QUIET } else { TEXT };
-        canvas.text(line, (at.0 + SAMPLE + GAP, middle + 4.2 + 14.0 * i as f64), Type { ink, ..plain });
+        canvas.text(line, (at.0 + SAMPLE + GAP, middle + 4.2 + 14.0 * i as f64), plain);
     }
 }
 

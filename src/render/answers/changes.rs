@@ -1,0 +1,95 @@
+//! What changed since the golden values? Nothing, or the worst first.
+
+use crate::golden::compare::{Change, Difference};
+use crate::render::answers::question::{section, unanswered};
+use crate::render::number;
+use crate::render::page::{Block, Section};
+use crate::render::table::{Cell, Mood, Table, columns};
+
+const HEADING: &str = "What changed since the golden values?";
+
+/// Rows before the rest is only counted.
+const MOST_ROWS: usize = 10;
+
+/// The worst of all differences, of every study together.
+pub fn answer(changes: Option<&[(String, Difference)]>) -> Section {
+    let Some(changes) = changes else {
+        return unanswered(
+            HEADING,
+            "changes",
+            "no golden values of these studies were there to hold against",
+        );
+    };
+    if changes.is_empty() {
+        let text = "Nothing: every value of these studies that has a golden one agrees with it within its tolerance.";
+        return section(HEADING, "changes", vec![Block::Paragraph(text.to_owned())]);
+    }
+    let mut ranked: Vec<&(String, Difference)> = changes.iter().collect();
+    let size = |one: &Difference| one.relative_change().unwrap_or(0.0);
+    ranked.sort_by(|a, b| a.1.change.cmp(&b.1.change).then_with(|| size(&b.1).total_cmp(&size(&a.1))));
+    let count = |kind: Change| changes.iter().filter(|(_, one)| one.change == kind).count();
+    let kinds = [Change::Moved, Change::Missing, Change::Extra, Change::Smaller, Change::Stale];
+    let counted: Vec<String> = kinds
+        .into_iter()
+        .filter(|kind| count(*kind) > 0)
+        .map(|kind| format!("{} {}", count(kind), kind.name()))
+        .collect();
+    let value = |value: Option<f64>| {
+        value.map_or(Cell::missing("no value"), |value| Cell::Text(number::error(value)))
+    };
+    let rows = ranked.iter().take(MOST_ROWS).map(|(study, one)| {
+        let mood = if one.change == Change::Moved { Mood::Fail } else { Mood::Note };
+        vec![
+            Cell::Verdict(mood, one.change.name().to_owned()),
+            Cell::Code(study.clone()),
+            one.name.as_str().into(),
+            value(one.golden),
+            value(one.found),
+            Cell::of(one.relative_change(), Cell::Percent, "nothing to compare"),
+        ]
+    });
+    let table = Table::of(
+        "The worst first",
+        columns("change | study | value | > golden | > now | > relative change"),
+        rows,
+    );
+    let rest = changes.len().saturating_sub(MOST_ROWS);
+    let table =
+        if rest > 0 { table.note(format!("and {rest} more, listed by oedometer check")) } else { table };
+    section(
+        HEADING,
+        "changes",
+        vec![Block::Paragraph(format!("Values that differ: {}.", counted.join(", "))), Block::Table(table)],
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn change(name: &str, change: Change, found: f64) -> (String, Difference) {
+        let difference = Difference {
+            name: name.to_owned(),
+            change,
+            golden: Some(1.0),
+            found: Some(found),
+            tolerance: 0.0,
+        };
+        ("study".to_owned(), difference)
+    }
+
+    #[test]
+    fn the_worst_stands_first_and_what_is_better_last() {
+        let all = [
+            change("stale | T_v=1", Change::Stale, 0.1),
+            change("little | T_v=1", Change::Moved, 1.1),
+            change("much | T_v=1", Change::Moved, 2.0),
+        ];
+        let section = answer(Some(&all));
+        let Some(Block::Table(table)) = section.blocks.last() else { panic!("{section:?}") };
+        let names: Vec<&Cell> = table.rows.iter().map(|row| &row[2]).collect();
+        assert_eq!(names, [&"much | T_v=1".into(), &"little | T_v=1".into(), &"stale | T_v=1".into()]);
+        assert!(format!("{:?}", answer(Some(&[]))).contains("Nothing"));
+        assert!(format!("{:?}", answer(None)).contains("Not in these records"));
+    }
+}

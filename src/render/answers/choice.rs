@@ -1,0 +1,191 @@
+//! Which method should one take? One row a situation, chosen from the records by a rule that is stated.
+
+use crate::case::quantity::{Quantity, Sample};
+use crate::convergence::class::Class;
+use crate::exact::exact_error::ExactError;
+use crate::judge::locking::{Standing, standings};
+use crate::judge::paths::{Path, paths};
+use crate::judge::work_precision::WorkPrecision;
+use crate::render::answers::question::{Links, link_cell, section, unanswered};
+use crate::render::answers::regime::{MethodPath, Regime};
+use crate::render::number;
+use crate::render::page::{Block, Section};
+use crate::render::report::StudyResults;
+use crate::render::report::labels::first_measure;
+use crate::render::table::{Cell, Table, columns};
+use crate::study::expectation::{Axis, NEXT_FINER};
+
+const HEADING: &str = "Which method should I take?";
+
+/// Errors of a stiff skeleton may be this many times those of the usual one.
+const KEEPS: f64 = 2.0;
+
+/// A situation with the method to take: what is measured of it, and the study that carries it.
+struct Advice {
+    situation: String,
+    take: String,
+    evidence: String,
+    study: String,
+}
+
+/// One row a situation.
+pub fn answer(
+    results: &[StudyResults<'_>],
+    small: Option<&Regime<'_>>,
+    large: Option<&Regime<'_>>,
+    links: Links<'_>,
+) -> Result<Section, ExactError> {
+    let mut all: Vec<Advice> = Vec::new();
+    all.extend(small.and_then(|regime| of_regime(results, regime, "Nothing moves far", &|_| true)));
+    let stays = |one: &MethodPath<'_>| one.method.starts_with("TL-");
+    all.extend(large.and_then(|regime| {
+        of_regime(results, regime, "Large strain, points cross cells", &|one| !stays(one))
+    }));
+    all.extend(large.and_then(|regime| {
+        of_regime(results, regime, "Large strain, weights may stay on the first configuration", &stays)
+    }));
+    for one in results.iter().filter(|one| one.study.scene.shows_locking()) {
+        let standings = standings(one.study, one.records)?;
+        all.extend(of_stiff_skeleton(&one.study.name, &standings));
+    }
+    all.extend(of_waves(results));
+    if all.is_empty() {
+        return Ok(unanswered(HEADING, "choice", "several methods on the same column or layer"));
+    }
+    let rows = all.iter().map(|advice| {
+        vec![
+            advice.situation.as_str().into(),
+            Cell::Code(advice.take.clone()),
+            advice.evidence.as_str().into(),
+            link_cell(links, &advice.study),
+        ]
+    });
+    let table = Table::of("", columns("situation | take | because | study"), rows).note(
+        "of the methods that were tried in a situation the one whose largest error is the smallest; the study has the \
+         others",
+    );
+    Ok(section(HEADING, "choice", vec![Block::Table(table)]))
+}
+
+/// The method whose largest error of pressure, effective stress and settlement on the finest common mesh is the
+/// smallest, with its orders.
+fn of_regime(
+    results: &[StudyResults<'_>],
+    regime: &Regime<'_>,
+    situation: &str,
+    fits: &dyn Fn(&MethodPath<'_>) -> bool,
+) -> Option<Advice> {
+    let tried: Vec<(&MethodPath<'_>, f64)> = regime
+        .methods
+        .iter()
+        .filter(|one| fits(one))
+        .filter_map(|one| Some((one, regime.largest_error(one)?)))
+        .collect();
+    let (one, error) = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let order = |name: &str, quantity, sample| {
+        let class = regime.summary(one, quantity, sample).classification;
+        class
+            .order
+            .map_or(format!("{name} {}", class.class), |order| format!("{name} {}", number::order(order)))
+    };
+    let orders = [
+        order("p", Quantity::Pressure, Sample::Points),
+        order("σ′", Quantity::EffectiveStress, Sample::Points),
+        order("s", Quantity::Settlement, Sample::Surface),
+    ];
+    let cheapest = cheapest_words(results, &one.method);
+    Some(Advice {
+        situation: situation.to_owned(),
+        take: one.method.clone(),
+        evidence: format!(
+            "order {}; largest error {} on {} cells, the best of {} tried{cheapest}",
+            orders.join(", "),
+            number::percent(*error),
+            regime.finest_cells,
+            tried.len()
+        ),
+        study: one.study.to_owned(),
+    })
+}
+
+/// What a tenth of a percent costs with a method, where runs were timed.
+fn cheapest_words(results: &[StudyResults<'_>], method: &str) -> String {
+    let timed = results.iter().filter(|one| one.study.timing_repeats > 1);
+    let run = timed.filter_map(|one| {
+        let precision = WorkPrecision::of(one.records, one.study.references.first()?.name())?;
+        let fits = precision
+            .runs
+            .iter()
+            .find(|run| run.error <= 1e-3 && run.record.case.method.to_string() == method)?;
+        Some((fits.wall.median, fits.record.case.integrator.name()))
+    });
+    run.min_by(|a, b| a.0.total_cmp(&b.0))
+        .map_or(String::new(), |(seconds, name)| format!("; 0.1 % in {}, {name}", number::seconds(seconds)))
+}
+
+/// The method that keeps its errors where the skeleton hardly compresses, and who locks.
+fn of_stiff_skeleton(study: &str, standings: &[Standing]) -> Option<Advice> {
+    let keeps = |stiff: Option<f64>, plain: Option<f64>| {
+        stiff.zip(plain).is_some_and(|(stiff, plain)| stiff < KEEPS * plain)
+    };
+    let holds = |one: &&Standing| {
+        one.class != Some(Class::Locked)
+            && keeps(one.stiff_skeleton, one.displacement)
+            && keeps(one.stiff_skeleton_pressure, one.pressure)
+    };
+    let tried = standings.iter().filter(|one| one.stiff_skeleton_pressure.is_some()).count();
+    let holding: Vec<&Standing> = standings.iter().filter(holds).collect();
+    let best = holding.iter().min_by(|a, b| {
+        let error = |one: &Standing| one.stiff_skeleton_pressure.unwrap_or(f64::INFINITY);
+        error(a).total_cmp(&error(b))
+    })?;
+    Some(Advice {
+        situation: "Skeleton nearly incompressible".to_owned(),
+        take: best.method.to_string(),
+        evidence: format!(
+            "errors of the undrained start at the largest ν: u {}, p {}; {} of {tried} methods keep both within twice those of \
+             the usual soil",
+            best.stiff_skeleton.map_or_else(String::new, number::error),
+            best.stiff_skeleton_pressure.map_or_else(String::new, number::error),
+            holding.len()
+        ),
+        study: study.to_owned(),
+    })
+}
+
+/// The integrator whose errors fall with the highest settled order in the step, for the same wave.
+fn of_waves(results: &[StudyResults<'_>]) -> Option<Advice> {
+    let mut best: Option<(f64, f64, String, &str)> = None;
+    let mut tried = 0;
+    for one in results.iter().filter(|one| one.study.scene.has_waves() && one.asks_for(NEXT_FINER)) {
+        for path in paths(one.records, Axis::TimeStep) {
+            let Some((order, error)) = step_order(&path) else { continue };
+            tried += 1;
+            if best
+                .as_ref()
+                .is_none_or(|(known, smallest, _, _)| (order.round(), -error) > (known.round(), -smallest))
+            {
+                best = Some((order, error, path.label(), &one.study.name));
+            }
+        }
+    }
+    let (order, _, take, study) = best?;
+    Some(Advice {
+        situation: "Waves matter".to_owned(),
+        take,
+        evidence: format!(
+            "order {} in the time step, the highest of {tried} schemes tried",
+            number::order(order)
+        ),
+        study: study.to_owned(),
+    })
+}
+
+/// The settled order of the pressure in the step, and the error of the coarsest step.
+fn step_order(path: &Path<'_>) -> Option<(f64, f64)> {
+    let time = *path.records[0].case.time_factors.last()?;
+    let summary = path.summary(&first_measure(Quantity::Pressure, Sample::Points, NEXT_FINER, time));
+    let is_settled = matches!(summary.classification.class, Class::Asymptotic | Class::Superconvergent);
+    let coarsest = summary.series.levels().first()?.error?;
+    Some((summary.classification.order.filter(|_| is_settled)?, coarsest))
+}

@@ -1,0 +1,92 @@
+//! The answer page: what a reader asks of the records of all studies, each question with a sentence,
+//! a short table or a figure, and the study that carries it.
+//!
+//! Every sentence is made from records. A question whose studies are not among them says so.
+
+pub mod audit;
+pub mod changes;
+pub mod choice;
+pub mod converges;
+pub mod cost;
+pub mod making;
+pub mod matrix;
+pub mod paper;
+pub mod question;
+pub mod regime;
+
+use crate::exact::exact_error::ExactError;
+use crate::golden::compare::Difference;
+use crate::render::answers::making::Making;
+use crate::render::answers::question::Links;
+use crate::render::page::{Callout, Page};
+use crate::render::report::StudyResults;
+use crate::render::table::Mood;
+use crate::render::tables::golden_changes::count_of;
+use std::fmt::Write;
+
+/// What the answer page is made of.
+pub struct Answers<'a> {
+    /// The studies with their records and judgements.
+    pub results: &'a [StudyResults<'a>],
+    /// Differences from the golden values with the name of their study; none where there were no golden
+    /// values to hold against.
+    pub changes: Option<&'a [(String, Difference)]>,
+    /// When, where and by which command.
+    pub making: &'a Making,
+    /// Where the page of a study is.
+    pub links: Links<'a>,
+    /// Where the list of all studies is.
+    pub index: &'a str,
+}
+
+/// The answer page.
+///
+/// # Errors
+/// When a reference refuses a case.
+pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
+    let (results, links) = (answers.results, answers.links);
+    let small = regime::small_strain(results);
+    let large = regime::large_strain(results);
+    let sections = vec![
+        choice::answer(results, small.as_ref(), large.as_ref(), links)?,
+        converges::answer(results, small.as_ref(), large.as_ref(), links),
+        paper::answer(results, links)?,
+        cost::answer(results, links),
+        matrix::answer(results, links)?,
+        audit::answer(results, links),
+        changes::answer(answers.changes),
+    ];
+    Ok(Page {
+        title: "Convergence report".to_owned(),
+        lead: format!(
+            "{}\n\n[All studies, with every table and figure]({})",
+            answers.making.words(results),
+            answers.index
+        ),
+        callout: Some(verdict(results)),
+        sections,
+        is_wide: true,
+        ..Page::default()
+    })
+}
+
+/// Whether everything is as expected, in one sentence; what is not is named.
+fn verdict(results: &[StudyResults<'_>]) -> Callout {
+    let judged: usize = results.iter().map(|one| one.judgements.len()).sum();
+    let met: usize = results.iter().map(StudyResults::met).sum();
+    let runs: usize = results.iter().map(|one| one.records.len()).sum();
+    let unsound: usize = results.iter().map(|one| one.unsound.len()).sum();
+    let failing: Vec<&str> =
+        results.iter().filter(|one| !one.passes()).map(|one| one.study.name.as_str()).collect();
+    let mut text = format!(
+        "**{met} of {judged} expectations met** in {} of {runs} runs.",
+        count_of(results.len(), "study", "studies")
+    );
+    if unsound > 0 {
+        let _ = write!(text, " {unsound} checks of runs fail.");
+    }
+    if !failing.is_empty() {
+        let _ = write!(text, " Not as expected: `{}`.", failing.join("`, `"));
+    }
+    (Mood::of(failing.is_empty()), text)
+}

@@ -1,0 +1,117 @@
+//! Does it reproduce the paper? Figs 3a, 3b, 4a and 4b of Zheng et al. (2021), on the paper's axes.
+
+use crate::case::quantity::{Quantity, Sample};
+use crate::exact::exact_error::ExactError;
+use crate::record::{Record, Status};
+use crate::render::answers::question::{Links, links_to, section, unanswered};
+use crate::render::answers::regime::{PAPERS, QUOTED_CELLS};
+use crate::render::chart::describe::Size;
+use crate::render::number;
+use crate::render::page::{Block, Figure, Section};
+use crate::render::report::labels::first_measure;
+use crate::render::report::{StudyResults, theory_lines};
+
+const HEADING: &str = "Does it reproduce the paper?";
+
+/// Methods of a figure of consolidation, the paper's first.
+const MOST_METHODS: usize = 3;
+
+/// The size of one figure of four in a row.
+const QUARTER: Size = Size { width: 400.0, plot_height: 300.0, equal_units: false };
+
+/// The paper's column at small or at large strain: its run of the paper's method on ten cells.
+struct PaperRun<'a> {
+    results: &'a StudyResults<'a>,
+    record: &'a Record,
+}
+
+/// Four figures with the theory line, and how far the runs are from it.
+pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Section, ExactError> {
+    let runs: Vec<(u32, PaperRun<'_>)> = [(3, false), (4, true)]
+        .into_iter()
+        .filter_map(|(number, is_large)| Some((number, run_of(results, is_large)?)))
+        .collect();
+    if runs.is_empty() {
+        let needed = format!("`{PAPERS}` on {QUOTED_CELLS} cells of the paper's column");
+        return Ok(unanswered(HEADING, "paper", &needed));
+    }
+    let mut figures = Vec::new();
+    let mut sentences = Vec::new();
+    for (number, run) in &runs {
+        let own = run.results.study.references[0];
+        figures.push(quarter(theory_lines::isochrones(run.results, run.record)?, &format!("{number}a")));
+        let shown = beside(run);
+        figures.push(quarter(theory_lines::consolidation(run.results, &shown)?, &format!("{number}b")));
+        if let Some((error, at)) = largest_error(run.record, own.name()) {
+            sentences.push(format!(
+                "Figs {number}a, {number}b: on {QUOTED_CELLS} cells `{PAPERS}` is nowhere further than {} from `{}` in the \
+                 pressure at the points (relative L_2, at T_v = {at}).",
+                number::percent(error),
+                own.name()
+            ));
+        }
+    }
+    let studies = runs.iter().map(|(_, run)| run.results.study.name.as_str());
+    let blocks = vec![
+        Block::Paragraph(format!("{} Evidence: {}.", sentences.join(" "), links_to(links, studies))),
+        Block::Figures(figures),
+    ];
+    Ok(section(HEADING, "paper", blocks))
+}
+
+/// The sound run of the paper's method on the paper's mesh with most outputs.
+fn run_of<'a>(results: &'a [StudyResults<'a>], is_large: bool) -> Option<PaperRun<'a>> {
+    let fits = |record: &&Record| {
+        let case = &record.case;
+        let scene = case.scene;
+        record.status == Status::Ok
+            && record.stability.is_none()
+            && case.method.to_string() == PAPERS
+            && case.cells == QUOTED_CELLS
+            && case.column.dimensions == 1
+            && scene.is_large_strain() == is_large
+            && scene.is_loaded()
+            && !scene.has_waves()
+            && case.variant().is_empty()
+            && record.case.column.loading_time == 0.0
+    };
+    let all = results
+        .iter()
+        .flat_map(|one| one.records.iter().filter(fits).map(move |record| PaperRun { results: one, record }));
+    // The first of those with most outputs.
+    all.reduce(|best, next| {
+        if next.record.case.time_factors.len() > best.record.case.time_factors.len() { next } else { best }
+    })
+}
+
+/// The paper's run with those of other methods that differ in nothing else.
+fn beside<'a>(run: &PaperRun<'a>) -> Vec<&'a Record> {
+    let mut shown = vec![run.record];
+    for record in run.results.records {
+        let mut same = record.case.clone();
+        same.method = run.record.case.method;
+        let is_new = shown.iter().all(|other| other.case.method != record.case.method);
+        if is_new && same == run.record.case && record.status == Status::Ok && shown.len() < MOST_METHODS {
+            shown.push(record);
+        }
+    }
+    shown
+}
+
+/// A figure of the report as one of the four.
+fn quarter(mut figure: Figure, number: &str) -> Figure {
+    figure.name = format!("readme-fig-{number}");
+    figure.chart.title = format!("Fig. {number}: {}", figure.chart.title);
+    figure.chart.size = QUARTER;
+    figure
+}
+
+/// The largest error of the pressure at the points over all outputs, and its time factor.
+fn largest_error(record: &Record, reference: &str) -> Option<(f64, f64)> {
+    let times = record.case.time_factors.iter();
+    let errors = times.filter_map(|time| {
+        let measure = first_measure(Quantity::Pressure, Sample::Points, reference, *time);
+        Some((measure.error(record)?.value.abs(), *time))
+    });
+    errors.max_by(|a, b| a.0.total_cmp(&b.0))
+}

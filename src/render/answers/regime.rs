@@ -1,0 +1,219 @@
+//! Methods that solved the same column on several meshes: one path a method, all at one time, so that their
+//! errors can stand beside each other.
+
+use crate::case::Case;
+use crate::case::quantity::{Quantity, Sample};
+use crate::convergence::class::Class;
+use crate::convergence::orders::WINDOW;
+use crate::elementary;
+use crate::judge::paths::{Path, SeriesSummary, paths};
+use crate::render::report::StudyResults;
+use crate::render::report::labels::first_measure;
+use crate::study::expectation::Axis;
+use std::collections::BTreeMap;
+
+/// The mesh of the paper, on which errors are quoted.
+pub const QUOTED_CELLS: usize = 10;
+
+/// The paper's method.
+pub const PAPERS: &str = "GC-SRI-patch";
+
+/// The path that stands for a method.
+pub struct MethodPath<'a> {
+    /// The method.
+    pub method: String,
+    /// The study that ran it.
+    pub study: &'a str,
+    /// Its runs, from coarse to fine.
+    pub path: Path<'a>,
+}
+
+/// Methods on one column with one soil.
+pub struct Regime<'a> {
+    /// One path a method, in the order of their studies.
+    pub methods: Vec<MethodPath<'a>>,
+    /// The time factor at which most of them have errors.
+    pub time_factor: f64,
+    /// The solution of the scene's own equations.
+    pub reference: &'static str,
+    /// The finest mesh that most of the methods ran.
+    pub finest_cells: usize,
+}
+
+/// The column that most methods consolidated at small strain, without waves.
+pub fn small_strain<'a>(results: &'a [StudyResults<'a>]) -> Option<Regime<'a>> {
+    regime(results, &|case| {
+        !case.scene.is_large_strain()
+            && !case.scene.has_waves()
+            && !case.scene.has_plane_fields()
+            && case.scene.is_loaded()
+    })
+}
+
+/// The column that most methods consolidated at large strain.
+pub fn large_strain<'a>(results: &'a [StudyResults<'a>]) -> Option<Regime<'a>> {
+    regime(results, &|case| case.scene.is_large_strain())
+}
+
+/// Paths alike in everything but method, step and integrator, of the column with most methods.
+fn regime<'a>(results: &'a [StudyResults<'a>], fits: &dyn Fn(&Case) -> bool) -> Option<Regime<'a>> {
+    let mut groups: BTreeMap<String, (&'static str, Vec<MethodPath<'a>>)> = BTreeMap::new();
+    for one in results {
+        let Some(reference) = one.study.references.first() else { continue };
+        let is_candidate = |path: &Path<'_>| {
+            let case = &path.records[0].case;
+            path.records.len() >= WINDOW && case.column.dimensions == 1 && fits(case) && is_plain(case)
+        };
+        for path in paths(one.records, Axis::Cells).into_iter().filter(is_candidate) {
+            let case = &path.records[0].case;
+            let key =
+                format!("{:?} {:?} {:?} {}", case.scene, case.column, case.material, case.points_per_cell);
+            let method = case.method.to_string();
+            let group = groups.entry(key).or_insert_with(|| (reference.name(), Vec::new()));
+            group.1.push(MethodPath { method, study: &one.study.name, path });
+        }
+    }
+    let (reference, all) = groups.into_values().max_by_key(|(_, all)| count_of_methods(all))?;
+    let time_factor = time_of_most(&all)?;
+    let methods = best_of_each(all, reference, time_factor);
+    let finest_cells = mesh_of_most(&methods)?;
+    Some(Regime { methods, time_factor, reference, finest_cells })
+}
+
+/// Whether a case is of the scene's own equations, on regular points, however it is integrated.
+fn is_plain(case: &Case) -> bool {
+    let variant = case.variant();
+    variant.is_empty() || variant.split(", ").all(|part| part.ends_with(" drag"))
+}
+
+fn count_of_methods(all: &[MethodPath<'_>]) -> usize {
+    distinct(all.iter().map(|one| one.method.as_str())).len()
+}
+
+/// Names, each once, in the order of their first appearance.
+pub fn distinct<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
+    let mut seen: Vec<&str> = Vec::new();
+    for name in names {
+        if !seen.contains(&name) {
+            seen.push(name);
+        }
+    }
+    seen
+}
+
+/// Of several values the one that most methods have; of those the largest.
+fn value_of_most(all: &[MethodPath<'_>], values_of: &dyn Fn(&MethodPath<'_>) -> Vec<f64>) -> Option<f64> {
+    let mut known: Vec<(f64, Vec<&str>)> = Vec::new();
+    for one in all {
+        for value in values_of(one) {
+            match known.iter_mut().find(|(other, _)| *other == value) {
+                Some((_, methods)) if methods.contains(&one.method.as_str()) => {}
+                Some((_, methods)) => methods.push(&one.method),
+                None => known.push((value, vec![&one.method])),
+            }
+        }
+    }
+    let most = known.iter().map(|(_, methods)| methods.len()).max()?;
+    known.iter().filter(|(_, methods)| methods.len() == most).map(|(value, _)| *value).reduce(f64::max)
+}
+
+/// The time factor that three levels of most methods have.
+fn time_of_most(all: &[MethodPath<'_>]) -> Option<f64> {
+    value_of_most(all, &|one| {
+        let records = &one.path.records;
+        let times = records.iter().flat_map(|record| &record.case.time_factors).copied();
+        let asked =
+            |time: &f64| records.iter().filter(|record| record.case.time_factors.contains(time)).count();
+        times.filter(|time| *time > 0.0 && asked(time) >= WINDOW).collect()
+    })
+}
+
+/// The finest mesh of most methods.
+fn mesh_of_most(all: &[MethodPath<'_>]) -> Option<usize> {
+    let finest =
+        value_of_most(all, &|one| one.path.records.iter().map(|record| record.case.cells as f64).collect())?;
+    all.iter()
+        .flat_map(|one| &one.path.records)
+        .map(|record| record.case.cells)
+        .find(|cells| *cells as f64 == finest)
+}
+
+/// What a path must converge in to stand for its method.
+const CONVERGES: [(Quantity, Sample); 4] = [
+    (Quantity::Pressure, Sample::Points),
+    (Quantity::Pressure, Sample::Centres),
+    (Quantity::EffectiveStress, Sample::Points),
+    (Quantity::Settlement, Sample::Surface),
+];
+
+/// What speaks for a path: three levels, the quoted mesh, how many of its series have a settled order, levels.
+type Worth = (bool, bool, usize, usize);
+
+/// One path a method, that for which most speaks.
+fn best_of_each<'a>(all: Vec<MethodPath<'a>>, reference: &str, time_factor: f64) -> Vec<MethodPath<'a>> {
+    let worth = |one: &MethodPath<'_>| {
+        let series = CONVERGES.map(|(quantity, sample)| {
+            one.path.summary(&first_measure(quantity, sample, reference, time_factor))
+        });
+        let is_settled = |summary: &&SeriesSummary<'_>| {
+            matches!(summary.classification.class, Class::Asymptotic | Class::Superconvergent)
+        };
+        let settled = series.iter().filter(is_settled).count();
+        let levels = series[0].series.levels().iter().filter(|level| level.error.is_some()).count();
+        let has_quoted = one.path.records.iter().any(|record| record.case.cells == QUOTED_CELLS);
+        (levels >= WINDOW, has_quoted, settled, levels)
+    };
+    let mut best: Vec<(Worth, MethodPath<'a>)> = Vec::new();
+    for one in all {
+        let own = worth(&one);
+        match best.iter_mut().find(|(_, other)| other.method == one.method) {
+            Some(place) if place.0 < own => *place = (own, one),
+            Some(_) => {}
+            None => best.push((own, one)),
+        }
+    }
+    best.into_iter().map(|(_, one)| one).collect()
+}
+
+impl Regime<'_> {
+    /// The series of a method's error.
+    pub fn summary<'s>(&self, one: &MethodPath<'s>, quantity: Quantity, sample: Sample) -> SeriesSummary<'s> {
+        one.path.summary(&first_measure(quantity, sample, self.reference, self.time_factor))
+    }
+
+    /// A method's error on a mesh.
+    pub fn error(
+        &self,
+        one: &MethodPath<'_>,
+        quantity: Quantity,
+        sample: Sample,
+        cells: usize,
+    ) -> Option<f64> {
+        let measure = first_measure(quantity, sample, self.reference, self.time_factor);
+        let record = one.path.records.iter().find(|record| record.case.cells == cells)?;
+        Some(measure.error(record)?.value.abs())
+    }
+
+    /// The largest of a method's errors on the finest mesh of most: of pressure and effective stress at the
+    /// points, and of the settlement; none where one is missing.
+    pub fn largest_error(&self, one: &MethodPath<'_>) -> Option<f64> {
+        let errors = [
+            (Quantity::Pressure, Sample::Points),
+            (Quantity::EffectiveStress, Sample::Points),
+            (Quantity::Settlement, Sample::Surface),
+        ]
+        .map(|(quantity, sample)| self.error(one, quantity, sample, self.finest_cells));
+        errors.into_iter().collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
+    }
+
+    /// The method of a name.
+    pub fn method(&self, name: &str) -> Option<&MethodPath<'_>> {
+        self.methods.iter().find(|one| one.method == name)
+    }
+
+    /// The settlement in the end over the height, where the scene tells it by its load.
+    pub fn strain(&self) -> Option<f64> {
+        let case = &self.methods.first()?.path.records.first()?.case;
+        Some(1.0 - elementary::exp(-case.column.load / case.material.oedometric_modulus()))
+    }
+}

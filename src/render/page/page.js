@@ -1,0 +1,46 @@
+"use strict";
+// Columns sort by a click on their head: numbers by value, words by letter; a second click turns the order.
+for (const table of document.querySelectorAll("main table")) {
+  const body = table.tBodies[0];
+  if (!body || body.rows.length < 3) continue;
+  [...table.tHead.rows[0].cells].forEach((head, place) => {
+    head.tabIndex = 0;
+    head.classList.add("sorts");
+    const sort = () => {
+      const down = head.getAttribute("aria-sort") === "ascending";
+      for (const other of table.tHead.rows[0].cells) other.removeAttribute("aria-sort");
+      head.setAttribute("aria-sort", down ? "descending" : "ascending");
+      const key = (row) => row.cells[place].dataset.v ?? row.cells[place].textContent.trim();
+      const compare = (a, b) => {
+        const [x, y] = [key(a), key(b)];
+        const [s, t] = [Number(x), Number(y)];
+        const numbers = x !== "" && y !== "" && !Number.isNaN(s) && !Number.isNaN(t);
+        return numbers ? s - t : x.localeCompare(y);
+      };
+      const rows = [...body.rows].sort(compare);
+      body.append(...(down ? rows.reverse() : rows));
+    };
+    head.addEventListener("click", sort);
+    head.addEventListener("keydown", (event) => { if (event.key === "Enter") sort(); });
+  });
+}
+// A box that leaves only the rows with every word that is typed.
+const content = document.getElementById("content");
+if (content.dataset.filter) {
+  const box = document.createElement("input");
+  box.type = "search";
+  box.placeholder = content.dataset.filter;
+  box.setAttribute("aria-label", content.dataset.filter);
+  box.addEventListener("input", () => {
+    const words = box.value.toLowerCase().split(/\s+/);
+    for (const section of content.querySelectorAll("section")) {
+      const rows = [...section.querySelectorAll("tbody tr")];
+      for (const row of rows) {
+        const text = row.textContent.toLowerCase();
+        row.hidden = !words.every((word) => text.includes(word));
+      }
+      section.hidden = rows.length > 0 && rows.every((row) => row.hidden);
+    }
+  });
+  content.prepend(box);
+}
