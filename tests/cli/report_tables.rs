@@ -51,7 +51,6 @@ fn small_study() -> (Study, Vec<Record>) {
             profile: "PROFILE".to_owned(),
             commit: "COMMIT".to_owned(),
             dirty: false,
-            ..record.provenance.clone()
         };
     }
     (study, records)

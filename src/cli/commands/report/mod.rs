@@ -111,7 +111,7 @@ fn changes(
     let mut held = false;
     let mut changes = Vec::new();
     for (study, report) in studies.iter().zip(reports) {
-        let Ok(golden) = GoldenFile::read(&arguments.golden, &study.name) else { continue };
+        let Ok(golden) = GoldenFile::read_or_embedded(&arguments.golden, &study.name) else { continue };
         held = true;
         let of_tier: HashSet<String> = study.cases(Tier::Ci).into_iter().map(Case::hash).collect();
         let is_of_tier = |record: &&Record| of_tier.contains(&record.hash);
