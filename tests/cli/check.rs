@@ -484,17 +484,19 @@ fn the_faults_of_the_judge_are_in_the_sources_and_have_a_test() {
     let list: toml::Table = toml::from_str(&read("tests/mutations/judge-faults-output.toml")).expect("TOML");
     let faults = list["fault"].as_array().expect("faults");
     assert!(faults.len() >= 8);
-    let tests = read("tests/cli/check.rs");
+    let sources_of = |folder: &Path| -> String {
+        let files = fs::read_dir(folder).expect("a folder").flatten();
+        files.filter_map(|entry| fs::read_to_string(entry.path()).ok()).collect()
+    };
+    let tests = sources_of(&root.join("tests/cli")) + &sources_of(&root.join("tests/unit"));
     for fault in faults {
         let word = |key: &str| fault[key].as_str().expect(key);
         let source = read(word("file"));
         assert_eq!(source.matches(word("from")).count(), 1, "{} in {}", word("name"), word("file"));
         assert_ne!(word("from"), word("to"), "{}", word("name"));
         let test = format!("fn {}()", word("caught_by"));
-        let folder = root.join(word("file"));
-        let beside = fs::read_dir(folder.parent().expect("a folder")).expect("a folder").flatten();
-        let beside: Vec<String> = beside.filter_map(|entry| fs::read_to_string(entry.path()).ok()).collect();
-        let found = beside.iter().chain([&tests]).any(|source| source.contains(&test));
+        let beside = sources_of(root.join(word("file")).parent().expect("a folder"));
+        let found = beside.contains(&test) || tests.contains(&test);
         assert!(found, "{}: no test {test}", word("name"));
     }
 }

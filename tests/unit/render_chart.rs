@@ -45,7 +45,11 @@ fn what_is_not_drawn_is_counted() {
     );
     let text = svg(&nothing());
     assert!(text.contains(">no data</text>"), "{text}");
-    assert!(text.contains("GIMP (no data)"), "{text}");
+    assert!(text.contains("3 values not drawn: 2 not finite (GIMP); 1 not positive"), "{text}");
+    assert!(!text.contains("(no data)"), "{text}");
+    let text =
+        svg(&convergence().with(Series::new("CPDI", Vec::new())).with(Series::new("MPM2", Vec::new())));
+    assert!(text.contains("Without data here: CPDI, MPM2."), "{text}");
     assert!(svg(&pressure_field()).contains("1 cell without a value is grey."));
 }
 
