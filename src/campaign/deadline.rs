@@ -54,8 +54,8 @@ mod tests {
     fn a_deadline_that_is_asked_often_or_rarely_is_over_in_time() {
         let now = Deadline::after(0.0);
         assert!((0..2).any(|_| now.is_over()));
-        let soon = Deadline::after(0.02);
         let start = Instant::now();
+        let soon = Deadline::after(0.02);
         while !soon.is_over() {}
         assert!(start.elapsed() >= Duration::from_millis(20));
         let rare = Deadline::after(0.01);
