@@ -40,6 +40,10 @@
 //! | 15 | large strain in general | `src/exact/large_strain/diffusion.rs:coefficients` |
 //! | 16 | Mandel's slab | `src/exact/mandel/series.rs:sum`, `src/exact/mandel/early.rs:ratios` |
 //! | 17 | chord mean of the conductivity | `src/mpm/operators/chord_mean.rs:take_chord_drag`, `src/soil/conductivity_mean.rs:flow_potential` |
+//! | 18 | pressure as a nodal field | `src/mpm/operators/recovery/nodal_field.rs:fit` |
+//! | 19 | domains of water points | `src/mpm/layers/water_domains.rs:take_domains` |
+//! | 20 | balances of two layers | `src/mpm/layers/water_to_nodes.rs:map_water_masses`, `src/mpm/layers/water_to_nodes.rs:map_forces` |
+//! | 21 | pressure along the water | `src/mpm/layers/water_pressure.rs:update_pressure` |
 //!
 //! # The step
 //!

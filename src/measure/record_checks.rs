@@ -21,6 +21,12 @@ const WATER_AT_REST: f64 = 3e-4;
 /// where operators follow the points and the storage of cells with them.
 const WATER_MOVING: f64 = 5e-2;
 
+/// Water in the soil over its pores, less one, where both are counted apart: five times what the surface's cut leaves
+/// on ten cells (1.0e-3), a tenth of what the wrong continuity makes of it.
+const WATER_IN_PORES: f64 = 5e-3;
+/// Share of the water that left beside the settlement: the same, over the pores that are lost.
+const WATER_LEFT: f64 = 5e-3;
+
 /// A value of a record, and what it is held to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordCheck {
@@ -52,7 +58,7 @@ pub fn start_checks(record: &Record) -> Vec<RecordCheck> {
     // Waves start out of balance, points off the lattice take their share of the forces, operators that
     // follow points err in them from the start, and points integrate no spline exactly: of those a layer
     // alone, whose start is an equilibrium of its own operators, is judged.
-    let rests = !case.scene.has_waves() && column.loading_time == 0.0 && column.points.is_regular();
+    let rests = !case.scene.has_waves() && column.loading_time == 0.0 && column.points.is_lattice();
     let is_exact = case.scene.start_is_solved() || !case.method.basis.is_spline();
     let is_judged = rests && is_exact && !deforms(record);
     vec![
@@ -73,7 +79,7 @@ pub fn start_checks(record: &Record) -> Vec<RecordCheck> {
 
 /// Checks of the balances at an output.
 pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
-    vec![
+    let mut checks = vec![
         RecordCheck::of("mass of solids, drift", balance.solid_mass_drift, ROUND_OFF),
         RecordCheck::of(
             "water balance, over what the load presses out",
@@ -84,7 +90,24 @@ pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
         RecordCheck::of("settlement off the settlement curve", balance.settlement_curve_gap, CURVE_GAP),
         // Constant recovery leaves both stresses wrong alike: zero is no evidence, and waves are no fault.
         RecordCheck::of("equilibrium (σ' − p + q)/q, rms", balance.equilibrium_residual, None),
-    ]
+    ];
+    if let Some(layers) = &balance.layers {
+        let is_exact = record.case.material.continuity == Continuity::Conservative;
+        let bound = |most: f64| is_exact.then_some(most);
+        checks.extend([
+            RecordCheck::of(
+                "water in the soil over its pores, less one",
+                layers.pore_water,
+                bound(WATER_IN_PORES),
+            ),
+            RecordCheck::of(
+                "water that left, less the settlement over n_0 H",
+                layers.water_left_error,
+                bound(WATER_LEFT),
+            ),
+        ]);
+    }
+    checks
 }
 
 /// Where volumes follow the deformation, the undrained start has compressed the column by

@@ -14,6 +14,7 @@ pub mod body;
 pub mod critical_step;
 pub mod explicit;
 pub mod implicit;
+pub mod layers;
 pub mod method;
 pub mod momentum;
 pub mod operators;

@@ -29,6 +29,12 @@ pub struct CaseDemand {
     pub solid_drift_below: Option<f64>,
     /// Largest imbalance of the water at any output, over what the load presses out.
     pub water_drift_below: Option<f64>,
+    /// Bounds on the largest size, at any output, of the water in the soil over its pores, less one: of two layers.
+    pub pore_water: Option<[f64; 2]>,
+    /// Largest difference, at any output, of the share of the water that left from the settlement over `n_0 H`.
+    pub water_left_within: Option<f64>,
+    /// Largest difference of any error from that of the same case in one layer.
+    pub one_layer_within: Option<f64>,
 }
 
 /// An expectation of single cases.
