@@ -279,6 +279,11 @@ impl Method {
         self.pressure.is_by_cells() && self.recovery == Recovery::Patch
     }
 
+    /// Whether the pressure is a nodal field of its own.
+    pub fn has_nodal_pressure(&self) -> bool {
+        self.pressure == PressureIntegration::Points && self.recovery == Recovery::Nodal
+    }
+
     /// Whether the domains of the points follow the deformation.
     pub fn domains_follow(&self) -> bool {
         matches!(self.basis, Basis::Cpgimp | Basis::Cpdi)
