@@ -3,8 +3,8 @@
 use crate::convergence::class::Class;
 use crate::convergence::class::evaluable_series::plain;
 use crate::judge::paths::Judgement;
-use crate::measure::pressure_peak::pressure_peak;
 use crate::judge::verdict::{Check, Verdict, VerdictOutcome, check};
+use crate::measure::pressure_peak::pressure_peak;
 use crate::record::{Balance, Record};
 use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
 use crate::wording::typed;
@@ -188,9 +188,13 @@ time_step = [{ growth = 0.05 }]
     #[test]
     fn a_value_that_is_missing_or_no_number_is_in_no_range() {
         let bounds = Bounds { above: 1.0, below: 2.0 };
-        for (found, passes) in
-            [(Some(1.0), true), (Some(2.0), false), (Some(0.9), false), (Some(f64::NAN), false), (None, false)]
-        {
+        for (found, passes) in [
+            (Some(1.0), true),
+            (Some(2.0), false),
+            (Some(0.9), false),
+            (Some(f64::NAN), false),
+            (None, false),
+        ] {
             assert_eq!(value_found("velocity", found, bounds).pass, passes, "{found:?}");
         }
     }

@@ -5,8 +5,8 @@ use crate::elementary;
 use crate::exact::exact_error::ExactError;
 use crate::exact::reference::Reference;
 use crate::mpm::run::snapshot::Snapshot;
-use crate::scene::column::column_parameters;
 use crate::record::{Balance, HistoryRow, StartChecks};
+use crate::scene::column::column_parameters;
 
 /// The start against what the scene expects of it.
 ///

@@ -46,7 +46,8 @@ fn pressure_at_the_end(heights: &[f64], pressures: &[f64]) -> f64 {
         let lowest = heights.iter().copied().filter(|height| *height > floor).fold(f64::INFINITY, f64::min);
         let reach = 1e-6 * lowest;
         let in_row = heights.iter().zip(pressures).filter(|(height, _)| (**height - lowest).abs() <= reach);
-        let (count, sum) = in_row.fold((0.0, 0.0), |(count, sum), (_, pressure)| (count + 1.0, sum + pressure));
+        let (count, sum) =
+            in_row.fold((0.0, 0.0), |(count, sum), (_, pressure)| (count + 1.0, sum + pressure));
         (lowest + reach, sum / count)
     };
     let (first_height, first) = row_above(f64::NEG_INFINITY);

@@ -134,7 +134,8 @@ pub fn column_problem<const D: usize>(
         loading_time: column.loading_time,
         initial_gradient,
         // Round-off is of the size of what weighs.
-        pressure_scale: weight.map_or(load, |gravity| load.max(soil.mixture_density() * gravity * column.height)),
+        pressure_scale: weight
+            .map_or(load, |gravity| load.max(soil.mixture_density() * gravity * column.height)),
         is_bounded: true,
     })
 }

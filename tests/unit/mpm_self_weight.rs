@@ -13,7 +13,8 @@ use crate::soil::material::Material;
 fn resting(method: &str, configuration: Configuration) -> Problem<1> {
     let column = SceneKind::AtRest.default_column();
     assert!(column.self_weight);
-    let method = Method { configuration: Some(configuration), ..Method::named(method).expect("a known method") };
+    let method =
+        Method { configuration: Some(configuration), ..Method::named(method).expect("a known method") };
     column_problem::<1>(SceneKind::AtRest, &column, &Material::default(), method, 6, 2).expect("a column")
 }
 
@@ -25,13 +26,21 @@ fn a_column_under_its_weight_rests_whatever_the_method() {
             // The base carries the saturated column: 21 kPa.
             let base = body.points.pressure[0] - body.points.effective_stress[0][0][0];
             assert!((base / (2155.0 * 9.81) - 11.5 / 12.0).abs() < 1e-12, "{base}");
-            assert!(body.unbalanced_force() < 1e-11, "{method} {configuration:?}: {}", body.unbalanced_force());
+            assert!(
+                body.unbalanced_force() < 1e-11,
+                "{method} {configuration:?}: {}",
+                body.unbalanced_force()
+            );
             let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
             for _ in 0..2000 {
                 body.explicit_step(2e-5, &settings);
             }
             // Over the conductivity of 1e-4 m/s: twelve digits.
-            assert!(body.largest_velocity() < 1e-16, "{method} {configuration:?}: {}", body.largest_velocity());
+            assert!(
+                body.largest_velocity() < 1e-16,
+                "{method} {configuration:?}: {}",
+                body.largest_velocity()
+            );
         }
     }
 }
@@ -52,7 +61,8 @@ fn what_is_told_is_the_excess_and_a_settled_surface_lies_under_free_water() {
     for configuration in [Configuration::Updated, Configuration::Total] {
         let column = Column { load: 2e5, self_weight: true, ..Column::default() };
         let soil = Material { law: Law::LogLinear, ..Material::default() };
-        let method = Method { configuration: Some(configuration), ..Method::named("GIMP-SRI").expect("known") };
+        let method =
+            Method { configuration: Some(configuration), ..Method::named("GIMP-SRI").expect("known") };
         let problem = column_problem::<1>(SceneKind::XieLeo, &column, &soil, method, 8, 2).expect("a column");
         let excess = problem.points.pressure[0];
         let mut body = Body::new(problem);
@@ -63,7 +73,8 @@ fn what_is_told_is_the_excess_and_a_settled_surface_lies_under_free_water() {
         // Half a metre down without a change of stress: the free water presses with γ_w/2 on both phases.
         let weights = body.surface.weights(&body.grid, &body.points);
         let (top_node, share) = weights.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).expect("a node");
-        let top = |body: &Body<1>| (body.nodes.mixture_force[top_node][0], body.nodes.water_force[top_node][0]);
+        let top =
+            |body: &Body<1>| (body.nodes.mixture_force[top_node][0], body.nodes.water_force[top_node][0]);
         body.map_forces();
         let before = top(&body);
         body.weight.as_mut().expect("it weighs").rise = -0.5;

@@ -167,7 +167,8 @@ mod tests {
         let entry = |row: usize, column: usize| ((row * 7 + column * 13) % 11) as f64 - 4.5;
         let held = |row: usize, column: usize| row.abs_diff(column) <= 1 || row == size || column == size;
         let places = || (0..=size).flat_map(|row| (0..=size).map(move |column| (row, column)));
-        let mut matrix = Bordered::spanning(size + 1, 1, places().filter(|(row, column)| held(*row, *column)));
+        let mut matrix =
+            Bordered::spanning(size + 1, 1, places().filter(|(row, column)| held(*row, *column)));
         let mut dense = DMatrix::zeros(size + 1, size + 1);
         for (row, column) in places().filter(|(row, column)| held(*row, *column)) {
             matrix.add(row, column, entry(row, column));

@@ -137,8 +137,15 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
     let mut rows = vec![Vec::new(); unknowns.count];
     for (node, felt) in by_node.iter().enumerate() {
         for row in unknowns.displacement[node].into_iter().flatten() {
-            rows[row].clone_from(felt);
+            // The nodes of a plate share a row.
+            rows[row].extend_from_slice(felt);
         }
+    }
+    if unknowns.border > 0 {
+        rows[unknowns.count - unknowns.border..].iter_mut().for_each(|row| {
+            row.sort_unstable();
+            row.dedup();
+        });
     }
     // Porosity and deformation of a site: of its points.
     let is_by_cells = body.method.pressure.is_by_cells();

@@ -86,7 +86,11 @@ impl<const D: usize> Trial<D> {
     pub fn settlement_rate(&self) -> f64 {
         let (body, velocity) = (&self.body, &self.body.nodes.solid_velocity);
         match &body.plate {
-            Some(_) => -body.settling_weights().iter().map(|(node, weight)| dot(weight, &velocity[*node])).sum::<f64>(),
+            Some(_) => -body
+                .settling_weights()
+                .iter()
+                .map(|(node, weight)| dot(weight, &velocity[*node]))
+                .sum::<f64>(),
             None => -body.surface.mean_of(&body.grid, &body.points, velocity),
         }
     }

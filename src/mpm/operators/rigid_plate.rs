@@ -134,7 +134,8 @@ impl<const D: usize> Body<D> {
     /// of the surface.
     pub fn outflow_weights(&self) -> Vec<(usize, Vector<D>)> {
         let mut weights = upward(self.surface.mean_weights(&self.grid, &self.points));
-        if let Some((plate, lead)) = self.plate.as_ref().and_then(|plate| Some((plate, plate.nodes.first()?))) {
+        if let Some((plate, lead)) = self.plate.as_ref().and_then(|plate| Some((plate, plate.nodes.first()?)))
+        {
             weights.push((*lead, along(NORMAL, plate.face_over_surface)));
         }
         weights
