@@ -2,6 +2,7 @@
 
 use crate::case::Case;
 use crate::mpm::method::{Basis, Configuration, Memory};
+use crate::scene::SceneKind;
 use crate::soil::conductivity_mean::ConductivityMean;
 
 impl Case {
@@ -33,6 +34,16 @@ impl Case {
                 moves && !matches!(method.basis, Basis::Cpgimp | Basis::Cpdi),
                 "the domains of water points follow their water where points move, and this basis has none that follow",
                 "take the basis \"cpgimp\" or \"cpdi\", or `layers = 1`",
+            ),
+            (
+                self.scene == SceneKind::Mandel,
+                "a rigid plate is tied to one layer of points",
+                "take another scene, or `layers = 1`",
+            ),
+            (
+                self.column.self_weight,
+                "the weight of a column is carried by one layer of points",
+                "leave `self_weight` out, or take `layers = 1`",
             ),
             (
                 self.material.conductivity_mean == ConductivityMean::Chord,

@@ -1,4 +1,4 @@
-//! Two layers of material points: those of the skeleton, and those of the water (docs/theory.md, section 3b).
+//! Two layers of material points: those of the skeleton, and those of the water (docs/theory.md, Eqs 21–23).
 //!
 //! The skeleton is a [`Body`](crate::mpm::body::Body) whose points carry no water: its grid, weights, strains, load
 //! and nodal fields. `two_layers` puts the water beside it and takes the explicit step; each part of what the water

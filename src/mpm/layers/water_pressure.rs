@@ -1,4 +1,4 @@
-//! The pressure of the water points: continuity along the water (docs/theory.md, Eq. 21).
+//! The pressure of the water points: continuity along the water (docs/theory.md, Eq. 23).
 //!
 //! ```text
 //! (n/K_w) D_w p/Dt = −∇·[v_s + n (v_w − v_s)]

@@ -60,7 +60,7 @@ impl GrowingLoad {
         if self.loading_time > 0.0 {
             self.share = (time / self.loading_time).min(1.0);
             body.surface.load = self.share * self.load;
-            body.surface.apply(&body.grid, &body.points, &mut body.nodes);
+            body.apply_loads();
         }
     }
 }

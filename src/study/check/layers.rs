@@ -69,6 +69,14 @@ mod tests {
             let error = checked("xie-leo", method, more).expect_err(why);
             assert!(error.contains(why) && error.contains("--> t.toml:"), "{error}");
         }
+        for (scene, why) in [
+            ("xie-leo\"\ncolumn.self_weight = true #", "is carried by one layer"),
+            ("mandel\"\n#", "tied to one layer"),
+        ] {
+            let error =
+                checked(scene, "\"GIMP\"", "layers = [2]\nintegrator = [\"explicit\"]").expect_err(why);
+            assert!(error.contains(why), "{error}");
+        }
     }
 
     #[test]

@@ -1,5 +1,5 @@
 //! Pressure as a nodal field of its own: the mixed weak form of the continuity with the functions `N` of the
-//! velocities, its mass lumped (after Chen, Zhang, Sze, Kan & Qiu 2018; docs/theory.md, Eq. 18).
+//! velocities, its mass lumped (after Chen, Zhang, Sze, Kan & Qiu 2018; docs/theory.md, Eq. 20).
 //!
 //! `p_j = Σ_p N_jp V_p p_p / Σ_p N_jp V_p` of the values at the points, then `p_p = Σ_j N_jp p_j`: the forces of the
 //! second are the adjoint of the first. The nodal means do not see a divergence that changes its sign from cell
