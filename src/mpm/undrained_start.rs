@@ -6,9 +6,10 @@
 
 use crate::mpm::assembled::stiffness::{NodeBlocks, pressure_stiffness};
 use crate::mpm::body::Body;
-use crate::mpm::implicit::banded::{Banded, BandedLu, Singular};
+use crate::mpm::direct_solver::{Factors, Singular, SystemMatrix};
 use crate::mpm::method::Configuration;
 use crate::mpm::operators::volumetric::VolumetricRows;
+use crate::mpm::state::grid::Grid;
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Free components of the nodes, in the order of the unknowns.
@@ -33,8 +34,8 @@ impl FreeComponents {
         components
     }
 
-    /// The blocks between free components as a banded matrix.
-    fn banded<const D: usize>(&self, blocks: &NodeBlocks<D>) -> Banded {
+    /// The blocks between free components of the nodes of a grid as a matrix.
+    fn matrix<const D: usize>(&self, blocks: &NodeBlocks<D>, grid: &Grid<D>) -> SystemMatrix {
         let entries = || {
             self.places.iter().enumerate().flat_map(move |(row, (node, d))| {
                 blocks.rows[*node].iter().flat_map(move |(column, block)| {
@@ -43,7 +44,11 @@ impl FreeComponents {
             })
         };
         let counting = || entries().filter(|entry| entry.2 != 0.0);
-        let mut matrix = Banded::spanning(self.places.len(), counting().map(|entry| (entry.0, entry.1)));
+        let positions: Vec<Vector<D>> =
+            self.places.iter().map(|(node, _)| grid.node_position(*node)).collect();
+        let mut matrix = SystemMatrix::spanning(&positions, |visitor| {
+            counting().for_each(|(row, column, _)| visitor(row, column));
+        });
         for (row, column, value) in counting() {
             matrix.add(row, column, value);
         }
@@ -55,7 +60,7 @@ impl FreeComponents {
 #[derive(Clone, Debug)]
 pub struct UndrainedSystem<const D: usize> {
     unknowns: FreeComponents,
-    factors: BandedLu,
+    factors: Factors,
     rows: VolumetricRows<D>,
 }
 
@@ -69,14 +74,14 @@ impl<const D: usize> UndrainedSystem<D> {
         let mut stiffness = body.skeleton_stiffness(&rows);
         stiffness.add(&pressure_stiffness(&body.coupled_pressure_forces(&rows), &rows.divergence));
         let unknowns = FreeComponents::of(&body.nodes.free);
-        let matrix = unknowns.banded(&stiffness);
-        let mut factors = BandedLu::of_shape(&matrix);
+        let matrix = unknowns.matrix(&stiffness, &body.grid);
+        let mut factors = Factors::of_shape(&matrix);
         factors.factor(&matrix)?;
         Ok(Self { unknowns, factors, rows })
     }
 
     /// Displacements of the nodes under forces on them.
-    pub fn displacements(&self, forces: &[Vector<D>]) -> Vec<Vector<D>> {
+    pub fn displacements(&mut self, forces: &[Vector<D>]) -> Vec<Vector<D>> {
         let places = &self.unknowns.places;
         let mut values: Vec<f64> = places.iter().map(|(node, d)| forces[*node][*d]).collect();
         self.factors.solve(&mut values);
@@ -94,7 +99,7 @@ impl<const D: usize> Body<D> {
     /// # Errors
     /// When its stiffness is singular.
     pub fn settle_undrained(&mut self) -> Result<(), Singular> {
-        let system = UndrainedSystem::of(self)?;
+        let mut system = UndrainedSystem::of(self)?;
         self.map_forces();
         let displacements = system.displacements(&self.nodes.mixture_force);
         let field = &displacements[..];

@@ -5,7 +5,7 @@
 //! extrapolated state has the extrapolated residual: no product with `K` is ever taken.
 
 use crate::mpm::body::Body;
-use crate::mpm::implicit::banded::BandedLu;
+use crate::mpm::direct_solver::Factors;
 use crate::mpm::implicit::linear_system::{LinearOperators, LinearSystem};
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::run::outcome::FailureKind;
@@ -22,7 +22,7 @@ pub struct LinearStepper<const D: usize> {
     /// Settlement of the start, m.
     settled: f64,
     system: LinearSystem<D>,
-    lu: BandedLu,
+    factors: Factors,
     /// Step size that the factors belong to, s.
     factored: Option<f64>,
     /// State `x`.
@@ -50,7 +50,7 @@ impl<const D: usize> LinearStepper<D> {
         let zero = vec![0.0; system.unknowns.count];
         Self {
             settled: start.settlement(plan.initial_height),
-            lu: BandedLu::of_shape(&system.fixed),
+            factors: Factors::of_shape(&system.fixed),
             factored: None,
             state: zero.clone(),
             residual: system.start_residual.clone(),
@@ -71,7 +71,7 @@ impl<const D: usize> LinearStepper<D> {
         if self.factored != Some(dt) {
             enter(Phase::Factors);
             let system = &self.system;
-            let factored = self.lu.factor_combination(&system.fixed, SDIRK_GAMMA * dt, &system.proportional);
+            let factored = self.factors.factor_combination(&system.fixed, SDIRK_GAMMA * dt, &system.proportional);
             factored.map_err(|singular| StepFailure {
                 kind: FailureKind::Singular,
                 reason: format!("the matrix of a step of {dt:.4e} s has no pivot in row {}", singular.row),
@@ -94,7 +94,7 @@ impl<const D: usize> LinearStepper<D> {
             for unknown in sites {
                 self.increment[*unknown] *= stage;
             }
-            self.lu.solve(&mut self.increment);
+            self.factors.solve(&mut self.increment);
             if share == SECOND_STAGE {
                 self.first_increment.copy_from_slice(&self.increment);
             }

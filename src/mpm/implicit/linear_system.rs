@@ -11,7 +11,7 @@
 
 use crate::mpm::assembled::stiffness::NodeBlocks;
 use crate::mpm::body::Body;
-use crate::mpm::implicit::banded::Banded;
+use crate::mpm::direct_solver::SystemMatrix;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::operators::sparse_rows::SparseRows;
 use crate::mpm::operators::volumetric::VectorRow;
@@ -44,9 +44,9 @@ pub struct LinearSystem<const D: usize> {
     /// Numbering and scales of `x`.
     pub unknowns: Unknowns<D>,
     /// What a step's matrix has whatever its size: `K` in the mixture's rows, `C` in the others.
-    pub fixed: Banded,
+    pub fixed: SystemMatrix,
     /// What it has in proportion to its size: `K` in the storage's rows, 1/s.
-    pub proportional: Banded,
+    pub proportional: SystemMatrix,
     /// Rows of `C`, one per site.
     pub capacity: SparseRows<f64>,
     /// `g − K x` at the start, where `x` is zero; 1/s in the storage's rows.
@@ -215,12 +215,9 @@ impl<const D: usize> LinearSystem<D> {
             operators.visit_mixture(visitor);
             operators.visit_storage(visitor);
         };
-        let (mut lower, mut upper) = (0, 0);
-        visit(&mut |(row, column, _, _)| {
-            lower = lower.max(row.saturating_sub(column));
-            upper = upper.max(column.saturating_sub(row));
+        let mut fixed = SystemMatrix::spanning(&operators.unknowns.positions, |visitor| {
+            visit(&mut |(row, column, _, _)| visitor(row, column));
         });
-        let mut fixed = Banded::zeros(operators.unknowns.count, lower, upper);
         let mut proportional = fixed.clone();
         visit(&mut |(row, column, constant, rate)| {
             fixed.add(row, column, constant);

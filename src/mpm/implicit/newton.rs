@@ -1,7 +1,7 @@
 //! A Newton iteration a stage: for finite strain, and for bodies with inertia.
 
 use crate::mpm::body::Body;
-use crate::mpm::implicit::banded::{Banded, BandedLu};
+use crate::mpm::direct_solver::{Factors, SystemMatrix};
 use crate::mpm::implicit::residual::StageStart;
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::implicit::tangent::Pattern;
@@ -35,8 +35,8 @@ const SINGLE_STAGE: &[Stage] = &[(1.0, 1.0, 1.0)];
 pub struct NewtonStepper<const D: usize> {
     trial: Trial<D>,
     pattern: Pattern,
-    tangent: Banded,
-    lu: BandedLu,
+    tangent: SystemMatrix,
+    factors: Factors,
     /// Stage duration that the factors belong to, s.
     factored: Option<f64>,
     /// Ratio of successive corrections that the last stage ended with.
@@ -73,7 +73,7 @@ impl<const D: usize> NewtonStepper<D> {
         let scales = trial.unknowns.scales;
         let zero = vec![0.0; trial.unknowns.count];
         Self {
-            lu: BandedLu::of_shape(&tangent),
+            factors: Factors::of_shape(&tangent),
             tangent,
             pattern,
             factored: None,
@@ -201,7 +201,7 @@ impl<const D: usize> NewtonStepper<D> {
             }
             enter(Phase::Solve);
             self.scratch.copy_from_slice(&self.residual);
-            self.lu.solve(&mut self.scratch);
+            self.factors.solve(&mut self.scratch);
             let mut size: f64 = 0.0;
             for (state, correction) in self.state.iter_mut().zip(&self.scratch) {
                 *state -= correction;
@@ -242,7 +242,7 @@ impl<const D: usize> NewtonStepper<D> {
         self.work.factorisations += 1;
         self.factored = Some(start.duration);
         enter(Phase::Factors);
-        self.lu.factor(&self.tangent).map_err(|singular| {
+        self.factors.factor(&self.tangent).map_err(|singular| {
             self.factored = None;
             StepFailure {
                 kind: FailureKind::Singular,
@@ -258,7 +258,7 @@ impl<const D: usize> NewtonStepper<D> {
         }
         self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
         self.tangent = self.pattern.zeros();
-        self.lu = BandedLu::of_shape(&self.tangent);
+        self.factors = Factors::of_shape(&self.tangent);
         self.factored = None;
         let count = self.trial.unknowns.count;
         if count != self.state.len() {

@@ -6,7 +6,7 @@
 //! construction: there is no second set of formulas that could disagree with the first.
 
 use crate::mpm::body::Body;
-use crate::mpm::implicit::banded::Banded;
+use crate::mpm::direct_solver::SystemMatrix;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::soil::conductivity_mean::ConductivityMean;
 
@@ -47,7 +47,7 @@ pub struct Pattern {
     /// Unknowns that are moved together.
     groups: Vec<Vec<usize>>,
     /// Zeros in the shape of the tangent.
-    zeros: Banded,
+    zeros: SystemMatrix,
 }
 
 impl Pattern {
@@ -60,9 +60,11 @@ impl Pattern {
                 rows_of_column[*column].push(row);
             }
         }
-        let places = columns_of_row.iter().enumerate();
-        let places = places.flat_map(|(row, columns)| columns.iter().map(move |column| (row, *column)));
-        let zeros = Banded::spanning(unknowns.count, places);
+        let zeros = SystemMatrix::spanning(&unknowns.positions, |visitor| {
+            for (row, columns) in columns_of_row.iter().enumerate() {
+                columns.iter().for_each(|column| visitor(row, *column));
+            }
+        });
         let groups = groups_of(&columns_of_row, &rows_of_column);
         Self { structure: Structure::of(body, unknowns), rows_of_column, groups, zeros }
     }
@@ -78,7 +80,7 @@ impl Pattern {
     }
 
     /// Zeros in the shape of the tangent.
-    pub fn zeros(&self) -> Banded {
+    pub fn zeros(&self) -> SystemMatrix {
         self.zeros.clone()
     }
 
@@ -89,7 +91,7 @@ impl Pattern {
         state: &mut [f64],
         base: &[f64],
         scratch: &mut [f64],
-        tangent: &mut Banded,
+        tangent: &mut SystemMatrix,
         mut residual: impl FnMut(&[f64], &mut [f64]),
     ) {
         tangent.clear();

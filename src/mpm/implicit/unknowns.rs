@@ -39,6 +39,8 @@ pub struct Unknowns<const D: usize> {
     pub rows: VolumetricRows<D>,
     /// Number of unknowns.
     pub count: usize,
+    /// Where each unknown lies, `[unknown][component]`, m.
+    pub positions: Vec<Vector<D>>,
     /// Scales of the unknowns and of their equations.
     pub scales: Scales,
 }
@@ -58,6 +60,7 @@ impl<const D: usize> Unknowns<D> {
             pressure: Vec::new(),
             rows: body.volumetric_rows(),
             count: 0,
+            positions: Vec::new(),
             scales: Scales::of::<D>(&body.material, body.grid.cell_size),
         };
         unknowns.number(body);
@@ -91,6 +94,7 @@ impl<const D: usize> Unknowns<D> {
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
         self.count = sorted.len();
+        self.positions = sorted.iter().map(|(position, _)| *position).collect();
         self.displacement = vec![[None; D]; nodes.len()];
         self.pressure = vec![0; sites.len()];
         for (number, (_, kind)) in sorted.iter().enumerate() {
