@@ -6,6 +6,7 @@ mod critical_step;
 mod first_hour;
 mod foreign;
 mod impossible_results;
+mod mapping;
 mod planted_damage;
 mod portable;
 mod program;
