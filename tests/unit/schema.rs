@@ -76,7 +76,6 @@ fn what_the_program_refuses_the_schema_refuses() {
         ("cells = [5]", "cell = [5]"),
         ("cells = [5]", "cells = 5"),
         ("cells = [5]", "cells = [5.5]"),
-        ("[\"GIMP\"]", "[\"gimp\"]"),
         ("[\"GIMP\"]", "[{ basis = \"hat\", colour = 1 }]"),
     ] {
         let text = sound.replace(from, to);
@@ -124,7 +123,7 @@ fn undescribed(schema: &Value, at: &str, missing: &mut Vec<String>) {
 
 #[test]
 fn every_key_of_every_schema_has_a_description() {
-    for document in [Document::Study, Document::Record, Document::Mapping] {
+    for document in [Document::Study, Document::Record, Document::Mapping, Document::Case] {
         let mut missing = Vec::new();
         undescribed(&schema_of(document), "", &mut missing);
         assert!(missing.is_empty(), "{document:?}: {missing:?}");
