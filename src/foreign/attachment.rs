@@ -33,6 +33,8 @@ const LONGEST_VERSION: usize = 200;
 const RIM: f64 = 1e-6;
 /// Longest time limit, s: a century.
 const MOST_SECONDS: f64 = 3e9;
+/// Notes on what was taken from where that are kept.
+const MOST_TAKEN: usize = 6;
 /// Difference of repeats from which on it is worth a word.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -220,7 +222,9 @@ impl<'a> Attachment<'a> {
         let (status, snapshots) = match left {
             Ok((states, result)) => {
                 about.sample = Some(result.sample);
-                about.taken = result.notes;
+                let more = result.notes.len().saturating_sub(MOST_TAKEN);
+                about.taken = result.notes.into_iter().take(MOST_TAKEN).collect();
+                about.taken.extend((more > 0).then(|| format!("and {more} notes more")));
                 about.result_digest = Some(result.digest);
                 let snapshot = |state| snapshot_of(case, result.sample, state);
                 (Status::Ok, states.into_iter().map(snapshot).collect())

@@ -9,7 +9,7 @@ const SAME_TIME: f64 = 1e-3;
 /// Distance between neighbouring samples, over the cell size, from which on a cell between them has none.
 const GAP: f64 = 1.5;
 /// Distance of the last samples from base and surface, over the cell size, from which on the last cell has none.
-const END: f64 = 1.0;
+const END: f64 = 0.75;
 /// Share of a distance that round-off may add.
 const ROUND_OFF: f64 = 1e-6;
 /// Most outputs that a message names.

@@ -192,6 +192,20 @@ impl<'a> Path<'a> {
         self.records.iter().filter_map(|record| Some(1.0 + settlement.error(record)?.value)).collect()
     }
 
+    /// A measure at the points, for an attached solver at the places that it has instead.
+    pub fn own_measure(&self, measure: &Measure) -> Measure {
+        let own = self
+            .records
+            .iter()
+            .find(|record| record.attached.as_ref().is_some_and(|one| one.sample.is_some()));
+        match own {
+            Some(record) if measure.sample == Sample::Points => {
+                Measure { sample: record.main_sample(), ..measure.clone() }
+            }
+            _ => measure.clone(),
+        }
+    }
+
     /// What the runs of the path share, in words, the method first.
     pub fn parts(&self) -> Vec<String> {
         let mut case = self.records[0].case.clone();

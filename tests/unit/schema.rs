@@ -145,12 +145,23 @@ fn every_record_keeps_to_the_schema_and_misses_nothing() {
         assert_eq!(breach(&schema, &value, "record"), None);
         for name in schema["properties"].as_object().expect("an object").keys() {
             // The digest is made as a record is written; limits are for studies of stability.
-            let is_there = value.get(name).is_some() || ["digest", "stability"].contains(&name.as_str());
+            let elsewhere = ["digest", "stability", "attached"];
+            let is_there = value.get(name).is_some() || elsewhere.contains(&name.as_str());
             assert!(is_there, "`{name}` is in the schema and in no record");
         }
         let mut other = value.clone();
         other["counters"]["steps"] = json!("many");
         assert!(breach(&schema, &other, "record").is_some());
+    }
+}
+
+#[test]
+fn a_case_file_keeps_to_its_schema() {
+    let schema = schema_of(Document::Case);
+    for scene in crate::scene::SceneKind::ALL {
+        let case = crate::case::Case { cells: 4, ..crate::case::Case::seed(crate::case::Task::Solve, scene) };
+        let value = serde_json::to_value(CaseFile::of(&case)).expect("JSON");
+        assert_eq!(breach(&schema, &value, "case"), None, "{scene:?}");
     }
 }
 
