@@ -16,9 +16,10 @@
 //! | `record/` | what is kept of a case, and its store on disk |
 //! | `measure/` | from an outcome to its record: errors, balances, oscillation, checks |
 //! | `study/` | study files: keys, sweeps, expectations, every complaint at its place |
+//! | `import/` | external results: mapping files and tables |
+//! | `foreign/` | attached solvers: what they are told, how they are run and ended, how their results are taken |
 //! | `campaign/` | runs the cases of a study: parallel, resumable, by shards |
 //! | `golden/` | accepted values, their tolerances, and what changed |
-//! | `import/` | external results: mapping files and tables |
 //! | `judge/` | verdicts on studies, scores of external results, comparisons of methods |
 //! | `render/` | tables, charts, pages; sees records and verdicts, and never a solver |
 //! | `cli/` | one file per subcommand |
@@ -103,6 +104,7 @@ mod cli;
 mod convergence;
 mod elementary;
 pub mod exact;
+mod foreign;
 mod golden;
 mod import;
 mod judge;

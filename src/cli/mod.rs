@@ -55,13 +55,13 @@ enum Command {
     Merge(merge::Arguments),
     /// List scenes, methods, references and shipped studies
     List(list::Arguments),
-    /// Write a commented study to start from
+    /// Write a commented study to start from, or an adapter for somebody else's solver
     New(new::Arguments),
     /// Say where the error of a case comes from and what changed
     Explain(explain::Arguments),
     /// Measure how far results scatter that should be equal
     Spread(spread::Arguments),
-    /// Print the JSON Schema of study files, records or mappings
+    /// Print the JSON Schema of study files, records, mappings or case files
     Schema(schema::Arguments),
     /// Print the completions of a shell
     Completions(completions::Arguments),

@@ -55,9 +55,10 @@ impl CaseDemand {
 
 fn status_found(wanted: &str, record: &Record) -> Check {
     let found = record.status.name();
-    let how = record.status.failure().map_or_else(String::new, |failure| {
-        format!(" at step {}, t = {:.3e} s: {}", failure.step, failure.time, failure.reason)
-    });
+    let how = record
+        .status
+        .failure()
+        .map_or_else(String::new, |failure| format!("{}: {}", failure.place(), failure.reason));
     let pass = found == wanted;
     let instead = if pass { String::new() } else { format!(" instead of {wanted}") };
     check("status", pass, None, format!("{found}{instead}{how}"))

@@ -14,6 +14,7 @@ use crate::study::diagnostic::{Diagnostic, StudyError, nearest};
 use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
 use crate::study::inputs::{InputTable, List, One, OwnKeys};
 use crate::study::mistakes;
+use crate::study::solver_table::SolverTable;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 
@@ -60,6 +61,9 @@ pub struct StudyFile {
     /// When results are kept, and what they are held against.
     #[serde(default)]
     pub output: OutputTable,
+    /// Somebody else's solvers, whose names then stand among the methods of a sweep.
+    #[serde(default)]
+    pub solver: Vec<Placed<SolverTable>>,
     /// Blocks of cases: the product of the lists, or a path.
     #[serde(default)]
     pub sweep: Vec<Placed<SweepTable>>,

@@ -11,4 +11,6 @@ pub mod mistakes;
 pub mod name;
 pub mod perturbed;
 pub mod shipped;
+pub mod solver;
+pub mod solver_table;
 pub mod sweep;

@@ -1,5 +1,6 @@
 //! Whole runs through the program, as its users call it.
 
+mod attach;
 mod bad_input;
 mod check;
 mod critical_step;

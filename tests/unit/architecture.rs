@@ -15,18 +15,19 @@ const MAY_IMPORT: [(&str, &str); 17] = [
     ("record", "case mpm wording"),
     ("measure", "case elementary exact mpm record scene soil wording"),
     ("study", "case convergence elementary exact mpm record scene soil wording"),
-    ("campaign", "case elementary exact measure mpm record scene study wording"),
-    ("golden", "convergence elementary exact record study"),
     ("import", "case study wording"),
+    ("foreign", "case elementary exact import measure mpm record scene soil study wording"),
+    ("campaign", "case elementary exact foreign measure mpm record scene study wording"),
+    ("golden", "convergence elementary exact record study"),
     (
         "judge",
         "campaign case convergence elementary exact golden import measure mpm record scene soil study wording",
     ),
     ("render", "case convergence elementary exact golden judge measure record study wording"),
-    ("schema", "import record study"),
+    ("schema", "foreign import record study"),
     (
         "cli",
-        "campaign case exact golden import judge measure mpm record render scene schema soil study wording",
+        "campaign case exact foreign golden import judge measure mpm record render scene schema soil study wording",
     ),
     ("api", "case cli convergence exact import judge scene study"),
 ];

@@ -108,8 +108,8 @@ fn run_cells(run: &TimedRun<'_>) -> [Cell; 6] {
         Cell::Error(run.error),
         Cell::Number(1e3 * run.wall.median),
         Cell::Number(1e3 * run.wall.deviation),
-        Cell::Count(run.record.counters.steps),
-        Cell::Count(run.record.counters.point_updates),
+        labels::counted(run.record, run.record.counters.steps),
+        labels::counted(run.record, run.record.counters.point_updates),
     ]
 }
 
