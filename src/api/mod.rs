@@ -21,11 +21,15 @@ fn sentence(error: &anyhow::Error) -> String {
 /// already stays. Geometry and load are the column's, or the layer's where the scene is one.
 ///
 /// # Errors
-/// When no input is called so: with the names that there are.
-pub fn dotted_key(scene: SceneKind, name: &str) -> Result<String, String> {
+/// When no scene or solution is called so, or no input: with the names that there are.
+pub fn dotted_key(scene: &str, name: &str) -> Result<String, String> {
     if name.contains('.') {
         return Ok(name.to_owned());
     }
+    let scene = match SceneKind::named(scene) {
+        Some(scene) => scene,
+        None => exact::scene_of(scene)?.1,
+    };
     let body = if scene.needs_two_dimensions() { "layer" } else { "column" };
     let tables = [body, "material", "integrator", "points"];
     let found = tables.iter().find(|table| Key::named(name, table).is_some());
@@ -43,14 +47,14 @@ mod tests {
     #[test]
     fn a_bare_name_finds_its_table() {
         for (scene, name, key) in [
-            (SceneKind::Terzaghi, "porosity", "material.porosity"),
-            (SceneKind::Terzaghi, "load", "column.load"),
-            (SceneKind::CosineLayer, "load", "layer.load"),
-            (SceneKind::Terzaghi, "column.load", "column.load"),
+            ("terzaghi", "porosity", "material.porosity"),
+            ("terzaghi-incompressible", "load", "column.load"),
+            ("cosine-layer", "load", "layer.load"),
+            ("terzaghi", "column.load", "column.load"),
         ] {
             assert_eq!(dotted_key(scene, name).as_deref(), Ok(key));
         }
-        let told = dotted_key(SceneKind::Terzaghi, "permeability").expect_err("no such key");
+        let told = dotted_key("terzaghi", "permeability").expect_err("no such key");
         assert!(told.contains("`permeability`") && told.contains("hydraulic_conductivity"), "{told}");
     }
 }

@@ -3,6 +3,7 @@
 pub mod check_case_expectation;
 pub mod check_material;
 pub mod check_method;
+pub mod check_result;
 pub mod check_series_expectation;
 pub mod check_solver;
 pub mod check_sweep;
@@ -48,6 +49,31 @@ pub struct PlannedCase {
     pub case: Case,
     /// Smallest tier that includes it.
     pub tier: Tier,
+}
+
+/// The cases of a study, each once.
+#[derive(Default)]
+struct Plan {
+    planned: Vec<PlannedCase>,
+    places: HashMap<String, usize>,
+}
+
+impl Plan {
+    /// Takes the cases of a tier; one that is there already keeps the smaller tier.
+    fn take(&mut self, cases: Vec<Case>, tier: Tier) {
+        for case in cases {
+            match self.places.entry(case.hash()) {
+                Entry::Occupied(place) => {
+                    let other = &mut self.planned[*place.get()];
+                    other.tier = other.tier.min(tier);
+                }
+                Entry::Vacant(place) => {
+                    place.insert(self.planned.len());
+                    self.planned.push(PlannedCase { case, tier });
+                }
+            }
+        }
+    }
 }
 
 /// A study that can run.
@@ -148,7 +174,8 @@ impl Checker<'_> {
             None => DEFAULT_TIME_FACTORS.to_vec(),
         };
         let references = self.references(&file.output, scene, &base.column);
-        if file.sweep.is_empty() {
+        let given = self.results(file);
+        if file.sweep.is_empty() && file.result.is_empty() {
             let end = self.source.text.trim_end().len();
             let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
             self.complain(
@@ -157,8 +184,7 @@ impl Checker<'_> {
                 "add one with at least `method` and `cells`",
             );
         }
-        let mut planned: Vec<PlannedCase> = Vec::new();
-        let mut places: HashMap<String, usize> = HashMap::new();
+        let mut plan = Plan::default();
         for block in &file.sweep {
             let table = block.get_ref();
             base.time_factors = match &table.time_factors {
@@ -187,19 +213,13 @@ impl Checker<'_> {
                 );
             }
             self.pores_stay_open(start..start + 1, cases.iter());
-            for case in cases {
-                match places.entry(case.hash()) {
-                    Entry::Occupied(place) => {
-                        let other = &mut planned[*place.get()];
-                        other.tier = other.tier.min(tier);
-                    }
-                    Entry::Vacant(place) => {
-                        place.insert(planned.len());
-                        planned.push(PlannedCase { case, tier });
-                    }
-                }
-            }
+            plan.take(cases, tier);
         }
+        base.time_factors = time_factors;
+        for meshes in given {
+            plan.take(meshes.cases(&base), meshes.tier);
+        }
+        let planned = plan.planned;
         let (expectations, case_expectations) = self.expectations(file, scene, &references, &planned);
         let timing_repeats =
             self.count(file.timing.repeats.as_deref(), "timing.repeats", 0..=1000).unwrap_or(0);
