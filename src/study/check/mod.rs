@@ -127,6 +127,20 @@ impl Study {
     }
 }
 
+/// Puts a case among those that are planned: each once, in the smallest tier that has it.
+fn put(case: Case, tier: Tier, planned: &mut Vec<PlannedCase>, places: &mut HashMap<String, usize>) {
+    match places.entry(case.hash()) {
+        Entry::Occupied(place) => {
+            let other = &mut planned[*place.get()];
+            other.tier = other.tier.min(tier);
+        }
+        Entry::Vacant(place) => {
+            place.insert(planned.len());
+            planned.push(PlannedCase { case, tier });
+        }
+    }
+}
+
 impl Checker<'_> {
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.named(&file.scene, "scene")?;
@@ -179,25 +193,10 @@ impl Checker<'_> {
                 }
             }
             let start = block.span().start;
-            if task == Task::Stability && cases.iter().any(Case::is_attached) {
-                self.complain(
-                    start..start + 1,
-                    "an attached solver has no critical step that could be searched",
-                    "name methods of this program alone, or leave `task` out",
-                );
-            }
+            self.attached_are_solved(start, &cases);
             self.pores_stay_open(start..start + 1, cases.iter());
             for case in cases {
-                match places.entry(case.hash()) {
-                    Entry::Occupied(place) => {
-                        let other = &mut planned[*place.get()];
-                        other.tier = other.tier.min(tier);
-                    }
-                    Entry::Vacant(place) => {
-                        place.insert(planned.len());
-                        planned.push(PlannedCase { case, tier });
-                    }
-                }
+                put(case, tier, &mut planned, &mut places);
             }
         }
         let (expectations, case_expectations) = self.expectations(file, scene, &references, &planned);
