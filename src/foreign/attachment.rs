@@ -98,7 +98,7 @@ impl<'a> Attachment<'a> {
             let left = self.run_once(case, wish, &mut about, &mut wall);
             let (states, result) = match left {
                 Ok(left) => left,
-                Err(failure) => return self.record(case, wish, Err(failure), about, wall),
+                Err(failure) => return Self::record(case, wish, Err(failure), about, wall),
             };
             if number == 0 && self.solver.warm_up {
                 wall.clear();
@@ -109,7 +109,7 @@ impl<'a> Attachment<'a> {
             known = Some((states, result));
         }
         let nothing = || ending::of_incomplete("the solver was not run");
-        self.record(case, wish, known.ok_or_else(nothing), about, wall)
+        Self::record(case, wish, known.ok_or_else(nothing), about, wall)
     }
 
     /// What is there already.
@@ -233,7 +233,6 @@ impl<'a> Attachment<'a> {
     }
 
     fn record(
-        &self,
         case: &Case,
         wish: &Wish<'_>,
         left: Left,

@@ -112,9 +112,11 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
         length: case.scene.has_plane_fields().then_some(case.column.horizontal_extent),
         seconds_per_time_factor: case.seconds_per_time_factor(),
     };
-    let runs = match are_tables(&given).map_err(unread)? {
-        true => vec![run_of_tables(files, mapping, body).map_err(unread)?],
-        false => runs_of_arrays(&given, mapping, body).map_err(unread)?,
+    let unread = |error: ImportError| why_unread(&error);
+    let runs = if are_tables(&given).map_err(unread)? {
+        vec![run_of_tables(files, mapping, body).map_err(unread)?]
+    } else {
+        runs_of_arrays(&given, mapping, body).map_err(unread)?
     };
     if runs.len() > 1 {
         return Err(Unread::Unreadable(format!(
@@ -136,7 +138,7 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
 }
 
 /// An error of the import, told apart where it is about a value that is no finite number.
-fn unread(error: ImportError) -> Unread {
+fn why_unread(error: &ImportError) -> Unread {
     let told = error.to_string();
     let is_value = matches!(error, ImportError::Row { .. } | ImportError::Table { .. });
     if is_value && names_no_finite_number(&told) { Unread::NotFinite(told) } else { Unread::Unreadable(told) }

@@ -20,6 +20,12 @@ const ENDS: [(&str, &str, &str); 9] = [
     ("soft", "ok", ""),
 ];
 
+/// Says why a test has nothing to do here.
+#[expect(clippy::print_stderr, reason = "whoever reads the log of the tests must see it")]
+fn skip(why: &str) {
+    eprintln!("skipped: {why}");
+}
+
 /// A folder with the toy, compiled; none, with a word, where there is no compiler.
 fn folder_with_toy() -> Option<TempDir> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign/toy-solver.c");
@@ -31,7 +37,7 @@ fn folder_with_toy() -> Option<TempDir> {
             Some(folder)
         }
         Err(error) => {
-            eprintln!("skipped: there is no C compiler `cc` ({error})");
+            skip(&format!("there is no C compiler `cc` ({error})"));
             None
         }
     }
@@ -228,7 +234,7 @@ fn what_is_not_installed_is_skipped_with_a_word_and_fails_nothing() {
 fn a_new_adapter_runs_as_it_is_and_is_of_second_order() {
     for (language, program) in [("python", "python3"), ("shell", "awk")] {
         if Command::new(program).arg("--version").output().is_err() {
-            eprintln!("skipped: there is no {program}");
+            skip(&format!("there is no {program}"));
             continue;
         }
         let folder = TempDir::new().expect("a folder");

@@ -7,7 +7,7 @@ use crate::judge::peers::{Comparison, Peer};
 use crate::judge::work_precision::{NextLevel, TimedRun, WorkPrecision};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Style};
 use crate::render::page::Block;
-use crate::render::report::StudyResults;
+use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 
 /// The comparison of a study with timed runs of several integrators.

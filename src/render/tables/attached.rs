@@ -7,8 +7,7 @@ use crate::wording::{count_of, short};
 /// Sentences on the run of an attached solver: how it failed, what it is, what it took; none for other cases.
 pub fn notes_of(record: &Record) -> Vec<String> {
     let Some(about) = &record.attached else { return Vec::new() };
-    let mut notes: Vec<String> =
-        record.status.failure().map(|failure| failure.to_string()).into_iter().collect();
+    let mut notes: Vec<String> = record.status.failure().map(ToString::to_string).into_iter().collect();
     let version =
         about.version.as_ref().map_or(String::new(), |version| format!(", which says of itself: {version}"));
     notes.push(format!("run by `{}`{version}", about.command.join(" ")));

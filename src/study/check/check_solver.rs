@@ -1,5 +1,6 @@
 //! Checks of attached solvers: names, commands, placeholders, files; and the digest that identifies them.
 
+use crate::case::{Case, Task};
 use crate::mpm::attached::{Attached, DIGEST_DIGITS};
 use crate::mpm::method::Method;
 use crate::study::check::checker::Checker;
@@ -38,6 +39,17 @@ impl Checker<'_> {
             solvers.extend(self.solver(table, case_seconds));
         }
         solvers
+    }
+
+    /// Complains where the critical step of an attached solver is asked for.
+    pub(crate) fn attached_are_solved(&mut self, start: usize, cases: &[Case]) {
+        if cases.iter().any(|case| case.is_attached() && case.task == Task::Stability) {
+            self.complain(
+                start..start + 1,
+                "an attached solver has no critical step that could be searched",
+                "name methods of this program alone, or leave `task` out",
+            );
+        }
     }
 
     fn solver(&mut self, table: &SolverTable, case_seconds: f64) -> Option<Solver> {

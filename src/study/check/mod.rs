@@ -51,31 +51,6 @@ pub struct PlannedCase {
     pub tier: Tier,
 }
 
-/// The cases of a study, each once.
-#[derive(Default)]
-struct Plan {
-    planned: Vec<PlannedCase>,
-    places: HashMap<String, usize>,
-}
-
-impl Plan {
-    /// Takes the cases of a tier; one that is there already keeps the smaller tier.
-    fn take(&mut self, cases: Vec<Case>, tier: Tier) {
-        for case in cases {
-            match self.places.entry(case.hash()) {
-                Entry::Occupied(place) => {
-                    let other = &mut self.planned[*place.get()];
-                    other.tier = other.tier.min(tier);
-                }
-                Entry::Vacant(place) => {
-                    place.insert(self.planned.len());
-                    self.planned.push(PlannedCase { case, tier });
-                }
-            }
-        }
-    }
-}
-
 /// A study that can run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
@@ -153,6 +128,20 @@ impl Study {
     }
 }
 
+/// Puts a case among those that are planned: each once, in the smallest tier that has it.
+fn put(case: Case, tier: Tier, planned: &mut Vec<PlannedCase>, places: &mut HashMap<String, usize>) {
+    match places.entry(case.hash()) {
+        Entry::Occupied(place) => {
+            let other = &mut planned[*place.get()];
+            other.tier = other.tier.min(tier);
+        }
+        Entry::Vacant(place) => {
+            place.insert(planned.len());
+            planned.push(PlannedCase { case, tier });
+        }
+    }
+}
+
 impl Checker<'_> {
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.named(&file.scene, "scene")?;
@@ -184,7 +173,8 @@ impl Checker<'_> {
                 "add one with at least `method` and `cells`",
             );
         }
-        let mut plan = Plan::default();
+        let mut planned: Vec<PlannedCase> = Vec::new();
+        let mut places: HashMap<String, usize> = HashMap::new();
         for block in &file.sweep {
             let table = block.get_ref();
             base.time_factors = match &table.time_factors {
@@ -205,21 +195,18 @@ impl Checker<'_> {
                 }
             }
             let start = block.span().start;
-            if task == Task::Stability && cases.iter().any(Case::is_attached) {
-                self.complain(
-                    start..start + 1,
-                    "an attached solver has no critical step that could be searched",
-                    "name methods of this program alone, or leave `task` out",
-                );
-            }
+            self.attached_are_solved(start, &cases);
             self.pores_stay_open(start..start + 1, cases.iter());
-            plan.take(cases, tier);
+            for case in cases {
+                put(case, tier, &mut planned, &mut places);
+            }
         }
         base.time_factors = time_factors;
         for meshes in given {
-            plan.take(meshes.cases(&base), meshes.tier);
+            for case in meshes.cases(&base) {
+                put(case, meshes.tier, &mut planned, &mut places);
+            }
         }
-        let planned = plan.planned;
         let (expectations, case_expectations) = self.expectations(file, scene, &references, &planned);
         let timing_repeats =
             self.count(file.timing.repeats.as_deref(), "timing.repeats", 0..=1000).unwrap_or(0);
