@@ -82,7 +82,7 @@ impl<'a> Attachment<'a> {
     /// When the exact solutions refuse the case's parameters.
     pub fn run(&self, case: &Case, wish: &Wish<'_>) -> Result<Record, ExactError> {
         if self.solver.is_given() {
-            return self.record(case, wish, self.given(case), AttachedRun::default(), Vec::new());
+            return Self::record(case, wish, self.given(case), AttachedRun::default(), Vec::new());
         }
         let _passed = self.gate.pass();
         let mut about = AttachedRun {
