@@ -6,6 +6,7 @@ mod check;
 mod critical_step;
 mod first_hour;
 mod foreign;
+mod gate;
 mod impossible_results;
 mod mapping;
 mod planted_damage;
