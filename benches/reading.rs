@@ -4,7 +4,10 @@
 //! raw, base64 and packed by zlib, and reads each in a process of its own, so that the peak of its memory is the
 //! reading's. `cargo bench --bench reading -- POINTS` takes another number of points.
 
+#![allow(clippy::print_stdout, reason = "a benchmark prints what it measured")]
+
 use oedometer::api::read::read;
+use std::fmt::Write as _;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -60,7 +63,7 @@ fn peak_megabytes() -> f64 {
 
 /// Writes a plate of square cells as VTU.
 fn write(path: &Path, points: usize, way: Way) -> std::io::Result<()> {
-    let across = (points as f64).sqrt().round() as usize;
+    let across = points.isqrt();
     let (rows, cells) = (across, (across - 1) * (across - 1));
     let at = |place: usize| (place % across) as f64 / (across - 1) as f64;
     let height = |place: usize| (place / across) as f64 / (rows - 1) as f64;
@@ -72,7 +75,7 @@ fn write(path: &Path, points: usize, way: Way) -> std::io::Result<()> {
         let first = cell / (across - 1) * across + cell % (across - 1);
         [first, first + 1, first + across + 1, first + across]
     };
-    let integer = |number: usize| (number as i64).to_le_bytes();
+    let integer = |number: usize| i64::try_from(number).expect("few").to_le_bytes();
     let arrays: [(&str, &str, &str, usize, Vec<u8>); 6] = [
         (
             "PointData",
@@ -90,11 +93,13 @@ fn write(path: &Path, points: usize, way: Way) -> std::io::Result<()> {
     let mut appended = Vec::new();
     let mut text = String::new();
     for (section, name, kind, components, bytes) in arrays {
-        text += &format!(
+        writeln!(
+            text,
             "<{section}><DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
-             format=\"appended\" offset=\"{}\"/></{section}>\n",
+             format=\"appended\" offset=\"{}\"/></{section}>",
             appended.len()
-        );
+        )
+        .expect("in memory");
         appended.extend(payload(&bytes, way));
     }
     let packer = if matches!(way, Way::Packed) { " compressor=\"vtkZLibDataCompressor\"" } else { "" };

@@ -60,10 +60,12 @@ impl Rows {
 
     /// Makes room for more.
     pub fn reserve(&mut self, more: usize) {
+        // The first file's rows as they are: most results are one file. Later ones with air, for there may be many.
+        let is_first = self.time.is_empty();
         for column in [&mut self.time, &mut self.initial_height, &mut self.volume] {
-            column.reserve_exact(more);
+            if is_first { column.reserve_exact(more) } else { column.reserve(more) }
         }
-        self.others.reserve_exact(more);
+        if is_first { self.others.reserve_exact(more) } else { self.others.reserve(more) }
     }
 
     /// Takes a row.

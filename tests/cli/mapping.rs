@@ -1,6 +1,7 @@
 //! What a mapping may say of somebody else's files, and what nobody says.
 
 use crate::program::{Told, call};
+use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -95,7 +96,7 @@ fn rows_of_one_material_count_and_those_of_others_do_not() {
     for row in 0..2 * PLACES {
         let [height, pressure, _] = column[row % PLACES];
         let (pressure, layer) = if row < PLACES { (pressure, 1) } else { (7.0, 2) };
-        table += &format!("{},{height},{pressure},{layer}\n", 0.1 * SECONDS);
+        writeln!(table, "{},{height},{pressure},{layer}", 0.1 * SECONDS).expect("in memory");
     }
     fs::write(at.join("a.csv"), table).expect("a file");
     let mapping = "[columns]\nt = \"t\"\np = \"p\"\n[units]\nstress = \"Pa\"\n[sign]\np = \"compression-positive\"\n[rows]\n\
@@ -190,7 +191,7 @@ fn units_and_signs_that_nobody_declared_are_warned_of_and_fail_a_gate() {
     let at = folder.path();
     let mut table = "t,y,p\n".to_owned();
     for [height, pressure, _] in exact(at, 0.1) {
-        table += &format!("{},{height},{pressure}\n", 0.1 * SECONDS);
+        writeln!(table, "{},{height},{pressure}", 0.1 * SECONDS).expect("in memory");
     }
     fs::write(at.join("a.csv"), table).expect("a file");
     let bare = "[columns]\nt = \"t\"\np = \"p\"\nu_y = \"\"\n";

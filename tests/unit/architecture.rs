@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folders from the ground up; a folder may import what its row names, and nothing else.
-const MAY_IMPORT: [(&str, &str); 17] = [
+const MAY_IMPORT: [(&str, &str); 18] = [
     ("soil", "elementary wording"),
     ("exact", "elementary soil wording"),
     ("convergence", "elementary wording"),
