@@ -1,9 +1,8 @@
 //! Exact solutions over times and depths.
 
-use crate::api::sentence;
+use crate::api::{scene_of, sentence};
 use crate::cli::commands::exact::parameters_of;
 use crate::exact::reference::{Reference, ReferenceKind};
-use crate::scene::SceneKind;
 
 /// An exact solution at times and depths, in SI.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,18 +25,6 @@ pub struct ExactValues {
     pub height: f64,
     /// Load, Pa.
     pub load: f64,
-}
-
-/// The scene whose column a solution is of.
-///
-/// # Errors
-/// When no solution is called so: with the names that there are.
-pub fn scene_of(solution: &str) -> Result<(ReferenceKind, SceneKind), String> {
-    let kind: ReferenceKind = solution.parse().map_err(|_| {
-        let names: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
-        format!("no exact solution is called `{solution}`; there are {}", names.join(", "))
-    })?;
-    Ok((kind, SceneKind::of_solution(kind)))
 }
 
 /// Evaluates a solution at time factors and at depths over the height, 0 at the surface; of a layer under the crest of

@@ -10,11 +10,24 @@ pub mod score;
 
 use crate::case::keys::Key;
 use crate::cli::exit;
+use crate::exact::reference::ReferenceKind;
 use crate::scene::SceneKind;
 
 /// An error as a sentence.
 fn sentence(error: &anyhow::Error) -> String {
     exit::sentence(error)
+}
+
+/// The scene whose column a solution is of.
+///
+/// # Errors
+/// When no solution is called so: with the names that there are.
+pub fn scene_of(solution: &str) -> Result<(ReferenceKind, SceneKind), String> {
+    let kind: ReferenceKind = solution.parse().map_err(|_| {
+        let names: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
+        format!("no exact solution is called `{solution}`; there are {}", names.join(", "))
+    })?;
+    Ok((kind, SceneKind::of_solution(kind)))
 }
 
 /// The dotted key of a study file that a bare name stands for, like `material.porosity` for `porosity`; what has a dot
@@ -28,7 +41,7 @@ pub fn dotted_key(scene: &str, name: &str) -> Result<String, String> {
     }
     let scene = match SceneKind::named(scene) {
         Some(scene) => scene,
-        None => exact::scene_of(scene)?.1,
+        None => scene_of(scene)?.1,
     };
     let body = if scene.needs_two_dimensions() { "layer" } else { "column" };
     let tables = [body, "material", "integrator", "points"];
