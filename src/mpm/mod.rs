@@ -10,6 +10,7 @@
 //! Nothing here knows of studies, references or reports.
 
 pub mod assembled;
+pub mod attached;
 pub mod body;
 pub mod critical_step;
 pub mod direct_solver;
