@@ -13,8 +13,9 @@ impl Checker<'_> {
         file: &StudyFile,
         table: &SweepTable,
         start: usize,
-        cases: &mut [Case],
-    ) {
+        cases: impl Iterator<Item = Case>,
+    ) -> Vec<Case> {
+        let mut cases: Vec<Case> = cases.collect();
         let of_sweep = |key: &str| table.typed(key).map(Spanned::span);
         let named = |key: &str| of_sweep(key).or_else(|| file.points.typed(key).map(Spanned::span));
         let place = named("layers").unwrap_or(start..start + 1);
@@ -29,9 +30,10 @@ impl Checker<'_> {
                 "add `layers = 2`, or leave `water_per_cell` out",
             );
         }
-        for case in cases {
+        for case in &mut cases {
             case.column.points.name_water_points(case.points_per_cell);
         }
+        cases
     }
 }
 

@@ -189,14 +189,13 @@ impl Checker<'_> {
                 self.default_integrator(table, block.span().start, &common, &base, &mut sweep);
             }
             let tier = self.choice(table.tier.as_deref(), "tier", Tier::default()).unwrap_or_default();
-            let mut cases: Vec<Case> = sweep.cases(&base).map(Case::for_attached).collect();
-            self.layers_fit(file, table, block.span().start, &mut cases);
+            let start = block.span().start;
+            let mut cases = self.layers_fit(file, table, start, sweep.cases(&base).map(Case::for_attached));
             if let Some(strain) = strain {
                 for case in &mut cases {
                     case.column.load = load_of(strain, case);
                 }
             }
-            let start = block.span().start;
             self.attached_are_solved(start, &cases);
             self.pores_stay_open(start..start + 1, cases.iter());
             for case in cases {
