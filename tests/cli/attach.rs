@@ -139,7 +139,8 @@ method = "toy"
 quantity = "settlement"
 reference = "terzaghi"
 time_factor = 0.5
-order = { value = 2.0, minus = 0.1, plus = 0.3 }
+class = "pre-asymptotic"
+at = { cells = 40, below = 5.0e-4 }
 
 [[expect]]
 method = "GC-SRI-patch"
@@ -170,7 +171,7 @@ fn a_solver_is_judged_beside_the_methods_and_a_per_cent_of_permeability_is_seen(
     let told = call(folder.path(), &["check", "beside.toml"]);
     assert_eq!(told.code, 1, "{}", told.out);
     let said = told.words();
-    assert!(said.contains("toy: pressure L2 nodes against terzaghi at T_v = 0.5"), "{said}");
+    assert!(said.contains("toy: pressure l2 nodes against terzaghi at T_v = 0.5"), "{said}");
 }
 
 #[test]
