@@ -278,3 +278,74 @@ fn the_plan_prints_case_files_that_a_solver_can_read() {
         .status();
     assert!(run.expect("it starts").success() && folder.path().join("by-hand/result.csv").is_file());
 }
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn the_page_on_attaching_has_every_status_placeholder_and_key() {
+    let page = fs::read_to_string(root().join("docs/attach.md")).expect("the page");
+    for (_, status, _) in ENDS {
+        assert!(page.contains(&format!("| `{status}` |")), "{status}");
+    }
+    assert!(page.contains("| `not-startable` |"));
+    let schema = |document: &str| -> serde_json::Value {
+        let told = call(&root(), &["schema", document]);
+        serde_json::from_str(&told.out).expect("JSON")
+    };
+    let names = |value: &serde_json::Value| -> Vec<String> {
+        value.as_object().expect("an object").keys().cloned().collect()
+    };
+    for key in names(&schema("study")["properties"]["solver"]["items"]["properties"]) {
+        assert!(page.contains(&format!("| `{key}` |")), "no row on the key {key}");
+    }
+    // The case file that the page shows has the keys of the schema, at its top and in each part.
+    let shown = page.split("```json\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
+    let shown: serde_json::Value = serde_json::from_str(shown).expect("JSON");
+    let case = schema("case");
+    assert_eq!(names(&shown), names(&case["properties"]));
+    for part in ["column", "derived"] {
+        assert_eq!(names(&shown[part]), names(&case["properties"][part]["properties"]), "{part}");
+    }
+    // A study with the solver that the page shows is sound, beside the files of the shipped example.
+    let block = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
+    let folder = TempDir::new().expect("a folder");
+    for file in ["ogs_column.py", "ogs_column.prj"] {
+        fs::copy(root().join("studies/foreign").join(file), folder.path().join(file)).expect("copied");
+    }
+    write_study(
+        folder.path(),
+        "page.toml",
+        block,
+        "[[sweep]]\nmethod = [\"GC-SRI-patch\", \"ogs\"]\ncells = [10]\n",
+    );
+    let told = call(folder.path(), &["plan", "page.toml"]);
+    assert!(told.code == 0 && told.out.contains(",ogs cells=10,"), "{}{}", told.out, told.err);
+}
+
+#[test]
+fn the_shipped_examples_are_sound_and_fail_nothing_where_their_packages_are_missing() {
+    for entry in fs::read_dir(root().join("studies/foreign")).expect("the examples").flatten() {
+        let path = entry.path();
+        if path.extension().is_none_or(|kind| kind != "toml") || path.ends_with("nodes.toml") {
+            continue;
+        }
+        let told = call(&root(), &["plan", path.to_str().expect("UTF-8")]);
+        assert_eq!(told.code, 0, "{}: {}", path.display(), told.err);
+    }
+    // A Python without site packages has none of them.
+    if Command::new("python3").arg("--version").output().is_err() {
+        skip("there is no python3");
+        return;
+    }
+    let folder = TempDir::new().expect("a folder");
+    for file in ["scikit-fem.toml", "scikit_fem_column.py", "nodes.toml"] {
+        let text = fs::read_to_string(root().join("studies/foreign").join(file)).expect("a file");
+        let text = text.replace("\"python3\", \"scikit", "\"python3\", \"-I\", \"-S\", \"scikit");
+        fs::write(folder.path().join(file), text).expect("a file");
+    }
+    let told = call(folder.path(), &["check", "scikit-fem.toml"]);
+    let said = told.words();
+    assert!(said.contains("scikit-fem: 3 cases were skipped") && told.code == 5, "{said}");
+}
