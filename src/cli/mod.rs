@@ -9,6 +9,7 @@ pub mod exit;
 pub mod output;
 pub mod overrides;
 pub mod progress;
+pub mod side_by_side;
 pub mod stream;
 pub mod study_files;
 pub mod time_notes;

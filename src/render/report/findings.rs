@@ -58,9 +58,8 @@ pub fn blocks(one: &StudyResults<'_>) -> Vec<Block> {
         return Vec::new();
     }
     let title = "Order on the finest three meshes, error on ten cells";
-    let table = Table::of(title, columns, rows).note(
-        "at the middle output time; relative L_2 norm over the volume; a class stands where it allows no order",
-    );
+    let table = Table::of(title, columns, rows)
+        .note(format!("at the middle output time; relative L_2 norm over the volume. {}", labels::CLASSES));
     let is_attached = all.iter().any(|path| path.records.iter().any(|record| record.attached.is_some()));
     let places = "of an attached solver its own places stand for the points".to_owned();
     let table = table.notes(is_attached.then_some(places));
