@@ -23,6 +23,7 @@
 //! | `judge/` | verdicts on studies, scores of external results, comparisons of methods |
 //! | `render/` | tables, charts, pages; sees records and verdicts, and never a solver |
 //! | `cli/` | one file per subcommand |
+//! | [`api`] | the door for other languages: names and lists in, lists out |
 //! # The equations
 //!
 //! Numbers are those of `docs/theory.md`; the paper is Zheng et al. (2021).
@@ -98,6 +99,7 @@
 // Tests and benches may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+pub mod api;
 mod campaign;
 mod case;
 mod cli;
@@ -126,7 +128,7 @@ pub use case::norm::Norm;
 pub use case::quantity::{Quantity, Sample};
 pub use case::tier::Tier;
 pub use case::{Case, Task};
-pub use cli::main;
+pub use cli::{main, main_with};
 pub use golden::compare::compare;
 pub use golden::tolerance::spread_by_group;
 pub use golden::{GoldenError, GoldenFile, values_of};

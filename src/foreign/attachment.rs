@@ -81,6 +81,9 @@ impl<'a> Attachment<'a> {
     /// # Errors
     /// When the exact solutions refuse the case's parameters.
     pub fn run(&self, case: &Case, wish: &Wish<'_>) -> Result<Record, ExactError> {
+        if self.solver.is_given() {
+            return Self::record(case, wish, self.given(case), AttachedRun::default(), Vec::new());
+        }
         let _passed = self.gate.pass();
         let mut about = AttachedRun {
             command: self.solver.command.clone(),
@@ -107,6 +110,24 @@ impl<'a> Attachment<'a> {
         }
         let nothing = || ending::of_incomplete("the solver was not run");
         Self::record(case, wish, known.ok_or_else(nothing), about, wall)
+    }
+
+    /// What is there already.
+    fn given(&self, case: &Case) -> Left {
+        // Records and messages name files as the study does.
+        let folder = format!("{}/", self.solver.folder.display());
+        let plain = |text: &str| text.replace(&folder, "");
+        let mapping = self.mapping.as_ref().map_err(|why| ending::of_mapping(&plain(why)))?;
+        let name = |typed: &String| typed.replace("{cells}", &case.cells.to_string());
+        let paths: Vec<PathBuf> =
+            self.solver.files.iter().map(|typed| self.solver.folder.join(name(typed))).collect();
+        let result = read(case, mapping, &paths).map_err(|unread| {
+            let failure = ending::of_given(unread, &self.solver.files);
+            Failure { reason: plain(&failure.reason), ..failure }
+        })?;
+        let states = states_at_outputs(case, &result.states).map_err(|lack| ending::of_incomplete(&lack))?;
+        let notes = result.notes.iter().map(|note| plain(note)).collect();
+        Ok((states, ReadResult { notes, ..result }))
     }
 
     /// One run in a fresh folder.
@@ -178,7 +199,7 @@ impl<'a> Attachment<'a> {
             return Err(failure);
         }
         let path = PathBuf::from(filling.fill(&self.solver.result));
-        let result = read(case, mapping, &path)
+        let result = read(case, mapping, &[path])
             .map_err(|unread| ending::of_reading(unread, self.solver, &staged.contents()))?;
         let states = states_at_outputs(case, &result.states).map_err(|lack| ending::of_incomplete(&lack))?;
         Ok((states, result))

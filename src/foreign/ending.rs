@@ -92,6 +92,22 @@ pub fn of_reading(unread: Unread, solver: &Solver, contents: &str) -> Failure {
     Failure::of_attached(kind, what)
 }
 
+/// The end of a result that was there already and cannot be taken.
+pub fn of_given(unread: Unread, files: &[String]) -> Failure {
+    let (kind, what) = match unread {
+        Unread::NoFile => (
+            FailureKind::NoResult,
+            format!(
+                "there is no file {}: the solver was not run, or `files` in the study names its result otherwise",
+                files.join(", ")
+            ),
+        ),
+        Unread::Unreadable(why) => (FailureKind::Unreadable, why),
+        Unread::NotFinite(why) => (FailureKind::NotFinite, format!("{why}; an error of the solver")),
+    };
+    Failure::of_attached(kind, what)
+}
+
 /// The end of a run whose result lacks something.
 pub fn of_incomplete(lack: &str) -> Failure {
     let reason =

@@ -13,7 +13,7 @@ use crate::study::file::StudySource;
 use crate::study::solver::Solver;
 use clap::ValueEnum;
 use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A result as it was read.
 #[derive(Debug)]
@@ -50,6 +50,14 @@ pub enum MappingError {
         /// Why.
         source: std::io::Error,
     },
+    /// It does not say what a result means.
+    #[error("{name} says nothing of {taken}: write it into [units] and [sign]")]
+    Undeclared {
+        /// The mapping.
+        name: String,
+        /// What would have been taken for granted.
+        taken: String,
+    },
     /// It says what no file can have.
     #[error(transparent)]
     Wrong(#[from] StudyError),
@@ -69,14 +77,22 @@ pub fn mapping_of(solver: &Solver, is_plane: bool) -> Result<Mapping, MappingErr
     });
     let own = own.transpose()?;
     let preset = solver.preset.as_deref().and_then(|name| Preset::from_str(name, false).ok());
-    if let Some(preset) = preset {
-        return Ok(preset.mapping(own.as_ref(), is_plane)?);
-    }
-    let Some(source) = own else { return Ok(Mapping::convention(is_plane)?) };
-    let mapping = Mapping::read(&source)?;
-    if is_plane {
-        mapping.check_plane(&source)?;
-    }
+    let mut mapping = match (preset, own) {
+        (Some(preset), own) => preset.mapping(own.as_ref(), is_plane)?,
+        (None, None) => Mapping::convention(is_plane)?,
+        (None, Some(source)) => {
+            let mapping = Mapping::read(&source)?;
+            if is_plane {
+                mapping.check_plane(&source)?;
+            }
+            // A gate takes nothing for granted that nobody said.
+            if let Some(taken) = mapping.taken_for_granted().filter(|_| solver.is_given()) {
+                return Err(MappingError::Undeclared { name: source.name, taken });
+            }
+            mapping
+        }
+    };
+    mapping.time.step = solver.time_step.or(mapping.time.step);
     Ok(mapping)
 }
 
@@ -84,8 +100,8 @@ pub fn mapping_of(solver: &Solver, is_plane: bool) -> Result<Mapping, MappingErr
 ///
 /// # Errors
 /// Why there is none.
-pub fn read(case: &Case, mapping: &Mapping, result: &Path) -> Result<ReadResult, Unread> {
-    let given = files_of(&[result.to_owned()]).map_err(|_| Unread::NoFile)?;
+pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadResult, Unread> {
+    let given = files_of(result).map_err(|_| Unread::NoFile)?;
     let files: Vec<PathBuf> = given.iter().flat_map(|one| one.files.iter().cloned()).collect();
     if files.iter().any(|file| !file.is_file()) {
         return Err(Unread::NoFile);

@@ -11,6 +11,7 @@ use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
 use crate::convergence::series_demand::SeriesDemand as Demand;
 use crate::convergence::uncertainty::NumericalUncertainty;
 use crate::judge::absent::Absent;
+use crate::judge::error_place::place_of_attached;
 use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::measure::norms::relative_error;
 use crate::mpm::run::integrator::IntegratorKind;
@@ -206,6 +207,14 @@ impl<'a> Path<'a> {
         }
     }
 
+    /// Where most of the error of somebody else's result is: at the level that is bounded, or the finest.
+    fn place(&self, demand: &Demand, measure: &Measure) -> Option<String> {
+        let is_bounded =
+            |record: &&&Record| demand.at.is_some_and(|at| at.size == level_size(record, self.axis));
+        let record = self.records.iter().find(is_bounded).or(self.records.last())?;
+        place_of_attached(record, measure.error(record)?)
+    }
+
     /// What the runs of the path share, in words, the method first.
     pub fn parts(&self) -> Vec<String> {
         let mut case = self.records[0].case.clone();
@@ -309,10 +318,14 @@ fn judge_expectation(expectation: &SeriesExpectation, records: &[Record]) -> Vec
         .map(|path| {
             let context = path.context(measure);
             let beside = path.beside(&expectation.demand, measure, context.formal_order);
+            let mut verdict = judge(&expectation.demand, &path.series(measure), &context, &beside);
+            if let Some(place) = path.place(&expectation.demand, measure).filter(|_| !verdict.pass) {
+                verdict.reason = format!("{}; {place}", verdict.reason);
+            }
             Judgement {
                 line: expectation.line,
                 subject: format!("{}: {what}", path.label()),
-                verdict: judge(&expectation.demand, &path.series(measure), &context, &beside),
+                verdict,
                 uncertainty: beside.uncertainty.and_then(Result::ok),
             }
         })

@@ -7,8 +7,9 @@ use crate::golden::case_changes::{CaseChange, case_changes};
 use crate::golden::compare::{Change, Difference, compare};
 use crate::golden::difference_groups::{DifferenceGroup, groups_of};
 use crate::golden::references::{REFERENCES, reference_values};
-use crate::golden::{GoldenError, GoldenFile, seconds_of, values_of};
+use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, values_of};
 use crate::judge::absent::{Absent, differing_repeats};
+use crate::judge::error_place::place_of_attached;
 use crate::judge::paths::{Judgement, judge_study};
 use crate::judge::soundness;
 use crate::record::{Record, Status};
@@ -96,8 +97,22 @@ impl StudyCheck {
             }),
             judgements: judge_study(study, records, tier),
             warnings: slow.into_iter().chain(absent.warnings()).chain(differing_repeats(records)).collect(),
-            ..Self::of_values(&study.name, &values_of(records), golden)
+            ..Self::of_values(&study.name, &values_of(records), golden).with_places(records)
         }
+    }
+
+    /// With the places that carry the worst of somebody else's values.
+    fn with_places(mut self, records: &[Record]) -> Self {
+        for group in &mut self.groups {
+            let (label, measure) = parts(&group.worst.name);
+            let record =
+                records.iter().find(|record| record.attached.is_some() && record.case.label() == label);
+            group.place = record.and_then(|record| {
+                let row = record.errors.iter().find(|row| measure_name(row) == measure)?;
+                place_of_attached(record, row)
+            });
+        }
+        self
     }
 
     /// Adds the cases that have no record, a refusing reference or a crash being the reason: they failed.

@@ -13,6 +13,7 @@ pub mod assembled;
 pub mod attached;
 pub mod body;
 pub mod critical_step;
+pub mod direct_solver;
 pub mod explicit;
 pub mod implicit;
 pub mod method;

@@ -28,6 +28,10 @@ pub struct Solver {
     pub command: Vec<String>,
     /// The result, as typed: below `{out}`.
     pub result: String,
+    /// Files of a result that is there already, as typed; empty where the command makes one.
+    pub files: Vec<String>,
+    /// Seconds from one numbered step to the next, where file names have the number of the step.
+    pub time_step: Option<f64>,
     /// Mapping file, below the folder.
     pub mapping: Option<String>,
     /// Program whose files are known.
@@ -49,6 +53,11 @@ pub struct Solver {
 }
 
 impl Solver {
+    /// Whether its results are there already, and nothing is run.
+    pub fn is_given(&self) -> bool {
+        !self.files.is_empty()
+    }
+
     /// The name that the study gives it.
     pub fn name(&self) -> &str {
         self.attached.name()

@@ -4,6 +4,8 @@ use crate::mpm::attached::Attached;
 /// A solver in a folder by a command, with the convention's mapping.
 pub(crate) fn solver(folder: &Path, command: &[&str]) -> Solver {
     Solver {
+        files: Vec::new(),
+        time_step: None,
         attached: Attached::new("toy", "0123456789abcdef").expect("a plain name"),
         folder: folder.to_owned(),
         command: command.iter().map(|word| (*word).to_owned()).collect(),

@@ -11,7 +11,11 @@ pub fn notes_of(record: &Record) -> Vec<String> {
     let mut notes: Vec<String> = record.status.failure().map(ToString::to_string).into_iter().collect();
     let version =
         about.version.as_ref().map_or(String::new(), |version| format!(", which says of itself: {version}"));
-    notes.push(format!("run by `{}`{version}", about.command.join(" ")));
+    notes.push(if about.command.is_empty() {
+        "read from files that were there already; nothing was run".to_owned()
+    } else {
+        format!("run by `{}`{version}", about.command.join(" "))
+    });
     notes.extend(times(&record.wall));
     notes.extend(
         about

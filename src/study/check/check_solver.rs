@@ -75,10 +75,7 @@ impl Checker<'_> {
         for file in table.files.iter().flat_map(|list| list.get_ref()) {
             self.file_of_study(Some(file), &folder);
         }
-        let preset = table.preset.as_ref().map(|typed| typed.get_ref().clone());
-        if let Some(typed) = &table.preset {
-            self.word(typed, "preset", &PRESETS);
-        }
+        let preset = self.preset_of(table.preset.as_ref());
         self.pattern_has_a_group(table);
         let repeats = self.count(table.repeats.as_deref(), "repeats", 1..=MOST_REPEATS).unwrap_or(1);
         let at_once = self.count(table.at_once.as_deref(), "at_once", 1..=MOST_AT_ONCE).unwrap_or(1);
@@ -97,6 +94,8 @@ impl Checker<'_> {
             folder,
             command,
             result: table.result.get_ref().clone(),
+            files: Vec::new(),
+            time_step: None,
             mapping,
             preset,
             version: table.version.as_ref().map_or(Vec::new(), words_of),
@@ -132,8 +131,15 @@ impl Checker<'_> {
         }
     }
 
+    /// A program whose files are known.
+    pub(crate) fn preset_of(&mut self, typed: Option<&Placed<String>>) -> Option<String> {
+        let typed = typed?;
+        self.word(typed, "preset", &PRESETS);
+        Some(typed.get_ref().clone())
+    }
+
     /// The name of a file of the adapter, which must be there.
-    fn file_of_study(&mut self, typed: Option<&Placed<String>>, folder: &Path) -> Option<String> {
+    pub(crate) fn file_of_study(&mut self, typed: Option<&Placed<String>>, folder: &Path) -> Option<String> {
         let typed = typed?;
         let path = folder.join(typed.get_ref());
         if !path.is_file() {
@@ -175,7 +181,7 @@ fn pairs_of(table: &SolverTable) -> Vec<(String, String)> {
 }
 
 /// Folder of a study file; of a text that is no file the present one.
-fn folder_of(study: &str) -> PathBuf {
+pub(crate) fn folder_of(study: &str) -> PathBuf {
     let folder = Path::new(study).parent().unwrap_or(Path::new(""));
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned())
@@ -211,7 +217,7 @@ fn digest_of(table: &SolverTable, folder: &Path) -> String {
 }
 
 /// Digest of the content of a file; of one that cannot be read, a word.
-fn digest_of_file(path: &Path) -> String {
+pub(crate) fn digest_of_file(path: &Path) -> String {
     let mut hasher = blake3::Hasher::new();
     let read = File::open(path).and_then(|file| hasher.update_reader(file).map(|_| ()));
     read.map_or_else(|_| "unreadable".to_owned(), |()| hasher.finalize().to_hex().to_string())

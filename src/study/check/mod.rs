@@ -3,6 +3,7 @@
 pub mod check_case_expectation;
 pub mod check_material;
 pub mod check_method;
+pub mod check_result;
 pub mod check_series_expectation;
 pub mod check_solver;
 pub mod check_sweep;
@@ -162,7 +163,8 @@ impl Checker<'_> {
             None => DEFAULT_TIME_FACTORS.to_vec(),
         };
         let references = self.references(&file.output, scene, &base.column);
-        if file.sweep.is_empty() {
+        let given = self.results(file);
+        if file.sweep.is_empty() && file.result.is_empty() {
             let end = self.source.text.trim_end().len();
             let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
             self.complain(
@@ -197,6 +199,12 @@ impl Checker<'_> {
             self.pores_stay_open(start..start + 1, cases.iter());
             for case in cases {
                 put(case, tier, &mut planned, &mut places);
+            }
+        }
+        base.time_factors = time_factors;
+        for meshes in given {
+            for case in meshes.cases(&base) {
+                put(case, meshes.tier, &mut planned, &mut places);
             }
         }
         let (expectations, case_expectations) = self.expectations(file, scene, &references, &planned);
