@@ -7,6 +7,7 @@ mod first_hour;
 mod foreign;
 mod impossible_results;
 mod planted_damage;
+mod plate_and_weight;
 mod portable;
 mod program;
 mod readme;
