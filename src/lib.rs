@@ -40,6 +40,8 @@
 //! | 15 | large strain in general | `src/exact/large_strain/diffusion.rs:coefficients` |
 //! | 16 | Mandel's slab | `src/exact/mandel/series.rs:sum`, `src/exact/mandel/early.rs:ratios` |
 //! | 17 | chord mean of the conductivity | `src/mpm/operators/chord_mean.rs:take_chord_drag`, `src/soil/conductivity_mean.rs:flow_potential` |
+//! | 18 | rigid plate | `src/mpm/operators/rigid_plate.rs:tie`, `src/mpm/implicit/bordered.rs:solve` |
+//! | 19 | own weight, free water | `src/mpm/operators/self_weight.rs:add_weight` |
 //!
 //! # The step
 //!

@@ -16,7 +16,7 @@ const SHIPPED: &[(&str, &str)] = shipped! {
     "value-uncertainty" "terzaghi-methods" "terzaghi-integrators" "any-soil" "jittered-points" "work-precision" "terzaghi-moving"
     "single-mode" "dynamic-column" "dynamic-ramp" "dynamic-growth" "dynamic-mode" "standing-wave-mesh"
     "standing-wave-step" "column-in-the-plane" "column-in-the-plane-steps" "layer-locking" "layer-mesh"
-    "layer-smooth" "stability-conductivity" "stability-stiffness" "stability-porosity" "stability-points"
+    "layer-smooth" "mandel" "self-weight" "self-weight-large" "at-rest" "stability-conductivity" "stability-stiffness" "stability-porosity" "stability-points"
     "stability-offset" "stability-flip" "stability-slow-growth" "hard-undrained" "hard-stiff-water"
     "hard-tiny-porosity" "hard-large-porosity" "hard-one-point" "hard-faces" "hard-jitter" "hard-empty-top"
     "hard-tiny" "hard-huge" "hard-early" "hard-strain" "hard-long" "large-strain-column" "large-strain-mesh"
