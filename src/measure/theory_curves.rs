@@ -86,10 +86,10 @@ pub fn theory_consolidation(
     kind: ReferenceKind,
     end: f64,
 ) -> Result<Vec<(f64, f64)>, ExactError> {
+    static KNOWN: KnownLines<(f64, f64)> = LazyLock::new(Mutex::default);
     let growth = elementary::ln(end / CURVE_START) / f64::from(LINE_POINTS);
     let times: Vec<f64> =
         (0..=LINE_POINTS).map(|i| CURVE_START * elementary::exp(growth * f64::from(i))).collect();
-    static KNOWN: KnownLines<(f64, f64)> = LazyLock::new(Mutex::default);
     known_or(&KNOWN, key_of(case, kind, &times), || {
         let reference = reference_of(case, kind, &times)?;
         times.iter().map(|time| Ok((*time, reference.degree_of_consolidation(*time)?))).collect()
