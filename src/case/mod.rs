@@ -358,9 +358,15 @@ mod tests {
     }
 
     #[test]
+    fn a_case_without_own_weight_has_the_identity_that_it_had_before_there_was_any() {
+        let text = serde_json::to_string(&seed()).expect("plain data");
+        assert!(!text.contains("self_weight"), "{text}");
+    }
+
+    #[test]
     fn the_hash_follows_every_input() {
         let mut hashes = vec![seed().hash()];
-        let changes: [fn(&mut Case); 42] = [
+        let changes: [fn(&mut Case); 41] = [
             |case| case.task = Task::Stability,
             |case| case.scene = SceneKind::XieLeo,
             |case| case.column.height = 2.0,
@@ -369,6 +375,7 @@ mod tests {
             |case| case.column.dimensions = 2,
             |case| case.column.base = Some(Base::ALL[0]),
             |case| case.column.loading_time = 2.0,
+            |case| case.column.self_weight = true,
             |case| case.column.points.offset = 0.1,
             |case| case.column.points.jitter = 0.1,
             |case| case.column.points.filling = 0.5,
