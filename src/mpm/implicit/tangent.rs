@@ -145,11 +145,9 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
             rows[row].extend_from_slice(felt);
         }
     }
-    if unknowns.border > 0 {
-        rows[unknowns.count - unknowns.border..].iter_mut().for_each(|row| {
-            row.sort_unstable();
-            row.dedup();
-        });
+    for row in &mut rows[unknowns.count - unknowns.border..] {
+        row.sort_unstable();
+        row.dedup();
     }
     // Porosity and deformation of a site: of its points.
     let is_by_cells = body.method.pressure.is_by_cells();
