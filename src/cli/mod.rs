@@ -4,13 +4,17 @@
 
 pub mod calibrate;
 pub mod commands;
+pub mod cost_files;
 pub mod destination;
 pub mod exit;
+pub mod job_list;
 pub mod output;
 pub mod overrides;
 pub mod progress;
+pub mod slurm;
 pub mod stream;
 pub mod study_files;
+pub mod study_tables;
 pub mod time_notes;
 
 use crate::cli::commands::{

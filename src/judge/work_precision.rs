@@ -184,7 +184,7 @@ time_step = [{ growth = 0.005 }]
         for record in &mut records {
             // A cost that is the same on every machine.
             let seconds = 1e-9 * record.counters.point_updates as f64;
-            record.wall = vec![WallSample { seconds, alone: true, cpu_seconds: None }; 2];
+            record.wall = vec![WallSample { seconds, alone: true, cpu_seconds: None, machine: None }; 2];
         }
         let precision = WorkPrecision::of(&records, "terzaghi").expect("timed runs");
         assert_eq!(precision.next_levels.len(), 2);

@@ -4,8 +4,15 @@
 //! live solver, so that a report can be made again without solving.
 
 pub mod long_tables;
+pub mod machine;
+pub mod machines_table;
 pub mod origins;
+pub(crate) mod pack;
+pub mod packed_store;
+pub(crate) mod packed_table;
 pub mod provenance;
+pub(crate) mod seal;
+pub(crate) mod single_files;
 pub mod store;
 pub mod tidy;
 pub mod whole_file;
@@ -17,6 +24,7 @@ pub use crate::mpm::critical_step::observed::{CriticalStep, Probe};
 use crate::mpm::run::outcome::{Counters, Failure, FailureKind, StepSizes};
 pub use crate::mpm::run::profile::PhaseTime;
 use crate::mpm::run::snapshot::Snapshot;
+use crate::record::machine::Machine;
 use crate::record::provenance::Provenance;
 use serde::{Deserialize, Serialize};
 
@@ -54,7 +62,7 @@ impl Status {
 }
 
 /// One wall time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct WallSample {
     /// Seconds of wall time.
     pub seconds: f64,
@@ -63,6 +71,9 @@ pub struct WallSample {
     /// Seconds that the processor worked on it, where the system tells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cpu_seconds: Option<f64>,
+    /// Where it ran, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub machine: Option<Machine>,
 }
 
 /// Dimensionless groups that say which theory can hold.

@@ -144,7 +144,7 @@ impl Checker<'_> {
             );
         }
         let mut planned: Vec<PlannedCase> = Vec::new();
-        let mut places: HashMap<String, usize> = HashMap::new();
+        let mut places: HashMap<u64, usize> = HashMap::new();
         for block in &file.sweep {
             let table = block.get_ref();
             base.time_factors = match &table.time_factors {
@@ -158,16 +158,17 @@ impl Checker<'_> {
                 self.default_integrator(table, block.span().start, &common, &base, &mut sweep);
             }
             let tier = self.choice(table.tier.as_deref(), "tier", Tier::default()).unwrap_or_default();
-            let mut cases: Vec<Case> = sweep.cases(&base).collect();
-            if let Some(strain) = strain {
-                for case in &mut cases {
-                    case.column.load = load_of(strain, case);
+            let loaded = |mut case: Case| {
+                if let Some(strain) = strain {
+                    case.column.load = load_of(strain, &case);
                 }
-            }
+                case
+            };
             let start = block.span().start;
-            self.pores_stay_open(start..start + 1, cases.iter());
-            for case in cases {
-                match places.entry(case.hash()) {
+            self.pores_stay_open(start..start + 1, sweep.cases(&base).map(loaded));
+            planned.reserve_exact(sweep.count().unwrap_or(0));
+            for case in sweep.cases(&base).map(loaded) {
+                match places.entry(case.number()) {
                     Entry::Occupied(place) => {
                         let other = &mut planned[*place.get()];
                         other.tier = other.tier.min(tier);
