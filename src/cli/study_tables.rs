@@ -15,11 +15,15 @@ use crate::record::whole_file::{write_streamed, write_whole};
 use crate::study::check::Study;
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// Cases up to which a table is plain CSV; that of more is compressed, to a fifteenth.
 const MOST_PLAIN_CASES: usize = 2000;
+
+/// Table of the machines and builds beside that of the measures.
+const MACHINES: &str = "machines.csv";
 
 /// What is written beside the tidy table of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,7 +106,7 @@ fn plain_tables(
         })
     })?;
     tell_of_foreign(study, foreign);
-    write_whole(&store.folder().join("machines.csv"), machines.to_csv()?.as_bytes())?;
+    write_whole(&store.folder().join(MACHINES), machines.to_csv()?.as_bytes())?;
     for long in LongTable::ALL.into_iter().filter(|_| with_long_tables) {
         let path = store.folder().join(format!("{}.csv", long.name()));
         write_rows(&path, &long.header_line(), |out| {
@@ -126,6 +130,28 @@ fn write_rows(
         drop(out);
         file.sync_all()
     })?)
+}
+
+/// Writes which machines and builds the records of a packed study are of.
+///
+/// # Errors
+/// When the file system refuses.
+pub fn write_machines(study: &Study, store: &RecordStore) -> anyhow::Result<()> {
+    let mut machines = MachinesTable::default();
+    let mut builds: HashMap<(u64, u64), Provenance> = HashMap::new();
+    for case in study.cases(Tier::Full) {
+        let Some((entry, wall)) = store.entry_and_wall(case) else { continue };
+        let tags = (entry.program, entry.build);
+        if let Entry::Vacant(place) = builds.entry(tags)
+            && let Some(origin) = store.origin(case)
+        {
+            place.insert(origin);
+        }
+        if let Some(origin) = builds.get(&tags) {
+            machines.add_parts(origin, &wall);
+        }
+    }
+    Ok(write_whole(&store.folder().join(MACHINES), machines.to_csv()?.as_bytes())?)
 }
 
 fn compressed_table(study: &Study, store: &RecordStore, cases: &[&Case]) -> anyhow::Result<PathBuf> {

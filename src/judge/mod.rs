@@ -5,6 +5,7 @@
 //! What has no value is returned as a named reason, never as a number that could pass a test.
 
 pub mod case_verdicts;
+pub mod cheapest_method;
 pub mod explanation;
 pub mod floor_causes;
 pub mod locking;

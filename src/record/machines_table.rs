@@ -1,7 +1,8 @@
 //! Which machines and builds the records of a study are of: what may differ between them, in one table.
 
-use crate::record::Record;
 use crate::record::machine::Machine;
+use crate::record::provenance::Provenance;
+use crate::record::{Record, WallSample};
 use std::collections::BTreeMap;
 
 /// Its columns.
@@ -28,7 +29,11 @@ pub struct MachinesTable {
 impl MachinesTable {
     /// Counts a record with the machine that ran it first.
     pub fn add(&mut self, record: &Record) {
-        let origin = &record.provenance;
+        self.add_parts(&record.provenance, &record.wall);
+    }
+
+    /// Counts a record of which only this is known.
+    pub fn add_parts(&mut self, origin: &Provenance, wall: &[WallSample]) {
         let tree = if origin.dirty { "changed" } else { "committed" };
         let words = [
             &origin.version,
@@ -39,7 +44,7 @@ impl MachinesTable {
             &origin.target,
             &origin.profile,
         ];
-        let first = record.wall.first();
+        let first = wall.first();
         let machine = first.and_then(|sample| sample.machine.clone());
         let row = self.rows.entry((machine, words.map(|word: &str| word.to_owned()))).or_default();
         row.0 += 1;

@@ -27,6 +27,12 @@ pub(crate) fn wall(study: &Path, hash: &str) -> Vec<WallSample> {
     text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
 }
 
+/// Hashes of the cases that have a folder.
+pub(crate) fn hashes(study: &Path) -> Vec<String> {
+    let folders = fs::read_dir(study.join("cases")).into_iter().flatten().flatten();
+    folders.filter_map(|folder| folder.file_name().into_string().ok()).collect()
+}
+
 /// Writes a record that carries no digest: first under another name, then renamed, so that a reader sees the whole
 /// of it or nothing.
 ///

@@ -6,7 +6,7 @@ use crate::record::pack::index::Damage;
 use crate::record::packed_store::{CaseEnd, Entry, PackedStore, number_of};
 use crate::record::provenance::Provenance;
 use crate::record::whole_file::StoreError;
-use crate::record::{Record, SCHEMA, Status, single_files};
+use crate::record::{Record, SCHEMA, Status, WallSample, single_files};
 use serde::Deserialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -215,14 +215,37 @@ impl RecordStore {
 
     /// The record of a case, whichever program of this layout made it.
     pub fn kept(&self, case: &Case) -> Option<Record> {
-        let hash = case.hash();
+        self.of_hash(&case.hash()).filter(|record| record.case == *case)
+    }
+
+    /// The record of the case with a hash, whichever program of this layout made it.
+    pub fn read(&self, hash: &str) -> Option<Record> {
+        self.of_hash(hash).filter(|record| record.case.hash() == hash)
+    }
+
+    /// The hash of every case with a record, in their order.
+    pub fn hashes(&self) -> Vec<String> {
+        let packed = self.packs.entries().into_iter().map(|entry| format!("{:016x}", entry.case));
+        let mut hashes: Vec<String> = packed.chain(single_files::hashes(&self.folder)).collect();
+        hashes.sort_unstable();
+        hashes.dedup();
+        hashes
+    }
+
+    /// The build of a packed record with its wall times, without reading the rest of it.
+    pub fn entry_and_wall(&self, case: &Case) -> Option<(Entry, Vec<WallSample>)> {
+        let number = case.number();
+        Some((self.packs.entry(number)?, self.packs.text_and_wall(number)?.1))
+    }
+
+    fn of_hash(&self, hash: &str) -> Option<Record> {
         let single =
-            || Some((single_files::text(&self.folder, &hash)?, single_files::wall(&self.folder, &hash)));
-        let (text, wall) = self.packs.text_and_wall(number_of(&hash)).or_else(single)?;
+            || Some((single_files::text(&self.folder, hash)?, single_files::wall(&self.folder, hash)));
+        let (text, wall) = self.packs.text_and_wall(number_of(hash)).or_else(single)?;
         let mut record: Record = serde_json::from_str(&text).ok()?;
         record.wall = wall;
         record.digest.clear();
-        (record.schema == SCHEMA && record.case == *case).then_some(record)
+        (record.schema == SCHEMA).then_some(record)
     }
 
     /// Writes a record so that a reader sees the whole of it or nothing.

@@ -17,3 +17,4 @@ mod solve;
 mod store;
 mod streams;
 mod tools;
+mod wide;

@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
-use crate::cli::study_tables::{Beside, write_table};
+use crate::cli::study_tables::{Beside, write_machines, write_table};
 use crate::record::Record;
 use crate::record::origins::Origins;
 use crate::record::store::RecordStore;
@@ -108,6 +108,9 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
     let there = cases.len() - holes.len();
     if there > 0 {
         let table = write_table(study, &target, &[], Beside::Tables)?;
+        if target.is_packed() {
+            write_machines(study, &target)?;
+        }
         say!("{}: {there} of {} cases, {}", study.name, cases.len(), table.display());
     }
     for case in holes.iter().take(MOST_HOLES) {

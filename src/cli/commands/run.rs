@@ -82,7 +82,7 @@ pub struct Arguments {
     #[arg(long, value_enum, conflicts_with_all = ["case", "shard", "jobs"])]
     engine: Option<Engine>,
     #[command(flatten)]
-    cluster: slurm::arguments::Arguments,
+    cluster: slurm::arguments::ClusterArguments,
 }
 
 /// Who runs cases.

@@ -5,7 +5,7 @@ pub const FOLDER: &str = "slurm";
 
 /// How to run on a cluster.
 #[derive(Debug, clap::Args)]
-pub struct Arguments {
+pub struct ClusterArguments {
     /// Shares, each a task of the array
     #[arg(long, value_name = "N", default_value_t = 16, requires = "engine", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub tasks: u64,

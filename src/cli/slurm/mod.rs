@@ -16,7 +16,7 @@ use crate::case::tier::Tier;
 use crate::cli::cost_files::learned_from;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, missing_of};
-use crate::cli::slurm::arguments::{Arguments, FOLDER};
+use crate::cli::slurm::arguments::{ClusterArguments, FOLDER};
 use crate::cli::slurm::commands::{Job, submit};
 use crate::cli::slurm::follow::follow;
 use crate::cli::slurm::scripts::Scripts;
@@ -48,7 +48,7 @@ pub struct Campaign<'a> {
 /// # Errors
 /// When the scheduler or the file system refuses.
 pub fn run(
-    arguments: &Arguments,
+    arguments: &ClusterArguments,
     files: &[PathBuf],
     studies: &[Study],
     tier: Tier,
@@ -98,7 +98,7 @@ pub fn run(
 impl<'a> Campaign<'a> {
     /// Plans the shares; what finished cases cost is kept in a file then, so that the shares stay the same.
     fn new(
-        arguments: &Arguments,
+        arguments: &ClusterArguments,
         files: &[PathBuf],
         studies: &'a [Study],
         tier: Tier,

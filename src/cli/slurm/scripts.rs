@@ -2,7 +2,7 @@
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, quoted};
-use crate::cli::slurm::arguments::{Arguments, FOLDER};
+use crate::cli::slurm::arguments::{ClusterArguments, FOLDER};
 use crate::record::whole_file::write_whole;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ impl Scripts {
     ///
     /// # Errors
     /// When the program does not know where it is.
-    pub fn new(arguments: &Arguments, list: &JobList, name: &str) -> anyhow::Result<Self> {
+    pub fn new(arguments: &ClusterArguments, list: &JobList, name: &str) -> anyhow::Result<Self> {
         let program = std::env::current_exe()?.to_string_lossy().into_owned();
         let folder = list.results.join(FOLDER);
         let logs = folder.join("logs").to_string_lossy().into_owned();
