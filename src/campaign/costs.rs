@@ -5,6 +5,7 @@ use crate::case::step_cost::StepKind;
 use crate::case::work_estimate::estimated_seconds;
 use crate::record::{Record, Status};
 use std::collections::BTreeMap;
+use std::fmt::Write;
 
 /// Columns of a table of costs.
 const COLUMNS: [&str; 6] = ["step", "dimensions", "method", "points_from", "cases", "ratio"];
@@ -110,8 +111,9 @@ impl CostTable {
         for (kind, learned) in &self.ratios {
             let CostKind { step, dimensions, method, points_from } = kind;
             let method = if method.contains(',') { format!("\"{method}\"") } else { method.clone() };
-            text += &format!(
-                "{step},{dimensions},{method},{points_from},{},{:e}\n",
+            let _ = writeln!(
+                text,
+                "{step},{dimensions},{method},{points_from},{},{:e}",
                 learned.cases, learned.ratio
             );
         }

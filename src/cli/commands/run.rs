@@ -124,7 +124,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let reports = run_and_store(&studies, selected, &options, &arguments.out, Beside::Tables)?;
     let mut all = Tally::default();
-    reports.iter().for_each(|report| all.join(report.tally));
+    for report in &reports {
+        all.join(report.tally);
+    }
     if all.unforeseen > 0 || reports.iter().any(|report| !report.errors.is_empty()) {
         return Ok(Exit::CaseFailed);
     }

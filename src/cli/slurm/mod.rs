@@ -76,7 +76,7 @@ pub fn run(
                 say!("{}: job {} is under way already: it is followed", campaign.name, jobs.array);
                 jobs
             }
-            None if attempt == arguments.attempts => return campaign.given_up(attempt, files),
+            None if attempt == arguments.attempts => return Ok(campaign.given_up(attempt, files)),
             None => {
                 attempt += 1;
                 campaign.submitted(&scripts, &shares, &folder)?
@@ -90,7 +90,7 @@ pub fn run(
         let _ = fs::remove_file(folder.join(JOB));
         if was_cancelled && !campaign.shares_to_run().is_empty() {
             say!("{}: the tasks were cancelled; the same command submits what is missing", campaign.name);
-            return campaign.given_up(attempt, files);
+            return Ok(campaign.given_up(attempt, files));
         }
     }
 }
@@ -197,7 +197,7 @@ impl<'a> Campaign<'a> {
         Ok(if unforeseen > 0 { Exit::CaseFailed } else { Exit::Pass })
     }
 
-    fn given_up(&self, attempts: u64, files: &[PathBuf]) -> anyhow::Result<Exit> {
+    fn given_up(&self, attempts: u64, files: &[PathBuf]) -> Exit {
         let missing = self.count() - self.count_of_done();
         let named: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
         say!(
@@ -209,6 +209,6 @@ impl<'a> Campaign<'a> {
             named.join(" "),
             self.results.display()
         );
-        Ok(Exit::IncompleteMerge)
+        Exit::IncompleteMerge
     }
 }
