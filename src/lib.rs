@@ -40,6 +40,8 @@
 //! | 15 | large strain in general | `src/exact/large_strain/diffusion.rs:coefficients` |
 //! | 16 | Mandel's slab | `src/exact/mandel/series.rs:sum`, `src/exact/mandel/early.rs:ratios` |
 //! | 17 | chord mean of the conductivity | `src/mpm/operators/chord_mean.rs:take_chord_drag`, `src/soil/conductivity_mean.rs:flow_potential` |
+//! | 18 | rigid plate | `src/mpm/operators/rigid_plate.rs:tie`, `src/mpm/implicit/bordered.rs:solve` |
+//! | 19 | own weight, free water | `src/mpm/operators/self_weight.rs:add_weight` |
 //!
 //! # The step
 //!
@@ -128,6 +130,7 @@ pub use golden::tolerance::spread_by_group;
 pub use golden::{GoldenError, GoldenFile, values_of};
 pub use import::table::SampledState;
 pub use judge::score::score;
+pub use judge::situation::{Ended, ends_of};
 pub use judge::soundness;
 pub use judge::study_check::{CheckEnd, StudyCheck};
 pub use measure::record_checks::{balance_checks, start_checks};
@@ -143,6 +146,7 @@ pub use render::page::markdown_page::render_markdown;
 pub use render::page::{Block, Page, figures};
 pub use render::report::StudyResults;
 pub use render::report::pages::index_page;
+pub use render::report::situations::situations_page;
 pub use render::report::study_page::study_page;
 pub use render::table::Table;
 pub use render::tables::measures;

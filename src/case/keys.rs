@@ -228,7 +228,7 @@ keys! {
         "Bulk modulus of the water"
     hydraulic_conductivity in &["sweep", "material"], POSITIVE, "m/s", material.hydraulic_conductivity;
         "Initial hydraulic conductivity"
-    gravity in &["sweep", "material"], POSITIVE, "m/s²", material.gravity; "Gravity in the drag"
+    gravity in &["sweep", "material"], POSITIVE, "m/s²", material.gravity; "Gravity in the drag, and in the weight where the soil has one"
     continuity in &["sweep", "material"], word::<Continuity>(), "", material.continuity;
         "Form of the water's continuity"
     conductivity_mean in &["sweep", "material"], word::<ConductivityMean>(), "", material.conductivity_mean;
@@ -247,6 +247,8 @@ keys! {
     dimensions in &["column"], Kind::Count(2), "", column.dimensions; "Directions that are solved"
     loading_time in &["column"], Kind::Number(Range::NotNegative), "s", column.loading_time;
         "Time over which the load grows, 0 where it acts at once"
+    self_weight in &["column"], Kind::Flag, "", column.self_weight;
+        "Whether skeleton and water have a weight; pressures are told beyond the hydrostatic one"
 }
 
 impl Key {

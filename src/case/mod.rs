@@ -85,7 +85,7 @@ impl Case {
         Self {
             task,
             scene,
-            column: if scene.needs_two_dimensions() { Column::layer() } else { Column::default() },
+            column: scene.default_column(),
             material: Material { law: scene.default_law(), ..Material::default() },
             method: Method {
                 basis: Basis::Hat,
@@ -176,6 +176,7 @@ impl Case {
             (settings.flip != usual.flip, format!("FLIP {}", settings.flip)),
             (settings.mapping_back != usual.mapping_back, "no mapping back".to_owned()),
             (self.column.dimensions == 2 && !self.scene.needs_two_dimensions(), "two dimensions".to_owned()),
+            (self.column.self_weight && !self.scene.is_at_rest(), "own weight".to_owned()),
             (self.material.law != self.scene.default_law(), format!("{} law", self.material.law.name())),
             (self.material.continuity != Continuity::Conservative, "porosity gradient dropped".to_owned()),
             (self.material.conductivity_mean == ConductivityMean::Chord, "chord mean".to_owned()),

@@ -4,8 +4,9 @@ use crate::convergence::class::Class;
 use crate::convergence::class::evaluable_series::plain;
 use crate::judge::paths::Judgement;
 use crate::judge::verdict::{Check, Verdict, VerdictOutcome, check};
+use crate::measure::pressure_peak::pressure_peak;
 use crate::record::{Balance, Record};
-use crate::study::case_expectation::{CaseDemand, CaseExpectation, ErrorRange};
+use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
 use crate::wording::typed;
 
 impl CaseExpectation {
@@ -49,6 +50,15 @@ impl CaseDemand {
         ];
         let asked = drifts.into_iter().filter_map(|(what, found, below)| Some((what, found, below?)));
         checks.extend(asked.map(|(what, found, below)| drift_found(what, found, below)));
+        let spurious = record.balance.iter().filter_map(|balance| balance.spurious_velocity).reduce(f64::max);
+        let peak = pressure_peak(record);
+        let ranges = [
+            ("spurious velocity over the conductivity", spurious, self.spurious_velocity),
+            ("time factor of the highest pressure", peak.map(|peak| peak.time_factor), self.peak_time_factor),
+            ("highest pressure over the load", peak.map(|peak| peak.height), self.peak_pressure),
+        ];
+        let asked = ranges.into_iter().filter_map(|(what, found, bounds)| Some((what, found, bounds?)));
+        checks.extend(asked.map(|(what, found, bounds)| value_found(what, found, bounds)));
         checks
     }
 }
@@ -108,6 +118,16 @@ fn error_found(range: &ErrorRange, record: &Record) -> Check {
     check("error", pass, Some(error), reason)
 }
 
+fn value_found(what: &'static str, found: Option<f64>, bounds: Bounds) -> Check {
+    let Some(value) = found else {
+        return check(what, false, None, format!("no {what} was found"));
+    };
+    let pass = value < bounds.below && value >= bounds.above;
+    let inside = if pass { "in" } else { "outside" };
+    let range = format!("{:.4e} … {:.4e}", bounds.above, bounds.below);
+    check(what, pass, Some(value), format!("{what}: {value:.5e} {inside} {range}"))
+}
+
 fn drift_found(what: &str, found: Option<f64>, below: f64) -> Check {
     let Some(drift) = found else {
         return check("drift", false, None, format!("no balance of the {what}"));
@@ -163,6 +183,20 @@ time_step = [{ growth = 0.05 }]
         assert!(!found(&record, 0.0, 1e9).pass);
         record.errors.clear();
         assert!(!found(&record, 0.0, 1e9).pass);
+    }
+
+    #[test]
+    fn a_value_that_is_missing_or_no_number_is_in_no_range() {
+        let bounds = Bounds { above: 1.0, below: 2.0 };
+        for (found, passes) in [
+            (Some(1.0), true),
+            (Some(2.0), false),
+            (Some(0.9), false),
+            (Some(f64::NAN), false),
+            (None, false),
+        ] {
+            assert_eq!(value_found("velocity", found, bounds).pass, passes, "{found:?}");
+        }
     }
 
     #[test]

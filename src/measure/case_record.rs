@@ -31,7 +31,12 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
             errors.extend(snapshot_errors(case, reference, *time_factor, snapshot)?);
         }
     }
-    let final_settlement = references.first().map_or(Ok(f64::NAN), |own| own.settlement(LONG_AFTER))?;
+    let final_settlement = match references.first() {
+        None => f64::NAN,
+        // What a load of the scale would make, where nothing settles.
+        Some(own) if own.kind() == ReferenceKind::AtRest => parameters.final_settlement(),
+        Some(own) => own.settlement(LONG_AFTER)?,
+    };
     let history: Vec<HistoryRow> = outcome
         .history
         .iter()

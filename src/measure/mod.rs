@@ -9,6 +9,7 @@ pub mod field_errors;
 pub mod norms;
 pub mod oscillation;
 pub mod plane_field;
+pub mod pressure_peak;
 pub mod record_checks;
 pub mod theory_curves;
 pub mod wall_times;

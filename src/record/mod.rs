@@ -122,6 +122,10 @@ pub struct Balance {
     /// Distance of the settlement at this output from the settlement curve, over the final
     /// settlement, beyond what interpolation between the curve's rows explains.
     pub settlement_curve_gap: f64,
+    /// Largest nodal velocity of either phase over the hydraulic conductivity, what flows under a unit gradient,
+    /// in a scene in which nothing may move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spurious_velocity: Option<f64>,
 }
 
 /// One measured error.

@@ -5,6 +5,15 @@ use crate::case::tier::Tier;
 use crate::record::Record;
 use crate::study::expectation::{Measure, Selection};
 
+/// A range of values: the lower end belongs to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest value.
+    pub above: f64,
+    /// Values are smaller than this.
+    pub below: f64,
+}
+
 /// Bounds on one error of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorRange {
@@ -29,6 +38,12 @@ pub struct CaseDemand {
     pub solid_drift_below: Option<f64>,
     /// Largest imbalance of the water at any output, over what the load presses out.
     pub water_drift_below: Option<f64>,
+    /// Bounds on the largest velocity at any output of a column at rest, over the hydraulic conductivity.
+    pub spurious_velocity: Option<Bounds>,
+    /// Bounds on the time factor at which the pressure at the impermeable end is highest.
+    pub peak_time_factor: Option<Bounds>,
+    /// Bounds on that pressure over the load.
+    pub peak_pressure: Option<Bounds>,
 }
 
 /// An expectation of single cases.

@@ -200,6 +200,12 @@ pub struct ExpectCaseKeys {
     pub solid_drift_below: Typed<f64>,
     /// Largest imbalance of the water at any output, over what the load presses out.
     pub water_drift_below: Typed<f64>,
+    /// Bounds on the largest velocity at any output of a column at rest, over the hydraulic conductivity.
+    pub spurious_velocity: Typed<RangeTable>,
+    /// Bounds on the time factor at which the pressure at the impermeable end is highest.
+    pub peak_time_factor: Typed<RangeTable>,
+    /// Bounds on that pressure over the load.
+    pub peak_pressure: Typed<RangeTable>,
     /// Bounds on one error.
     pub error: Typed<RangeTable>,
     /// What is measured.

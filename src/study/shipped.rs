@@ -13,10 +13,10 @@ macro_rules! shipped {
 /// The names in the order of the report, and the texts.
 const SHIPPED: &[(&str, &str)] = shipped! {
     "terzaghi-mesh" "terzaghi-floor" "terzaghi-points" "terzaghi-time-step" "step-control"
-    "value-uncertainty" "terzaghi-methods" "terzaghi-integrators" "any-soil" "work-precision" "terzaghi-moving"
+    "value-uncertainty" "terzaghi-methods" "terzaghi-integrators" "any-soil" "jittered-points" "work-precision" "terzaghi-moving"
     "single-mode" "dynamic-column" "dynamic-ramp" "dynamic-growth" "dynamic-mode" "standing-wave-mesh"
     "standing-wave-step" "column-in-the-plane" "column-in-the-plane-steps" "layer-locking" "layer-mesh"
-    "layer-smooth" "stability-conductivity" "stability-stiffness" "stability-porosity" "stability-points"
+    "layer-smooth" "mandel" "self-weight" "self-weight-large" "at-rest" "stability-conductivity" "stability-stiffness" "stability-porosity" "stability-points"
     "stability-offset" "stability-flip" "stability-slow-growth" "hard-undrained" "hard-stiff-water"
     "hard-tiny-porosity" "hard-large-porosity" "hard-one-point" "hard-faces" "hard-jitter" "hard-empty-top"
     "hard-tiny" "hard-huge" "hard-early" "hard-strain" "hard-long" "large-strain-column" "large-strain-mesh"

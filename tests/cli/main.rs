@@ -10,6 +10,7 @@ mod planted_damage;
 mod portable;
 mod program;
 mod readme;
+mod report_rules;
 mod report_tables;
 mod run;
 mod score;

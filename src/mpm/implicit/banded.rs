@@ -40,6 +40,11 @@ impl Banded {
         Self::zeros(size, lower, upper)
     }
 
+    /// Number of unknowns.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
     /// Adds to an entry, which must lie within the band.
     #[inline]
     pub fn add(&mut self, row: usize, column: usize, value: f64) {

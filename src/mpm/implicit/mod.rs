@@ -6,9 +6,10 @@
 //!   factorisation per step size,
 //! - `trial`: a moving or inertial body at a trial state; `residual`: what its balances leave there;
 //!   `tangent`: the residual's differences; `newton`: SDIRK2 with Newton's iteration on it,
-//! - `banded`, `deformation`: the algebra.
+//! - `banded`, `bordered`: the algebra.
 
 pub mod banded;
+pub mod bordered;
 pub mod linear;
 pub mod linear_system;
 pub mod newton;

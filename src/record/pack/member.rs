@@ -7,12 +7,11 @@ use std::io::{Read, Write};
 
 /// Constant bytes at the beginning of every member: magic and method of gzip, its flag of an extra field, no date,
 /// no system, then the length of the extra field and the name and length of its one subfield.
-const START: [u8; 16] =
-    [0x1f, 0x8b, 8, 4, 0, 0, 0, 0, 0, 0xff, FIELD as u8 + 4, 0, b'O', b'e', FIELD as u8, 0];
+const START: [u8; 16] = [0x1f, 0x8b, 8, 4, 0, 0, 0, 0, 0, 0xff, FIELD + 4, 0, b'O', b'e', FIELD, 0];
 /// Length of what the subfield holds.
-const FIELD: usize = 33;
+const FIELD: u8 = 33;
 /// Length of a header.
-pub(crate) const HEADER: usize = START.len() + FIELD;
+pub(crate) const HEADER: usize = START.len() + FIELD as usize;
 /// What follows the compressed text: its checksum and its length.
 const TRAILER: usize = 8;
 /// Longest text of a member, bytes: more is no record but an attack.

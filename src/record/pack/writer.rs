@@ -38,15 +38,14 @@ impl Writer {
             let file = File::options().write(true).open(&path).ok()?;
             file.try_lock().ok().map(|()| (path, file))
         });
-        let (path, mut file) = match free {
-            Some(found) => found,
-            None => {
-                let path = folder.join(format!("{own}{}{ENDING}", random_word()));
-                let file = File::create_new(&path)?;
-                // Where the file system has no locks the random name alone keeps others away.
-                let _ = file.try_lock();
-                (path, file)
-            }
+        let (path, mut file) = if let Some(found) = free {
+            found
+        } else {
+            let path = folder.join(format!("{own}{}{ENDING}", random_word()));
+            let file = File::create_new(&path)?;
+            // Where the file system has no locks the random name alone keeps others away.
+            let _ = file.try_lock();
+            (path, file)
         };
         let number = index.add_pack(path.clone());
         index.read_on(number)?;

@@ -5,6 +5,23 @@ use crate::judge::paths::{Path, first_norm};
 use crate::study::expectation::{Axis, Measure};
 use std::collections::{BTreeMap, BTreeSet};
 
+/// What the words beside an order, or instead of one, say.
+pub const CLASSES: &str = "Words beside an order say that it is not settled: pre-asymptotic, it still changes from mesh to \
+                           mesh; contaminated, a term of lower order takes over on fine meshes; superconvergent, higher \
+                           than promised. Words instead of one: oscillatory, the error goes up and down; divergent, it \
+                           grows; floor-limited, something else than the mesh limits it; locked, the body hardly moves";
+
+/// A reference in words, for running text and legends.
+pub fn solution(reference: &str) -> String {
+    match reference {
+        "terzaghi" => "Terzaghi's solution with compressible water".to_owned(),
+        "terzaghi-incompressible" => "Terzaghi's solution".to_owned(),
+        "large-strain" => "the exact large-strain solution of its own equations".to_owned(),
+        "xie-leo" => "Xie & Leo's solution".to_owned(),
+        other => format!("the exact solution `{other}`"),
+    }
+}
+
 /// A quantity in words.
 pub fn quantity(quantity: Quantity) -> &'static str {
     match quantity {

@@ -62,7 +62,7 @@ pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
     }
     if few.len() < all.len() {
         blocks.push(Block::Paragraph(
-            "The figures show the undisturbed soil; the table has every variant too.".to_owned(),
+            "The figures show the plain soil only; the table has every variant too.".to_owned(),
         ));
     }
     blocks.push(Block::Table(orders_table(results, &all, axis, own, shown)));
@@ -252,7 +252,10 @@ fn orders_table(
     let mut columns = columns("method | error of");
     columns.extend(levels.iter().map(|level| TableColumn::number(level.clone())));
     if shows_orders(axis, reference) {
-        columns.extend(["pair orders", "fit, 95 %", "finest 3"].map(TableColumn::number));
+        columns.extend(
+            ["order from level to level", "order fitted to all, 95 %", "order of the finest 3"]
+                .map(TableColumn::number),
+        );
     }
     if axis != Axis::PointsPerCell {
         columns.push(TableColumn::text("class"));

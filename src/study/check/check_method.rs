@@ -38,7 +38,11 @@ impl Checker<'_> {
         };
         if let Some(why) = method.configuration.and_then(|kind| scene.refuses_configuration(kind)) {
             let help = "take \"updated\" or \"total\", or leave the key out";
-            self.complain(place.unwrap_or(span), why, help);
+            self.complain(place.unwrap_or(span.clone()), why, help);
+            return None;
+        }
+        if let Some(why) = scene.refuses_method(method) {
+            self.complain(span, why, "take \"GIMP-SRI-patch\", or another method without `TL-`");
             return None;
         }
         Some(method)
