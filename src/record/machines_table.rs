@@ -6,24 +6,13 @@ use crate::record::{Record, WallSample};
 use std::collections::BTreeMap;
 
 /// Its columns.
-const COLUMNS: [&str; 11] = [
-    "node",
-    "processor",
-    "version",
-    "sources",
-    "commit",
-    "tree",
-    "compiler",
-    "target",
-    "profile",
-    "cases",
-    "cpu_seconds",
-];
+const COLUMNS: [&str; 10] =
+    ["node", "processor", "version", "sources", "commit", "tree", "compiler", "target", "profile", "cases"];
 
-/// Cases and processor time by machine and build.
+/// Cases by machine and build.
 #[derive(Clone, Debug, Default)]
 pub struct MachinesTable {
-    rows: BTreeMap<(Option<Machine>, [String; 7]), (usize, f64)>,
+    rows: BTreeMap<(Option<Machine>, [String; 7]), usize>,
 }
 
 impl MachinesTable {
@@ -44,11 +33,9 @@ impl MachinesTable {
             &origin.target,
             &origin.profile,
         ];
-        let first = wall.first();
-        let machine = first.and_then(|sample| sample.machine.clone());
+        let machine = wall.first().and_then(|sample| sample.machine.clone());
         let row = self.rows.entry((machine, words.map(|word: &str| word.to_owned()))).or_default();
-        row.0 += 1;
-        row.1 += first.and_then(|sample| sample.cpu_seconds).unwrap_or(0.0);
+        *row += 1;
     }
 
     /// The table; what is not known is empty.
@@ -58,15 +45,14 @@ impl MachinesTable {
     pub fn to_csv(&self) -> Result<String, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(COLUMNS)?;
-        for ((machine, words), (cases, seconds)) in &self.rows {
+        for ((machine, words), cases) in &self.rows {
             let of_machine = match machine {
                 Some(machine) => [machine.node.as_str(), &machine.processor],
                 None => ["", ""],
             };
-            let counts = [cases.to_string(), format!("{seconds:.3e}")];
+            let cases = cases.to_string();
             let words = words.iter().map(String::as_str);
-            writer
-                .write_record(of_machine.into_iter().chain(words).chain(counts.iter().map(String::as_str)))?;
+            writer.write_record(of_machine.into_iter().chain(words).chain([cases.as_str()]))?;
         }
         let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
