@@ -93,7 +93,8 @@ pub fn run_case(
     let cpu_seconds = worked.zip(thread_seconds()).map(|(before, after)| after - before);
     enter(Phase::Assessment);
     let mut record = record_of(case, references, outcome)?;
-    record.wall.push(WallSample { seconds, alone, cpu_seconds, machine: Some(Machine::this()) });
+    let machine = Some(Machine::this());
+    record.wall.push(WallSample { seconds, alone, cpu_seconds, machine, ..WallSample::default() });
     Ok(record)
 }
 

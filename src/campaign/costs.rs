@@ -162,7 +162,8 @@ mod tests {
         );
         for record in &mut records {
             let cpu_seconds = Some(seconds(&record.case));
-            record.wall = vec![WallSample { seconds: 1e9, alone: true, cpu_seconds, machine: None }];
+            record.wall =
+                vec![WallSample { seconds: 1e9, alone: true, cpu_seconds, ..WallSample::default() }];
         }
         records
     }

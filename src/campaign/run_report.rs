@@ -118,7 +118,7 @@ impl Tally {
         self.recorded += 1;
         if record.status != Status::Ok {
             self.failed += 1;
-            self.unforeseen += usize::from(!study.foresees(record));
+            self.unforeseen += usize::from(!(record.status.is_skipped() || study.foresees(record)));
         }
     }
 

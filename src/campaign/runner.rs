@@ -1,13 +1,12 @@
 //! Runs cases side by side and keeps each record as soon as it is there.
 
-use crate::campaign::case_run::run_case_within;
+use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::run_options::{RunOptions, Selected};
 use crate::campaign::run_report::{LongestCase, Progress, RunError, RunReport, Tally};
 use crate::campaign::shares::shares_of;
 use crate::campaign::stop;
 use crate::case::Case;
 use crate::case::work_estimate::{estimated_work, work_of};
-use crate::mpm::run::Kernel;
 use crate::record::Record;
 use crate::record::store::{Found, RecordStore, Standing};
 use crate::study::check::Study;
@@ -25,16 +24,16 @@ struct Job<'a> {
     case: &'a Case,
     /// Number of its study.
     number: usize,
-    study: &'a Study,
+    runner: &'a CaseRunner<'a>,
     store: Option<&'a RecordStore>,
 }
 
 impl Job<'_> {
     fn as_longest(&self) -> LongestCase {
         LongestCase {
-            study: self.study.name.clone(),
+            study: self.runner.study().name.clone(),
             case: self.case.clone(),
-            case_seconds: self.study.case_seconds,
+            case_seconds: self.runner.study().case_seconds,
         }
     }
 }
@@ -59,9 +58,12 @@ pub fn run_studies(
     let selected = cases_of(studies, options);
     let found: Vec<Begun<'_>> =
         studies.iter().zip(selected).map(|(study, cases)| begun(study, cases, options)).collect();
-    let missing = studies.iter().enumerate().zip(&found).flat_map(|((number, selected), begun)| {
+    let runners: Vec<CaseRunner<'_>> =
+        studies.iter().map(|selected| CaseRunner::of(selected.study)).collect();
+    let with_runners = studies.iter().zip(&runners).enumerate();
+    let missing = with_runners.zip(&found).flat_map(|((number, (selected, runner)), begun)| {
         let without = begun.cases.iter().filter(|(_, found)| !matches!(found, Found::Finished(_)));
-        without.map(move |(case, _)| Job { case, number, study: selected.study, store: selected.store })
+        without.map(move |(case, _)| Job { case, number, runner, store: selected.store })
     });
     let jobs: Vec<Job<'_>> = missing.collect();
     let resumed = found.iter().map(|begun| begun.report.resumed).sum();
@@ -175,7 +177,7 @@ impl Gathered {
             None => tally.left += 1,
             Some(Err(error)) => self.ended.push((place, Err(error))),
             Some(Ok(record)) => {
-                tally.add(job.study, &record);
+                tally.add(job.runner.study(), &record);
                 if !self.only_on_disk {
                     self.ended.push((place, Ok(record)));
                 }
@@ -225,7 +227,7 @@ fn run_jobs(
 /// Runs a case and keeps its record. A record that cannot be kept stops every other case too; none where
 /// this one was stopped so.
 fn run_and_keep(
-    Job { case, study, store, .. }: Job<'_>,
+    Job { case, runner, store, .. }: Job<'_>,
     alone: bool,
     stopped: &AtomicBool,
     tell: &(dyn Fn(Progress) + Sync),
@@ -243,11 +245,11 @@ fn run_and_keep(
         !stopped.load(Ordering::Relaxed) && !stop::is_over()
     };
     let solved = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-        run_case_within(study.case_seconds, case, &study.references, Kernel::Fastest, alone, &observe)
+        runner.run_within(case, store, alone, &observe)
     }));
     tell(Progress::Advanced(estimate - told.get()));
     let record = match solved {
-        Ok(Ok(record)) if record.status.is_late() && (stopped.load(Ordering::Relaxed) || stop::is_over()) => {
+        Ok(Ok(record)) if is_stopped(&record) && (stopped.load(Ordering::Relaxed) || stop::is_over()) => {
             return None;
         }
         Ok(Ok(record)) => record,
@@ -260,7 +262,7 @@ fn run_and_keep(
         return Some(Err(error.into()));
     }
     tell(Progress::Finished {
-        study: study.name.clone(),
+        study: runner.study().name.clone(),
         label: case.label(),
         failure: record.status.failure().map(ToString::to_string),
     });

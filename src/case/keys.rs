@@ -262,6 +262,15 @@ impl Key {
         KEYS.iter().filter(move |key| key.tables.contains(&table))
     }
 
+    /// Whether it says something of a case: what only this program's integrators take says nothing to an attached
+    /// solver.
+    pub fn counts_for(&self, case: &Case) -> bool {
+        const OF_INTEGRATORS: [&str; 6] =
+            ["integrator", "drag", "flip", "mapping_back", "formulation", "scheme"];
+        let is_rule = self.name == "time_step" && !matches!(case.time_step, TimeStepRule::Seconds(_));
+        !case.is_attached() || !(is_rule || OF_INTEGRATORS.contains(&self.name))
+    }
+
     /// The value in a case.
     pub fn get(&self, case: &Case) -> Value {
         (self.get)(case)

@@ -2,6 +2,7 @@
 
 use crate::convergence::class::Class;
 use crate::convergence::class::evaluable_series::plain;
+use crate::judge::error_place::place_of_attached;
 use crate::judge::paths::Judgement;
 use crate::judge::verdict::{Check, Verdict, VerdictOutcome, check};
 use crate::measure::pressure_peak::pressure_peak;
@@ -65,9 +66,10 @@ impl CaseDemand {
 
 fn status_found(wanted: &str, record: &Record) -> Check {
     let found = record.status.name();
-    let how = record.status.failure().map_or_else(String::new, |failure| {
-        format!(" at step {}, t = {:.3e} s: {}", failure.step, failure.time, failure.reason)
-    });
+    let how = record
+        .status
+        .failure()
+        .map_or_else(String::new, |failure| format!("{}: {}", failure.place(), failure.reason));
     let pass = found == wanted;
     let instead = if pass { String::new() } else { format!(" instead of {wanted}") };
     check("status", pass, None, format!("{found}{instead}{how}"))
@@ -101,9 +103,10 @@ fn critical_step_found(within: f64, record: &Record) -> Check {
 
 fn error_found(range: &ErrorRange, record: &Record) -> Check {
     let measure = &range.measure;
-    let Some(error) = measure.error(record).map(|row| row.value.abs()) else {
+    let Some(row) = measure.error(record) else {
         return check("error", false, None, format!("no error at T_v = {}", typed(measure.time_factor)));
     };
+    let error = row.value.abs();
     let pass = error < range.below && error >= range.above;
     let inside = if pass { "in" } else { "outside" };
     let reason = format!(
@@ -115,6 +118,8 @@ fn error_found(range: &ErrorRange, record: &Record) -> Check {
         range.above,
         range.below
     );
+    let place = if pass { None } else { place_of_attached(record, row) };
+    let reason = place.map_or(reason.clone(), |place| format!("{reason}; {place}"));
     check("error", pass, Some(error), reason)
 }
 

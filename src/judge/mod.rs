@@ -4,8 +4,10 @@
 //! records to series.
 //! What has no value is returned as a named reason, never as a number that could pass a test.
 
+pub mod absent;
 pub mod case_verdicts;
 pub mod cheapest_method;
+pub mod error_place;
 pub mod explanation;
 pub mod floor_causes;
 pub mod locking;

@@ -73,6 +73,7 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
         history,
         references: references.iter().map(|one| reference_use(case, one)).collect::<Result<_, _>>()?,
         snapshots: outcome.snapshots,
+        attached: None,
         provenance: Provenance::of_this_program(),
         digest: String::new(),
     })
@@ -105,6 +106,7 @@ pub fn record_of_critical_step(case: &Case, found: CriticalStep) -> Record {
         references: Vec::new(),
         snapshots: Vec::new(),
         stability: Some(found),
+        attached: None,
         provenance: Provenance::of_this_program(),
         digest: String::new(),
     }
@@ -131,7 +133,11 @@ pub fn record_of_stopped_search(case: &Case) -> Record {
     Record { status: Status::Failed(failure), stability: None, ..record_of_critical_step(case, none) }
 }
 
-fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, ExactError> {
+/// How far a reference can be trusted for a case, at all of its outputs.
+///
+/// # Errors
+/// When it refuses a time.
+pub fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, ExactError> {
     let does_not_hold = inertia_rules(case, reference.kind());
     let mut entry =
         ReferenceUse { name: reference.name().to_owned(), terms: 0, tail_bound: 0.0, does_not_hold };

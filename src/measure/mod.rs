@@ -1,5 +1,6 @@
 //! From the outcome of a run to its record: errors against references, balances, oscillation, checks.
 
+pub mod attached_record;
 pub mod balances;
 pub mod case_record;
 pub mod dimensionless_groups;

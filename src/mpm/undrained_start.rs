@@ -6,11 +6,12 @@
 
 use crate::mpm::assembled::stiffness::{NodeBlocks, pressure_stiffness};
 use crate::mpm::body::Body;
-use crate::mpm::implicit::banded::Singular;
-use crate::mpm::implicit::bordered::{Bordered, BorderedLu};
+use crate::mpm::direct_solver::Singular;
+use crate::mpm::direct_solver::bordered::{Bordered, BorderedLu};
 use crate::mpm::method::Configuration;
 use crate::mpm::operators::rigid_plate::NORMAL;
 use crate::mpm::operators::volumetric::VolumetricRows;
+use crate::mpm::state::grid::Grid;
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Free components of the nodes, in the order of the unknowns: one for all that go with a rigid plate, the last.
@@ -49,8 +50,8 @@ impl FreeComponents {
         components
     }
 
-    /// The blocks between free components as a banded matrix.
-    fn banded<const D: usize>(&self, blocks: &NodeBlocks<D>) -> Bordered {
+    /// The blocks between free components of the nodes of a grid as a matrix.
+    fn matrix<const D: usize>(&self, blocks: &NodeBlocks<D>, grid: &Grid<D>) -> Bordered {
         let entries = || {
             self.places.iter().flat_map(move |(node, d, row)| {
                 blocks.rows[*node].iter().flat_map(move |(column, block)| {
@@ -59,8 +60,11 @@ impl FreeComponents {
             })
         };
         let counting = || entries().filter(|entry| entry.2 != 0.0);
-        let places = counting().map(|entry| (entry.0, entry.1));
-        let mut matrix = Bordered::spanning(self.count, self.border, places);
+        let alone = &self.places[..self.count - self.border];
+        let positions: Vec<Vector<D>> = alone.iter().map(|(node, _, _)| grid.node_position(*node)).collect();
+        let mut matrix = Bordered::spanning(&positions, self.border, |visitor| {
+            counting().for_each(|(row, column, _)| visitor(row, column));
+        });
         for (row, column, value) in counting() {
             matrix.add(row, column, value);
         }
@@ -86,14 +90,14 @@ impl<const D: usize> UndrainedSystem<D> {
         let mut stiffness = body.skeleton_stiffness(&rows);
         stiffness.add(&pressure_stiffness(&body.coupled_pressure_forces(&rows), &rows.divergence));
         let unknowns = FreeComponents::of(body);
-        let matrix = unknowns.banded(&stiffness);
+        let matrix = unknowns.matrix(&stiffness, &body.grid);
         let mut factors = BorderedLu::of_shape(&matrix);
         factors.factor(&matrix)?;
         Ok(Self { unknowns, factors, rows })
     }
 
     /// Displacements of the nodes under forces on them.
-    pub fn displacements(&self, forces: &[Vector<D>]) -> Vec<Vector<D>> {
+    pub fn displacements(&mut self, forces: &[Vector<D>]) -> Vec<Vector<D>> {
         let places = &self.unknowns.places;
         let mut values = vec![0.0; self.unknowns.count];
         for (node, d, unknown) in places {
@@ -114,7 +118,7 @@ impl<const D: usize> Body<D> {
     /// # Errors
     /// When its stiffness is singular.
     pub fn settle_undrained(&mut self) -> Result<(), Singular> {
-        let system = UndrainedSystem::of(self)?;
+        let mut system = UndrainedSystem::of(self)?;
         self.map_forces();
         let displacements = system.displacements(&self.nodes.mixture_force);
         let field = &displacements[..];

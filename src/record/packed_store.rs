@@ -177,7 +177,7 @@ impl PackedStore {
     pub fn write(&self, record: &Record) -> Result<(), StoreError> {
         let kind = match record.status {
             Status::Ok => Kind::Record,
-            Status::Failed(_) if record.status.is_late() => Kind::LateRecord,
+            Status::Failed(_) if record.status.is_worth_another_run() => Kind::LateRecord,
             Status::Failed(_) => Kind::FailedRecord,
         };
         let text = sealed(record, Layout::OneLine).map_err(|source| self.json(source))?;

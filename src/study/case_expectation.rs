@@ -2,6 +2,7 @@
 //! error or a drift may be. Hard cases are judged by this, not by series.
 
 use crate::case::tier::Tier;
+use crate::mpm::run::outcome::FailureKind;
 use crate::record::Record;
 use crate::study::expectation::{Measure, Selection};
 
@@ -60,6 +61,11 @@ pub struct CaseExpectation {
 }
 
 impl CaseExpectation {
+    /// Whether it is about an attached solver that is not here.
+    pub fn asks_for_a_skip(&self) -> bool {
+        self.demand.status.as_deref() == Some(FailureKind::Skipped.name())
+    }
+
     /// Whether it says how a record is to end.
     pub fn foresees(&self, record: &Record) -> bool {
         self.selection.fits(&record.case)

@@ -14,6 +14,8 @@ use crate::study::diagnostic::{Diagnostic, StudyError, nearest};
 use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
 use crate::study::inputs::{InputTable, List, One, OwnKeys};
 use crate::study::mistakes;
+use crate::study::result_table::ResultTable;
+use crate::study::solver_table::SolverTable;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 
@@ -60,6 +62,12 @@ pub struct StudyFile {
     /// When results are kept, and what they are held against.
     #[serde(default)]
     pub output: OutputTable,
+    /// Somebody else's solvers, whose names then stand among the methods of a sweep.
+    #[serde(default)]
+    pub solver: Vec<Placed<SolverTable>>,
+    /// Results that somebody else's solvers have left already, whose names stand among the methods too.
+    #[serde(default)]
+    pub result: Vec<Placed<ResultTable>>,
     /// Blocks of cases: the product of the lists, or a path.
     #[serde(default)]
     pub sweep: Vec<Placed<SweepTable>>,
@@ -346,7 +354,7 @@ fn explained(error: &toml::de::Error, text: &str) -> Diagnostic {
         }
         _ if is_bare_word(error, text) => Some("words are written in quotes, like \"terzaghi\"".to_owned()),
         _ if ["missing field `title`", "missing field `scene`"].contains(&message.as_str()) => {
-            Some("a study needs at least `title`, `scene` and one [[sweep]] block".to_owned())
+            Some("a study needs at least `title`, `scene` and one [[sweep]] block or [[result]]".to_owned())
         }
         _ => None,
     };

@@ -51,7 +51,12 @@ mod tests {
     fn every_study_in_the_folder_ships() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
         for entry in std::fs::read_dir(folder).expect("studies/") {
-            let file = entry.expect("a file").file_name().into_string().expect("a name");
+            let entry = entry.expect("an entry");
+            // Studies of other people's solvers need files beside them, and programs that are not here.
+            if entry.path().is_dir() {
+                continue;
+            }
+            let file = entry.file_name().into_string().expect("a name");
             let name = format!("studies/{file}");
             assert!(SHIPPED.iter().any(|(shipped, _)| *shipped == name), "{name} is not in SHIPPED");
         }

@@ -42,7 +42,7 @@ fn small_study() -> (Study, Vec<Record>) {
     let mut records = run_study(&study, &options, None, &|_| {}).records;
     for record in &mut records {
         // What changes from day to day does not belong in a snapshot.
-        record.wall = vec![WallSample { seconds: 0.5, alone: true, cpu_seconds: None, machine: None }];
+        record.wall = vec![WallSample { seconds: 0.5, alone: true, ..WallSample::default() }];
         record.provenance = Provenance {
             version: "VERSION".to_owned(),
             sources: "SOURCES".to_owned(),

@@ -12,8 +12,11 @@ use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, jobs_of, load_or_
 use crate::cli::cost_files::{costs_of, learned_from};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, missing_of};
+use crate::cli::output::json_of;
 use crate::cli::stream::{print_data, print_with, say};
 use crate::cli::time_notes::{note_on_longest, side_by_side};
+use crate::foreign::case_file::CaseFile;
+use crate::record::whole_file::write_whole;
 use crate::study::check::Study;
 use crate::wording::{count_of, duration};
 use std::path::PathBuf;
@@ -51,9 +54,24 @@ pub struct Arguments {
     /// Measure on this machine what a step of each kind costs, beside the constants of the estimates
     #[arg(long, conflicts_with_all = ["studies", "tier", "missing", "tasks", "costs", "learn"])]
     calibrate: bool,
+    /// Output format: one line a case, or the case files that attached solvers are given
+    #[arg(long, value_enum, default_value_t = PlanFormat::Csv)]
+    format: PlanFormat,
+    /// Write the case file of each case into this folder, as HASH/case.json
+    #[arg(long, value_name = "DIR")]
+    case_files: Option<PathBuf>,
 }
 
-/// Prints one line a case as CSV, or a job list; what it adds up to goes to standard error.
+/// How the plan is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum PlanFormat {
+    /// A line a case
+    Csv,
+    /// The case files in one list
+    Json,
+}
+
+/// Prints one line a case as CSV, the case files as JSON, or a job list; what it adds up to goes to standard error.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.calibrate {
         return calibrate::run();
@@ -87,8 +105,15 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         };
         list.tell_of_balance(&all, &costs);
         print_data(&list.commands(&all, &wanted, &costs))?;
+    } else if arguments.format == PlanFormat::Json {
+        print_data(&json_of(&case_files_of(&wanted))?)?;
     } else {
         print_with(|out| write_plan(out, &wanted, &costs))?;
+    }
+    if let Some(folder) = &arguments.case_files {
+        for file in case_files_of(&wanted) {
+            write_whole(&folder.join(&file.case).join("case.json"), file.text()?.as_bytes())?;
+        }
     }
     if count == 0 && arguments.missing.is_some() {
         say!("no case is missing");
@@ -96,6 +121,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     tell_of_time(&wanted, &costs);
     Ok(if count == 0 { Exit::NothingSelected } else { Exit::Pass })
+}
+
+/// What attached solvers are given of each case.
+fn case_files_of(studies: &[(&Study, Vec<&Case>)]) -> Vec<CaseFile> {
+    studies.iter().flat_map(|(_, cases)| cases).map(|case| CaseFile::of(case)).collect()
 }
 
 /// Writes the plan as it goes, so that a million cases take no memory.

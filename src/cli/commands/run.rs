@@ -14,6 +14,8 @@ use crate::cli::slurm;
 use crate::cli::stream::say;
 use crate::cli::study_files;
 use crate::cli::study_tables::{Beside, write_table};
+use crate::foreign::reading::mapping_of;
+use crate::judge::absent::Absent;
 use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;
 use crate::study::check::Study;
@@ -171,7 +173,9 @@ pub fn run_and_store(
     let store_of = |study: &Study| RecordStore::for_cases(results, &study.name, study.planned.len());
     let stores: Vec<RecordStore> = studies.iter().map(store_of).collect();
     // Those of small studies and of timed ones are held, for they are read again at once.
-    let is_held = |(study, store): (&Study, &RecordStore)| !store.is_packed() || study.timing_repeats > 0;
+    let is_held = |(study, store): (&Study, &RecordStore)| {
+        !store.is_packed() || study.timing_repeats > 0 || !study.solvers.is_empty()
+    };
     let only_on_disk = options.only_on_disk && !studies.iter().zip(&stores).any(is_held);
     let options = RunOptions { only_on_disk, ..options.clone() };
     let kept = selected.iter().zip(&stores).map(|(study, store)| Selected { study, store: Some(store) });
@@ -228,6 +232,9 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
         report.tally.failed + report.errors.len(),
         table.display()
     );
+    for warning in Absent::among(&report.records).warnings() {
+        say!("{}: {warning}", study.name);
+    }
     if report.of_another_program > 0 {
         say!(
             "{}: {} records of another version or of other sources were not taken up; their cases were run again",
@@ -252,6 +259,10 @@ pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
 /// A study that can run; what is odd about it goes to standard error.
 pub fn checked(source: &StudySource, purpose: Purpose) -> anyhow::Result<Study> {
     let study = Study::check_for(source, purpose)?;
+    for solver in &study.solvers {
+        mapping_of(solver, study.scene.has_plane_fields())
+            .map_err(|error| Ended::usage(error.to_string()))?;
+    }
     for warning in &study.warnings {
         say!("{warning}");
     }

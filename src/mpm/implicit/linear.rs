@@ -5,7 +5,7 @@
 //! extrapolated state has the extrapolated residual: no product with `K` is ever taken.
 
 use crate::mpm::body::Body;
-use crate::mpm::implicit::bordered::BorderedLu;
+use crate::mpm::direct_solver::bordered::BorderedLu;
 use crate::mpm::implicit::linear_system::{LinearOperators, LinearSystem};
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::run::outcome::FailureKind;

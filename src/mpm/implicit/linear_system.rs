@@ -11,8 +11,7 @@
 
 use crate::mpm::assembled::stiffness::NodeBlocks;
 use crate::mpm::body::Body;
-use crate::mpm::implicit::banded::Banded;
-use crate::mpm::implicit::bordered::Bordered;
+use crate::mpm::direct_solver::bordered::Bordered;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::operators::rigid_plate::RigidPlate;
 use crate::mpm::operators::sparse_rows::SparseRows;
@@ -249,15 +248,10 @@ impl<const D: usize> LinearSystem<D> {
             operators.visit_mixture(visitor);
             operators.visit_storage(visitor);
         };
-        let core = operators.unknowns.count - operators.unknowns.border;
-        let (mut lower, mut upper) = (0, 0);
-        visit(&mut |(row, column, _, _)| {
-            if row < core && column < core {
-                lower = lower.max(row.saturating_sub(column));
-                upper = upper.max(column.saturating_sub(row));
-            }
+        let (positions, border) = (&operators.unknowns.positions, operators.unknowns.border);
+        let mut fixed = Bordered::spanning(positions, border, |visitor| {
+            visit(&mut |(row, column, _, _)| visitor(row, column));
         });
-        let mut fixed = Bordered::zeros(Banded::zeros(core, lower, upper), operators.unknowns.border);
         let mut proportional = fixed.clone();
         visit(&mut |(row, column, constant, rate)| {
             fixed.add(row, column, constant);

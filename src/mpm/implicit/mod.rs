@@ -6,10 +6,8 @@
 //!   factorisation per step size,
 //! - `trial`: a moving or inertial body at a trial state; `residual`: what its balances leave there;
 //!   `tangent`: the residual's differences; `newton`: SDIRK2 with Newton's iteration on it,
-//! - `banded`, `bordered`: the algebra.
+//! The systems are solved by `direct_solver`.
 
-pub mod banded;
-pub mod bordered;
 pub mod linear;
 pub mod linear_system;
 pub mod newton;

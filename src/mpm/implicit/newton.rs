@@ -1,7 +1,7 @@
 //! A Newton iteration a stage: for finite strain, and for bodies with inertia.
 
 use crate::mpm::body::Body;
-use crate::mpm::implicit::bordered::{Bordered, BorderedLu};
+use crate::mpm::direct_solver::bordered::{Bordered, BorderedLu};
 use crate::mpm::implicit::residual::StageStart;
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::implicit::tangent::Pattern;

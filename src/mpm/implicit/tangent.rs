@@ -6,7 +6,7 @@
 //! construction: there is no second set of formulas that could disagree with the first.
 
 use crate::mpm::body::Body;
-use crate::mpm::implicit::bordered::Bordered;
+use crate::mpm::direct_solver::bordered::Bordered;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::soil::conductivity_mean::ConductivityMean;
 
@@ -60,9 +60,11 @@ impl Pattern {
                 rows_of_column[*column].push(row);
             }
         }
-        let places = columns_of_row.iter().enumerate();
-        let places = places.flat_map(|(row, columns)| columns.iter().map(move |column| (row, *column)));
-        let zeros = Bordered::spanning(unknowns.count, unknowns.border, places);
+        let zeros = Bordered::spanning(&unknowns.positions, unknowns.border, |visitor| {
+            for (row, columns) in columns_of_row.iter().enumerate() {
+                columns.iter().for_each(|column| visitor(row, *column));
+            }
+        });
         let groups = groups_of(&columns_of_row, &rows_of_column);
         Self { structure: Structure::of(body, unknowns), rows_of_column, groups, zeros }
     }

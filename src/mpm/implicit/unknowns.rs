@@ -40,6 +40,8 @@ pub struct Unknowns<const D: usize> {
     pub rows: VolumetricRows<D>,
     /// Number of unknowns.
     pub count: usize,
+    /// Where each unknown before the border lies, `[unknown][component]`, m.
+    pub positions: Vec<Vector<D>>,
     /// Unknowns at the end that balances everywhere feel: that of a rigid plate.
     pub border: usize,
     /// Scales of the unknowns and of their equations.
@@ -61,6 +63,7 @@ impl<const D: usize> Unknowns<D> {
             pressure: Vec::new(),
             rows: body.volumetric_rows(),
             count: 0,
+            positions: Vec::new(),
             border: usize::from(body.plate.is_some()),
             scales: Scales::of::<D>(&body.material, body.grid.cell_size),
         };
@@ -95,6 +98,7 @@ impl<const D: usize> Unknowns<D> {
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
         self.count = sorted.len() + self.border;
+        self.positions = sorted.iter().map(|(position, _)| *position).collect();
         self.displacement = vec![[None; D]; nodes.len()];
         self.pressure = vec![0; sites.len()];
         for (number, (_, kind)) in sorted.iter().enumerate() {

@@ -42,7 +42,9 @@ pub struct PlaneSamples {
 pub struct Snapshot {
     /// Time, s.
     pub time: f64,
-    /// Settlement of the loaded surface, m.
+    /// Settlement of the loaded surface, m. The result of an attached solver may have none: then it is no number,
+    /// and left out on disk.
+    #[serde(default = "unknown", skip_serializing_if = "is_unknown")]
     pub settlement: f64,
     /// Values at the material points.
     pub points: Samples,
@@ -53,6 +55,15 @@ pub struct Snapshot {
     pub nodes: Samples,
     /// Mass and momentum at this time.
     pub totals: Totals,
+}
+
+fn unknown() -> f64 {
+    f64::NAN
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_unknown(value: &f64) -> bool {
+    value.is_nan()
 }
 
 /// Conserved quantities.

@@ -7,7 +7,7 @@ use crate::judge::peers::{Comparison, Peer};
 use crate::judge::work_precision::{NextLevel, TimedRun, WorkPrecision};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Style};
 use crate::render::page::Block;
-use crate::render::report::StudyResults;
+use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 
 /// The comparison of a study with timed runs of several integrators.
@@ -109,8 +109,8 @@ fn run_cells(run: &TimedRun<'_>) -> [Cell; 6] {
         Cell::Error(run.error),
         Cell::Number(1e3 * run.wall.median),
         Cell::Number(1e3 * run.wall.deviation),
-        Cell::Count(run.record.counters.steps),
-        Cell::Count(run.record.counters.point_updates),
+        labels::counted(run.record, run.record.counters.steps),
+        labels::counted(run.record, run.record.counters.point_updates),
     ]
 }
 

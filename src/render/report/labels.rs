@@ -1,7 +1,9 @@
 //! Words for quantities, samples and axes, the same in every figure and table.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::judge::paths::{Path, first_norm};
+use crate::judge::paths::{Path, SeriesSummary, first_norm};
+use crate::record::Record;
+use crate::render::table::Cell;
 use crate::study::expectation::{Axis, Measure};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -40,6 +42,11 @@ pub fn sample(sample: Sample) -> &'static str {
         Sample::Nodes => "at the nodes",
         Sample::Surface => "of the surface",
     }
+}
+
+/// Work of a case, which nobody counts for an attached solver.
+pub fn counted(record: &Record, work: u64) -> Cell {
+    if record.case.is_attached() { Cell::missing("of an attached solver") } else { Cell::Count(work) }
 }
 
 /// A measure in words, without its time.
@@ -81,6 +88,17 @@ pub struct PathLabels {
 }
 
 impl PathLabels {
+    /// The labels with the places of a path's errors, where they are not those of the figure.
+    #[must_use]
+    pub fn with_places(mut self, summaries: &[SeriesSummary<'_>], asked: Sample) -> Self {
+        for (label, summary) in self.each.iter_mut().zip(summaries) {
+            if summary.measure.sample != asked {
+                *label = format!("{label}, {}", sample(summary.measure.sample));
+            }
+        }
+        self
+    }
+
     /// What all share, as the end of a subtitle.
     pub fn subtitle_end(&self) -> String {
         if self.shared.is_empty() { String::new() } else { format!("; {}", self.shared) }

@@ -1,16 +1,16 @@
-//! Banded matrices with a last row and column that are full: the unknown that every balance along a plate
+//! Matrices with a last row and column that are full: the unknown that every balance along a plate
 //! feels, and the balance that feels them all.
 //!
-//! Numbered among the others it would make the band as wide as the matrix. As a border it costs one more
+//! Numbered among the others it would fill the factors of all. As a border it costs one more
 //! right-hand side: with `A w = c` the last unknown is `(g − rᵀ A⁻¹ f)/(d − rᵀ w)` (block elimination; Golub &
 //! Van Loan 2013, section 3.2).
 
-use crate::mpm::implicit::banded::{Banded, BandedLu, Singular};
+use crate::mpm::direct_solver::{Factors, Singular, SystemMatrix};
 
-/// A banded matrix, with a border or without.
+/// A matrix, with a border or without.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bordered {
-    core: Banded,
+    core: SystemMatrix,
     border: Option<Border>,
 }
 
@@ -23,28 +23,33 @@ struct Border {
 }
 
 impl Bordered {
-    /// A core, which must be zeros, with a border of one unknown or of none.
-    pub fn zeros(core: Banded, border: usize) -> Self {
-        let zeros = vec![0.0; core.size()];
-        Self { core, border: (border > 0).then(|| Border { row: zeros.clone(), column: zeros, corner: 0.0 }) }
-    }
-
-    /// Zeros of so many unknowns, the last of them in a border or not, whose band holds the places,
-    /// `(row, column)`.
-    pub fn spanning(size: usize, border: usize, places: impl Iterator<Item = (usize, usize)>) -> Self {
-        let core = size - border;
-        let within = places.filter(|(row, column)| *row < core && *column < core);
-        Self::zeros(Banded::spanning(core, within), border)
+    /// Zeros at the places `(row, column)` that `visit` tells, with a border of one unknown behind those at
+    /// `positions` or of none; `positions` as `[unknown][component]`, m.
+    pub fn spanning<const D: usize>(
+        positions: &[[f64; D]],
+        border: usize,
+        visit: impl Fn(&mut dyn FnMut(usize, usize)),
+    ) -> Self {
+        let count = positions.len();
+        let core = SystemMatrix::spanning(positions, |visitor| {
+            visit(&mut |row, column| {
+                if row < count && column < count {
+                    visitor(row, column);
+                }
+            });
+        });
+        let zeros = vec![0.0; count];
+        let border = (border > 0).then(|| Border { row: zeros.clone(), column: zeros, corner: 0.0 });
+        Self { core, border }
     }
 
     /// Adds to an entry, which must lie within the band or the border.
     #[inline]
     pub fn add(&mut self, row: usize, column: usize, value: f64) {
-        let core = self.core.size();
         match &mut self.border {
-            Some(border) if row == core && column == core => border.corner += value,
-            Some(border) if row == core => border.row[column] += value,
-            Some(border) if column == core => border.column[row] += value,
+            Some(border) if row == border.row.len() && column == row => border.corner += value,
+            Some(border) if row == border.row.len() => border.row[column] += value,
+            Some(border) if column == border.row.len() => border.column[row] += value,
             _ => self.core.add(row, column, value),
         }
     }
@@ -63,7 +68,7 @@ impl Bordered {
 /// The factors of such a matrix.
 #[derive(Clone, Debug)]
 pub struct BorderedLu {
-    core: BandedLu,
+    core: Factors,
     border: Option<EliminatedBorder>,
 }
 
@@ -85,7 +90,7 @@ impl BorderedLu {
             solved_column: vec![0.0; border.column.len()],
             per_corner: 1.0,
         };
-        Self { core: BandedLu::of_shape(&shape.core), border: shape.border.as_ref().map(eliminated) }
+        Self { core: Factors::of_shape(&shape.core), border: shape.border.as_ref().map(eliminated) }
     }
 
     /// Factors `fixed + factor · scaled`; nothing is allocated.
@@ -104,7 +109,7 @@ impl BorderedLu {
         };
         combine(&mut own.row, &fixed.row, factor, &scaled.row);
         combine(&mut own.solved_column, &fixed.column, factor, &scaled.column);
-        own.eliminate(&self.core, fixed.corner + factor * scaled.corner)
+        own.eliminate(&mut self.core, fixed.corner + factor * scaled.corner)
     }
 
     /// Factors a matrix; nothing is allocated.
@@ -116,11 +121,11 @@ impl BorderedLu {
         let (Some(own), Some(border)) = (&mut self.border, &matrix.border) else { return Ok(()) };
         own.row.copy_from_slice(&border.row);
         own.solved_column.copy_from_slice(&border.column);
-        own.eliminate(&self.core, border.corner)
+        own.eliminate(&mut self.core, border.corner)
     }
 
     /// Replaces a right-hand side by the solution; nothing is allocated.
-    pub fn solve(&self, values: &mut [f64]) {
+    pub fn solve(&mut self, values: &mut [f64]) {
         let Some(border) = &self.border else { return self.core.solve(values) };
         let (core, last) = values.split_at_mut(border.row.len());
         self.core.solve(core);
@@ -135,7 +140,7 @@ impl BorderedLu {
 
 impl EliminatedBorder {
     /// Takes a column and a corner through the factors of the core.
-    fn eliminate(&mut self, core: &BandedLu, corner: f64) -> Result<(), Singular> {
+    fn eliminate(&mut self, core: &mut Factors, corner: f64) -> Result<(), Singular> {
         core.solve(&mut self.solved_column);
         let left = corner - products(&self.row, &self.solved_column);
         if left == 0.0 || !left.is_finite() {
@@ -167,8 +172,11 @@ mod tests {
         let entry = |row: usize, column: usize| ((row * 7 + column * 13) % 11) as f64 - 4.5;
         let held = |row: usize, column: usize| row.abs_diff(column) <= 1 || row == size || column == size;
         let places = || (0..=size).flat_map(|row| (0..=size).map(move |column| (row, column)));
-        let mut matrix =
-            Bordered::spanning(size + 1, 1, places().filter(|(row, column)| held(*row, *column)));
+        let mut matrix = Bordered::spanning(&vec![[0.0]; size], 1, |visitor| {
+            places()
+                .filter(|(row, column)| held(*row, *column))
+                .for_each(|(row, column)| visitor(row, column));
+        });
         let mut dense = DMatrix::zeros(size + 1, size + 1);
         for (row, column) in places().filter(|(row, column)| held(*row, *column)) {
             matrix.add(row, column, entry(row, column));
@@ -187,7 +195,7 @@ mod tests {
             let residual = &dense * DVector::from_vec(solution) - &right;
             assert!(residual.amax() < 1e-11, "{}", residual.amax());
         }
-        let core_only = Bordered::spanning(2, 1, [(0, 0)].into_iter());
+        let core_only = Bordered::spanning(&[[0.0]], 1, |visitor| visitor(0, 0));
         assert!(BorderedLu::of_shape(&core_only).factor(&core_only).is_err());
     }
 }
