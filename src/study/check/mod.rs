@@ -11,6 +11,7 @@ pub mod checker;
 pub mod default_integrator;
 pub mod end_state;
 pub mod geometry;
+pub mod layers;
 pub mod matching;
 pub mod step_rule;
 pub mod value;
@@ -164,15 +165,7 @@ impl Checker<'_> {
         };
         let references = self.references(&file.output, scene, &base.column);
         let given = self.results(file);
-        if file.sweep.is_empty() && file.result.is_empty() {
-            let end = self.source.text.trim_end().len();
-            let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
-            self.complain(
-                last_line..end,
-                "the study ends here without a [[sweep]] block",
-                "add one with at least `method` and `cells`",
-            );
-        }
+        self.sweep_is_there(file);
         let mut planned: Vec<PlannedCase> = Vec::new();
         let mut places: HashMap<u64, usize> = HashMap::new();
         for block in &file.sweep {
@@ -188,8 +181,10 @@ impl Checker<'_> {
                 self.default_integrator(table, block.span().start, &common, &base, &mut sweep);
             }
             let tier = self.choice(table.tier.as_deref(), "tier", Tier::default()).unwrap_or_default();
+            self.layers_fit(file, table, block.span().start, || sweep.cases(&base).map(Case::for_attached));
             let loaded = |case: Case| {
                 let mut case = case.for_attached();
+                case.column.points.name_water_points(case.points_per_cell);
                 if let Some(strain) = strain {
                     case.column.load = load_of(strain, &case);
                 }
@@ -226,6 +221,19 @@ impl Checker<'_> {
             timing_repeats,
             warnings: std::mem::take(&mut self.warnings),
         })
+    }
+
+    /// Complains at the end of a study without a case.
+    fn sweep_is_there(&mut self, file: &StudyFile) {
+        if file.sweep.is_empty() && file.result.is_empty() {
+            let end = self.source.text.trim_end().len();
+            let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
+            self.complain(
+                last_line..end,
+                "the study ends here without a [[sweep]] block",
+                "add one with at least `method` and `cells`",
+            );
+        }
     }
 
     /// What the study expects of its series and of single cases; each must have something to judge.
