@@ -13,6 +13,7 @@ use crate::mpm::critical_step::observed::Stopped;
 use crate::mpm::run::outcome::FailureKind;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::mpm::run::{Kernel, Schedule};
+use crate::record::machine::Machine;
 use crate::record::{Record, Status, WallSample};
 use crate::scene::column::column_parameters;
 use crate::scene::problem::SceneProblem;
@@ -92,7 +93,8 @@ pub fn run_case(
     let cpu_seconds = worked.zip(thread_seconds()).map(|(before, after)| after - before);
     enter(Phase::Assessment);
     let mut record = record_of(case, references, outcome)?;
-    record.wall.push(WallSample { seconds, alone, cpu_seconds, ..WallSample::default() });
+    let machine = Some(Machine::this());
+    record.wall.push(WallSample { seconds, alone, cpu_seconds, machine, ..WallSample::default() });
     Ok(record)
 }
 

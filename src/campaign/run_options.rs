@@ -1,28 +1,13 @@
 //! What of a study is run, and how.
 
-use crate::case::Case;
+use crate::campaign::costs::CostTable;
+use crate::campaign::shares::Shard;
 use crate::case::tier::Tier;
 use crate::record::store::RecordStore;
 use crate::study::check::Study;
 
-/// A share `index/count` of the cases, by their hashes: the same whatever machine asks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
-    /// From 1 to `count`.
-    pub index: u64,
-    /// How many shards there are.
-    pub count: u64,
-}
-
-impl Shard {
-    /// Whether a case belongs to this shard.
-    pub fn holds(&self, case: &Case) -> bool {
-        u64::from_str_radix(&case.hash(), 16).unwrap_or(0) % self.count == self.index - 1
-    }
-}
-
 /// How to run a study.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RunOptions {
     /// Cases at the same time.
     pub jobs: usize,
@@ -30,14 +15,18 @@ pub struct RunOptions {
     pub tier: Tier,
     /// Which share of it.
     pub shard: Option<Shard>,
+    /// What the cases cost, where shares go by that.
+    pub costs: CostTable,
     /// Whether finished records are taken up.
     pub resume: bool,
+    /// Whether records are only kept on disk and not in the report: any number of cases takes the same memory.
+    pub only_on_disk: bool,
 }
 
 impl RunOptions {
     /// A whole tier, every case anew.
     pub fn whole(tier: Tier, jobs: usize) -> Self {
-        Self { jobs, tier, shard: None, resume: false }
+        Self { jobs, tier, shard: None, costs: CostTable::default(), resume: false, only_on_disk: false }
     }
 }
 

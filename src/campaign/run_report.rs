@@ -5,6 +5,7 @@ use crate::exact::exact_error::ExactError;
 use crate::record::origins::Origins;
 use crate::record::whole_file::StoreError;
 use crate::record::{Record, Status};
+use crate::study::check::Study;
 
 /// What the runner tells while it works.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,9 +85,11 @@ impl RunError {
 /// What a run of a study gave.
 #[derive(Debug, Default)]
 pub struct RunReport {
-    /// Records in the order of the study.
+    /// Records in the order of the study; none where they are only on disk.
     pub records: Vec<Record>,
-    /// How many of them came from disk.
+    /// What there is of its cases, wherever their records are.
+    pub tally: Tally,
+    /// How many of the records were there before.
     pub resumed: usize,
     /// What made those.
     pub origins: Origins,
@@ -96,9 +99,34 @@ pub struct RunReport {
     pub errors: Vec<RunError>,
 }
 
-impl RunReport {
-    /// Records of cases that failed.
-    pub fn failed(&self) -> impl Iterator<Item = &Record> {
-        self.records.iter().filter(|record| record.status != Status::Ok)
+/// Cases of a run by how they ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Cases with a record.
+    pub recorded: usize,
+    /// Those of them that failed.
+    pub failed: usize,
+    /// Those that failed and were not expected to.
+    pub unforeseen: usize,
+    /// Cases that were not begun or not ended, for the run was stopped.
+    pub left: usize,
+}
+
+impl Tally {
+    /// Counts the record of a case of a study.
+    pub fn add(&mut self, study: &Study, record: &Record) {
+        self.recorded += 1;
+        if record.status != Status::Ok {
+            self.failed += 1;
+            self.unforeseen += usize::from(!(record.status.is_skipped() || study.foresees(record)));
+        }
+    }
+
+    /// Counts those of another tally too.
+    pub fn join(&mut self, other: Self) {
+        self.recorded += other.recorded;
+        self.failed += other.failed;
+        self.unforeseen += other.unforeseen;
+        self.left += other.left;
     }
 }

@@ -2,15 +2,18 @@
 
 use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::run_options::{RunOptions, Selected};
-use crate::campaign::run_report::{LongestCase, Progress, RunError, RunReport};
+use crate::campaign::run_report::{LongestCase, Progress, RunError, RunReport, Tally};
+use crate::campaign::shares::shares_of;
+use crate::campaign::stop;
 use crate::case::Case;
 use crate::case::work_estimate::{estimated_work, work_of};
 use crate::record::Record;
-use crate::record::store::{Found, RecordStore};
+use crate::record::store::{Found, RecordStore, Standing};
 use crate::study::check::Study;
 use std::cell::Cell;
-use std::sync::Mutex;
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// Work between two words about a case, ns: what a person sees move.
 const LONGEST_SILENCE: u64 = 100_000_000;
@@ -19,6 +22,8 @@ const LONGEST_SILENCE: u64 = 100_000_000;
 #[derive(Clone, Copy)]
 struct Job<'a> {
     case: &'a Case,
+    /// Number of its study.
+    number: usize,
     runner: &'a CaseRunner<'a>,
     store: Option<&'a RecordStore>,
 }
@@ -50,102 +55,183 @@ pub fn run_studies(
     options: &RunOptions,
     tell: &(dyn Fn(Progress) + Sync),
 ) -> Vec<RunReport> {
-    let found: Vec<Vec<(&Case, Found)>> =
-        studies.iter().map(|selected| cases_with_records(selected, options)).collect();
+    let selected = cases_of(studies, options);
+    let found: Vec<Begun<'_>> =
+        studies.iter().zip(selected).map(|(study, cases)| begun(study, cases, options)).collect();
     let runners: Vec<CaseRunner<'_>> =
         studies.iter().map(|selected| CaseRunner::of(selected.study)).collect();
-    let missing = studies.iter().zip(&runners).zip(&found).flat_map(|((selected, runner), cases)| {
-        let without = cases.iter().filter(|(_, found)| !matches!(found, Found::Finished(_)));
-        without.map(move |(case, _)| Job { case, runner, store: selected.store })
+    let with_runners = studies.iter().zip(&runners).enumerate();
+    let missing = with_runners.zip(&found).flat_map(|((number, (selected, runner)), begun)| {
+        let without = begun.cases.iter().filter(|(_, found)| !matches!(found, Found::Finished(_)));
+        without.map(move |(case, _)| Job { case, number, runner, store: selected.store })
     });
     let jobs: Vec<Job<'_>> = missing.collect();
-    let cases: usize = found.iter().map(Vec::len).sum();
-    let mut results = run_jobs(&jobs, cases - jobs.len(), options.jobs, tell).into_iter();
-    found.into_iter().map(|cases| report_of(cases, &mut results)).collect()
-}
-
-/// The cases of a study that are to be run, with the records there are of them already.
-fn cases_with_records<'a>(selected: &Selected<'a>, options: &RunOptions) -> Vec<(&'a Case, Found)> {
-    let store = selected.store.filter(|_| options.resume);
-    let cases = selected.study.cases(options.tier).into_iter();
-    cases
-        .filter(|case| options.shard.is_none_or(|shard| shard.holds(case)))
-        .map(|case| (case, store.map_or(Found::Nothing, |store| store.found(case))))
+    let resumed = found.iter().map(|begun| begun.report.resumed).sum();
+    let mut gathered = Gathered::of(studies.len());
+    gathered.only_on_disk = options.only_on_disk;
+    let mut gathered = run_jobs(&jobs, resumed, options.jobs, gathered, tell);
+    gathered.ended.sort_by_key(|(place, _)| *place);
+    let mut results = gathered.ended.into_iter().peekable();
+    let mut place = 0;
+    let reports = found.into_iter().zip(gathered.tallies);
+    reports
+        .map(|(begun, tally)| {
+            let mut report = begun.report;
+            report.tally.join(tally);
+            for (_, found) in begun.cases {
+                if let Found::Finished(record) = found {
+                    report.records.push(*record);
+                    continue;
+                }
+                report.of_another_program += usize::from(found == Found::OfAnotherProgram);
+                match results.next_if(|(at, _)| *at == place).map(|(_, result)| result) {
+                    Some(Ok(record)) => report.records.push(*record),
+                    Some(Err(error)) => report.errors.push(error),
+                    None => {}
+                }
+                place += 1;
+            }
+            report
+        })
         .collect()
 }
 
-/// The report of a study: records from disk, and for the other cases the next results.
-fn report_of(
-    cases: Vec<(&Case, Found)>,
-    results: &mut impl Iterator<Item = Option<Result<Record, RunError>>>,
-) -> RunReport {
-    let mut report = RunReport::default();
-    for (_, found) in cases {
-        if let Found::Finished(record) = found {
-            report.resumed += 1;
-            report.origins.add(&record.provenance);
-            report.records.push(*record);
-            continue;
-        }
-        report.of_another_program += usize::from(found == Found::OfAnotherProgram);
-        match results.next().flatten() {
-            Some(Ok(record)) => report.records.push(record),
-            Some(Err(error)) => report.errors.push(error),
-            None => {}
+/// The cases of each study that are to be run: its tier, or a share of all of them together.
+fn cases_of<'a>(studies: &[Selected<'a>], options: &RunOptions) -> Vec<Vec<&'a Case>> {
+    let mut of_studies: Vec<Vec<&Case>> =
+        studies.iter().map(|selected| selected.study.cases(options.tier)).collect();
+    if let Some(shard) = options.shard {
+        let all: Vec<&Case> = of_studies.iter().flatten().copied().collect();
+        let mut shares = shares_of(&all, shard.count, shard.parting, &options.costs).into_iter();
+        for cases in &mut of_studies {
+            cases.retain(|_| shares.next().is_some_and(|share| share == shard.index - 1));
         }
     }
-    report
+    of_studies
 }
 
-/// Runs jobs, the longest first so that the last ones to finish are short; results in the order of
-/// the jobs. The first result that cannot be kept ends them all, and a job without a result is one that had
-/// not come to its end by then.
+/// The cases of a study with the records there are of them already, and what these come to.
+struct Begun<'a> {
+    cases: Vec<(&'a Case, Found)>,
+    report: RunReport,
+}
+
+fn begun<'a>(selected: &Selected<'a>, cases: Vec<&'a Case>, options: &RunOptions) -> Begun<'a> {
+    let mut begun = Begun { cases: Vec::new(), report: RunReport::default() };
+    let Some(store) = selected.store.filter(|_| options.resume) else {
+        begun.cases = cases.into_iter().map(|case| (case, Found::Nothing)).collect();
+        return begun;
+    };
+    let report = &mut begun.report;
+    let mut by_build: HashMap<u64, (&Case, usize)> = HashMap::new();
+    for case in cases {
+        let found = if options.only_on_disk {
+            match store.standing(case) {
+                Standing::Ok { build } => {
+                    by_build.entry(build).or_insert((case, 0)).1 += 1;
+                    report.resumed += 1;
+                    report.tally.recorded += 1;
+                    continue;
+                }
+                Standing::Read(record) => Found::Finished(record),
+                Standing::OfAnotherProgram => Found::OfAnotherProgram,
+                Standing::Nothing => Found::Nothing,
+            }
+        } else {
+            store.found(case)
+        };
+        if let Found::Finished(record) = &found {
+            report.resumed += 1;
+            report.origins.add(&record.provenance);
+            report.tally.add(selected.study, record);
+            if options.only_on_disk {
+                continue;
+            }
+        }
+        begun.cases.push((case, found));
+    }
+    for (case, records) in by_build.into_values() {
+        if let Some(origin) = store.origin(case) {
+            report.origins.add_many(&origin, records);
+        }
+    }
+    begun
+}
+
+/// What jobs came to: the results that are held, each with the place of its job, and a tally a study.
+#[derive(Default)]
+struct Gathered {
+    only_on_disk: bool,
+    ended: Vec<(usize, Result<Box<Record>, RunError>)>,
+    tallies: Vec<Tally>,
+}
+
+impl Gathered {
+    fn of(studies: usize) -> Self {
+        Self { tallies: vec![Tally::default(); studies], ..Self::default() }
+    }
+
+    fn take(&mut self, place: usize, job: &Job<'_>, result: Option<Result<Box<Record>, RunError>>) {
+        let tally = &mut self.tallies[job.number];
+        match result {
+            None => tally.left += 1,
+            Some(Err(error)) => self.ended.push((place, Err(error))),
+            Some(Ok(record)) => {
+                tally.add(job.runner.study(), &record);
+                if !self.only_on_disk {
+                    self.ended.push((place, Ok(record)));
+                }
+            }
+        }
+    }
+}
+
+/// Runs jobs, the longest first so that the last ones to finish are short. The first result that cannot be kept ends
+/// them all, and so does a signal; a job without a result is one that had not come to its end by then.
 fn run_jobs(
     jobs: &[Job<'_>],
     resumed: usize,
     threads: usize,
+    gathered: Gathered,
     tell: &(dyn Fn(Progress) + Sync),
-) -> Vec<Option<Result<Record, RunError>>> {
+) -> Gathered {
     let mut order: Vec<usize> = (0..jobs.len()).collect();
-    order.sort_by_key(|index| std::cmp::Reverse(estimated_work(jobs[*index].case)));
+    order.sort_by_cached_key(|index| std::cmp::Reverse(estimated_work(jobs[*index].case)));
+    let threads = threads.clamp(1, jobs.len().max(1));
     tell(Progress::Planned {
         cases: jobs.len(),
         resumed,
         work: work_of(jobs.iter().map(|job| job.case)),
-        jobs: threads.clamp(1, jobs.len().max(1)),
+        jobs: threads,
         longest: order.first().map(|index| Box::new(jobs[*index].as_longest())),
     });
-    let results: Vec<Mutex<Option<Result<Record, RunError>>>> =
-        jobs.iter().map(|_| Mutex::new(None)).collect();
+    let gathered = Mutex::new(gathered);
     let next = AtomicUsize::new(0);
     let stopped = AtomicBool::new(false);
-    let threads = threads.clamp(1, jobs.len().max(1));
     std::thread::scope(|scope| {
         for _ in 0..threads {
             scope.spawn(|| {
                 while let Some(index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let result = run_and_keep(jobs[*index], threads == 1, &stopped, tell);
-                    if let Ok(mut slot) = results[*index].lock() {
-                        *slot = result;
-                    }
-                    if stopped.load(Ordering::Relaxed) {
-                        break;
-                    }
+                    let job = &jobs[*index];
+                    let is_over = stopped.load(Ordering::Relaxed) || stop::is_asked();
+                    let result =
+                        if is_over { None } else { run_and_keep(*job, threads == 1, &stopped, tell) };
+                    gathered.lock().unwrap_or_else(PoisonError::into_inner).take(*index, job, result);
                 }
             });
         }
     });
-    results.into_iter().map(|slot| slot.into_inner().ok().flatten()).collect()
+    gathered.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Runs a case and keeps its record. A record that cannot be kept stops every other case too; none where
 /// this one was stopped so.
 fn run_and_keep(
-    Job { case, runner, store }: Job<'_>,
+    Job { case, runner, store, .. }: Job<'_>,
     alone: bool,
     stopped: &AtomicBool,
     tell: &(dyn Fn(Progress) + Sync),
-) -> Option<Result<Record, RunError>> {
+) -> Option<Result<Box<Record>, RunError>> {
     let estimate = estimated_work(case);
     let told = Cell::new(0_u64);
     let observe = |done: u64, expected: u64| {
@@ -156,14 +242,16 @@ fn run_and_keep(
             tell(Progress::Advanced(now - told.get()));
             told.set(now);
         }
-        !stopped.load(Ordering::Relaxed)
+        !stopped.load(Ordering::Relaxed) && !stop::is_over()
     };
     let solved = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
         runner.run_within(case, store, alone, &observe)
     }));
     tell(Progress::Advanced(estimate - told.get()));
     let record = match solved {
-        Ok(Ok(record)) if is_stopped(&record) && stopped.load(Ordering::Relaxed) => return None,
+        Ok(Ok(record)) if is_stopped(&record) && (stopped.load(Ordering::Relaxed) || stop::is_over()) => {
+            return None;
+        }
         Ok(Ok(record)) => record,
         Ok(Err(source)) => return Some(Err(RunError::Case { label: case.label(), source })),
         Err(_) => return Some(Err(RunError::Crashed { label: case.label() })),
@@ -178,7 +266,7 @@ fn run_and_keep(
         label: case.label(),
         failure: record.status.failure().map(ToString::to_string),
     });
-    Some(Ok(record))
+    Some(Ok(Box::new(record)))
 }
 
 /// Records of the whole study of a text.

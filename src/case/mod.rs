@@ -112,9 +112,15 @@ impl Case {
 
     /// Identity over the meaning: equal for equal inputs, whatever file or path they came from.
     pub fn hash(&self) -> String {
+        format!("{:0digits$x}", self.number(), digits = HASH_DIGITS)
+    }
+
+    /// The hash as the number that its digits are.
+    pub fn number(&self) -> u64 {
         // Serialising plain numbers and words cannot fail; were it to, an empty text still hashes.
         let canonical = serde_json::to_string(self).unwrap_or_default();
-        blake3::hash(canonical.as_bytes()).to_hex()[..HASH_DIGITS].to_owned()
+        let hash = blake3::hash(canonical.as_bytes());
+        hash.as_bytes().iter().take(HASH_DIGITS / 2).fold(0, |number, byte| (number << 8) | u64::from(*byte))
     }
 
     /// Whether somebody else's solver is asked, and not this program's.

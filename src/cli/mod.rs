@@ -4,19 +4,23 @@
 
 pub mod calibrate;
 pub mod commands;
+pub mod cost_files;
 pub mod destination;
 pub mod exit;
+pub mod job_list;
 pub mod output;
 pub mod overrides;
 pub mod progress;
 pub mod side_by_side;
+pub mod slurm;
 pub mod stream;
 pub mod study_files;
+pub mod study_tables;
 pub mod time_notes;
 
 use crate::cli::commands::{
-    accept, check, completions, exact, explain, list, merge, new, plan, report, run, schema, score, solve,
-    spread, stability,
+    accept, check, completions, exact, explain, list, merge, new, plan, records, report, run, schema, score,
+    solve, spread, stability,
 };
 use crate::cli::exit::Exit;
 use crate::cli::stream::{say, written};
@@ -52,6 +56,8 @@ enum Command {
     Stability(stability::Arguments),
     /// List the cases of studies with their hashes
     Plan(plan::Arguments),
+    /// List what a folder of results holds, or print single records of it
+    Records(records::Arguments),
     /// Bring the records of shards together, with the whole table of each study
     Merge(merge::Arguments),
     /// List scenes, methods, references and shipped studies
@@ -121,6 +127,7 @@ fn run(command: Command) -> anyhow::Result<Exit> {
         Command::Stability(arguments) => stability::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
+        Command::Records(arguments) => records::run(&arguments),
         Command::List(arguments) => list::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),

@@ -22,6 +22,15 @@ pub fn print_data(text: &str) -> anyhow::Result<()> {
     written(write_out(std::io::stdout().lock(), text))
 }
 
+/// Writes data to standard output as they are made.
+///
+/// # Errors
+/// The same.
+pub fn print_with(fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> anyhow::Result<()> {
+    let mut out = std::io::BufWriter::new(std::io::stdout().lock());
+    written(fill(&mut out).and_then(|()| out.flush()))
+}
+
 /// What came of writing to standard output, as an error of the command.
 ///
 /// # Errors

@@ -18,6 +18,7 @@ use crate::measure::attached_record::record_of_attached;
 use crate::mpm::run::outcome::Failure;
 use crate::mpm::run::snapshot::{PlaneSamples, Samples, Snapshot};
 use crate::record::attached_run::AttachedRun;
+use crate::record::machine::Machine;
 use crate::record::{Record, Status, WallSample};
 use crate::study::solver::Solver;
 use regex_lite::Regex;
@@ -151,6 +152,7 @@ impl<'a> Attachment<'a> {
             peak_memory: finished.peak_memory,
             load,
             own_seconds: self.own_seconds(&finished),
+            machine: Some(Machine::this()),
         });
         let left = self.left(case, mapping, &finished, &staged, &filling);
         if finished.left_processes {

@@ -6,6 +6,7 @@
 
 pub mod absent;
 pub mod case_verdicts;
+pub mod cheapest_method;
 pub mod error_place;
 pub mod explanation;
 pub mod floor_causes;

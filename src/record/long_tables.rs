@@ -3,6 +3,7 @@
 use crate::case::keys::KEYS;
 use crate::mpm::run::snapshot::Samples;
 use crate::record::{Record, tidy};
+use std::io::Write;
 
 /// Columns of the profiles.
 const PROFILE_COLUMNS: [(&str, &str, &str); 10] = [
@@ -47,39 +48,79 @@ const TIDY_COLUMNS: [(&str, &str, &str); 17] = [
 ];
 
 fn csv_of(header: Vec<&str>, rows: impl IntoIterator<Item = Vec<String>>) -> Result<String, csv::Error> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(header)?;
-    for row in rows {
-        writer.write_record(row)?;
-    }
-    let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
+    let mut bytes = Vec::new();
+    write_csv(&mut bytes, std::iter::once(header.into_iter().map(str::to_owned).collect()).chain(rows))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Fields over the height at every output: a row per case, time and place.
-///
-/// # Errors
-/// Never for plain numbers and words; the writer's own otherwise.
-pub fn profiles_csv<'a>(records: impl IntoIterator<Item = &'a Record>) -> Result<String, csv::Error> {
-    let mut rows = Vec::new();
-    for record in records {
-        for (factor, snapshot) in record.case.time_factors.iter().zip(&record.snapshots) {
-            let of_kind =
-                [("points", &snapshot.points), ("centres", &snapshot.centres), ("nodes", &snapshot.nodes)];
-            for (sample, samples) in of_kind {
-                let first = [
-                    record.hash.clone(),
-                    factor.to_string(),
-                    format!("{:e}", snapshot.time),
-                    sample.to_owned(),
-                ];
-                rows.extend(
-                    (0..samples.initial_height.len()).map(|place| profile_row(&first, samples, place)),
-                );
+fn write_csv(out: impl Write, rows: impl IntoIterator<Item = Vec<String>>) -> Result<(), csv::Error> {
+    let mut writer = csv::Writer::from_writer(out);
+    for row in rows {
+        writer.write_record(row)?;
+    }
+    Ok(writer.flush()?)
+}
+
+/// A table with rows of every record, one record after the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LongTable {
+    /// Fields over the height at every output: a row per case, time and place.
+    Profiles,
+    /// Settlement over time: a row per case and time.
+    History,
+}
+
+impl LongTable {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Profiles, Self::History];
+
+    /// Its name, that of its file without the ending.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Profiles => "profiles",
+            Self::History => "history",
+        }
+    }
+
+    /// The line of its columns, with its end.
+    pub fn header_line(self) -> String {
+        let columns = match self {
+            Self::Profiles => PROFILE_COLUMNS.as_slice(),
+            Self::History => HISTORY_COLUMNS.as_slice(),
+        };
+        columns.iter().map(|(name, _, _)| *name).collect::<Vec<_>>().join(",") + "\n"
+    }
+
+    /// Writes the rows of a record.
+    ///
+    /// # Errors
+    /// When `out` refuses.
+    pub fn write_rows(self, out: impl Write, record: &Record) -> Result<(), csv::Error> {
+        match self {
+            Self::Profiles => write_csv(out, profile_rows(record)),
+            Self::History => {
+                let row = |factor: f64, degree: f64| {
+                    vec![record.hash.clone(), format!("{factor:e}"), format!("{degree:e}")]
+                };
+                let rows = record.history.iter().map(|one| row(one.time_factor, one.degree_of_consolidation));
+                write_csv(out, rows)
             }
         }
     }
-    csv_of(PROFILE_COLUMNS.iter().map(|(name, _, _)| *name).collect(), rows)
+}
+
+fn profile_rows(record: &Record) -> Vec<Vec<String>> {
+    let mut rows = Vec::new();
+    for (factor, snapshot) in record.case.time_factors.iter().zip(&record.snapshots) {
+        let of_kind =
+            [("points", &snapshot.points), ("centres", &snapshot.centres), ("nodes", &snapshot.nodes)];
+        for (sample, samples) in of_kind {
+            let first =
+                [record.hash.clone(), factor.to_string(), format!("{:e}", snapshot.time), sample.to_owned()];
+            rows.extend((0..samples.initial_height.len()).map(|place| profile_row(&first, samples, place)));
+        }
+    }
+    rows
 }
 
 fn profile_row(first: &[String; 4], samples: &Samples, place: usize) -> Vec<String> {
@@ -97,24 +138,10 @@ fn profile_row(first: &[String; 4], samples: &Samples, place: usize) -> Vec<Stri
     row
 }
 
-/// Settlement over time: a row per case and time.
-///
-/// # Errors
-/// As [`profiles_csv`].
-pub fn history_csv<'a>(records: impl IntoIterator<Item = &'a Record>) -> Result<String, csv::Error> {
-    let rows = records.into_iter().flat_map(|record| {
-        let row = |factor: f64, degree: f64| {
-            vec![record.hash.clone(), format!("{factor:e}"), format!("{degree:e}")]
-        };
-        record.history.iter().map(move |one| row(one.time_factor, one.degree_of_consolidation))
-    });
-    csv_of(HISTORY_COLUMNS.iter().map(|(name, _, _)| *name).collect(), rows)
-}
-
 /// Every column of the three tables with its unit and meaning.
 ///
 /// # Errors
-/// As [`profiles_csv`].
+/// Never for plain numbers and words; the writer's own otherwise.
 pub fn columns_csv() -> Result<String, csv::Error> {
     let row = |table: &str, name: &str, unit: &str, meaning: &str| {
         [table, name, unit, meaning].map(str::to_owned).to_vec()
@@ -146,6 +173,14 @@ mod tests {
     const STUDY: &str = "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
                          method = [\"MPM\"]\nintegrator = [\"implicit\"]\ncells = [3]\npoisson_ratio = []\n";
 
+    fn table(table: LongTable, records: &[Record]) -> String {
+        let mut bytes = table.header_line().into_bytes();
+        for record in records {
+            table.write_rows(&mut bytes, record).expect("a table");
+        }
+        String::from_utf8(bytes).expect("words")
+    }
+
     fn rows(text: &str) -> Vec<csv::StringRecord> {
         csv::Reader::from_reader(text.as_bytes()).records().map(|row| row.expect("a row")).collect()
     }
@@ -153,12 +188,12 @@ mod tests {
     #[test]
     fn every_place_of_every_output_has_a_row_and_every_column_a_meaning() {
         let records = records_of(&STUDY.replace("poisson_ratio = []\n", "poissons_ratio = [0.1, 0.4]\n"));
-        let profiles = rows(&profiles_csv(&records).expect("a table"));
+        let profiles = rows(&table(LongTable::Profiles, &records));
         // Two cases of 6 points, 3 centres and 4 nodes.
         assert_eq!(profiles.len(), 2 * (6 + 3 + 4));
         let snapshot = &records[0].snapshots[0];
         assert_eq!(profiles[0][6].parse::<f64>().ok(), Some(snapshot.points.pressure[0]));
-        assert_eq!(rows(&history_csv(&records).expect("a table")).len(), 2 * records[0].history.len());
+        assert_eq!(rows(&table(LongTable::History, &records)).len(), 2 * records[0].history.len());
         let meanings = rows(&columns_csv().expect("a table"));
         for column in tidy::columns() {
             let found = meanings.iter().filter(|row| row[0].is_empty() && &row[1] == column).count();
@@ -172,7 +207,8 @@ mod tests {
     #[test]
     fn what_is_swept_tells_the_rows_apart() {
         let records = records_of(&STUDY.replace("poisson_ratio = []\n", "poissons_ratio = [0.1, 0.4]\n"));
-        let table = tidy::tidy_csv("s", &records).expect("a table");
+        let all: String = records.iter().map(|one| tidy::rows_of("s", one).expect("rows")).collect();
+        let table = tidy::header_line() + &all;
         let place = |name: &str| tidy::columns().iter().position(|column| *column == name).expect("a column");
         let all = rows(&table);
         let values: std::collections::BTreeSet<&str> =

@@ -5,8 +5,15 @@
 
 pub mod attached_run;
 pub mod long_tables;
+pub mod machine;
+pub mod machines_table;
 pub mod origins;
+pub(crate) mod pack;
+pub mod packed_store;
+pub(crate) mod packed_table;
 pub mod provenance;
+pub(crate) mod seal;
+pub(crate) mod single_files;
 pub mod store;
 pub mod tidy;
 pub mod whole_file;
@@ -19,6 +26,7 @@ use crate::mpm::run::outcome::{Counters, Failure, FailureKind, StepSizes};
 pub use crate::mpm::run::profile::PhaseTime;
 use crate::mpm::run::snapshot::Snapshot;
 use crate::record::attached_run::AttachedRun;
+use crate::record::machine::Machine;
 use crate::record::provenance::Provenance;
 use serde::{Deserialize, Serialize};
 
@@ -66,7 +74,7 @@ impl Status {
 }
 
 /// One wall time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct WallSample {
     /// Seconds of wall time.
     pub seconds: f64,
@@ -75,6 +83,9 @@ pub struct WallSample {
     /// Seconds that the processor worked on it, where the system tells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cpu_seconds: Option<f64>,
+    /// Where it ran, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub machine: Option<Machine>,
     /// Largest memory of an attached solver, bytes, where the system tells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_memory: Option<u64>,

@@ -22,9 +22,21 @@ pub struct Origins {
 impl Origins {
     /// Counts one record.
     pub fn add(&mut self, origin: &Provenance) {
+        self.add_many(origin, 1);
+    }
+
+    /// Counts several records.
+    pub fn add_many(&mut self, origin: &Provenance, records: usize) {
         match self.counts.iter_mut().find(|(known, _)| known == origin) {
-            Some((_, count)) => *count += 1,
-            None => self.counts.push((origin.clone(), 1)),
+            Some((_, count)) => *count += records,
+            None => self.counts.push((origin.clone(), records)),
+        }
+    }
+
+    /// Counts those of others too.
+    pub fn join(&mut self, others: &Self) {
+        for (origin, records) in &others.counts {
+            self.add_many(origin, *records);
         }
     }
 

@@ -37,6 +37,17 @@ impl Provenance {
         self.compiler == other.compiler && self.target == other.target && self.profile == other.profile
     }
 
+    /// A number for version and sources: the same for programs whose values are the same.
+    pub fn program_tag(&self) -> u64 {
+        tag(&[&self.version, &self.sources])
+    }
+
+    /// A number for everything else that is told of a build.
+    pub fn build_tag(&self) -> u64 {
+        let tree = if self.dirty { "changed" } else { "committed" };
+        tag(&[&self.commit, tree, &self.compiler, &self.target, &self.profile])
+    }
+
     /// This program's.
     pub fn of_this_program() -> Self {
         Self {
@@ -49,4 +60,10 @@ impl Provenance {
             profile: env!("OEDOMETER_PROFILE").to_owned(),
         }
     }
+}
+
+/// A number for some words.
+fn tag(words: &[&str]) -> u64 {
+    let hash = blake3::hash(words.join("\n").as_bytes());
+    hash.as_bytes().iter().take(8).fold(0, |number, byte| (number << 8) | u64::from(*byte))
 }

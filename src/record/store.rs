@@ -1,17 +1,19 @@
-//! Records on disk: one folder a case, named after its hash, written whole or not at all.
+//! Records on disk: a small study has a folder a case, a large one has packs.
 
 use crate::case::Case;
+use crate::record::origins::Origins;
+use crate::record::pack::index::Damage;
+use crate::record::packed_store::{CaseEnd, Entry, PackedStore, number_of};
 use crate::record::provenance::Provenance;
-use crate::record::whole_file::{StoreError, remove_stale, write_renamed};
-use crate::record::{Record, SCHEMA};
+use crate::record::whole_file::StoreError;
+use crate::record::{Record, SCHEMA, Status, WallSample, single_files};
 use serde::Deserialize;
-use std::fs;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// File of a record within its folder.
-const RECORD: &str = "record.json";
-/// File of its wall times, beside it.
-const WALL: &str = "wall.json";
+/// Cases up to which each has files of its own: a person looks at them one by one, and a folder lists them.
+pub const MOST_SINGLE_CASES: usize = 64;
 
 /// What there is of a case to take up.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +26,22 @@ pub enum Found {
     Finished(Box<Record>),
 }
 
+/// The same, as far as it is known without reading a whole record.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Standing {
+    /// Nothing that could be used.
+    Nothing,
+    /// A record that a program of another version or of other sources made.
+    OfAnotherProgram,
+    /// A record of this program and of the build with this tag, which came to its end.
+    Ok {
+        /// Tag of the build.
+        build: u64,
+    },
+    /// A finished record of this program, read.
+    Read(Box<Record>),
+}
+
 /// What of a record says where it comes from.
 #[derive(Deserialize)]
 struct Head {
@@ -33,15 +51,27 @@ struct Head {
 }
 
 /// The records of one study.
+///
+/// Where there are packs every record goes there, and one in a pack is newer than a file of its own.
 #[derive(Clone, Debug)]
 pub struct RecordStore {
     folder: PathBuf,
+    packs: Arc<PackedStore>,
+    is_packed: bool,
 }
 
 impl RecordStore {
-    /// The store of a study below a folder of results.
+    /// The store of a study below a folder of results; a new one has a folder a case.
     pub fn new(results: &Path, study: &str) -> Self {
-        Self { folder: results.join(study) }
+        Self::for_cases(results, study, 0)
+    }
+
+    /// The store of a study of so many cases below a folder of results; that of many is packed.
+    pub fn for_cases(results: &Path, study: &str, cases: usize) -> Self {
+        let folder = results.join(study);
+        let packs = Arc::new(PackedStore::new(&folder));
+        let is_packed = cases > MOST_SINGLE_CASES || packs.has_records();
+        Self { folder, packs, is_packed }
     }
 
     /// Folder of the study's results.
@@ -49,13 +79,87 @@ impl RecordStore {
         &self.folder
     }
 
-    fn path(&self, hash: &str, file: &str) -> PathBuf {
-        self.folder_of(hash).join(file)
-    }
-
     /// Folder of a case, by its hash.
     pub fn folder_of(&self, hash: &str) -> PathBuf {
         self.folder.join("cases").join(hash)
+    }
+
+    /// Whether records go into packs.
+    pub fn is_packed(&self) -> bool {
+        self.is_packed
+    }
+
+    /// What of the packs is no record.
+    pub fn damages(&self) -> Vec<Damage> {
+        self.packs.damages()
+    }
+
+    /// What is known of the packed records without unpacking them, in no order.
+    pub fn entries(&self) -> Vec<Entry> {
+        self.packs.entries()
+    }
+
+    /// What is known of the packed record of a case.
+    pub fn entry(&self, case: &Case) -> Option<Entry> {
+        self.packs.entry(case.number())
+    }
+
+    /// Whether a program of these sources finished a case, as far as the packs tell without unpacking.
+    pub fn is_done(&self, case: &Case) -> bool {
+        match self.entry(case) {
+            Some(entry) => entry.is_taken_up_by(&Provenance::of_this_program()),
+            None => matches!(self.found(case), Found::Finished(_)),
+        }
+    }
+
+    /// The record of a case that failed.
+    pub fn failed(&self, case: &Case) -> Option<Record> {
+        if self.entry(case).is_some_and(|entry| entry.end == CaseEnd::Ok) {
+            return None;
+        }
+        self.kept(case).filter(|record| record.status != Status::Ok)
+    }
+
+    /// Whether there is a whole record of a case.
+    pub fn has(&self, case: &Case) -> bool {
+        self.packs.text(case.number()).is_some() || single_files::text(&self.folder, &case.hash()).is_some()
+    }
+
+    /// Takes over the record of a case from another store as it is, where both are packed and it has a whole one
+    /// there; whether it did.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn take_over(&self, other: &Self, case: &Case) -> Result<bool, StoreError> {
+        if self.is_packed { self.packs.take_over(&other.packs, case.number()) } else { Ok(false) }
+    }
+
+    /// What made the records of some cases.
+    pub fn origins(&self, cases: &[&Case]) -> Origins {
+        let mut origins = Origins::default();
+        let mut by_tags: HashMap<(u64, u64), (&Case, usize)> = HashMap::new();
+        for case in cases {
+            match self.entry(case) {
+                Some(entry) => by_tags.entry((entry.program, entry.build)).or_insert((case, 0)).1 += 1,
+                None => self.origin(case).iter().for_each(|origin| origins.add(origin)),
+            }
+        }
+        for (case, records) in by_tags.into_values() {
+            if let Some(origin) = self.origin(case) {
+                origins.add_many(&origin, records);
+            }
+        }
+        origins
+    }
+
+    /// The packs, each with the bytes of it that are whole.
+    pub fn packs(&self) -> Vec<(PathBuf, u64)> {
+        self.packs.packs()
+    }
+
+    /// Takes note of what other writers appended since the store was opened.
+    pub fn refresh(&self) {
+        self.packs.refresh();
     }
 
     /// The finished record of a case, if there is one that a program of these sources made.
@@ -87,46 +191,83 @@ impl RecordStore {
         Found::Finished(Box::new(record))
     }
 
+    /// What there is of a case to take up, without reading more of a packed record than that it is whole; a failed
+    /// one is read.
+    pub fn standing(&self, case: &Case) -> Standing {
+        let own = Provenance::of_this_program();
+        let number = case.number();
+        let standing = |found| match found {
+            Found::Nothing => Standing::Nothing,
+            Found::OfAnotherProgram => Standing::OfAnotherProgram,
+            Found::Finished(record) => Standing::Read(record),
+        };
+        match self.packs.entry(number) {
+            Some(entry) if entry.end == CaseEnd::Ok => match self.packs.text(number) {
+                None => Standing::Nothing,
+                Some(_) if !entry.is_taken_up_by(&own) => Standing::OfAnotherProgram,
+                Some(_) => Standing::Ok { build: entry.build },
+            },
+            _ => standing(self.found(case)),
+        }
+    }
+
     /// What made the record of a case, if there is one of this layout that is whole.
     pub fn origin(&self, case: &Case) -> Option<Provenance> {
         let hash = case.hash();
-        let text = fs::read_to_string(self.path(&hash, RECORD)).ok().filter(|text| is_whole(text))?;
+        let text = self.packs.text(number_of(&hash)).or_else(|| single_files::text(&self.folder, &hash))?;
         let head: Head = serde_json::from_str(&text).ok()?;
         (head.schema == SCHEMA && head.hash == hash).then_some(head.provenance)
     }
 
     /// The record of a case, whichever program of this layout made it.
     pub fn kept(&self, case: &Case) -> Option<Record> {
-        let text = fs::read_to_string(self.path(&case.hash(), RECORD)).ok()?;
-        if !is_whole(&text) {
-            return None;
-        }
-        let mut record: Record = serde_json::from_str(&text).ok()?;
-        // Without readable wall times the case is done all the same, only not timed.
-        let wall = fs::read_to_string(self.path(&record.hash, WALL)).ok();
-        record.wall = wall.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
-        record.digest.clear();
-        (record.schema == SCHEMA && record.case == *case).then_some(record)
+        self.of_hash(&case.hash()).filter(|record| record.case == *case)
     }
 
-    /// Writes a record: first under another name, then renamed, so that a reader sees the whole
-    /// of it or nothing.
+    /// The record of the case with a hash, whichever program of this layout made it.
+    pub fn read(&self, hash: &str) -> Option<Record> {
+        self.of_hash(hash).filter(|record| record.case.hash() == hash)
+    }
+
+    /// The hash of every case with a record, in their order.
+    pub fn hashes(&self) -> Vec<String> {
+        let packed = self.packs.entries().into_iter().map(|entry| format!("{:016x}", entry.case));
+        let mut hashes: Vec<String> = packed.chain(single_files::hashes(&self.folder)).collect();
+        hashes.sort_unstable();
+        hashes.dedup();
+        hashes
+    }
+
+    /// The build of a packed record with its wall times, without reading the rest of it.
+    pub fn entry_and_wall(&self, case: &Case) -> Option<(Entry, Vec<WallSample>)> {
+        let number = case.number();
+        Some((self.packs.entry(number)?, self.packs.text_and_wall(number)?.1))
+    }
+
+    fn of_hash(&self, hash: &str) -> Option<Record> {
+        let single =
+            || Some((single_files::text(&self.folder, hash)?, single_files::wall(&self.folder, hash)));
+        let (text, wall) = self.packs.text_and_wall(number_of(hash)).or_else(single)?;
+        let mut record: Record = serde_json::from_str(&text).ok()?;
+        record.wall = wall;
+        record.digest.clear();
+        (record.schema == SCHEMA).then_some(record)
+    }
+
+    /// Writes a record so that a reader sees the whole of it or nothing.
     ///
     /// # Errors
     /// When the file system refuses.
     pub fn write(&self, record: &Record) -> Result<(), StoreError> {
-        let path = self.path(&record.hash, RECORD);
-        if let Some(folder) = path.parent() {
-            remove_stale(folder);
-        }
-        self.write_wall(record)?;
         // One that was read has the seal of its file.
-        let content = if record.digest.is_empty() {
-            json_of(&path, record)?
+        let unsealed;
+        let record = if record.digest.is_empty() {
+            record
         } else {
-            json_of(&path, &Record { digest: String::new(), ..record.clone() })?
+            unsealed = Record { digest: String::new(), ..record.clone() };
+            &unsealed
         };
-        write_renamed(&path, sealed(&content).as_bytes(), |_| Ok(()))
+        if self.is_packed { self.packs.write(record) } else { single_files::write(&self.folder, record) }
     }
 
     /// Writes the wall times of a record alone.
@@ -134,39 +275,10 @@ impl RecordStore {
     /// # Errors
     /// When the file system refuses.
     pub fn write_wall(&self, record: &Record) -> Result<(), StoreError> {
-        write_json(&self.path(&record.hash, WALL), &record.wall)
+        if self.is_packed {
+            self.packs.write_wall(record)
+        } else {
+            single_files::write_wall(&self.folder, record)
+        }
     }
-}
-
-fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), StoreError> {
-    // Not forced to the disk, which costs more than a small case: after a loss of power an unreadable
-    // record is as good as none, and the case runs again.
-    write_renamed(path, json_of(path, value)?.as_bytes(), |_| Ok(()))
-}
-
-fn json_of<T: serde::Serialize>(path: &Path, value: &T) -> Result<String, StoreError> {
-    serde_json::to_string_pretty(value).map_err(|source| StoreError::Json { path: path.to_owned(), source })
-}
-
-/// What ends the text of an object.
-const END: &str = "\n}";
-/// What stands before the digest, the last field of a record.
-const SEAL: &str = ",\n  \"digest\": \"";
-/// Hexadecimal digits of a digest.
-const DIGEST_DIGITS: usize = 32;
-
-/// A record's text with the digest of it: made of the text and not of the record, so that it is
-/// written and read once.
-fn sealed(content: &str) -> String {
-    let content = content.strip_suffix(END).unwrap_or(content);
-    format!("{content}{SEAL}{}\"{END}", digest_of(content))
-}
-
-/// Whether a text is as it was sealed.
-fn is_whole(text: &str) -> bool {
-    text.rsplit_once(SEAL).is_some_and(|(content, seal)| seal == format!("{}\"{END}", digest_of(content)))
-}
-
-fn digest_of(content: &str) -> String {
-    blake3::hash(content.as_bytes()).to_hex()[..DIGEST_DIGITS].to_owned()
 }

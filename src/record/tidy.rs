@@ -3,6 +3,7 @@
 use crate::case::Case;
 use crate::case::keys::{KEYS, Key};
 use crate::record::{ERROR_COLUMNS, ErrorRow, Record, WallSample};
+use std::io::Write;
 
 /// First columns of the tidy CSV, before those of a measure; one with the name of a key has the value of that input.
 const CASE_COLUMNS: [&str; 15] = [
@@ -38,33 +39,41 @@ pub fn columns() -> Vec<&'static str> {
     first.chain(other_inputs().map(|key| key.name)).chain(LAST_COLUMNS).collect()
 }
 
-/// The measures of a study's records as CSV. A case that failed before its first output has one
+/// The line of the columns, with its end.
+pub fn header_line() -> String {
+    columns().join(",") + "\n"
+}
+
+/// The measures of a record as rows of CSV. A case that failed before its first output has one
 /// row without a measure, so that it is seen.
 ///
 /// # Errors
 /// Never for plain numbers and words; the writer's own otherwise.
-pub fn tidy_csv<'a>(
-    study: &str,
-    records: impl IntoIterator<Item = &'a Record>,
-) -> Result<String, csv::Error> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(columns())?;
-    for record in records {
-        let case = case_fields(study, record);
-        let last = last_fields(record);
-        let mut write = |measure: &[String], absolute: String| {
-            writer.write_record(
-                case.iter().chain(measure).chain(&last.inputs).chain([&absolute]).chain(&last.others),
-            )
-        };
-        for row in &record.errors {
-            write(&measure_fields(row), format!("{:e}", row.absolute))?;
-        }
-        if record.errors.is_empty() {
-            write(&[const { String::new() }; ERROR_COLUMNS.len()], String::new())?;
-        }
+pub fn write_rows(out: impl Write, study: &str, record: &Record) -> Result<(), csv::Error> {
+    let mut writer = csv::Writer::from_writer(out);
+    let case = case_fields(study, record);
+    let last = last_fields(record);
+    let mut write = |measure: &[String], absolute: String| {
+        writer.write_record(
+            case.iter().chain(measure).chain(&last.inputs).chain([&absolute]).chain(&last.others),
+        )
+    };
+    for row in &record.errors {
+        write(&measure_fields(row), format!("{:e}", row.absolute))?;
     }
-    let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
+    if record.errors.is_empty() {
+        write(&[const { String::new() }; ERROR_COLUMNS.len()], String::new())?;
+    }
+    Ok(writer.flush()?)
+}
+
+/// The rows of a record as text.
+///
+/// # Errors
+/// As [`write_rows`].
+pub fn rows_of(study: &str, record: &Record) -> Result<String, csv::Error> {
+    let mut bytes = Vec::new();
+    write_rows(&mut bytes, study, record)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 

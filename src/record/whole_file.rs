@@ -41,17 +41,25 @@ pub enum StoreError {
 /// Where this process runs: host name, and a tag of its boot and its namespace of process numbers, within which a
 /// number is one process. Shards in containers may share host name and process number both.
 static PLACE: LazyLock<String> = LazyLock::new(|| {
-    let line = |path: &str| fs::read_to_string(path).unwrap_or_default().trim().to_owned();
-    let host =
-        ["/proc/sys/kernel/hostname", "/etc/hostname"].map(line).into_iter().find(|name| !name.is_empty());
-    let host = host.or_else(|| std::env::var("COMPUTERNAME").ok()).unwrap_or_else(|| "host".to_owned());
+    let host = host_name();
     let namespace = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
-    let boot = line("/proc/sys/kernel/random/boot_id");
+    let boot = line_of("/proc/sys/kernel/random/boot_id");
     let tag = blake3::hash(format!("{host} {boot} {}", namespace.display()).as_bytes()).to_hex();
     let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '-' };
     let host: String = host.chars().map(plain).take(HOST_LETTERS).collect();
     format!("{host}-{}", &tag[..8])
 });
+
+fn line_of(path: &str) -> String {
+    fs::read_to_string(path).unwrap_or_default().trim().to_owned()
+}
+
+/// Name of this machine.
+pub(crate) fn host_name() -> String {
+    let told = ["/proc/sys/kernel/hostname", "/etc/hostname"].map(line_of);
+    let host = told.into_iter().find(|name| !name.is_empty());
+    host.or_else(|| std::env::var("COMPUTERNAME").ok()).unwrap_or_else(|| "host".to_owned())
+}
 
 /// Writes a file under a temporary name and renames it, making its folders; it is on the disk then.
 ///
@@ -86,6 +94,20 @@ pub(crate) fn write_renamed(
     content: &[u8],
     finish: impl Fn(&fs::File) -> std::io::Result<()>,
 ) -> Result<(), StoreError> {
+    write_streamed(path, |file| {
+        file.write_all(content)?;
+        finish(file)
+    })
+}
+
+/// Writes a file under a temporary name as `fill` fills it, and renames it, making its folders.
+///
+/// # Errors
+/// When the file system or `fill` refuses; nothing is left under the name then.
+pub(crate) fn write_streamed(
+    path: &Path,
+    fill: impl FnOnce(&mut fs::File) -> std::io::Result<()>,
+) -> Result<(), StoreError> {
     let folder = folder_of(path);
     fs::create_dir_all(folder).map_err(|source| StoreError::Io {
         action: "make the folder",
@@ -93,10 +115,7 @@ pub(crate) fn write_renamed(
         source,
     })?;
     let temporary = folder.join(part_name(&path.file_name().unwrap_or_default().to_string_lossy()));
-    let written = fs::File::create_new(&temporary).and_then(|mut file| {
-        file.write_all(content)?;
-        finish(&file)
-    });
+    let written = fs::File::create_new(&temporary).and_then(|mut file| fill(&mut file));
     written.and_then(|()| fs::rename(&temporary, path)).map_err(|source| {
         // What is half written is of no use to anyone.
         let _ = fs::remove_file(&temporary);
@@ -108,10 +127,19 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
+/// Host name and tag of where this process runs: two processes of one place see each other's locks.
+pub(crate) fn place_of_this_process() -> &'static str {
+    &PLACE
+}
+
+/// Sixteen hexadecimal digits that nobody else has.
+pub(crate) fn random_word() -> String {
+    format!("{:016x}", RandomState::new().build_hasher().finish())
+}
+
 /// A name that no other writer takes: of this host, this process, and random.
 fn part_name(file: &str) -> String {
-    let random = RandomState::new().build_hasher().finish();
-    format!(".{file}.{}.{}.{random:016x}{PART}", *PLACE, std::process::id())
+    format!(".{file}.{}.{}.{}{PART}", *PLACE, std::process::id(), random_word())
 }
 
 /// Removes what writers that are no more left in a folder: a process of this place that has ended, or anyone's

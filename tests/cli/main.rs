@@ -22,3 +22,4 @@ mod solve;
 mod store;
 mod streams;
 mod tools;
+mod wide;

@@ -218,7 +218,7 @@ fn shards_part_the_cases_exactly() {
             let out = format!("shard-{index}-of-{count}");
             let told = place.run(&["--shard", &format!("{index}/{count}"), "--out", &out]);
             let hashes: Vec<String> = place.record_bytes(&out).into_keys().collect();
-            assert_eq!(told.code, if hashes.is_empty() { 4 } else { 0 }, "{}", told.err);
+            assert_eq!(told.code, 0, "an empty share is no failure: {}", told.err);
             seen.extend(hashes);
         }
         assert_eq!(seen.len(), 8, "no case twice");

@@ -1,9 +1,10 @@
 //! `oedometer merge`: the records of shards into one folder, with the whole table of each study.
 
 use crate::case::Case;
-use crate::cli::commands::run::{Beside, DEFAULT_RESULTS, TierArgument, load_or_shipped, write_table};
+use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
+use crate::cli::study_tables::{Beside, write_machines, write_table};
 use crate::record::Record;
 use crate::record::origins::Origins;
 use crate::record::store::RecordStore;
@@ -62,16 +63,22 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     Ok(exit)
 }
 
+/// The stores of a study in the target and in each other folder.
+fn stores_of(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> (RecordStore, Vec<RecordStore>) {
+    let store = |folder: &PathBuf| RecordStore::for_cases(folder, &study.name, study.planned.len());
+    let real = |folder: &PathBuf| folder.canonicalize().ok();
+    let others =
+        folders.iter().filter(|folder| real(folder) != real(&arguments.out) || real(folder).is_none());
+    (store(&arguments.out), others.map(store).collect())
+}
+
 /// What made the records of a study in target and folders: one program, of however many builds.
 fn origins_of(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> anyhow::Result<Origins> {
     let mut origins = Origins::default();
-    for folder in std::iter::once(&arguments.out).chain(folders) {
-        let store = RecordStore::new(folder, &study.name);
-        for case in study.cases(arguments.tier.into()) {
-            if let Some(origin) = store.origin(case) {
-                origins.add(&origin);
-            }
-        }
+    let (target, others) = stores_of(study, folders, arguments);
+    let cases = study.cases(arguments.tier.into());
+    for store in std::iter::once(&target).chain(&others) {
+        origins.join(&store.origins(&cases));
     }
     match origins.several_programs() {
         None => Ok(origins),
@@ -87,44 +94,60 @@ fn origins_of(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> anyh
 
 /// Brings the records of a study together; the number of holes that are left.
 fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> anyhow::Result<usize> {
-    let target = RecordStore::new(&arguments.out, &study.name);
+    let (target, others) = stores_of(study, folders, arguments);
+    for damage in others.iter().flat_map(RecordStore::damages) {
+        say!("{}: {damage}", study.name);
+    }
     let mut holes: Vec<&Case> = Vec::new();
     let cases = study.cases(arguments.tier.into());
     for case in &cases {
-        match record_of(study, case, &target, folders)? {
-            Some(record) => {
-                if target.kept(case).as_ref() != Some(&record) {
-                    target.write(&record)?;
-                }
-            }
-            None => holes.push(case),
+        if !bring(study, case, &target, &others)? {
+            holes.push(case);
         }
     }
     let there = cases.len() - holes.len();
     if there > 0 {
         let table = write_table(study, &target, &[], Beside::Tables)?;
+        if target.is_packed() {
+            write_machines(study, &target)?;
+        }
         say!("{}: {there} of {} cases, {}", study.name, cases.len(), table.display());
     }
     for case in holes.iter().take(MOST_HOLES) {
         say!("{}: no result of {} {}", study.name, case.hash(), case.label());
     }
     if holes.len() > MOST_HOLES {
-        say!("{}: and {} more", study.name, holes.len() - MOST_HOLES);
+        say!("{}: and {} more; `plan --missing` lists them all", study.name, holes.len() - MOST_HOLES);
     }
     Ok(holes.len())
 }
 
-/// The one record of a case that target and folders have, with the wall times of all.
+/// Brings the record of a case to the target; whether there is one then.
+fn bring(study: &Study, case: &Case, target: &RecordStore, others: &[RecordStore]) -> anyhow::Result<bool> {
+    let having: Vec<&RecordStore> = others.iter().filter(|store| store.has(case)).collect();
+    match (target.has(case), having.as_slice()) {
+        (is_there, []) => return Ok(is_there),
+        (false, [only]) if target.take_over(only, case)? => return Ok(true),
+        _ => {}
+    }
+    let Some(record) = record_of(study, case, target, &having)? else { return Ok(false) };
+    if target.kept(case).as_ref() != Some(&record) {
+        target.write(&record)?;
+    }
+    Ok(true)
+}
+
+/// The one record of a case that target and other stores have, with the wall times of all.
 fn record_of(
     study: &Study,
     case: &Case,
     target: &RecordStore,
-    folders: &[PathBuf],
+    others: &[&RecordStore],
 ) -> anyhow::Result<Option<Record>> {
     let stored = |store: &RecordStore| Some((store.kept(case)?, store.folder().to_owned()));
     let mut found = stored(target);
-    for folder in folders {
-        let Some((other, place)) = stored(&RecordStore::new(folder, &study.name)) else { continue };
+    for store in others {
+        let Some((other, place)) = stored(store) else { continue };
         match &mut found {
             None => found = Some((other, place)),
             Some((record, from)) => {

@@ -9,6 +9,7 @@ pub mod list;
 pub mod merge;
 pub mod new;
 pub mod plan;
+pub mod records;
 pub mod report;
 pub mod run;
 pub mod schema;

@@ -1,12 +1,19 @@
-//! `oedometer plan`: which cases there are, with their hashes and times, before anything runs.
+//! `oedometer plan`: which cases there are, with their hashes and times, before anything runs; which of them are
+//! missing; and the commands that run them in shares.
 
+use crate::campaign::costs::CostTable;
 use crate::campaign::run_report::LongestCase;
-use crate::case::work_estimate::{estimated_seconds, estimated_updates};
+use crate::campaign::shares::Parting;
+use crate::case::Case;
+use crate::case::tier::Tier;
+use crate::case::work_estimate::estimated_updates;
 use crate::cli::calibrate;
-use crate::cli::commands::run::{TierArgument, jobs_of, load_or_shipped};
-use crate::cli::exit::Exit;
-use crate::cli::output::{csv_of, json_of};
-use crate::cli::stream::{print_data, say};
+use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, jobs_of, load_or_shipped};
+use crate::cli::cost_files::{costs_of, learned_from};
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::job_list::{JobList, missing_of};
+use crate::cli::output::json_of;
+use crate::cli::stream::{print_data, print_with, say};
 use crate::cli::time_notes::{note_on_longest, side_by_side};
 use crate::foreign::case_file::CaseFile;
 use crate::record::whole_file::write_whole;
@@ -26,8 +33,26 @@ pub struct Arguments {
     /// How much of each study
     #[arg(long, value_enum, default_value_t = TierArgument::Full)]
     tier: TierArgument,
+    /// Only cases without a finished record in this folder of results
+    #[arg(long, value_name = "DIR")]
+    missing: Option<PathBuf>,
+    /// Print a job list instead: one command a line for each of so many shares that has anything to do
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    tasks: Option<u64>,
+    /// Part the cases by what they cost, the longest first, and not by their hashes
+    #[arg(long, requires = "tasks")]
+    balance: bool,
+    /// Costs as `--learn` prints them
+    #[arg(long, value_name = "FILE")]
+    costs: Option<PathBuf>,
+    /// Folder for the results of the commands; that of `--missing` where it is named
+    #[arg(long, value_name = "DIR", requires = "tasks")]
+    out: Option<PathBuf>,
+    /// Print what finished cases in this folder of results took over what was estimated, by kind, for `--costs`
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["missing", "tasks", "costs"])]
+    learn: Option<PathBuf>,
     /// Measure on this machine what a step of each kind costs, beside the constants of the estimates
-    #[arg(long, conflicts_with_all = ["studies", "tier"])]
+    #[arg(long, conflicts_with_all = ["studies", "tier", "missing", "tasks", "costs", "learn"])]
     calibrate: bool,
     /// Output format: one line a case, or the case files that attached solvers are given
     #[arg(long, value_enum, default_value_t = PlanFormat::Csv)]
@@ -46,68 +71,113 @@ enum PlanFormat {
     Json,
 }
 
-/// Prints one line a case as CSV, or the case files as JSON; what it adds up to goes to standard error.
+/// Prints one line a case as CSV, the case files as JSON, or a job list; what it adds up to goes to standard error.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.calibrate {
         return calibrate::run();
     }
     // Every file is judged before anything is printed.
     let studies = load_or_shipped(&arguments.studies)?;
-    let mut rows = Vec::new();
-    let mut files = Vec::new();
-    for study in &studies {
-        for case in study.cases(arguments.tier.into()) {
-            if arguments.case_files.is_some() || arguments.format == PlanFormat::Json {
-                files.push(CaseFile::of(case));
-            }
-            rows.push(vec![
-                study.name.clone(),
-                case.hash(),
-                estimated_updates(case).to_string(),
-                case.label(),
-                format!("{:.1e}", estimated_seconds(case)),
-            ]);
+    let tier = Tier::from(arguments.tier);
+    if let Some(folder) = &arguments.learn {
+        print_data(&learned_from(&studies, tier, folder)?.to_csv())?;
+        return Ok(Exit::Pass);
+    }
+    if let Some(folder) = arguments.missing.as_ref().filter(|folder| !folder.is_dir()) {
+        return Err(Ended::usage(format!("there is no folder of results {}", folder.display())));
+    }
+    let costs = costs_of(arguments.costs.as_deref())?;
+    let all: Vec<(&Study, Vec<&Case>)> = studies.iter().map(|study| (study, study.cases(tier))).collect();
+    let wanted: Vec<(&Study, Vec<&Case>)> = match &arguments.missing {
+        Some(folder) => all.iter().map(|(study, cases)| (*study, missing_of(study, cases, folder))).collect(),
+        None => all.clone(),
+    };
+    let count: usize = wanted.iter().map(|(_, cases)| cases.len()).sum();
+    if let Some(tasks) = arguments.tasks {
+        let results = arguments.out.clone().or(arguments.missing.clone());
+        let list = JobList {
+            files: arguments.studies.clone(),
+            results: results.unwrap_or_else(|| DEFAULT_RESULTS.into()),
+            tier,
+            tasks,
+            parting: if arguments.balance { Parting::Cost } else { Parting::Hash },
+            costs: arguments.costs.clone(),
+        };
+        list.tell_of_balance(&all, &costs);
+        print_data(&list.commands(&all, &wanted, &costs))?;
+    } else if arguments.format == PlanFormat::Json {
+        print_data(&json_of(&case_files_of(&wanted))?)?;
+    } else {
+        print_with(|out| write_plan(out, &wanted, &costs))?;
+    }
+    if let Some(folder) = &arguments.case_files {
+        for file in case_files_of(&wanted) {
+            write_whole(&folder.join(&file.case).join("case.json"), file.text()?.as_bytes())?;
         }
     }
-    let exit = if rows.is_empty() { Exit::NothingSelected } else { Exit::Pass };
-    for (folder, file) in
-        arguments.case_files.iter().flat_map(|folder| files.iter().map(move |file| (folder, file)))
-    {
-        write_whole(&folder.join(&file.case).join("case.json"), file.text()?.as_bytes())?;
+    if count == 0 && arguments.missing.is_some() {
+        say!("no case is missing");
+        return Ok(Exit::Pass);
     }
-    match arguments.format {
-        PlanFormat::Csv => print_data(&csv_of(COLUMNS, rows)?)?,
-        PlanFormat::Json => print_data(&json_of(&files)?)?,
+    tell_of_time(&wanted, &costs);
+    Ok(if count == 0 { Exit::NothingSelected } else { Exit::Pass })
+}
+
+/// What attached solvers are given of each case.
+fn case_files_of(studies: &[(&Study, Vec<&Case>)]) -> Vec<CaseFile> {
+    studies.iter().flat_map(|(_, cases)| cases).map(|case| CaseFile::of(case)).collect()
+}
+
+/// Writes the plan as it goes, so that a million cases take no memory.
+fn write_plan(
+    out: &mut dyn std::io::Write,
+    studies: &[(&Study, Vec<&Case>)],
+    costs: &CostTable,
+) -> std::io::Result<()> {
+    let mut writer = csv::Writer::from_writer(out);
+    writer.write_record(COLUMNS)?;
+    for (study, cases) in studies {
+        for case in cases {
+            writer.write_record([
+                &study.name,
+                &case.hash(),
+                &estimated_updates(case).to_string(),
+                &case.label(),
+                &format!("{:.1e}", costs.seconds(case)),
+            ])?;
+        }
     }
-    tell_of_time(&studies, arguments.tier);
-    Ok(exit)
+    writer.flush()
 }
 
 /// Says what the cases take in all, and of each study what takes too long.
-fn tell_of_time(studies: &[Study], tier: TierArgument) {
-    let (mut cases, mut total, mut longest) = (0, 0.0, 0.0);
-    for study in studies {
-        let mut slowest: Option<LongestCase> = None;
+fn tell_of_time(studies: &[(&Study, Vec<&Case>)], costs: &CostTable) {
+    let (mut count, mut total, mut longest) = (0, 0.0, 0.0);
+    for (study, cases) in studies {
+        let mut slowest: Option<&Case> = None;
         let mut most = 0.0;
-        for case in study.cases(tier.into()) {
-            let seconds = estimated_seconds(case);
-            (cases, total) = (cases + 1, total + seconds);
+        for case in cases {
+            let seconds = costs.seconds(case);
+            (count, total) = (count + 1, total + seconds);
             if seconds > most {
-                most = seconds;
-                let (study, case_seconds) = (study.name.clone(), study.case_seconds);
-                slowest = Some(LongestCase { study, case: case.clone(), case_seconds });
+                (most, slowest) = (seconds, Some(*case));
             }
         }
         longest = f64::max(longest, most);
+        let slowest = slowest.map(|case| LongestCase {
+            study: study.name.clone(),
+            case: case.clone(),
+            case_seconds: study.case_seconds,
+        });
         if let Some(note) = slowest.as_ref().and_then(note_on_longest) {
             say!("{note}");
         }
     }
-    if cases > 0 {
+    if count > 0 {
         let jobs = jobs_of(None);
         say!(
             "{}: about {} on one core, {} on the {jobs} here, the longest case {}",
-            count_of(cases, "case", "cases"),
+            count_of(count, "case", "cases"),
             duration(total),
             duration(side_by_side(total, longest, jobs)),
             duration(longest)

@@ -1,31 +1,29 @@
 //! `oedometer run`: the cases of study files, their records and one tidy CSV a study.
 
-use crate::campaign::run_options::{RunOptions, Selected, Shard};
-use crate::campaign::run_report::{RunError, RunReport};
+use crate::campaign::run_options::{RunOptions, Selected};
+use crate::campaign::run_report::{RunError, RunReport, Tally};
 use crate::campaign::runner::run_studies;
+use crate::campaign::shares::{Parting, Shard};
+use crate::campaign::stop;
 use crate::campaign::timing::time_study;
-use crate::case::Case;
 use crate::case::tier::Tier;
+use crate::cli::cost_files::costs_of;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::progress::StudyBar;
+use crate::cli::slurm;
 use crate::cli::stream::say;
 use crate::cli::study_files;
+use crate::cli::study_tables::{Beside, write_table};
 use crate::foreign::reading::mapping_of;
 use crate::judge::absent::Absent;
-use crate::record::Record;
-use crate::record::long_tables::{columns_csv, history_csv, profiles_csv};
 use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;
-use crate::record::tidy::tidy_csv;
-use crate::record::whole_file::write_whole;
 use crate::study::check::Study;
 use crate::study::check::checker::Purpose;
 use crate::study::file::StudySource;
 use crate::study::shipped::shipped_studies;
 use crate::wording::count_of;
 use clap::ValueEnum;
-use std::borrow::Cow;
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// Folder of results where none is named.
@@ -70,49 +68,86 @@ pub struct Arguments {
     /// Only this share of the cases, like 2/3
     #[arg(long, value_name = "i/n")]
     shard: Option<String>,
+    /// Part the cases by what they cost, the longest first, and not by their hashes
+    #[arg(long, requires = "shard")]
+    balance: bool,
+    /// Costs as `plan --learn` prints them, for `--balance`: every share takes the same file
+    #[arg(long, value_name = "FILE", requires = "balance")]
+    costs: Option<PathBuf>,
     /// Only the case with this hash, or the first digits of it
     #[arg(long, value_name = "HASH", conflicts_with_all = ["tier", "shard"])]
     case: Option<String>,
     /// Take up finished records of this version and these sources, whatever build of them made them
     #[arg(long)]
     resume: bool,
+    /// Who runs the cases: this machine where not given
+    #[arg(long, value_enum, conflicts_with_all = ["case", "shard", "jobs"])]
+    engine: Option<Engine>,
+    #[command(flatten)]
+    cluster: slurm::arguments::ClusterArguments,
+}
+
+/// Who runs cases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Engine {
+    /// An array of shares and a merge behind it, followed to their end
+    Slurm,
 }
 
 /// Runs and keeps.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // Every file is judged before any work begins.
     let studies = load(&arguments.studies)?;
+    if arguments.engine == Some(Engine::Slurm) {
+        let (files, tier) = (&arguments.studies, arguments.tier.into());
+        return slurm::run(&arguments.cluster, files, &studies, tier, &arguments.out);
+    }
     if arguments.case.as_ref().is_some_and(|hash| hash.trim().is_empty()) {
         return Err(Ended::usage(
             "`--case` names no case: write a hash or its first digits, as `plan` lists them",
         ));
     }
+    let parting = if arguments.balance { Parting::Cost } else { Parting::Hash };
     let options = RunOptions {
-        jobs: jobs_of(arguments.jobs),
-        tier: arguments.tier.into(),
-        shard: arguments.shard.as_deref().map(shard_of).transpose()?,
+        shard: arguments.shard.as_deref().map(|typed| shard_of(typed, parting)).transpose()?,
+        costs: costs_of(arguments.costs.as_deref())?,
         resume: arguments.resume,
+        only_on_disk: true,
+        ..RunOptions::whole(arguments.tier.into(), jobs_of(arguments.jobs))
     };
-    let selected: Vec<Study> = studies
-        .iter()
-        .map(|study| arguments.case.as_ref().map_or_else(|| study.clone(), |hash| with_case(study, hash)))
-        .collect();
-    let mut exit = Exit::NothingSelected;
-    for (study, report) in
-        studies.iter().zip(run_and_store(&studies, &selected, &options, &arguments.out, Beside::Tables)?)
-    {
-        if !report.records.is_empty() && exit == Exit::NothingSelected {
-            exit = Exit::Pass;
+    stop::heed_signals()?;
+    let with_one: Vec<Study>;
+    let selected = match &arguments.case {
+        Some(hash) => {
+            with_one = studies.iter().map(|study| with_case(study, hash)).collect();
+            &with_one
         }
-        let is_unforeseen = |record: &Record| !(record.status.is_skipped() || study.foresees(record));
-        if !report.errors.is_empty() || report.failed().any(is_unforeseen) {
-            exit = Exit::CaseFailed;
+        None => &studies,
+    };
+    let reports = run_and_store(&studies, selected, &options, &arguments.out, Beside::Tables)?;
+    let mut all = Tally::default();
+    for report in &reports {
+        all.join(report.tally);
+    }
+    if all.unforeseen > 0 || reports.iter().any(|report| !report.errors.is_empty()) {
+        return Ok(Exit::CaseFailed);
+    }
+    if all.left > 0 {
+        return Ok(Exit::IncompleteMerge);
+    }
+    let is_in_tier = |study: &Study| !study.cases(options.tier).is_empty();
+    match options.shard {
+        // A share may be empty: what waits for all of them goes on.
+        Some(Shard { index, count, .. }) if all.recorded == 0 && selected.iter().any(is_in_tier) => {
+            say!("share {index} of {count} has no case");
+            Ok(Exit::Pass)
         }
+        _ if all.recorded == 0 => Err(Ended::with(
+            Exit::NothingSelected,
+            "no case belongs to this tier and shard, or has this hash",
+        )),
+        _ => Ok(Exit::Pass),
     }
-    if exit == Exit::NothingSelected {
-        return Err(Ended::with(exit, "no case belongs to this tier and shard, or has this hash"));
-    }
-    Ok(exit)
 }
 
 /// The study with only the cases whose hash begins so.
@@ -120,15 +155,6 @@ fn with_case(study: &Study, hash: &str) -> Study {
     let mut selected = study.clone();
     selected.planned.retain(|planned| planned.case.hash().starts_with(hash));
     selected
-}
-
-/// What is written beside the tidy table of a study.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Beside {
-    /// Nothing.
-    Nothing,
-    /// Tables of profiles, of settlement over time, and of what every column means.
-    Tables,
 }
 
 /// Runs the selected cases of studies side by side, then times alone those of the studies that ask
@@ -144,8 +170,14 @@ pub fn run_and_store(
     results: &Path,
     beside: Beside,
 ) -> anyhow::Result<Vec<RunReport>> {
-    let stores: Vec<RecordStore> =
-        studies.iter().map(|study| RecordStore::new(results, &study.name)).collect();
+    let store_of = |study: &Study| RecordStore::for_cases(results, &study.name, study.planned.len());
+    let stores: Vec<RecordStore> = studies.iter().map(store_of).collect();
+    // Those of small studies and of timed ones are held, for they are read again at once.
+    let is_held = |(study, store): (&Study, &RecordStore)| {
+        !store.is_packed() || study.timing_repeats > 0 || !study.solvers.is_empty()
+    };
+    let only_on_disk = options.only_on_disk && !studies.iter().zip(&stores).any(is_held);
+    let options = RunOptions { only_on_disk, ..options.clone() };
     let kept = selected.iter().zip(&stores).map(|(study, store)| Selected { study, store: Some(store) });
     let name = match studies {
         [study] => study.name.clone(),
@@ -153,7 +185,7 @@ pub fn run_and_store(
     };
     let bar = StudyBar::new(&name);
     let tell = |progress| bar.tell(progress);
-    let mut reports = run_studies(&kept.collect::<Vec<_>>(), options, &tell);
+    let mut reports = run_studies(&kept.collect::<Vec<_>>(), &options, &tell);
     if let Some(error) = reports.iter_mut().find_map(first_that_ends_all) {
         bar.finish();
         return Err(error.into());
@@ -166,9 +198,21 @@ pub fn run_and_store(
         for error in &report.errors {
             say!("{}: {error}", study.name);
         }
-        if !report.records.is_empty() {
-            tell_of(study, report, &write_table(study, store, &report.records, beside)?);
+        if report.tally.left > 0 {
+            let left = count_of(report.tally.left, "case was", "cases were");
+            say!("{}: {left} not run, for the run was told to end: `--resume` goes on with them", study.name);
         }
+        if report.tally.recorded == 0 {
+            continue;
+        }
+        // One table of many shares is written once, by `merge`, and not anew by each of them.
+        let is_part = options.shard.is_some_and(|shard| shard.count > 1) && store.is_packed();
+        let place = if is_part {
+            store.folder().to_owned()
+        } else {
+            write_table(study, store, &report.records, beside)?
+        };
+        tell_of(study, report, &place);
     }
     Ok(reports)
 }
@@ -183,9 +227,9 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     say!(
         "{}: {} ({} from disk, {} failed), {}",
         study.name,
-        count_of(report.records.len() + report.errors.len(), "case", "cases"),
+        count_of(report.tally.recorded + report.errors.len(), "case", "cases"),
         report.resumed,
-        report.failed().count() + report.errors.len(),
+        report.tally.failed + report.errors.len(),
         table.display()
     );
     for warning in Absent::among(&report.records).warnings() {
@@ -204,43 +248,6 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
             study.name
         );
     }
-}
-
-/// Writes the CSV of every record that a store keeps of a study, whichever run made it: a run of
-/// one tier or shard takes nothing away from what others found. Those that are at hand are not
-/// read again.
-pub fn write_table(
-    study: &Study,
-    store: &RecordStore,
-    at_hand: &[Record],
-    beside: Beside,
-) -> anyhow::Result<PathBuf> {
-    let at_hand: HashMap<&str, &Record> =
-        at_hand.iter().map(|record| (record.hash.as_str(), record)).collect();
-    let record_of = |case: &Case| match at_hand.get(case.hash().as_str()) {
-        Some(record) => Some(Cow::Borrowed(*record)),
-        None => store.kept(case).map(Cow::Owned),
-    };
-    let records: Vec<Cow<'_, Record>> = study.cases(Tier::Full).into_iter().filter_map(record_of).collect();
-    let own = Provenance::of_this_program().sources;
-    let foreign = records.iter().filter(|record| record.provenance.sources != own).count();
-    if foreign > 0 {
-        say!("{}: {foreign} older records in the table are of other sources", study.name);
-    }
-    let table = store.folder().join(format!("{}.csv", study.name));
-    write_whole(&table, tidy_csv(&study.name, records.iter().map(AsRef::as_ref))?.as_bytes())?;
-    if beside == Beside::Nothing {
-        return Ok(table);
-    }
-    let beside = [
-        ("profiles", profiles_csv(records.iter().map(AsRef::as_ref))?),
-        ("history", history_csv(records.iter().map(AsRef::as_ref))?),
-        ("columns", columns_csv()?),
-    ];
-    for (name, text) in beside {
-        write_whole(&store.folder().join(format!("{name}.csv")), text.as_bytes())?;
-    }
-    Ok(table)
 }
 
 /// Reads and checks study files.
@@ -278,11 +285,12 @@ pub fn jobs_of(asked: Option<u64>) -> usize {
         .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get))
 }
 
-fn shard_of(typed: &str) -> anyhow::Result<Shard> {
+/// A share as it is typed, `i/n`.
+pub fn shard_of(typed: &str, parting: Parting) -> anyhow::Result<Shard> {
     let parts =
         typed.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
     match parts {
-        Some((index, count)) if (1..=count).contains(&index) => Ok(Shard { index, count }),
+        Some((index, count)) if (1..=count).contains(&index) => Ok(Shard { index, count, parting }),
         _ => Err(Ended::usage(format!("`--shard {typed}` is no share: write i/n with 1 ≤ i ≤ n, like 2/3"))),
     }
 }

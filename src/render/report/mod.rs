@@ -1,6 +1,7 @@
 //! The pages behind the answers: one a study over its records, and the list of all.
 
 pub mod appendix;
+pub mod cheapest_method_map;
 pub mod critical_step_maps;
 pub mod error_over_time;
 pub mod error_over_work;

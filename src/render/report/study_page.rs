@@ -5,8 +5,8 @@ use crate::judge::paths::Judgement;
 use crate::render::checks::verdicts::judgements_table;
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::{
-    StudyResults, critical_step_maps, error_over_time, error_over_work, findings, plane_fields, refinement,
-    survival, theory_lines, worst_checks,
+    StudyResults, cheapest_method_map, critical_step_maps, error_over_time, error_over_work, findings,
+    plane_fields, refinement, survival, theory_lines, worst_checks,
 };
 use crate::render::table::Mood;
 use crate::render::tables::{attached_runs, uncertainties};
@@ -25,6 +25,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     let mut blocks = expectations(results);
     blocks.extend(survival::block(results));
     blocks.extend(findings::blocks(results));
+    blocks.extend(cheapest_method_map::blocks(results));
     blocks.extend(plane_fields::blocks(results)?);
     blocks.extend(theory_lines::blocks(results)?);
     for axis in Axis::REFINEMENTS {

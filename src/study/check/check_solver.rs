@@ -42,8 +42,8 @@ impl Checker<'_> {
     }
 
     /// Complains where the critical step of an attached solver is asked for.
-    pub(crate) fn attached_are_solved(&mut self, start: usize, cases: &[Case]) {
-        if cases.iter().any(|case| case.is_attached() && case.task == Task::Stability) {
+    pub(crate) fn attached_are_solved(&mut self, start: usize, mut cases: impl Iterator<Item = Case>) {
+        if cases.any(|case| case.is_attached() && case.task == Task::Stability) {
             self.complain(
                 start..start + 1,
                 "an attached solver has no critical step that could be searched",

@@ -35,16 +35,12 @@ impl Checker<'_> {
 
     /// Complains of the first case whose pores would close before its end: it has no end state, and its run would
     /// fail.
-    pub(crate) fn pores_stay_open<'a>(
-        &mut self,
-        place: Range<usize>,
-        mut cases: impl Iterator<Item = &'a Case>,
-    ) {
+    pub(crate) fn pores_stay_open(&mut self, place: Range<usize>, mut cases: impl Iterator<Item = Case>) {
         if self.purpose != Purpose::Solving || !self.diagnostics.is_empty() {
             return;
         }
         let closes =
-            |case: &&Case| case.scene.is_large_strain() && final_strain(case) >= case.material.porosity;
+            |case: &Case| case.scene.is_large_strain() && final_strain(case) >= case.material.porosity;
         let Some(case) = cases.find(closes) else { return };
         let soil = &case.material;
         self.complain(
@@ -55,12 +51,12 @@ impl Checker<'_> {
                 soil.poissons_ratio,
                 soil.porosity,
                 short(case.column.load),
-                short(final_strain(case)),
+                short(final_strain(&case)),
                 soil.porosity
             ),
             format!(
                 "load less than {} Pa, or write `strain` in [column] for the load, below {}",
-                short(load_of(soil.porosity, case)),
+                short(load_of(soil.porosity, &case)),
                 soil.porosity
             ),
         );

@@ -6,23 +6,22 @@ use crate::study::file::{StudyFile, SweepTable};
 use toml::Spanned;
 
 impl Checker<'_> {
-    /// Names the water's points of every case of a sweep, and complains where a case cannot have two layers, or where
-    /// points of the water are named and no case has any.
-    pub(crate) fn layers_fit(
+    /// Complains where a case of a sweep cannot have two layers, or where points of the water are named and no case
+    /// has any.
+    pub(crate) fn layers_fit<Cases: Iterator<Item = Case>>(
         &mut self,
         file: &StudyFile,
         table: &SweepTable,
         start: usize,
-        cases: impl Iterator<Item = Case>,
-    ) -> Vec<Case> {
-        let mut cases: Vec<Case> = cases.collect();
+        cases: impl Fn() -> Cases,
+    ) {
         let of_sweep = |key: &str| table.typed(key).map(Spanned::span);
         let named = |key: &str| of_sweep(key).or_else(|| file.points.typed(key).map(Spanned::span));
         let place = named("layers").unwrap_or(start..start + 1);
-        if let Some((why, help)) = cases.iter().find_map(Case::refuses_two_layers) {
+        if let Some((why, help)) = cases().find_map(|case| case.refuses_two_layers()) {
             self.complain(place, why, help);
         } else if let Some(of_water) = named("water_per_cell")
-            && !cases.iter().any(|case| case.column.points.has_two_layers())
+            && !cases().any(|case| case.column.points.has_two_layers())
         {
             self.complain(
                 of_water,
@@ -30,10 +29,6 @@ impl Checker<'_> {
                 "add `layers = 2`, or leave `water_per_cell` out",
             );
         }
-        for case in &mut cases {
-            case.column.points.name_water_points(case.points_per_cell);
-        }
-        cases
     }
 }
 

@@ -110,6 +110,9 @@ fn listed(words: impl Iterator<Item = String>) -> String {
         if !once.contains(&word) {
             once.push(word);
         }
+        if once.len() > MOST {
+            break;
+        }
     }
     if once.len() > MOST {
         once.truncate(MOST);

@@ -130,8 +130,8 @@ impl Study {
 }
 
 /// Puts a case among those that are planned: each once, in the smallest tier that has it.
-fn put(case: Case, tier: Tier, planned: &mut Vec<PlannedCase>, places: &mut HashMap<String, usize>) {
-    match places.entry(case.hash()) {
+fn put(case: Case, tier: Tier, planned: &mut Vec<PlannedCase>, places: &mut HashMap<u64, usize>) {
+    match places.entry(case.number()) {
         Entry::Occupied(place) => {
             let other = &mut planned[*place.get()];
             other.tier = other.tier.min(tier);
@@ -165,17 +165,9 @@ impl Checker<'_> {
         };
         let references = self.references(&file.output, scene, &base.column);
         let given = self.results(file);
-        if file.sweep.is_empty() && file.result.is_empty() {
-            let end = self.source.text.trim_end().len();
-            let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
-            self.complain(
-                last_line..end,
-                "the study ends here without a [[sweep]] block",
-                "add one with at least `method` and `cells`",
-            );
-        }
+        self.sweep_is_there(file);
         let mut planned: Vec<PlannedCase> = Vec::new();
-        let mut places: HashMap<String, usize> = HashMap::new();
+        let mut places: HashMap<u64, usize> = HashMap::new();
         for block in &file.sweep {
             let table = block.get_ref();
             base.time_factors = match &table.time_factors {
@@ -189,16 +181,20 @@ impl Checker<'_> {
                 self.default_integrator(table, block.span().start, &common, &base, &mut sweep);
             }
             let tier = self.choice(table.tier.as_deref(), "tier", Tier::default()).unwrap_or_default();
-            let start = block.span().start;
-            let mut cases = self.layers_fit(file, table, start, sweep.cases(&base).map(Case::for_attached));
-            if let Some(strain) = strain {
-                for case in &mut cases {
-                    case.column.load = load_of(strain, case);
+            self.layers_fit(file, table, block.span().start, || sweep.cases(&base).map(Case::for_attached));
+            let loaded = |case: Case| {
+                let mut case = case.for_attached();
+                case.column.points.name_water_points(case.points_per_cell);
+                if let Some(strain) = strain {
+                    case.column.load = load_of(strain, &case);
                 }
-            }
-            self.attached_are_solved(start, &cases);
-            self.pores_stay_open(start..start + 1, cases.iter());
-            for case in cases {
+                case
+            };
+            let start = block.span().start;
+            self.attached_are_solved(start, sweep.cases(&base));
+            self.pores_stay_open(start..start + 1, sweep.cases(&base).map(loaded));
+            planned.reserve_exact(sweep.count().unwrap_or(0));
+            for case in sweep.cases(&base).map(loaded) {
                 put(case, tier, &mut planned, &mut places);
             }
         }
@@ -225,6 +221,19 @@ impl Checker<'_> {
             timing_repeats,
             warnings: std::mem::take(&mut self.warnings),
         })
+    }
+
+    /// Complains at the end of a study without a case.
+    fn sweep_is_there(&mut self, file: &StudyFile) {
+        if file.sweep.is_empty() && file.result.is_empty() {
+            let end = self.source.text.trim_end().len();
+            let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
+            self.complain(
+                last_line..end,
+                "the study ends here without a [[sweep]] block",
+                "add one with at least `method` and `cells`",
+            );
+        }
     }
 
     /// What the study expects of its series and of single cases; each must have something to judge.

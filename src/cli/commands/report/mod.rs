@@ -8,13 +8,12 @@ use crate::campaign::run_report::RunReport;
 use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::cli::commands::check::GOLDEN;
-use crate::cli::commands::run::{
-    Beside, DEFAULT_RESULTS, TierArgument, jobs_of, load_or_shipped, run_and_store,
-};
+use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, jobs_of, load_or_shipped, run_and_store};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::side_by_side::side_by_side;
 use crate::cli::stream::say;
 use crate::cli::study_files;
+use crate::cli::study_tables::Beside;
 use crate::golden::compare::{Difference, compare};
 use crate::golden::{GoldenFile, values_of};
 use crate::record::Record;

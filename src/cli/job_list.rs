@@ -1,0 +1,145 @@
+//! Job lists: the commands that run the shares of a campaign, one a line, for whatever starts them.
+
+use crate::campaign::costs::CostTable;
+use crate::campaign::shares::{Parting, balance_of, shares_of};
+use crate::case::Case;
+use crate::case::tier::Tier;
+use crate::cli::stream::say;
+use crate::record::store::RecordStore;
+use crate::study::check::Study;
+use crate::wording::{count_of, duration};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Largest share over the mean from which on it is worth a word.
+const UNEVEN: f64 = 1.1;
+
+/// What the commands of a campaign have in common.
+#[derive(Clone, Debug)]
+pub struct JobList {
+    /// Study files as they were named.
+    pub files: Vec<PathBuf>,
+    /// Folder of the results.
+    pub results: PathBuf,
+    /// How much of the studies.
+    pub tier: Tier,
+    /// How many shares there are.
+    pub tasks: u64,
+    /// By what they are parted.
+    pub parting: Parting,
+    /// File of the costs, where they are parted by those.
+    pub costs: Option<PathBuf>,
+}
+
+impl JobList {
+    /// The shares that have one of the wanted cases, from 1 on; the shares are those of all cases.
+    pub fn shares_with(
+        &self,
+        all: &[(&Study, Vec<&Case>)],
+        wanted: &[(&Study, Vec<&Case>)],
+        costs: &CostTable,
+    ) -> BTreeSet<u64> {
+        let cases: Vec<&Case> = all.iter().flat_map(|(_, cases)| cases).copied().collect();
+        let shares = shares_of(&cases, self.tasks, self.parting, costs);
+        // Both lists have the order of the studies: the wanted ones are met on the way.
+        let mut wanted = wanted.iter().flat_map(|(_, cases)| cases).copied().peekable();
+        let is_wanted = |case: &Case| wanted.next_if(|next| std::ptr::eq(*next, case)).is_some();
+        let mut is_wanted = is_wanted;
+        cases.iter().zip(shares).filter(|(case, _)| is_wanted(case)).map(|(_, share)| share + 1).collect()
+    }
+
+    /// The commands of those shares, a line each.
+    pub fn commands(
+        &self,
+        all: &[(&Study, Vec<&Case>)],
+        wanted: &[(&Study, Vec<&Case>)],
+        costs: &CostTable,
+    ) -> String {
+        let shares = self.shares_with(all, wanted, costs);
+        shares.iter().map(|share| self.command("oedometer", &share.to_string()) + "\n").collect()
+    }
+
+    /// The command of a share, which may be the variable of a scheduler.
+    pub fn command(&self, program: &str, share: &str) -> String {
+        let mut words = vec![quoted(program), "run".to_owned()];
+        words.extend(self.files.iter().map(|file| quoted_path(file)));
+        words.extend(["--out".to_owned(), quoted_path(&self.results)]);
+        if self.tier != Tier::Full {
+            words.extend(["--tier".to_owned(), self.tier.name().to_owned()]);
+        }
+        words.extend(["--shard".to_owned(), format!("{share}/{}", self.tasks)]);
+        if self.parting == Parting::Cost {
+            words.push("--balance".to_owned());
+            words.extend(self.costs.iter().flat_map(|file| ["--costs".to_owned(), quoted_path(file)]));
+        }
+        words.push("--resume".to_owned());
+        words.join(" ")
+    }
+
+    /// Says how even the shares are, and where no number of them helps.
+    pub fn tell_of_balance(&self, all: &[(&Study, Vec<&Case>)], costs: &CostTable) {
+        let cases: Vec<&Case> = all.iter().flat_map(|(_, cases)| cases).copied().collect();
+        let shares = shares_of(&cases, self.tasks, self.parting, costs);
+        let balance = balance_of(&cases, &shares, self.tasks, costs);
+        let ratio = balance.largest / balance.mean;
+        say!(
+            "{}: the largest takes {}, {ratio:.2} times the mean",
+            count_of(usize::try_from(self.tasks).unwrap_or(usize::MAX), "share", "shares"),
+            duration(balance.largest)
+        );
+        if balance.longest_case > balance.mean {
+            say!(
+                "one case alone takes {}, more than a share of {}: more than {:.0} shares gain nothing",
+                duration(balance.longest_case),
+                duration(balance.mean),
+                (balance.mean * self.tasks as f64 / balance.longest_case).max(1.0).floor()
+            );
+        } else if ratio > UNEVEN && self.parting == Parting::Hash {
+            say!("`--balance` makes the shares even: the longest cases first, each to the least share");
+        }
+        if balance.empty > 0 {
+            say!("{} of the shares have no case", balance.empty);
+        }
+    }
+}
+
+/// The cases that have no finished record of this program.
+pub fn missing_of<'a>(study: &Study, cases: &[&'a Case], folder: &Path) -> Vec<&'a Case> {
+    let store = RecordStore::for_cases(folder, &study.name, study.planned.len());
+    cases.iter().filter(|case| !store.is_done(case)).copied().collect()
+}
+
+fn quoted_path(path: &Path) -> String {
+    quoted(&path.to_string_lossy())
+}
+
+/// A word as a shell takes it.
+pub fn quoted(word: &str) -> String {
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=+:,@%".contains(letter);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_is_what_a_shell_takes() {
+        let list = JobList {
+            files: vec!["my study.toml".into(), "b.toml".into()],
+            results: "o'ut".into(),
+            tier: Tier::Ci,
+            tasks: 8,
+            parting: Parting::Cost,
+            costs: Some("costs.csv".into()),
+        };
+        assert_eq!(
+            list.command("oedometer", "3"),
+            r"oedometer run 'my study.toml' b.toml --out 'o'\''ut' --tier ci --shard 3/8 --balance --costs costs.csv --resume"
+        );
+    }
+}

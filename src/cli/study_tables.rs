@@ -1,0 +1,180 @@
+//! The tables of a study, made of the records that its store keeps, one record at a time.
+
+use crate::case::Case;
+use crate::case::tier::Tier;
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::stream::say;
+use crate::record::Record;
+use crate::record::long_tables::{LongTable, columns_csv};
+use crate::record::machines_table::MachinesTable;
+use crate::record::packed_table::{RowsOf, write_packed_table};
+use crate::record::provenance::Provenance;
+use crate::record::store::RecordStore;
+use crate::record::tidy;
+use crate::record::whole_file::{write_streamed, write_whole};
+use crate::study::check::Study;
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Cases up to which a table is plain CSV; that of more is compressed, to a fifteenth.
+const MOST_PLAIN_CASES: usize = 2000;
+
+/// Table of the machines and builds beside that of the measures.
+const MACHINES: &str = "machines.csv";
+
+/// What is written beside the tidy table of a study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beside {
+    /// Nothing.
+    Nothing,
+    /// Tables of profiles, of settlement over time, and of what every column means. Of a packed study the last
+    /// alone: `oedometer records` prints the others.
+    Tables,
+}
+
+/// Writes the CSV of every record that a store keeps of a study, whichever run made it: a run of
+/// one tier or shard takes nothing away from what others found. Those that are at hand are not
+/// read again.
+pub fn write_table(
+    study: &Study,
+    store: &RecordStore,
+    at_hand: &[Record],
+    beside: Beside,
+) -> anyhow::Result<PathBuf> {
+    store.refresh();
+    for damage in store.damages() {
+        say!("{}: {damage}", study.name);
+    }
+    let cases = study.cases(Tier::Full);
+    let table = if store.is_packed() && cases.len() > MOST_PLAIN_CASES {
+        compressed_table(study, store, &cases)?
+    } else {
+        plain_tables(study, store, at_hand, &cases, beside == Beside::Tables && !store.is_packed())?
+    };
+    if beside == Beside::Tables {
+        write_whole(&store.folder().join("columns.csv"), columns_csv()?.as_bytes())?;
+    }
+    Ok(table)
+}
+
+/// Says how many records of a table are of other sources.
+fn tell_of_foreign(study: &Study, foreign: usize) {
+    if foreign > 0 {
+        say!("{}: {foreign} older records in the table are of other sources", study.name);
+    }
+}
+
+/// Makes rows with every record that there is of some cases, in their order.
+fn with_records(
+    store: &RecordStore,
+    at_hand: &HashMap<&str, &Record>,
+    cases: &[&Case],
+    mut take: impl FnMut(&Record) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    for case in cases {
+        let record = match at_hand.get(case.hash().as_str()) {
+            Some(record) => Some(Cow::Borrowed(*record)),
+            None => store.kept(case).map(Cow::Owned),
+        };
+        if let Some(record) = record {
+            take(&record)?;
+        }
+    }
+    Ok(())
+}
+
+fn plain_tables(
+    study: &Study,
+    store: &RecordStore,
+    at_hand: &[Record],
+    cases: &[&Case],
+    with_long_tables: bool,
+) -> anyhow::Result<PathBuf> {
+    let at_hand: HashMap<&str, &Record> =
+        at_hand.iter().map(|record| (record.hash.as_str(), record)).collect();
+    let own = Provenance::of_this_program().sources;
+    let (mut foreign, mut machines) = (0, MachinesTable::default());
+    let table = store.folder().join(format!("{}.csv", study.name));
+    write_rows(&table, &tidy::header_line(), |out| {
+        with_records(store, &at_hand, cases, |record| {
+            foreign += usize::from(record.provenance.sources != own);
+            machines.add(record);
+            Ok(tidy::write_rows(&mut *out, &study.name, record)?)
+        })
+    })?;
+    tell_of_foreign(study, foreign);
+    write_whole(&store.folder().join(MACHINES), machines.to_csv()?.as_bytes())?;
+    for long in LongTable::ALL.into_iter().filter(|_| with_long_tables) {
+        let path = store.folder().join(format!("{}.csv", long.name()));
+        write_rows(&path, &long.header_line(), |out| {
+            with_records(store, &at_hand, cases, |record| Ok(long.write_rows(&mut *out, record)?))
+        })?;
+    }
+    Ok(table)
+}
+
+/// Writes a file of a header and of rows as they are made, on the disk at the end.
+fn write_rows(
+    path: &Path,
+    header: &str,
+    fill: impl FnOnce(&mut BufWriter<&mut std::fs::File>) -> std::io::Result<()>,
+) -> anyhow::Result<()> {
+    Ok(write_streamed(path, |file| {
+        let mut out = BufWriter::with_capacity(1 << 16, &mut *file);
+        out.write_all(header.as_bytes())?;
+        fill(&mut out)?;
+        out.flush()?;
+        drop(out);
+        file.sync_all()
+    })?)
+}
+
+/// Writes which machines and builds the records of a packed study are of.
+///
+/// # Errors
+/// When the file system refuses.
+pub fn write_machines(study: &Study, store: &RecordStore) -> anyhow::Result<()> {
+    let mut machines = MachinesTable::default();
+    let mut builds: HashMap<(u64, u64), Provenance> = HashMap::new();
+    for case in study.cases(Tier::Full) {
+        let Some((entry, wall)) = store.entry_and_wall(case) else { continue };
+        let tags = (entry.program, entry.build);
+        if let Entry::Vacant(place) = builds.entry(tags)
+            && let Some(origin) = store.origin(case)
+        {
+            place.insert(origin);
+        }
+        if let Some(origin) = builds.get(&tags) {
+            machines.add_parts(origin, &wall);
+        }
+    }
+    Ok(write_whole(&store.folder().join(MACHINES), machines.to_csv()?.as_bytes())?)
+}
+
+fn compressed_table(study: &Study, store: &RecordStore, cases: &[&Case]) -> anyhow::Result<PathBuf> {
+    let by_number: HashMap<u64, &Case> = cases.iter().map(|case| (case.number(), *case)).collect();
+    let own = Provenance::of_this_program();
+    let entries = || cases.iter().filter_map(|case| store.entry(case));
+    let foreign = entries().filter(|entry| entry.program != own.program_tag()).count();
+    let rows_of = |entry: &crate::record::packed_store::Entry| RowsOf {
+        case: entry.case,
+        generation: entry.generation,
+        program: entry.program,
+        build: entry.build,
+    };
+    let table = store.folder().join(format!("{}.csv.gz", study.name));
+    let mut refused = None;
+    let places = entries().map(|entry| rows_of(&entry)).collect::<Vec<_>>();
+    write_packed_table(&table, &tidy::header_line(), places.into_iter(), |rows| {
+        let record = store.kept(by_number.get(&rows.case)?)?;
+        tidy::rows_of(&study.name, &record).map_err(|error| refused = Some(error)).ok()
+    })?;
+    if let Some(error) = refused {
+        return Err(Ended::with(Exit::CaseFailed, format!("cannot write {}: {error}", table.display())));
+    }
+    tell_of_foreign(study, foreign);
+    Ok(table)
+}

@@ -1,0 +1,262 @@
+//! Records of large studies, in packs: found by the hash of their case, appended as they come.
+
+use crate::record::pack::FOLDER;
+use crate::record::pack::index::{Damage, Index, Place};
+use crate::record::pack::member::{Header, Kind, packed, unpacked};
+use crate::record::pack::writer::Writer;
+use crate::record::provenance::Provenance;
+use crate::record::seal::{Layout, is_whole, sealed};
+use crate::record::whole_file::StoreError;
+use crate::record::{Record, Status, WallSample};
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The packs of one study.
+#[derive(Debug)]
+pub(crate) struct PackedStore {
+    study: PathBuf,
+    state: Mutex<State>,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    /// Read when it is first asked for.
+    index: Option<Index>,
+    /// Opened when something is first written.
+    writer: Option<Writer>,
+}
+
+/// What the store knows of a record without unpacking it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Hash of the case.
+    pub case: u64,
+    /// How the case ended.
+    pub end: CaseEnd,
+    /// Tag of the program that made it.
+    pub program: u64,
+    /// Tag of the build of that program.
+    pub build: u64,
+    /// Bytes it takes.
+    pub bytes: u32,
+    /// Count of the run that left it.
+    pub generation: u32,
+}
+
+/// How a case ended, as far as the store tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CaseEnd {
+    /// Every output reached.
+    Ok,
+    /// Failed, by a name in its record.
+    Failed,
+    /// Ran out of its time.
+    Late,
+}
+
+impl From<&Header> for Entry {
+    fn from(header: &Header) -> Self {
+        let Header { case, program, build, length, kind, generation } = *header;
+        let end = match kind {
+            Kind::FailedRecord => CaseEnd::Failed,
+            Kind::LateRecord => CaseEnd::Late,
+            _ => CaseEnd::Ok,
+        };
+        Self { case, end, program, build, bytes: length, generation }
+    }
+}
+
+impl PackedStore {
+    /// The packs below the folder of a study's results.
+    pub fn new(study: &Path) -> Self {
+        Self { study: study.to_owned(), state: Mutex::default() }
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn refused(&self, action: &'static str) -> impl Fn(std::io::Error) -> StoreError {
+        let path = self.study.join(FOLDER);
+        move |source| StoreError::Io { action, path: path.clone(), source }
+    }
+
+    /// Asks the index, which is read where it was not yet. One that cannot be read is empty: its cases run again.
+    fn with_index<T>(&self, ask: impl FnOnce(&mut Index) -> T) -> T {
+        let mut state = self.state();
+        let folder = self.study.join(FOLDER);
+        ask(state.index.get_or_insert_with(|| Index::of(&folder).unwrap_or_default()))
+    }
+
+    /// Whether there is any record.
+    pub fn has_records(&self) -> bool {
+        self.with_index(|index| index.records().next().is_some())
+    }
+
+    /// Takes note of what others appended meanwhile.
+    pub fn refresh(&self) {
+        let folder = self.study.join(FOLDER);
+        self.with_index(|index| index.refresh(&folder).unwrap_or_default());
+    }
+
+    /// Every record there is, in no order.
+    pub fn entries(&self) -> Vec<Entry> {
+        self.with_index(|index| index.records().map(|place| Entry::from(&place.header)).collect())
+    }
+
+    /// What is known of the record of a case.
+    pub fn entry(&self, case: u64) -> Option<Entry> {
+        self.with_index(|index| {
+            let entry = Entry::from(&index.record(case)?.header);
+            let generation = index.wall(case).map_or(entry.generation, |wall| wall.header.generation);
+            Some(Entry { generation, ..entry })
+        })
+    }
+
+    /// Takes over the record of a case from another store as it is, where that has a whole one.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn take_over(&self, other: &Self, case: u64) -> Result<bool, StoreError> {
+        let Some(place) = other.with_index(|index| index.record(case)) else { return Ok(false) };
+        if other.with_index(|index| index.wall(case)).is_some() || other.texts(case).is_none() {
+            return Ok(false);
+        }
+        let Ok(mut member) = other.with_index(|index| index.bytes(place)) else { return Ok(false) };
+        Header { generation: self.generation()?, ..place.header }.put_on(&mut member);
+        self.append_member(&member)?;
+        Ok(true)
+    }
+
+    /// What of the packs is no record, but for the ends of those that somebody is writing.
+    pub fn damages(&self) -> Vec<Damage> {
+        let damages = self.with_index(|index| index.damages().to_vec());
+        let is_written = |path: &Path| {
+            File::open(path)
+                .is_ok_and(|file| matches!(file.try_lock_shared(), Err(std::fs::TryLockError::WouldBlock)))
+        };
+        damages.into_iter().filter(|damage| !(damage.is_cut && is_written(&damage.pack))).collect()
+    }
+
+    /// Every pack with the bytes of it that are whole.
+    pub fn packs(&self) -> Vec<(PathBuf, u64)> {
+        self.with_index(|index| index.packs().map(|(path, end)| (path.to_owned(), end)).collect())
+    }
+
+    fn unpacked(&self, place: Place) -> Option<String> {
+        let bytes = self.with_index(|index| index.bytes(place)).ok()?;
+        (Header::read(&bytes)? == place.header).then(|| unpacked(&bytes)).flatten()
+    }
+
+    /// Text of the record of a case, where it is whole, and that of its wall times.
+    fn texts(&self, case: u64) -> Option<(String, String)> {
+        let place = self.with_index(|index| index.record(case))?;
+        let text = self.unpacked(place)?;
+        let (record, wall) = text.split_once('\n')?;
+        is_whole(record).then(|| (record.to_owned(), wall.trim_end().to_owned()))
+    }
+
+    /// Text of the record of a case, where it is whole.
+    pub fn text(&self, case: u64) -> Option<String> {
+        self.texts(case).map(|(record, _)| record)
+    }
+
+    /// Text of the record of a case and its wall times.
+    pub fn text_and_wall(&self, case: u64) -> Option<(String, Vec<WallSample>)> {
+        let (record, of_record) = self.texts(case)?;
+        let later = self.with_index(|index| index.wall(case)).and_then(|place| self.unpacked(place));
+        let wall = later.as_deref().and_then(wall_of).or_else(|| wall_of(&of_record));
+        Some((record, wall.unwrap_or_default()))
+    }
+
+    /// Appends a record that carries no digest.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn write(&self, record: &Record) -> Result<(), StoreError> {
+        let kind = match record.status {
+            Status::Ok => Kind::Record,
+            Status::Failed(_) if record.status.is_worth_another_run() => Kind::LateRecord,
+            Status::Failed(_) => Kind::FailedRecord,
+        };
+        let text = sealed(record, Layout::OneLine).map_err(|source| self.json(source))?;
+        self.append(kind, record, &format!("{text}\n{}\n", self.wall_line(record)?))
+    }
+
+    /// Appends the wall times of a record alone.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn write_wall(&self, record: &Record) -> Result<(), StoreError> {
+        self.append(Kind::Wall, record, &format!("{}\n", self.wall_line(record)?))
+    }
+
+    fn json(&self, source: serde_json::Error) -> StoreError {
+        StoreError::Json { path: self.study.join(FOLDER), source }
+    }
+
+    fn wall_line(&self, record: &Record) -> Result<String, StoreError> {
+        let line = serde_json::json!({ "hash": record.hash, "wall": record.wall });
+        serde_json::to_string(&line).map_err(|source| self.json(source))
+    }
+
+    fn append(&self, kind: Kind, record: &Record, text: &str) -> Result<(), StoreError> {
+        let generation = self.generation()?;
+        let header = Header {
+            kind,
+            generation,
+            case: number_of(&record.hash),
+            program: record.provenance.program_tag(),
+            build: record.provenance.build_tag(),
+            length: 0,
+        };
+        self.append_member(&packed(header, text.as_bytes()).map_err(self.refused("pack a record for"))?)
+    }
+
+    fn append_member(&self, member: &[u8]) -> Result<(), StoreError> {
+        let mut state = self.state();
+        let State { index: Some(index), writer: Some(writer) } = &mut *state else { return Ok(()) };
+        let place = writer.append(member).map_err(|source| StoreError::Io {
+            action: "write",
+            path: writer.path().to_owned(),
+            source,
+        })?;
+        index.note(place);
+        Ok(())
+    }
+
+    /// Count of this run; the first who asks opens the pack.
+    fn generation(&self) -> Result<u32, StoreError> {
+        let folder = self.study.join(FOLDER);
+        let mut state = self.state();
+        let State { index, writer } = &mut *state;
+        if let Some(writer) = writer {
+            return Ok(writer.generation());
+        }
+        let index = index.get_or_insert_with(|| Index::of(&folder).unwrap_or_default());
+        let opened =
+            Writer::open(&self.study, index).map_err(self.refused("make the folder or a pack in"))?;
+        Ok(writer.insert(opened).generation())
+    }
+}
+
+/// The number that the hash of a case is.
+pub(crate) fn number_of(hash: &str) -> u64 {
+    u64::from_str_radix(hash, 16).unwrap_or(0)
+}
+
+fn wall_of(line: &str) -> Option<Vec<WallSample>> {
+    #[derive(serde::Deserialize)]
+    struct Line {
+        wall: Vec<WallSample>,
+    }
+    serde_json::from_str::<Line>(line.trim_end()).ok().map(|line| line.wall)
+}
+
+impl Entry {
+    /// Whether the record is to be taken up by a program: of its version and sources, and not out of its time.
+    pub fn is_taken_up_by(&self, program: &Provenance) -> bool {
+        self.program == program.program_tag() && self.end != CaseEnd::Late
+    }
+}

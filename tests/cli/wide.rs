@@ -1,0 +1,318 @@
+//! Many cases: packed records, shares, tables that are made without reading everything again.
+
+use crate::program::{Told, call, folder_with, table_without_times};
+use oedometer::{Failure, FailureKind, Record, RecordStore, Status, Study, StudySource, Tier};
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// More cases than have files of their own.
+const STUDY: &str = r#"title = "Seventy-two short cases"
+scene = "terzaghi"
+
+[output]
+time_factors = [0.02]
+
+[[sweep]]
+method = ["MPM", "GC-SRI-patch"]
+integrator = ["implicit"]
+cells = [2, 3, 4]
+time_step = [{ growth = 0.3 }, { growth = 0.4 }]
+porosity = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5]
+"#;
+const CASES: usize = 72;
+
+fn study() -> Study {
+    Study::check(&StudySource { name: "short.toml".to_owned(), text: STUDY.to_owned() }).expect("sound")
+}
+
+fn packs(folder: &Path, out: &str) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder.join(out).join("short/records")) else { return Vec::new() };
+    let mut packs: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    packs.sort();
+    packs
+}
+
+/// Every line of the packs, as `zcat` shows them.
+fn lines(folder: &Path, out: &str) -> Vec<String> {
+    let mut text = String::new();
+    for pack in packs(folder, out) {
+        let file = fs::File::open(pack).expect("a pack");
+        flate2::read::MultiGzDecoder::new(file).read_to_string(&mut text).expect("gzip");
+    }
+    text.lines().map(str::to_owned).collect()
+}
+
+fn table(folder: &Path, out: &str) -> String {
+    table_without_times(&folder.join(out).join("short/short.csv"))
+}
+
+fn run(folder: &Path, more: &[&str]) -> Told {
+    call(folder, &[&["run", "short.toml"], more].concat())
+}
+
+/// A folder with a whole run in `out`, whose table is that of small studies too.
+fn whole() -> (TempDir, String) {
+    let folder = folder_with(STUDY);
+    let told = run(folder.path(), &[]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    let table = table(folder.path(), "out");
+    (folder, table)
+}
+
+#[test]
+fn many_cases_are_few_files_and_every_record_is_a_line_that_anyone_can_read() {
+    let (folder, table) = whole();
+    let at = folder.path();
+    assert_eq!(packs(at, "out").len(), 1);
+    assert!(!at.join("out/short/cases").exists());
+    let lines = lines(at, "out");
+    let records: Vec<serde_json::Value> = lines
+        .iter()
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .filter(|line: &serde_json::Value| !line["schema"].is_null())
+        .collect();
+    assert_eq!((lines.len(), records.len()), (2 * CASES, CASES));
+    let size = fs::metadata(&packs(at, "out")[0]).expect("a pack").len();
+    assert!(size < 15_000 * CASES as u64, "{size} bytes of {CASES} records");
+    // In the order of the study, every case once.
+    let rows: Vec<&str> = table.lines().skip(1).map(|row| row.split(',').nth(1).expect("a hash")).collect();
+    let firsts: Vec<String> = rows.chunk_by(|a, b| a == b).map(|chunk| chunk[0].to_owned()).collect();
+    let planned: Vec<String> = study().planned.iter().map(|planned| planned.case.hash()).collect();
+    assert_eq!(firsts, planned);
+    // A single record on request.
+    let told = call(at, &["records", "out/short", &planned[7]]);
+    let record: Record = serde_json::from_str(&told.out).expect("one record");
+    assert_eq!((told.code, &record.hash, &record.case), (0, &planned[7], &study().planned[7].case));
+    let told = call(at, &["records", "out/short"]);
+    assert_eq!((told.code, told.out.lines().count()), (0, CASES + 1));
+    assert_eq!(call(at, &["records", "out/short", "zzzz"]).code, 4);
+    let told = call(at, &["records", "out/short", "--history"]);
+    assert!(told.out.starts_with("case,time_factor,degree_of_consolidation\n"));
+    assert_eq!(call(at, &["records", "nowhere"]).code, 2);
+}
+
+#[test]
+fn packed_records_are_taken_up_and_what_is_missing_runs() {
+    let (folder, table_of_whole) = whole();
+    let at = folder.path();
+    let told = run(at, &["--resume"]);
+    assert!(told.err.contains("72 cases (72 from disk, 0 failed)"), "{}", told.err);
+    // Cut in its last third, as a kill would leave it, and once more in the middle of a record.
+    let pack = packs(at, "out").remove(0);
+    let bytes = fs::read(&pack).expect("a pack");
+    fs::write(&pack, &bytes[..bytes.len() * 2 / 3]).expect("written");
+    let told = call(at, &["plan", "short.toml", "--missing", "out"]);
+    let missing = told.out.lines().count() - 1;
+    assert!((20..28).contains(&missing), "{missing} of {CASES}");
+    let told = call(at, &["records", "out/short"]);
+    assert!(told.err.contains("is cut at byte"), "{}", told.err);
+    let told = run(at, &["--resume"]);
+    let from_disk = CASES - missing;
+    assert!(told.err.contains(&format!("72 cases ({from_disk} from disk, 0 failed)")), "{}", told.err);
+    assert_eq!(table(at, "out"), table_of_whole);
+    assert_eq!(packs(at, "out").len(), 1, "the pack was taken up");
+    assert!(!call(at, &["records", "out/short"]).err.contains("cut"), "and its end mended");
+    // A record that is damaged is none.
+    let mut damaged = fs::read(&pack).expect("a pack");
+    let middle = damaged.len() / 2;
+    damaged[middle] ^= 0xff;
+    fs::write(&pack, &damaged).expect("written");
+    let told = run(at, &["--resume"]);
+    assert!(told.code == 0 && told.err.contains("72 cases (71 from disk, 0 failed)"), "{}", told.err);
+    assert_eq!(table(at, "out"), table_of_whole);
+}
+
+#[test]
+fn a_packed_run_that_is_killed_at_any_moment_goes_on_to_the_same_table() {
+    let (_, expected) = whole();
+    let program = assert_cmd::cargo::cargo_bin("oedometer");
+    for kill in 0..12_u32 {
+        let folder = folder_with(STUDY);
+        let at = folder.path();
+        let mut child = Command::new(&program)
+            .current_dir(at)
+            .args(["run", "short.toml", "--jobs", "2"])
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("it starts");
+        std::thread::sleep(Duration::from_millis(20 + 37 * u64::from(kill)));
+        child.kill().expect("SIGKILL");
+        child.wait().expect("it is over");
+        let told = run(at, &["--resume"]);
+        assert_eq!(told.code, 0, "{}", told.err);
+        assert_eq!(table(at, "out"), expected, "kill {kill}");
+        let hashes: BTreeSet<String> = lines(at, "out")
+            .iter()
+            .filter_map(|line| Some(line.strip_prefix("{\"schema\":2,\"hash\":\"")?[..16].to_owned()))
+            .collect();
+        assert_eq!(hashes.len(), CASES);
+    }
+}
+
+#[test]
+fn an_old_store_of_single_files_is_read_and_grows_in_packs() {
+    let folder = folder_with(STUDY);
+    let at = folder.path();
+    // As a program before the packs kept them: a store that knows of no number of cases.
+    let whole = folder_with(STUDY);
+    assert_eq!(run(whole.path(), &[]).code, 0);
+    let packed = RecordStore::for_cases(&whole.path().join("out"), "short", CASES);
+    let single = RecordStore::new(&at.join("out"), "short");
+    for case in study().cases(Tier::Full).into_iter().take(50) {
+        single.write(&packed.kept(case).expect("a record")).expect("written");
+    }
+    assert!(packs(at, "out").is_empty() && at.join("out/short/cases").is_dir());
+    let told = run(at, &["--resume"]);
+    assert!(told.err.contains("72 cases (50 from disk, 0 failed)"), "{}", told.err);
+    assert_eq!(table(at, "out"), table(whole.path(), "out"));
+    assert_eq!(packs(at, "out").len(), 1);
+    // What is run anew is in a pack then, and newer than the file.
+    let mut changed = packed.kept(&study().planned[0].case).expect("a record");
+    changed.counters.steps += 1;
+    let store = RecordStore::new(&at.join("out"), "short");
+    store.write(&changed).expect("written");
+    let read = store.kept(&changed.case).expect("a record");
+    assert_eq!(read.counters.steps, changed.counters.steps);
+}
+
+#[test]
+fn a_late_case_of_many_is_run_again_and_a_failed_one_is_not_hidden() {
+    let (folder, _) = whole();
+    let at = folder.path();
+    let store = RecordStore::new(&at.join("out"), "short");
+    let failed = |number: usize, kind| {
+        let mut record = store.kept(&study().planned[number].case).expect("a record");
+        let reason = "a test".to_owned();
+        record.status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
+        store.write(&record).expect("written");
+    };
+    failed(3, FailureKind::TimedOut);
+    failed(4, FailureKind::Unstable);
+    drop(store);
+    assert_eq!(call(at, &["plan", "short.toml", "--missing", "out"]).out.lines().count(), 2);
+    let told = run(at, &["--resume"]);
+    assert_eq!(told.code, 3, "{}", told.err);
+    assert!(told.err.contains("72 cases (71 from disk, 1 failed)"), "{}", told.err);
+}
+
+#[test]
+fn shares_by_cost_part_the_cases_exactly_and_merge_to_the_table_of_one_machine() {
+    let (folder, expected) = whole();
+    let at = folder.path();
+    let list = call(at, &["plan", "short.toml", "--tasks", "3", "--balance", "--out", "parts"]);
+    assert_eq!((list.code, list.out.lines().count()), (0, 3), "{}", list.err);
+    assert!(list.err.contains("3 shares: the largest takes"), "{}", list.err);
+    for line in list.out.lines() {
+        let words: Vec<&str> = line.split(' ').collect();
+        assert_eq!(&words[..3], &["oedometer", "run", "short.toml"]);
+        let told = call(at, &words[1..]);
+        assert!(told.code == 0 && told.err.contains("short: 24 cases (0 from disk"), "{}", told.err);
+    }
+    assert!(!at.join("parts/short/short.csv").exists(), "shares leave the table to the merge");
+    let told = call(at, &["merge", "short.toml", "parts", "--out", "parts"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    assert_eq!(table(at, "parts"), expected);
+    let machines = fs::read_to_string(at.join("parts/short/machines.csv")).expect("a table");
+    assert!(machines.starts_with("node,processor,") && machines.contains(",72\n"), "{machines}");
+    // Folders of their own come to the same.
+    for share in 1..=3 {
+        let (share, out) = (format!("{share}/3"), format!("p{share}"));
+        assert_eq!(run(at, &["--shard", &share, "--balance", "--out", &out]).code, 0);
+    }
+    let told = call(at, &["merge", "short.toml", "p1", "p3", "--out", "merged"]);
+    assert!(told.code == 6 && told.err.contains("48 of 72 cases"), "{}", told.err);
+    let told = call(at, &["plan", "short.toml", "--missing", "merged", "--tasks", "3", "--balance"]);
+    let command = "oedometer run short.toml --out merged --shard 2/3 --balance --resume\n";
+    assert_eq!((told.code, told.out.as_str()), (0, command), "the share that is missing, as it was");
+    assert_eq!(call(at, &["merge", "short.toml", "p1", "p2", "p3", "--out", "merged"]).code, 0);
+    assert_eq!(table(at, "merged"), expected);
+    let told = call(at, &["plan", "short.toml", "--missing", "merged"]);
+    assert!(told.code == 0 && told.err.contains("no case is missing"), "{}", told.err);
+}
+
+#[test]
+fn an_empty_share_is_no_failure_and_a_case_larger_than_a_share_is_said() {
+    let folder = folder_with(&STUDY.replace("[2, 3, 4]", "[2, 2000]").replace("[0.02]", "[1.0]"));
+    let at = folder.path();
+    let told = run(at, &["--shard", "999999/1000000", "--tier", "smoke"]);
+    assert_eq!(told.code, 4, "no case of the tier at all: {}", told.err);
+    let told = run(at, &["--shard", "999999/1000000"]);
+    assert!(told.code == 0 && told.err.contains("share 999999 of 1000000 has no case"), "{}", told.err);
+    assert!(!at.join("out").exists(), "nothing selected, nothing written");
+    let told = call(at, &["plan", "short.toml", "--tasks", "1000", "--balance"]);
+    assert!(told.err.contains("one case alone takes") && told.err.contains("gain nothing"), "{}", told.err);
+}
+
+#[test]
+fn what_cases_took_is_learned_and_a_table_of_costs_makes_the_shares() {
+    let (folder, _) = whole();
+    let at = folder.path();
+    let told = call(at, &["plan", "short.toml", "--learn", "nowhere"]);
+    assert_eq!(told.code, 4, "{}", told.err);
+    fs::write(at.join("costs.csv"), "step,dimensions,method,points_from,cases,ratio\nlinear,1,MPM,4,9,1e6\n")
+        .expect("a file");
+    let list = ["plan", "short.toml", "--tasks", "2", "--balance", "--costs", "costs.csv"];
+    let told = call(at, &list);
+    assert!(told.out.lines().all(|line| line.contains(" --balance --costs costs.csv ")), "{}", told.out);
+    fs::write(at.join("costs.csv"), "something else\n").expect("a file");
+    let told = call(at, &list);
+    assert!(told.code == 2 && told.err.contains("table of costs"), "{}", told.err);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_that_is_told_to_end_keeps_what_is_done_and_says_what_is_left() {
+    let folder = folder_with(&STUDY.replace("[2, 3, 4]", "[400, 500, 600]").replace("[0.02]", "[1.0]"));
+    let at = folder.path();
+    let child = Command::new(assert_cmd::cargo::cargo_bin("oedometer"))
+        .current_dir(at)
+        .args(["run", "short.toml", "--jobs", "1"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    // As soon as it has kept something.
+    for _ in 0..2000 {
+        if packs(at, "out").first().is_some_and(|pack| fs::metadata(pack).is_ok_and(|about| about.len() > 0))
+        {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let signal = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("kill");
+    assert!(signal.success());
+    let output = child.wait_with_output().expect("it is over");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(6), "{told}");
+    assert!(told.contains("not run, for the run was told to end: `--resume` goes on with them"), "{told}");
+    let done = lines(at, "out").len() / 2;
+    assert!((1..CASES).contains(&done), "{done} of {CASES}");
+    let told = call(at, &["plan", "short.toml", "--missing", "out"]);
+    assert_eq!(told.out.lines().count() - 1, CASES - done);
+}
+
+#[test]
+fn the_scripts_of_a_cluster_are_shown_without_a_cluster() {
+    let folder = folder_with(STUDY);
+    let at = folder.path();
+    let options = ["--engine", "slurm", "--tasks", "6", "--time", "10", "--partition", "short", "--dry-run"];
+    let told = run(at, &options);
+    assert_eq!(told.code, 0, "{}", told.err);
+    for part in [
+        "#SBATCH --partition=short",
+        "#SBATCH --time=10",
+        "#SBATCH --requeue",
+        "#SBATCH --signal=B:TERM@60",
+        "--shard $SLURM_ARRAY_TASK_ID/6 --balance",
+        "sbatch --parsable --array=1-6 out/slurm/array.sh",
+        "--dependency=afterany:$array",
+    ] {
+        assert!(told.out.contains(part), "no {part} in {}", told.out);
+    }
+    assert!(!at.join("out").exists(), "nothing is written");
+    assert_eq!(run(at, &["--tasks", "6"]).code, 2, "shares of an engine that is not named");
+}
