@@ -197,6 +197,7 @@ impl<'a> Path<'a> {
         if self.axis == Axis::WaterBulkModulus {
             case.material.water_bulk_modulus = Material::default().water_bulk_modulus;
         }
+        case.swept.retain(|name| *name != self.axis.name());
         let mut parts = vec![case.method.to_string()];
         if case.integrator != IntegratorKind::Explicit {
             parts.push(case.integrator.name().to_owned());

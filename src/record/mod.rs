@@ -7,6 +7,7 @@ pub mod long_tables;
 pub mod origins;
 pub mod provenance;
 pub mod store;
+pub mod table_file;
 pub mod tidy;
 pub mod whole_file;
 

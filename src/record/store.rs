@@ -96,6 +96,8 @@ impl RecordStore {
             return None;
         }
         let mut record: Record = serde_json::from_str(&text).ok()?;
+        // What a label names is the present study's business.
+        record.case.swept.clone_from(&case.swept);
         // Without readable wall times the case is done all the same, only not timed.
         let wall = fs::read_to_string(self.path(&record.hash, WALL)).ok();
         record.wall = wall.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();

@@ -285,7 +285,7 @@ fn files_that_cannot_be_read_are_named() {
     let folder = TempDir::new().expect("a folder");
     for command in ["run", "plan"] {
         let told = refused_in(folder.path(), &[command, "nowhere.toml"]);
-        assert_says(&told, &["nowhere.toml", "No such file"]);
+        assert_says(&told, &["nowhere.toml", "no such file"]);
         let told = refused_in(folder.path(), &[command, "."]);
         assert_says(&told, &["the study .", "directory"]);
     }

@@ -7,6 +7,7 @@ use crate::cli::stream::say;
 use crate::record::Record;
 use crate::record::origins::Origins;
 use crate::record::store::RecordStore;
+use crate::record::table_file::TableForm;
 use crate::study::check::Study;
 use std::path::PathBuf;
 
@@ -102,7 +103,7 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
     }
     let there = cases.len() - holes.len();
     if there > 0 {
-        let table = write_table(study, &target, &[], Beside::Tables)?;
+        let table = write_table(study, &target, &[], Beside::Tables(TableForm::Plain))?;
         say!("{}: {there} of {} cases, {}", study.name, cases.len(), table.display());
     }
     for case in holes.iter().take(MOST_HOLES) {

@@ -14,8 +14,8 @@ use crate::record::Record;
 use crate::record::long_tables::{columns_csv, history_csv, profiles_csv};
 use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;
+use crate::record::table_file::TableForm;
 use crate::record::tidy::tidy_csv;
-use crate::record::whole_file::write_whole;
 use crate::study::check::Study;
 use crate::study::check::checker::Purpose;
 use crate::study::file::StudySource;
@@ -74,6 +74,9 @@ pub struct Arguments {
     /// Take up finished records of this version and these sources, whatever build of them made them
     #[arg(long)]
     resume: bool,
+    /// Write the tables compressed, as STUDY.csv.gz: pandas reads them by the same call
+    #[arg(long)]
+    compress: bool,
 }
 
 /// Runs and keeps.
@@ -95,9 +98,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         .iter()
         .map(|study| arguments.case.as_ref().map_or_else(|| study.clone(), |hash| with_case(study, hash)))
         .collect();
+    let form = if arguments.compress { TableForm::Compressed } else { TableForm::Plain };
+    let beside = Beside::Tables(form);
     let mut exit = Exit::NothingSelected;
     for (study, report) in
-        studies.iter().zip(run_and_store(&studies, &selected, &options, &arguments.out, Beside::Tables)?)
+        studies.iter().zip(run_and_store(&studies, &selected, &options, &arguments.out, beside)?)
     {
         if !report.records.is_empty() && exit == Exit::NothingSelected {
             exit = Exit::Pass;
@@ -107,7 +112,15 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
     }
     if exit == Exit::NothingSelected {
-        return Err(Ended::with(exit, "no case belongs to this tier and shard, or has this hash"));
+        return Err(Ended::with(
+            exit,
+            match &arguments.case {
+                Some(hash) => {
+                    format!("no case has a hash that begins with `{hash}`: `oedometer plan` lists them")
+                }
+                None => "no case belongs to this tier and shard".to_owned(),
+            },
+        ));
     }
     Ok(exit)
 }
@@ -124,8 +137,8 @@ fn with_case(study: &Study, hash: &str) -> Study {
 pub enum Beside {
     /// Nothing.
     Nothing,
-    /// Tables of profiles, of settlement over time, and of what every column means.
-    Tables,
+    /// Tables of profiles, of settlement over time, and of what every column means; all in a form.
+    Tables(TableForm),
 }
 
 /// Runs the selected cases of studies side by side, then times alone those of the studies that ask
@@ -187,9 +200,14 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     );
     if report.of_another_program > 0 {
         say!(
-            "{}: {} records of another version or of other sources were not taken up; their cases were run again",
+            "{}: {} of another version or of other sources {} run again",
             study.name,
-            report.of_another_program
+            count_of(report.of_another_program, "record", "records"),
+            if report.of_another_program == 1 {
+                "was not taken up; its case was"
+            } else {
+                "were not taken up; their cases were"
+            }
         );
     }
     if let Some(differences) = report.origins.differences_from(&Provenance::of_this_program()) {
@@ -219,22 +237,24 @@ pub fn write_table(
     let own = Provenance::of_this_program().sources;
     let foreign = records.iter().filter(|record| record.provenance.sources != own).count();
     if foreign > 0 {
-        say!("{}: {foreign} older records in the table are of other sources", study.name);
+        say!(
+            "{}: {} of other sources",
+            study.name,
+            count_of(foreign, "older record in the table is", "older records in the table are")
+        );
     }
-    let table = store.folder().join(format!("{}.csv", study.name));
-    write_whole(&table, tidy_csv(&study.name, records.iter().map(AsRef::as_ref))?.as_bytes())?;
-    if beside == Beside::Nothing {
-        return Ok(table);
-    }
-    let beside = [
+    let whole = tidy_csv(&study.name, records.iter().map(AsRef::as_ref))?;
+    let Beside::Tables(form) = beside else {
+        return Ok(TableForm::Plain.write(store.folder(), &study.name, &whole)?);
+    };
+    for (name, text) in [
         ("profiles", profiles_csv(records.iter().map(AsRef::as_ref))?),
         ("history", history_csv(records.iter().map(AsRef::as_ref))?),
-        ("columns", columns_csv()?),
-    ];
-    for (name, text) in beside {
-        write_whole(&store.folder().join(format!("{name}.csv")), text.as_bytes())?;
+    ] {
+        form.write(store.folder(), name, &text)?;
     }
-    Ok(table)
+    TableForm::Plain.write(store.folder(), "columns", &columns_csv()?)?;
+    Ok(form.write(store.folder(), &study.name, &whole)?)
 }
 
 /// Reads and checks study files.

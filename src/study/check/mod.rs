@@ -7,6 +7,7 @@ pub mod check_series_expectation;
 pub mod check_sweep;
 pub mod checker;
 pub mod default_integrator;
+pub mod distinct_labels;
 pub mod end_state;
 pub mod geometry;
 pub mod matching;
@@ -23,6 +24,7 @@ use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::study::case_expectation::CaseExpectation;
 use crate::study::check::checker::{Checker, Common, Purpose};
+use crate::study::check::distinct_labels::tell_apart;
 use crate::study::check::end_state::load_of;
 use crate::study::choice_tables::Placed;
 use crate::study::diagnostic::StudyError;
@@ -116,6 +118,28 @@ impl Study {
     }
 }
 
+/// Adds cases that are not there yet; one that is there counts from the smaller tier on.
+fn add(planned: &mut Vec<PlannedCase>, places: &mut HashMap<String, usize>, cases: Vec<Case>, tier: Tier) {
+    for case in cases {
+        match places.entry(case.hash()) {
+            Entry::Occupied(place) => {
+                let other = &mut planned[*place.get()];
+                other.tier = other.tier.min(tier);
+            }
+            Entry::Vacant(place) => {
+                place.insert(planned.len());
+                planned.push(PlannedCase { case, tier });
+            }
+        }
+    }
+}
+
+/// The height that all cases have, or that of the study where there are none; none where they have several.
+fn common_height(planned: &[PlannedCase], of_the_study: f64) -> Option<f64> {
+    let height = planned.first().map_or(of_the_study, |planned| planned.case.column.height);
+    planned.iter().all(|planned| planned.case.column.height == height).then_some(height)
+}
+
 impl Checker<'_> {
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.named(&file.scene, "scene")?;
@@ -126,9 +150,7 @@ impl Checker<'_> {
         if let Some(strain) = strain {
             base.column.load = load_of(strain, &base);
         }
-        self.column_height = Some(base.column.height);
         self.porosity_at_the_end(file, &base);
-        self.large_for_small_strain(file, &base);
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
@@ -153,7 +175,7 @@ impl Checker<'_> {
             };
             let Some(mut sweep) = self.sweep(table, block.span(), &common, &base) else { continue };
             if self.purpose == Purpose::Solving {
-                self.cells_fill_the_width(table, &base.column);
+                self.cells_fill_the_width(table, sweep.cases(&base));
                 self.memory_fits(table, sweep.cases(&base));
                 self.default_integrator(table, block.span().start, &common, &base, &mut sweep);
             }
@@ -166,19 +188,11 @@ impl Checker<'_> {
             }
             let start = block.span().start;
             self.pores_stay_open(start..start + 1, cases.iter());
-            for case in cases {
-                match places.entry(case.hash()) {
-                    Entry::Occupied(place) => {
-                        let other = &mut planned[*place.get()];
-                        other.tier = other.tier.min(tier);
-                    }
-                    Entry::Vacant(place) => {
-                        place.insert(planned.len());
-                        planned.push(PlannedCase { case, tier });
-                    }
-                }
-            }
+            add(&mut planned, &mut places, cases, tier);
         }
+        tell_apart(&mut planned);
+        self.large_for_small_strain(file, &planned);
+        self.column_height = common_height(&planned, base.column.height);
         let (expectations, case_expectations) = self.expectations(file, scene, &references, &planned);
         let case_seconds =
             self.positive(file.case_seconds.as_deref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
