@@ -92,7 +92,7 @@ fn read(path: &Path) -> anyhow::Result<StudySource> {
     if path.is_dir() {
         let told = path.display();
         return Err(Ended::usage(format!(
-            "{told} is a folder: name the study files in it, like {told}/*.toml"
+            "cannot read the study {told}: it is a folder; name the study files in it, like {told}/*.toml"
         )));
     }
     let refused =

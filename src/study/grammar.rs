@@ -60,7 +60,7 @@ pub fn explained(message: &str, span: Option<&Range<usize>>, text: &str) -> Opti
         Some(stop.here("a backslash in a text", "write it twice, \\\\, or put the text into single quotes"))
     } else if is("invalid unquoted key") || is("unquoted keys") {
         Some(stop.key())
-    } else if message.contains("inline table") || is("missing comma between key-value") {
+    } else if message.contains("inline table") || message.contains("between key-value pairs") {
         Some(stop.braces())
     } else if is("cannot extend") {
         Some(stop.here("a value stands where a table is begun", "put its keys together under one [header]"))

@@ -272,7 +272,7 @@ fn every_complaint_is_made_at_once() {
 fn what_is_no_study_at_all_is_refused() {
     let told = refused_with("scene = \"terzaghi\"", "scene = terzaghi");
     assert_snapshot("bad_input_not_toml", &told);
-    assert_says(&refused_with("title = \"Sound\"\n", ""), &["missing field `title`", "needs at least"]);
+    assert_says(&refused_with("title = \"Sound\"\n", ""), &["the study has no `title`", "needs at least"]);
     assert_says(&refused_study(""), &["missing field"]);
     assert_says(&refused_study("# Heading\n\nSome *Markdown*, and no study.\n"), &["study.toml:3:", "^"]);
     assert_says(&refused_study([0_u8, 159, 146, 150, 255, 1, 2, 3]), &["study.toml", "UTF-8"]);

@@ -240,7 +240,7 @@ fn mistakes_at_the_command_line_are_answered_with_what_to_type() {
         (&["check", "short"][..], &["did you mean the file `short.toml`?"][..]),
         (&["check", "shrt.toml"], &["did you mean `short.toml`?"]),
         (&["check", "terzaghi-mesh.toml"], &["the shipped study is called `terzaghi-mesh`"]),
-        (&["run", "."], &["is a folder"]),
+        (&["run", "."], &["it is a folder"]),
         (&["run", "nothing-like-it"], &["`oedometer new NAME`"]),
         (&["run", "short.toml", "--case", "zzz"], &["no case has a hash that begins with `zzz`"]),
         (&["explain", "zzz", "short.toml"], &["no case of `short` is described by `zzz`"]),

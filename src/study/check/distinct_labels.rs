@@ -3,26 +3,31 @@
 use crate::case::Case;
 use crate::case::keys::Key;
 use crate::study::check::PlannedCase;
+use crate::study::check::checker::Checker;
 use std::collections::HashMap;
 
-/// Makes every case name the inputs that only tell some of them apart by their hashes. Golden values, tables and
-/// `explain` know a case by its label.
-pub(crate) fn tell_apart(planned: &mut [PlannedCase]) {
-    let mut first_with: HashMap<String, usize> = HashMap::new();
-    let mut alike: Vec<(usize, usize)> = Vec::new();
-    for (place, planned) in planned.iter().enumerate() {
-        let first = *first_with.entry(planned.case.label()).or_insert(place);
-        if first != place {
-            alike.push((first, place));
+impl Checker<'_> {
+    /// Makes every case name the inputs that only tell some of them apart by their hashes. Golden values, tables and
+    /// `explain` know a case by its label.
+    pub(crate) fn tell_apart(planned: &mut [PlannedCase]) {
+        let mut first_with: HashMap<String, usize> = HashMap::new();
+        let mut alike: Vec<(usize, usize)> = Vec::new();
+        for (place, planned) in planned.iter().enumerate() {
+            let first = *first_with.entry(planned.case.label()).or_insert(place);
+            if first != place {
+                alike.push((first, place));
+            }
         }
-    }
-    let differ = |key: &&Key| {
-        alike.iter().any(|(first, other)| key.get(&planned[*first].case) != key.get(&planned[*other].case))
-    };
-    let keys = Key::of("sweep").filter(differ).map(|key| key.name);
-    let names: Vec<&'static str> = keys.filter(|name| is_of_the_scene(name, planned)).collect();
-    for planned in planned {
-        planned.case.swept.clone_from(&names);
+        let differ = |key: &&Key| {
+            alike
+                .iter()
+                .any(|(first, other)| key.get(&planned[*first].case) != key.get(&planned[*other].case))
+        };
+        let keys = Key::of("sweep").filter(differ).map(|key| key.name);
+        let names: Vec<&'static str> = keys.filter(|name| is_of_the_scene(name, planned)).collect();
+        for planned in planned {
+            planned.case.swept.clone_from(&names);
+        }
     }
 }
 

@@ -24,7 +24,6 @@ use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::study::case_expectation::CaseExpectation;
 use crate::study::check::checker::{Checker, Common, Purpose};
-use crate::study::check::distinct_labels::tell_apart;
 use crate::study::check::end_state::load_of;
 use crate::study::choice_tables::Placed;
 use crate::study::diagnostic::StudyError;
@@ -190,7 +189,7 @@ impl Checker<'_> {
             self.pores_stay_open(start..start + 1, cases.iter());
             add(&mut planned, &mut places, cases, tier);
         }
-        tell_apart(&mut planned);
+        Self::tell_apart(&mut planned);
         self.large_for_small_strain(file, &planned);
         self.column_height = common_height(&planned, base.column.height);
         let (expectations, case_expectations) = self.expectations(file, scene, &references, &planned);
