@@ -16,12 +16,14 @@
 //! | `record/` | what is kept of a case, and its store on disk |
 //! | `measure/` | from an outcome to its record: errors, balances, oscillation, checks |
 //! | `study/` | study files: keys, sweeps, expectations, every complaint at its place |
+//! | `import/` | external results: mapping files and tables |
+//! | `foreign/` | attached solvers: what they are told, how they are run and ended, how their results are taken |
 //! | `campaign/` | runs the cases of a study: parallel, resumable, by shards |
 //! | `golden/` | accepted values, their tolerances, and what changed |
-//! | `import/` | external results: mapping files and tables |
 //! | `judge/` | verdicts on studies, scores of external results, comparisons of methods |
 //! | `render/` | tables, charts, pages; sees records and verdicts, and never a solver |
 //! | `cli/` | one file per subcommand |
+//! | [`api`] | the door for other languages: names and lists in, lists out |
 //! # The equations
 //!
 //! Numbers are those of `docs/theory.md`; the paper is Zheng et al. (2021).
@@ -40,6 +42,8 @@
 //! | 15 | large strain in general | `src/exact/large_strain/diffusion.rs:coefficients` |
 //! | 16 | Mandel's slab | `src/exact/mandel/series.rs:sum`, `src/exact/mandel/early.rs:ratios` |
 //! | 17 | chord mean of the conductivity | `src/mpm/operators/chord_mean.rs:take_chord_drag`, `src/soil/conductivity_mean.rs:flow_potential` |
+//! | 18 | rigid plate | `src/mpm/operators/rigid_plate.rs:tie`, `src/mpm/direct_solver/bordered.rs:solve` |
+//! | 19 | own weight, free water | `src/mpm/operators/self_weight.rs:add_weight` |
 //!
 //! # The step
 //!
@@ -95,12 +99,14 @@
 // Tests and benches may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+pub mod api;
 mod campaign;
 mod case;
 mod cli;
 mod convergence;
 mod elementary;
 pub mod exact;
+mod foreign;
 mod golden;
 mod import;
 mod judge;
@@ -122,12 +128,13 @@ pub use case::norm::Norm;
 pub use case::quantity::{Quantity, Sample};
 pub use case::tier::Tier;
 pub use case::{Case, Task};
-pub use cli::main;
+pub use cli::{main, main_with};
 pub use golden::compare::compare;
 pub use golden::tolerance::spread_by_group;
 pub use golden::{GoldenError, GoldenFile, values_of};
 pub use import::table::SampledState;
 pub use judge::score::score;
+pub use judge::situation::{Ended, ends_of};
 pub use judge::soundness;
 pub use judge::study_check::{CheckEnd, StudyCheck};
 pub use measure::record_checks::{balance_checks, start_checks};
@@ -143,6 +150,7 @@ pub use render::page::markdown_page::render_markdown;
 pub use render::page::{Block, Page, figures};
 pub use render::report::StudyResults;
 pub use render::report::pages::index_page;
+pub use render::report::situations::situations_page;
 pub use render::report::study_page::study_page;
 pub use render::table::Table;
 pub use render::tables::measures;

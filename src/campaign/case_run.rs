@@ -93,7 +93,7 @@ pub fn run_case(
     let cpu_seconds = worked.zip(thread_seconds()).map(|(before, after)| after - before);
     enter(Phase::Assessment);
     let mut record = record_of(case, references, outcome)?;
-    record.wall.push(WallSample { seconds, alone, cpu_seconds });
+    record.wall.push(WallSample { seconds, alone, cpu_seconds, ..WallSample::default() });
     Ok(record)
 }
 

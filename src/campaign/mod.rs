@@ -1,6 +1,7 @@
 //! Runs the cases of a study: in parallel, resumable, every finished case on disk at once.
 
 pub mod case_run;
+pub mod case_runner;
 pub mod cpu_clock;
 pub mod deadline;
 pub mod run_options;

@@ -1,11 +1,10 @@
 //! Runs cases side by side and keeps each record as soon as it is there.
 
-use crate::campaign::case_run::run_case_within;
+use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::run_options::{RunOptions, Selected};
 use crate::campaign::run_report::{LongestCase, Progress, RunError, RunReport};
 use crate::case::Case;
 use crate::case::work_estimate::{estimated_work, work_of};
-use crate::mpm::run::Kernel;
 use crate::record::Record;
 use crate::record::store::{Found, RecordStore};
 use crate::study::check::Study;
@@ -20,16 +19,16 @@ const LONGEST_SILENCE: u64 = 100_000_000;
 #[derive(Clone, Copy)]
 struct Job<'a> {
     case: &'a Case,
-    study: &'a Study,
+    runner: &'a CaseRunner<'a>,
     store: Option<&'a RecordStore>,
 }
 
 impl Job<'_> {
     fn as_longest(&self) -> LongestCase {
         LongestCase {
-            study: self.study.name.clone(),
+            study: self.runner.study().name.clone(),
             case: self.case.clone(),
-            case_seconds: self.study.case_seconds,
+            case_seconds: self.runner.study().case_seconds,
         }
     }
 }
@@ -53,9 +52,11 @@ pub fn run_studies(
 ) -> Vec<RunReport> {
     let found: Vec<Vec<(&Case, Found)>> =
         studies.iter().map(|selected| cases_with_records(selected, options)).collect();
-    let missing = studies.iter().zip(&found).flat_map(|(selected, cases)| {
+    let runners: Vec<CaseRunner<'_>> =
+        studies.iter().map(|selected| CaseRunner::of(selected.study)).collect();
+    let missing = studies.iter().zip(&runners).zip(&found).flat_map(|((selected, runner), cases)| {
         let without = cases.iter().filter(|(_, found)| !matches!(found, Found::Finished(_)));
-        without.map(|(case, _)| Job { case, study: selected.study, store: selected.store })
+        without.map(move |(case, _)| Job { case, runner, store: selected.store })
     });
     let jobs: Vec<Job<'_>> = missing.collect();
     let cases: usize = found.iter().map(Vec::len).sum();
@@ -140,7 +141,7 @@ fn run_jobs(
 /// Runs a case and keeps its record. A record that cannot be kept stops every other case too; none where
 /// this one was stopped so.
 fn run_and_keep(
-    Job { case, study, store }: Job<'_>,
+    Job { case, runner, store }: Job<'_>,
     alone: bool,
     stopped: &AtomicBool,
     tell: &(dyn Fn(Progress) + Sync),
@@ -158,11 +159,11 @@ fn run_and_keep(
         !stopped.load(Ordering::Relaxed)
     };
     let solved = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-        run_case_within(study.case_seconds, case, &study.references, Kernel::Fastest, alone, &observe)
+        runner.run_within(case, store, alone, &observe)
     }));
     tell(Progress::Advanced(estimate - told.get()));
     let record = match solved {
-        Ok(Ok(record)) if record.status.is_late() && stopped.load(Ordering::Relaxed) => return None,
+        Ok(Ok(record)) if is_stopped(&record) && stopped.load(Ordering::Relaxed) => return None,
         Ok(Ok(record)) => record,
         Ok(Err(source)) => return Some(Err(RunError::Case { label: case.label(), source })),
         Err(_) => return Some(Err(RunError::Crashed { label: case.label() })),
@@ -173,7 +174,7 @@ fn run_and_keep(
         return Some(Err(error.into()));
     }
     tell(Progress::Finished {
-        study: study.name.clone(),
+        study: runner.study().name.clone(),
         label: case.label(),
         failure: record.status.failure().map(ToString::to_string),
     });

@@ -1,9 +1,8 @@
 //! Times the cases of a study alone.
 
-use crate::campaign::case_run::run_case;
+use crate::campaign::case_runner::CaseRunner;
 use crate::campaign::run_report::{Progress, RunError};
 use crate::case::work_estimate::estimated_work;
-use crate::mpm::run::Kernel;
 use crate::record::store::RecordStore;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
@@ -33,13 +32,15 @@ pub fn time_study(
     store: Option<&RecordStore>,
     tell: &(dyn Fn(Progress) + Sync),
 ) -> Result<(), RunError> {
+    let runner = CaseRunner::of(study);
     let mut is_timed = false;
     for _ in 0..study.timing_repeats {
         for record in &mut *records {
             if !wants_timing(record, study.timing_repeats) {
                 continue;
             }
-            let timed = run_case(&record.case, &study.references, Kernel::Fastest, true, &|_, _| true)
+            let timed = runner
+                .run_alone(&record.case, store)
                 .map_err(|source| RunError::Case { label: record.case.label(), source })?;
             record.wall.extend(timed.wall);
             is_timed = true;

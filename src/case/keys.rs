@@ -228,7 +228,7 @@ keys! {
         "Bulk modulus of the water"
     hydraulic_conductivity in &["sweep", "material"], POSITIVE, "m/s", material.hydraulic_conductivity;
         "Initial hydraulic conductivity"
-    gravity in &["sweep", "material"], POSITIVE, "m/s²", material.gravity; "Gravity in the drag"
+    gravity in &["sweep", "material"], POSITIVE, "m/s²", material.gravity; "Gravity in the drag, and in the weight where the soil has one"
     continuity in &["sweep", "material"], word::<Continuity>(), "", material.continuity;
         "Form of the water's continuity"
     conductivity_mean in &["sweep", "material"], word::<ConductivityMean>(), "", material.conductivity_mean;
@@ -247,6 +247,8 @@ keys! {
     dimensions in &["column"], Kind::Count(2), "", column.dimensions; "Directions that are solved"
     loading_time in &["column"], Kind::Number(Range::NotNegative), "s", column.loading_time;
         "Time over which the load grows, 0 where it acts at once"
+    self_weight in &["column"], Kind::Flag, "", column.self_weight;
+        "Whether skeleton and water have a weight; pressures are told beyond the hydrostatic one"
 }
 
 impl Key {
@@ -258,6 +260,15 @@ impl Key {
     /// The keys of a table.
     pub fn of(table: &str) -> impl Iterator<Item = &'static Self> {
         KEYS.iter().filter(move |key| key.tables.contains(&table))
+    }
+
+    /// Whether it says something of a case: what only this program's integrators take says nothing to an attached
+    /// solver.
+    pub fn counts_for(&self, case: &Case) -> bool {
+        const OF_INTEGRATORS: [&str; 6] =
+            ["integrator", "drag", "flip", "mapping_back", "formulation", "scheme"];
+        let is_rule = self.name == "time_step" && !matches!(case.time_step, TimeStepRule::Seconds(_));
+        !case.is_attached() || !(is_rule || OF_INTEGRATORS.contains(&self.name))
     }
 
     /// The value in a case.
@@ -351,6 +362,6 @@ mod tests {
         // Of the geometry all but what changes the references or the kind of the problem.
         let stays: Vec<&str> =
             KEYS.iter().filter(|key| !key.tables.contains(&"sweep")).map(|key| key.name).collect();
-        assert_eq!(stays, ["dimensions", "loading_time"]);
+        assert_eq!(stays, ["dimensions", "loading_time", "self_weight"]);
     }
 }

@@ -26,6 +26,9 @@ use serde::{Deserialize, Serialize};
 /// State and operators of a point, bytes.
 const BYTES_A_POINT: f64 = 500.0;
 
+/// Points a cell and direction where a study names none.
+const USUAL_POINTS: usize = 2;
+
 /// Hexadecimal digits of a case's hash: enough that a million cases do not meet.
 const HASH_DIGITS: usize = 16;
 
@@ -90,7 +93,7 @@ impl Case {
         Self {
             task,
             scene,
-            column: if scene.needs_two_dimensions() { Column::layer() } else { Column::default() },
+            column: scene.default_column(),
             material: Material { law: scene.default_law(), ..Material::default() },
             method: Method {
                 basis: Basis::Hat,
@@ -99,12 +102,13 @@ impl Case {
                 recovery: Recovery::Constant,
                 memory: Memory::Points,
                 configuration: None,
+                attached: None,
             },
             integrator,
             formulation: integrator.default_formulation(),
             settings: ExplicitSettings::default(),
             cells: 1,
-            points_per_cell: 2,
+            points_per_cell: USUAL_POINTS,
             time_step: integrator.default_rule(),
             time_factors: Vec::new(),
             swept: Vec::new(),
@@ -116,6 +120,26 @@ impl Case {
         // Serialising plain numbers and words cannot fail; were it to, an empty text still hashes.
         let canonical = serde_json::to_string(self).unwrap_or_default();
         blake3::hash(canonical.as_bytes()).to_hex()[..HASH_DIGITS].to_owned()
+    }
+
+    /// Whether somebody else's solver is asked, and not this program's.
+    pub fn is_attached(&self) -> bool {
+        self.method.attached.is_some()
+    }
+
+    /// The case as an attached solver knows it: what only this program's integrators take says nothing to it, and
+    /// cases that differ in nothing else are one. A step in seconds stays, for it is a step that can be suggested.
+    #[must_use]
+    pub fn for_attached(mut self) -> Self {
+        if self.is_attached() {
+            self.integrator = IntegratorKind::Implicit;
+            self.formulation = self.integrator.default_formulation();
+            self.settings = ExplicitSettings::default();
+            if !matches!(self.time_step, TimeStepRule::Seconds(_)) {
+                self.time_step = self.integrator.default_rule();
+            }
+        }
+        self
     }
 
     /// Whether it is integrated explicitly.
@@ -176,6 +200,7 @@ impl Case {
             (settings.flip != usual.flip, format!("FLIP {}", settings.flip)),
             (settings.mapping_back != usual.mapping_back, "no mapping back".to_owned()),
             (self.column.dimensions == 2 && !self.scene.needs_two_dimensions(), "two dimensions".to_owned()),
+            (self.column.self_weight && !self.scene.is_at_rest(), "own weight".to_owned()),
             (self.material.law != self.scene.default_law(), format!("{} law", self.material.law.name())),
             (self.material.continuity != Continuity::Conservative, "porosity gradient dropped".to_owned()),
             (self.material.conductivity_mean == ConductivityMean::Chord, "chord mean".to_owned()),
@@ -254,16 +279,22 @@ impl Case {
     }
 
     fn label_with(&self, step: &str) -> String {
-        let mut label = format!(
-            "{} {} cells={} points={} {step}",
-            self.method,
-            self.integrator.name(),
-            self.cells,
-            self.points_per_cell,
-        );
+        let mut label = if self.is_attached() {
+            let is_step_given = matches!(self.time_step, TimeStepRule::Seconds(_));
+            let points = match self.points_per_cell {
+                USUAL_POINTS => String::new(),
+                points => format!(" points={points}"),
+            };
+            format!("{} cells={}{points} {}", self.method, self.cells, if is_step_given { step } else { "" })
+        } else {
+            let Self { method, cells, points_per_cell, .. } = self;
+            format!("{method} {} cells={cells} points={points_per_cell} {step}", self.integrator.name())
+        };
         let variant = self.variant();
         if !variant.is_empty() {
             label = format!("{} ({variant})", label.trim_end());
+        } else if self.is_attached() {
+            label.truncate(label.trim_end().len());
         }
         label
     }
@@ -284,6 +315,7 @@ pub fn step_label(rule: &TimeStepRule) -> String {
 mod tests {
     use super::*;
     use crate::exact::parameters::Base;
+    use crate::mpm::attached::Attached;
     use crate::mpm::explicit::Drag;
     use crate::mpm::explicit::scheme::Scheme;
     use crate::soil::law::Law;
@@ -296,6 +328,26 @@ mod tests {
             time_factors: vec![0.1],
             ..Case::seed(Task::Solve, SceneKind::Terzaghi)
         }
+    }
+
+    fn attached(name: &str, digest: &str) -> Method {
+        Method::of_attached(Attached::new(name, digest).expect("a plain name"))
+    }
+
+    #[test]
+    fn what_only_the_integrators_take_makes_no_other_case_of_an_attached_solver() {
+        let foreign = Case { method: attached("ogs", "0123456789abcdef"), ..seed() };
+        let explicit = foreign.clone().for_attached();
+        let mut implicit = foreign.clone();
+        implicit.integrator = IntegratorKind::Implicit;
+        implicit.time_step = TimeStepRule::Growth(0.05);
+        implicit.settings.drag = Drag::Implicit;
+        assert_eq!(implicit.for_attached().hash(), explicit.hash());
+        assert_eq!(explicit.label(), "ogs cells=10");
+        let stepped = Case { time_step: TimeStepRule::Seconds(0.5), ..foreign }.for_attached();
+        assert_ne!(stepped.hash(), explicit.hash());
+        assert_eq!(stepped.label(), "ogs cells=10 seconds=5e-1");
+        assert_eq!(seed().for_attached(), seed(), "a method of this program keeps all");
     }
 
     #[test]
@@ -318,7 +370,7 @@ mod tests {
     #[test]
     fn the_hash_follows_every_input() {
         let mut hashes = vec![seed().hash()];
-        let changes: [fn(&mut Case); 38] = [
+        let changes: [fn(&mut Case); 40] = [
             |case| case.task = Task::Stability,
             |case| case.scene = SceneKind::XieLeo,
             |case| case.column.height = 2.0,
@@ -343,6 +395,8 @@ mod tests {
             |case| case.material.conductivity_mean = ConductivityMean::Chord,
             |case| case.method = Method::named("GIMP").expect("a method"),
             |case| case.method = Method::named("GIMP-SRI").expect("a method"),
+            |case| case.method = attached("ogs", "0123456789abcdef"),
+            |case| case.method = attached("ogs", "0123456789abcdee"),
             |case| case.integrator = IntegratorKind::Implicit,
             |case| case.formulation = Formulation::UP,
             |case| case.settings.scheme = Scheme::Leapfrog,

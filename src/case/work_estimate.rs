@@ -23,8 +23,14 @@ pub(crate) fn estimated_work(case: &Case) -> u64 {
     (1e9 * estimated_seconds(case)).max(1.0) as u64
 }
 
+/// Time that is put down for a case of an attached solver, s: nobody knows it before.
+const ATTACHED_SECONDS: f64 = 5.0;
+
 /// Time that a case will take on one core of the machine that [`step_cost`](crate::case::step_cost) names, s.
 pub fn estimated_seconds(case: &Case) -> f64 {
+    if case.is_attached() {
+        return ATTACHED_SECONDS;
+    }
     CASE_SECONDS + estimated_steps(case) * seconds_per_step(case)
 }
 

@@ -3,7 +3,6 @@
 use crate::exact::exact_error::ExactError;
 use crate::import::import_error::ImportError;
 use crate::study::diagnostic::StudyError;
-use std::process::ExitCode;
 
 /// The exit codes, as `--help` tells them.
 pub const HELP: &str = "Exit codes: 0 pass, 1 a verdict failed, 2 usage or bad study file, 3 a case failed or timed \
@@ -27,12 +26,6 @@ pub enum Exit {
     Golden = 5,
     /// A merge has holes.
     IncompleteMerge = 6,
-}
-
-impl From<Exit> for ExitCode {
-    fn from(exit: Exit) -> Self {
-        Self::from(exit as u8)
-    }
 }
 
 /// An error that says how the command ends.

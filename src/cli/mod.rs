@@ -9,6 +9,7 @@ pub mod exit;
 pub mod output;
 pub mod overrides;
 pub mod progress;
+pub mod side_by_side;
 pub mod stream;
 pub mod study_files;
 pub mod time_notes;
@@ -56,13 +57,13 @@ enum Command {
     Merge(merge::Arguments),
     /// List scenes, methods, references and shipped studies
     List(list::Arguments),
-    /// Write a commented study to start from
+    /// Write a commented study to start from, or an adapter for somebody else's solver
     New(new::Arguments),
     /// Say where the error of a case comes from and what changed
     Explain(explain::Arguments),
     /// Measure how far results scatter that should be equal
     Spread(spread::Arguments),
-    /// Print the JSON Schema of study files, records or mappings
+    /// Print the JSON Schema of study files, records, mappings or case files
     Schema(schema::Arguments),
     /// Print the completions of a shell
     Completions(completions::Arguments),
@@ -98,19 +99,25 @@ fn of_a_value(said: &str) -> String {
 
 /// Parses the command line, runs the command, and turns its end into an exit code.
 pub fn main() -> ExitCode {
-    let parsed = command().try_get_matches().and_then(|matches| Arguments::from_arg_matches(&matches));
+    ExitCode::from(main_with(std::env::args_os()))
+}
+
+/// The same with words of a command line, the program's name first; the exit code.
+pub fn main_with(words: impl IntoIterator<Item = std::ffi::OsString>) -> u8 {
+    let parsed =
+        command().try_get_matches_from(words).and_then(|matches| Arguments::from_arg_matches(&matches));
     let arguments = match parsed {
         Ok(arguments) => arguments,
         Err(error) if error.kind() == ErrorKind::ValueValidation => {
             say!("{}", of_a_value(&error.render().to_string()));
-            return Exit::Usage.into();
+            return Exit::Usage as u8;
         }
         Err(error) => {
             // Help and version are asked for, and no usage error.
             let said = error.print().and_then(|()| std::io::stdout().flush());
             return match written(said) {
-                _ if error.use_stderr() => Exit::Usage.into(),
-                Ok(()) => Exit::Pass.into(),
+                _ if error.use_stderr() => Exit::Usage as u8,
+                Ok(()) => Exit::Pass as u8,
                 Err(refused) => end_of(Err(refused)),
             };
         }
@@ -140,12 +147,12 @@ fn run(command: Command) -> anyhow::Result<Exit> {
 }
 
 /// The exit code of a command; why it failed goes to standard error.
-fn end_of(result: anyhow::Result<Exit>) -> ExitCode {
+fn end_of(result: anyhow::Result<Exit>) -> u8 {
     match result {
-        Ok(exit) => exit.into(),
+        Ok(exit) => exit as u8,
         Err(error) => {
             say!("{}", exit::sentence(&error));
-            Exit::of(&error).into()
+            Exit::of(&error) as u8
         }
     }
 }

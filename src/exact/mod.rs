@@ -17,6 +17,7 @@
 //! # Ok::<(), oedometer::exact::ExactError>(())
 //! ```
 
+pub mod at_rest;
 pub mod consolidation;
 pub mod cosine_layer;
 pub mod dynamic_column;

@@ -72,6 +72,9 @@ pub struct ColumnParameters {
     /// Time over which the load grows linearly, s; 0 where it acts at once. The column with inertia
     /// and large strain in general heed it.
     pub loading_time: f64,
+    /// Whether skeleton and water have a weight: the stress of the start is that of the buoyant skeleton, and
+    /// pressures are those beyond the hydrostatic one.
+    pub self_weight: bool,
 }
 
 impl Default for ColumnParameters {
@@ -90,6 +93,7 @@ impl Default for ColumnParameters {
             hydraulic_conductivity: 1.0e-4,
             gravity: 9.81,
             loading_time: 0.0,
+            self_weight: false,
         }
     }
 }
@@ -146,6 +150,16 @@ impl ColumnParameters {
     /// Settlement at the end of consolidation at small strain, `m_v q H`, m.
     pub fn final_settlement(&self) -> f64 {
         self.load * self.height / self.oedometric_modulus()
+    }
+
+    /// Vertical effective stress of the start at a depth `ζ`, Pa, tension positive: of the buoyant weight above,
+    /// `−(1 − n_0)(ρ_s − ρ_w) g H ζ`; none without weight.
+    pub fn initial_stress(&self, zeta: f64) -> f64 {
+        if !self.self_weight {
+            return 0.0;
+        }
+        let buoyant = (1.0 - self.porosity) * (self.grain_density - self.water_density) * self.gravity;
+        -buoyant * self.height * zeta
     }
 
     /// Checks that the numbers describe a possible column.

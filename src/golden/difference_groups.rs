@@ -20,6 +20,9 @@ pub struct DifferenceGroup {
     pub shared_by_measures: Vec<String>,
     /// The worst.
     pub worst: Difference,
+    /// Where most of its error is, as a sentence: of somebody else's result.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub place: Option<String>,
 }
 
 /// Words of a value's name, each marked with the side it stands on.
@@ -69,6 +72,7 @@ pub fn groups_of<'a>(
             shared_by_cases: of(NameSide::Case),
             shared_by_measures: of(NameSide::Measure),
             worst: worst.clone(),
+            place: None,
         });
     }
     groups

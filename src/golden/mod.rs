@@ -197,8 +197,11 @@ pub fn values_of(records: &[Record]) -> BTreeMap<String, f64> {
     let mut values = BTreeMap::new();
     for record in records {
         let label = record.case.label();
-        values.insert(format!("{label} | steps"), record.counters.steps as f64);
-        values.insert(format!("{label} | point updates"), record.counters.point_updates as f64);
+        // Nobody counts the work of an attached solver.
+        if !record.case.is_attached() {
+            values.insert(format!("{label} | steps"), record.counters.steps as f64);
+            values.insert(format!("{label} | point updates"), record.counters.point_updates as f64);
+        }
         if let Some(found) = &record.stability {
             values.insert(format!("{label} | predicted critical step"), found.predicted);
             let observed = found.observed.unwrap_or(-1.0);

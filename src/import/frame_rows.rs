@@ -3,8 +3,8 @@
 use crate::import::formats::frame::{Array, Association, Frame};
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::raw_row::{RawRow, is_at};
-use crate::import::raw_row::{SampleRow, SolvedBody};
+use crate::import::raw_row::{RawRow, SolvedBody, is_at};
+use crate::import::rows::Rows;
 use std::collections::{BTreeSet, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
@@ -234,14 +234,7 @@ impl<'a> FrameReader<'a> {
         let mut is_chosen = vec![true; all];
         if self.mapping.rows.corners && columns.on == Association::Points {
             if let Some(cells) = &self.frame.cells {
-                is_chosen = vec![false; all];
-                for cell in 0..cells.len() {
-                    for corner in cells.corners(cell) {
-                        if let Some(chosen) = is_chosen.get_mut(*corner as usize) {
-                            *chosen = true;
-                        }
-                    }
-                }
+                is_chosen = cells.are_corners(all);
             } else if !self.mapping.optional.is_empty() {
                 // A preset asks for corners where there are cells.
             } else {
@@ -285,18 +278,20 @@ impl<'a> FrameReader<'a> {
         Ok(Start { places, name: self.path.display().to_string() })
     }
 
-    /// The rows of the state at a time, s.
+    /// Adds the rows of the state at a time, s.
     ///
     /// # Errors
     /// What is missing, not finite or outside the body, with its file and row.
-    pub fn rows(
+    pub fn take_rows(
         &self,
         columns: &Columns,
         time: f64,
         start: Option<&Start>,
-    ) -> Result<Vec<SampleRow>, ImportError> {
-        let mut rows = Vec::new();
-        for row in self.chosen(columns)? {
+        rows: &mut Rows,
+    ) -> Result<(), ImportError> {
+        let chosen = self.chosen(columns)?;
+        rows.reserve(chosen.len());
+        for row in chosen {
             let refused = |reason: String| self.refused(format!("{} {row}: {reason}", columns.kind_of_row()));
             let number = |source: Source, what: &str| {
                 let number = columns.number(self.frame, source, row);
@@ -324,9 +319,9 @@ impl<'a> FrameReader<'a> {
                 raw.x = raw.x.map(|_| first[0]);
                 raw.y = first[1];
             }
-            rows.push(raw.sample(self.mapping, self.body, &refused)?);
+            rows.push(&raw.sample(self.mapping, self.body, &refused)?);
         }
-        Ok(rows)
+        Ok(())
     }
 
     /// What tells rows at one height apart: all of their place.
@@ -387,9 +382,11 @@ impl Columns<'_> {
             self.x,
             self.horizontal,
             self.volume,
+            self.id,
             Some(self.y),
         ];
-        for source in strange.into_iter().flatten().filter(is_stranger) {
+        let equal = self.equals.iter().map(|(source, _)| *source);
+        for source in strange.into_iter().flatten().chain(equal).filter(is_stranger) {
             if let Source::Array(array, _) = source {
                 return Err(reader.refused(format!(
                     "`{}` has {} tuples on {}, and the rows are {count} {}: take both from one of them",
@@ -444,10 +441,9 @@ pub fn cells_over_height(frame: &Frame, mapping: &Mapping, height: f64) -> Optio
         .iter()
         .find(|one| one.name == COORDINATES)
         .map_or(1, |one| one.component.unwrap_or(1).min(2));
-    let corners: BTreeSet<u32> =
-        (0..cells.len()).flat_map(|cell| cells.corners(cell).iter().copied()).collect();
-    let mut levels: Vec<f64> =
-        corners.iter().filter_map(|point| Some(frame.coordinates.get(*point as usize)?[component])).collect();
+    let is_corner = cells.are_corners(frame.coordinates.len());
+    let corners = frame.coordinates.iter().zip(is_corner).filter(|(_, is_corner)| *is_corner);
+    let mut levels: Vec<f64> = corners.map(|(place, _)| place[component]).collect();
     levels.sort_by(f64::total_cmp);
     let all = levels.len();
     let near = 1e-5 * height / mapping.units.length.metres();

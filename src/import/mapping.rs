@@ -62,6 +62,9 @@ pub struct Mapping {
     /// Whether nobody declared it: a layer's horizontal displacement then may be missing.
     #[serde(skip)]
     pub is_convention: bool,
+    /// Whether a preset says what it does not.
+    #[serde(skip)]
+    pub is_of_preset: bool,
     /// Columns of a preset that a file may lack, by their keys.
     #[serde(skip)]
     pub optional: Vec<String>,
@@ -95,6 +98,24 @@ pub struct ColumnNames {
     pub effective_stress: Option<String>,
     /// Volume or weight of each place; all weigh alike where none is named.
     pub volume: Option<String>,
+}
+
+impl ColumnNames {
+    /// An empty name takes a column out.
+    fn leave_out_empty(&mut self) {
+        let optional = [
+            &mut self.t,
+            &mut self.x,
+            &mut self.p,
+            &mut self.u_x,
+            &mut self.u_y,
+            &mut self.effective_stress,
+            &mut self.volume,
+        ];
+        for name in optional {
+            *name = name.take().filter(|name| !name.is_empty());
+        }
+    }
 }
 
 fn height_column() -> String {
@@ -191,7 +212,8 @@ impl Mapping {
     /// # Errors
     /// What is wrong, at its place: an unknown key or word; or everything in it that no file can have.
     pub fn read(source: &StudySource) -> Result<Self, StudyError> {
-        let mapping: Self = source.read()?;
+        let mut mapping: Self = source.read()?;
+        mapping.columns.leave_out_empty();
         mapping.checked(source)
     }
 
@@ -219,8 +241,12 @@ impl Mapping {
         ))
     }
 
-    /// What a file is taken to mean where the mapping says nothing, of the columns that it names.
+    /// What a file is taken to mean where the mapping says nothing, of the columns that it names. A preset says
+    /// everything, and who gives no mapping is told the convention.
     pub fn taken_for_granted(&self) -> Option<String> {
+        if self.is_convention || self.is_of_preset {
+            return None;
+        }
         let (columns, units, sign) = (&self.columns, &self.units, &self.sign);
         let is_stress = columns.p.is_some() || columns.effective_stress.is_some();
         let taken: Vec<&str> = [
@@ -343,6 +369,8 @@ mod tests {
         assert_eq!((short.columns, short.position), (convention.columns, convention.position));
         assert_eq!((short.units.time, short.units.length), (convention.units.time, convention.units.length));
         assert_eq!(read("").expect("an empty file").columns.p.as_deref(), Some("p"));
+        let without = read("[columns]\np = \"p\"\nu_y = \"\"\n").expect("an empty name takes a column out");
+        assert_eq!((without.columns.p.as_deref(), without.columns.u_y), (Some("p"), None));
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! the time; a mapping file declares all of these, and nothing is guessed from the numbers.
 
 pub mod convention;
+pub mod csv_table;
 pub mod formats;
 pub mod frame_rows;
 pub mod import_error;
@@ -11,6 +12,7 @@ pub mod mapping;
 pub mod mapping_parts;
 pub mod preset;
 pub mod raw_row;
+pub mod rows;
 pub mod runs;
 pub mod sample_row;
 pub mod settlement_series;

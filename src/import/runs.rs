@@ -6,10 +6,12 @@ use crate::import::formats::steps::{Kind, Step, frame_of, steps_of};
 use crate::import::frame_rows::{FrameReader, Start, cells_over_height, wanted_names};
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::raw_row::{SampleRow, SolvedBody};
+use crate::import::raw_row::SolvedBody;
+use crate::import::rows::Rows;
+use crate::import::sample_row::take_rows;
 use crate::import::settlement_series::attach;
 use crate::import::step_times::{declared_time, fits, step_of};
-use crate::import::table::{SampledState, states_of, states_of_rows};
+use crate::import::table::SampledState;
 use std::path::{Component, Path, PathBuf};
 
 /// An argument with the files that it stands for.
@@ -110,8 +112,11 @@ pub fn are_tables(given: &[Given]) -> Result<bool, ImportError> {
 /// # Errors
 /// What cannot be read or taken, with file and line.
 pub fn run_of_tables(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -> Result<Run, ImportError> {
-    let states = states_of(&files, mapping, body)?;
-    let mut run = Run { files, states, ..Run::default() };
+    let mut rows = Rows::default();
+    for (place, path) in files.iter().enumerate() {
+        take_rows(path, place, mapping, body, &mut rows)?;
+    }
+    let mut run = Run { files, states: rows.states()?, ..Run::default() };
     run.finish(mapping, body)?;
     Ok(run)
 }
@@ -121,7 +126,7 @@ struct Reading {
     key: (PathBuf, String, Option<usize>, usize),
     run: Run,
     start: Option<Start>,
-    rows: Vec<SampleRow>,
+    rows: Rows,
     steps: usize,
 }
 
@@ -148,7 +153,7 @@ pub fn runs_of_arrays(given: &[Given], mapping: &Mapping, body: SolvedBody) -> R
             let key = key_of(&step, is_one_of_many, &frame, cells);
             let place = readings.iter().position(|one| one.key == key).unwrap_or_else(|| {
                 let run = Run { cells, ..Run::default() };
-                readings.push(Reading { key, run, start: None, rows: Vec::new(), steps: 0 });
+                readings.push(Reading { key, run, start: None, rows: Rows::default(), steps: 0 });
                 readings.len() - 1
             });
             readings[place].take(&step, &frame, mapping, body)?;
@@ -212,7 +217,7 @@ impl Reading {
             }
         }
         self.run.notes.extend(frame.notes.iter().cloned());
-        self.rows.extend(reader.rows(&columns, time, self.start.as_ref())?);
+        reader.take_rows(&columns, time, self.start.as_ref(), &mut self.rows)?;
         if !self.run.files.contains(&step.named) {
             self.run.files.push(step.named.clone());
         }
@@ -246,7 +251,7 @@ impl Reading {
 
     /// The run, with its states by time.
     fn done(mut self, mapping: &Mapping, body: SolvedBody) -> Result<Run, ImportError> {
-        self.run.states = states_of_rows(std::mem::take(&mut self.rows))?;
+        self.run.states = std::mem::take(&mut self.rows).states()?;
         let states = &mut self.run.states;
         if self.start.is_some() && states.len() < 2 {
             for state in states.iter_mut() {

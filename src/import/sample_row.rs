@@ -1,8 +1,10 @@
 //! One file's rows in SI, with the signs of this program.
 
+use crate::import::csv_table::{CsvTable, line_of};
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::raw_row::{RawRow, SampleRow, SolvedBody, is_at};
+use crate::import::raw_row::{RawRow, SolvedBody, is_at};
+use crate::import::rows::Rows;
 use crate::import::step_times::declared_time;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
@@ -24,21 +26,20 @@ struct Places {
 }
 
 impl Places {
-    fn of(header: &csv::StringRecord, mapping: &Mapping, path: &Path) -> Result<Self, ImportError> {
-        let place = |name: &String| header.iter().position(|column| column == name);
-        let names = || header.iter().map(|column| format!("`{column}`")).collect::<Vec<_>>().join(", ");
+    fn of(table: &CsvTable, mapping: &Mapping) -> Result<Self, ImportError> {
+        let path = table.path;
         let find = |name: &String| {
-            let none = || format!("there is no column `{name}`; the header has {}", names());
-            place(name).ok_or_else(|| ImportError::table(path, none()))
+            let none = || format!("there is no column `{name}`; the header has {}", table.names());
+            table.place(name).ok_or_else(|| ImportError::table(path, none()))
         };
         let find_some = |name: &Option<String>| name.as_ref().map(&find).transpose();
         let columns = &mapping.columns;
-        let distance = columns.x.as_ref().map(|name| match place(name) {
+        let distance = columns.x.as_ref().map(|name| match table.place(name) {
             None if mapping.is_convention => {
                 let reason = format!(
                     "there is no column `x`, and a layer's fields depend on it: write the distance of each sample from \
                      the crest of the load, m, to a column `x`, or name another with --mapping; the header has {}",
-                    names()
+                    table.names()
                 );
                 Err(ImportError::table(path, reason))
             }
@@ -52,7 +53,7 @@ impl Places {
             displacement: find_some(&columns.u_y)?,
             effective_stress: find_some(&columns.effective_stress)?,
             horizontal_displacement: match &columns.u_x {
-                Some(name) if mapping.is_convention => place(name),
+                Some(name) if mapping.is_convention => table.place(name),
                 name => find_some(name)?,
             },
             volume: find_some(&columns.volume)?,
@@ -65,7 +66,7 @@ impl Places {
         for (name, value) in &mapping.rows.equals {
             places.equals.push((find(name)?, *value));
         }
-        places.others = (0..header.len()).filter(|place| !places.has(*place)).collect();
+        places.others = (0..table.header.len()).filter(|place| !places.has(*place)).collect();
         Ok(places)
     }
 
@@ -84,34 +85,27 @@ impl Places {
     }
 }
 
-/// The rows of one file, the so many-th of its run.
+/// Adds the rows of one file, the so many-th of its run.
 ///
 /// # Errors
 /// What cannot be read or taken, with its line.
-pub fn rows_of(
+pub fn take_rows(
     path: &Path,
     place_of_file: usize,
     mapping: &Mapping,
     frame: SolvedBody,
-) -> Result<Vec<SampleRow>, ImportError> {
-    let file =
-        std::fs::File::open(path).map_err(|source| ImportError::Io { path: path.to_owned(), source })?;
-    let as_byte = |mark: char| u8::try_from(mark).unwrap_or(b',');
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(as_byte(mapping.csv.delimiter))
-        .comment(mapping.csv.comment.map(as_byte))
-        .trim(csv::Trim::All)
-        .from_reader(file);
-    let wrong = |source: csv::Error| ImportError::Csv { path: path.to_owned(), source };
-    let header = reader.headers().map_err(wrong)?.clone();
-    let places = Places::of(&header, mapping, path)?;
+    rows: &mut Rows,
+) -> Result<(), ImportError> {
+    let mut table = CsvTable::open(path, &mapping.csv)?;
+    let places = Places::of(&table, mapping)?;
     let time_of_file = match places.time {
         Some(_) => None,
         None => Some(time_of_file(path, place_of_file, mapping, frame)?),
     };
-    let mut rows = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(wrong)?;
+    let before = rows.len();
+    let header = table.header.clone();
+    let mut record = csv::StringRecord::new();
+    while table.next(&mut record)? {
         let line = RowReader { path, header: &header, record: &record };
         if !line.counts(&places, mapping)? {
             continue;
@@ -123,12 +117,12 @@ pub fn rows_of(
             mapping.units.time.seconds(time, frame.seconds_per_time_factor)
         };
         let refused = |reason: String| line.error(reason);
-        rows.push(line.row(&places, seconds)?.sample(mapping, frame, &refused)?);
+        rows.push(&line.row(&places, seconds)?.sample(mapping, frame, &refused)?);
     }
-    if rows.is_empty() {
+    if rows.len() == before {
         return Err(ImportError::table(path, "there are no rows"));
     }
-    Ok(rows)
+    Ok(())
 }
 
 /// The declared time of a file that holds one step, s.
@@ -153,8 +147,7 @@ struct RowReader<'a> {
 
 impl RowReader<'_> {
     fn error(&self, reason: String) -> ImportError {
-        let line = self.record.position().map_or(0, csv::Position::line);
-        ImportError::Row { path: self.path.to_owned(), line, reason }
+        ImportError::Row { path: self.path.to_owned(), line: line_of(self.record), reason }
     }
 
     fn number(&self, place: usize) -> Result<f64, ImportError> {

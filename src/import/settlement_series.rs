@@ -1,5 +1,6 @@
 //! A settlement curve in a file of its own.
 
+use crate::import::csv_table::{CsvTable, line_of};
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::mapping_parts::SettlementSeries;
@@ -24,32 +25,24 @@ pub fn attach(
 ) -> Result<usize, ImportError> {
     let beside = folder.join(&series.file);
     let path = if beside.is_file() { beside } else { Path::new(&series.file).to_owned() };
-    let file = std::fs::File::open(&path).map_err(|source| ImportError::Io { path: path.clone(), source })?;
-    let as_byte = |mark: char| u8::try_from(mark).unwrap_or(b',');
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(as_byte(mapping.csv.delimiter))
-        .comment(mapping.csv.comment.map(as_byte))
-        .trim(csv::Trim::All)
-        .from_reader(file);
-    let wrong = |source: csv::Error| ImportError::Csv { path: path.clone(), source };
-    let header = reader.headers().map_err(wrong)?.clone();
+    let mut table = CsvTable::open(&path, &mapping.csv)?;
     let place = |name: &str| {
-        let found = header.iter().position(|column| column == name);
-        found.ok_or_else(|| {
-            ImportError::table(&path, format!("there is no column `{name}` of the settlement curve"))
-        })
+        let none = || {
+            format!("there is no column `{name}` of the settlement curve; the header has {}", table.names())
+        };
+        table.place(name).ok_or_else(|| ImportError::table(&path, none()))
     };
     let (time, settlement) = (place(&series.t)?, place(&series.s)?);
     let unit = mapping.units.displacement.unwrap_or(mapping.units.length).metres();
     let upward = if series.sign == VerticalSense::Down { -unit } else { unit };
     let mut curve = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(wrong)?;
+    let mut record = csv::StringRecord::new();
+    while table.next(&mut record)? {
         let number = |place: usize| {
             let typed = record.get(place).unwrap_or_default();
             typed.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| ImportError::Row {
                 path: path.clone(),
-                line: record.position().map_or(0, csv::Position::line),
+                line: line_of(&record),
                 reason: format!("`{typed}` is no finite number"),
             })
         };

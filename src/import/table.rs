@@ -1,13 +1,4 @@
-//! From the rows of files to states of a column or a layer.
-
-use crate::import::import_error::ImportError;
-use crate::import::mapping::Mapping;
-use crate::import::raw_row::{SampleRow, SolvedBody};
-use crate::import::sample_row::rows_of;
-use std::path::PathBuf;
-
-/// Rows closer than this share of their time are of one time.
-const SAME_TIME: f64 = 1e-9;
+//! The state of a column or a layer, as samples.
 
 /// Samples at one time: SI, heights from the base and distances from the scene's `x = 0`, pressure
 /// compression positive, stress tension positive, displacement upward and away from `x = 0`
@@ -36,73 +27,12 @@ pub struct SampledState {
     pub repeated: usize,
 }
 
-/// States of all rows of the files of one run, by time.
-///
-/// # Errors
-/// What cannot be read or taken, with file and line.
-pub fn states_of(
-    paths: &[PathBuf],
-    mapping: &Mapping,
-    frame: SolvedBody,
-) -> Result<Vec<SampledState>, ImportError> {
-    let mut rows = Vec::new();
-    for (place, path) in paths.iter().enumerate() {
-        rows.extend(rows_of(path, place, mapping, frame)?);
-    }
-    states_of_rows(rows)
-}
-
-/// States of rows, by time.
-///
-/// # Errors
-/// When a component stands in some rows only.
-pub fn states_of_rows(mut rows: Vec<SampleRow>) -> Result<Vec<SampledState>, ImportError> {
-    if rows
-        .iter()
-        .any(|row| row.horizontal_displacement.is_some() != rows[0].horizontal_displacement.is_some())
-    {
-        return Err(ImportError::NotInAll { name: "u_x" });
-    }
-    let distance = |row: &SampleRow| row.initial_distance.unwrap_or_default();
-    rows.sort_by(|a, b| {
-        (a.time.total_cmp(&b.time))
-            .then(a.initial_height.total_cmp(&b.initial_height))
-            .then(distance(a).total_cmp(&distance(b)))
-            .then(a.others.cmp(&b.others))
-    });
-    let mut states: Vec<SampledState> = Vec::new();
-    let mut last: Option<&SampleRow> = None;
-    for row in &rows {
-        let is_new = states.last().is_none_or(|state| row.time - state.time > SAME_TIME * row.time);
-        if is_new {
-            states.push(SampledState { time: row.time, ..SampledState::default() });
-        }
-        if let Some(state) = states.last_mut() {
-            state.repeated += usize::from(!is_new && last.is_some_and(|last| last.is_place_of(row)));
-            state.initial_distance.extend(row.initial_distance);
-            state.initial_height.push(row.initial_height);
-            state.volume.push(row.volume);
-            state.pressure.extend(row.pressure);
-            state.effective_stress.extend(row.effective_stress);
-            state.displacement.extend(row.displacement);
-            state.horizontal_displacement.extend(row.horizontal_displacement);
-        }
-        last = Some(row);
-    }
-    Ok(states)
-}
-
-impl SampleRow {
-    /// Whether another row stands at its place, and no column tells the two apart.
-    fn is_place_of(&self, other: &Self) -> bool {
-        (self.initial_height, self.initial_distance, self.others)
-            == (other.initial_height, other.initial_distance, other.others)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::import::mapping::Mapping;
+    use crate::import::raw_row::SolvedBody;
+    use crate::import::runs::run_of_tables;
     use crate::study::file::StudySource;
 
     const STRANGE: &str = r#"
@@ -139,7 +69,8 @@ delimiter = ";"
             length: mapping.columns.x.is_some().then_some(2.0),
             seconds_per_time_factor: 81.75,
         };
-        states_of(&[path], &mapping, frame).map_err(|error| error.to_string())
+        let run = run_of_tables(vec![path], &mapping, frame);
+        run.map(|run| run.states).map_err(|error| error.to_string())
     }
 
     #[test]

@@ -2,10 +2,12 @@
 
 use crate::convergence::class::Class;
 use crate::convergence::class::evaluable_series::plain;
+use crate::judge::error_place::place_of_attached;
 use crate::judge::paths::Judgement;
 use crate::judge::verdict::{Check, Verdict, VerdictOutcome, check};
+use crate::measure::pressure_peak::pressure_peak;
 use crate::record::{Balance, Record};
-use crate::study::case_expectation::{CaseDemand, CaseExpectation, ErrorRange};
+use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
 use crate::wording::typed;
 
 impl CaseExpectation {
@@ -49,15 +51,25 @@ impl CaseDemand {
         ];
         let asked = drifts.into_iter().filter_map(|(what, found, below)| Some((what, found, below?)));
         checks.extend(asked.map(|(what, found, below)| drift_found(what, found, below)));
+        let spurious = record.balance.iter().filter_map(|balance| balance.spurious_velocity).reduce(f64::max);
+        let peak = pressure_peak(record);
+        let ranges = [
+            ("spurious velocity over the conductivity", spurious, self.spurious_velocity),
+            ("time factor of the highest pressure", peak.map(|peak| peak.time_factor), self.peak_time_factor),
+            ("highest pressure over the load", peak.map(|peak| peak.height), self.peak_pressure),
+        ];
+        let asked = ranges.into_iter().filter_map(|(what, found, bounds)| Some((what, found, bounds?)));
+        checks.extend(asked.map(|(what, found, bounds)| value_found(what, found, bounds)));
         checks
     }
 }
 
 fn status_found(wanted: &str, record: &Record) -> Check {
     let found = record.status.name();
-    let how = record.status.failure().map_or_else(String::new, |failure| {
-        format!(" at step {}, t = {:.3e} s: {}", failure.step, failure.time, failure.reason)
-    });
+    let how = record
+        .status
+        .failure()
+        .map_or_else(String::new, |failure| format!("{}: {}", failure.place(), failure.reason));
     let pass = found == wanted;
     let instead = if pass { String::new() } else { format!(" instead of {wanted}") };
     check("status", pass, None, format!("{found}{instead}{how}"))
@@ -91,9 +103,10 @@ fn critical_step_found(within: f64, record: &Record) -> Check {
 
 fn error_found(range: &ErrorRange, record: &Record) -> Check {
     let measure = &range.measure;
-    let Some(error) = measure.error(record).map(|row| row.value.abs()) else {
+    let Some(row) = measure.error(record) else {
         return check("error", false, None, format!("no error at T_v = {}", typed(measure.time_factor)));
     };
+    let error = row.value.abs();
     let pass = error < range.below && error >= range.above;
     let inside = if pass { "in" } else { "outside" };
     let reason = format!(
@@ -105,7 +118,19 @@ fn error_found(range: &ErrorRange, record: &Record) -> Check {
         range.above,
         range.below
     );
+    let place = if pass { None } else { place_of_attached(record, row) };
+    let reason = place.map_or(reason.clone(), |place| format!("{reason}; {place}"));
     check("error", pass, Some(error), reason)
+}
+
+fn value_found(what: &'static str, found: Option<f64>, bounds: Bounds) -> Check {
+    let Some(value) = found else {
+        return check(what, false, None, format!("no {what} was found"));
+    };
+    let pass = value < bounds.below && value >= bounds.above;
+    let inside = if pass { "in" } else { "outside" };
+    let range = format!("{:.4e} … {:.4e}", bounds.above, bounds.below);
+    check(what, pass, Some(value), format!("{what}: {value:.5e} {inside} {range}"))
 }
 
 fn drift_found(what: &str, found: Option<f64>, below: f64) -> Check {
@@ -163,6 +188,20 @@ time_step = [{ growth = 0.05 }]
         assert!(!found(&record, 0.0, 1e9).pass);
         record.errors.clear();
         assert!(!found(&record, 0.0, 1e9).pass);
+    }
+
+    #[test]
+    fn a_value_that_is_missing_or_no_number_is_in_no_range() {
+        let bounds = Bounds { above: 1.0, below: 2.0 };
+        for (found, passes) in [
+            (Some(1.0), true),
+            (Some(2.0), false),
+            (Some(0.9), false),
+            (Some(f64::NAN), false),
+            (None, false),
+        ] {
+            assert_eq!(value_found("velocity", found, bounds).pass, passes, "{found:?}");
+        }
     }
 
     #[test]

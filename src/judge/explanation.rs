@@ -7,12 +7,10 @@ use crate::convergence::class::Context;
 use crate::convergence::class::classify::classify;
 use crate::convergence::series::{ErrorSeries, SeriesLevel};
 use crate::exact::exact_error::ExactError;
-use crate::exact::reference::ReferenceKind;
 use crate::golden::compare::{Difference, compare};
 use crate::golden::{GoldenFile, measure_name, values_of};
+use crate::judge::error_place::{ErrorPlace, place_of};
 use crate::judge::paths::{level_size, paths};
-use crate::measure::error_contributions::contributions;
-use crate::measure::exact_fields::{exact_samples, reference_of};
 use crate::record::{ErrorRow, Record};
 use crate::study::expectation::Axis;
 
@@ -27,19 +25,6 @@ pub struct Carrier {
     pub linf: Option<f64>,
     /// The place that carries most of it; none where the quantity has one place only.
     pub place: Option<ErrorPlace>,
-}
-
-/// A place with what stands there.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct ErrorPlace {
-    /// Initial depth over the height.
-    pub zeta: f64,
-    /// Share of the squared L2 error.
-    pub share: f64,
-    /// Computed value, SI.
-    pub computed: f64,
-    /// Exact value, SI.
-    pub exact: f64,
 }
 
 /// The error of the case among its neighbours along one axis.
@@ -127,27 +112,6 @@ fn carriers_of(record: &Record) -> Result<Vec<Carrier>, ExactError> {
             Ok(Carrier { row: row.clone(), l1: norm(Norm::L1), linf: norm(Norm::Linf), place })
         })
         .collect()
-}
-
-/// The place that carries most of an error.
-fn place_of(record: &Record, row: &ErrorRow) -> Result<Option<ErrorPlace>, ExactError> {
-    let case = &record.case;
-    let samples = record.snapshot(row.time_factor).and_then(|snapshot| row.sample.of(snapshot));
-    let (Some(samples), Ok(kind)) = (samples, row.reference.parse::<ReferenceKind>()) else {
-        return Ok(None);
-    };
-    let reference = reference_of(case, kind.of_soil(&case.material), &[row.time_factor])?;
-    let exact = exact_samples(case, &reference, row.time_factor, samples)?;
-    let fields = row.quantity.field(samples).zip(row.quantity.field(&exact));
-    Ok(fields.and_then(|(computed, exact)| {
-        let worst = *contributions(computed, exact, &samples.volume).first()?;
-        Some(ErrorPlace {
-            zeta: 1.0 - samples.initial_height[worst.index] / case.column.height,
-            share: worst.share,
-            computed: computed[worst.index],
-            exact: exact[worst.index],
-        })
-    }))
 }
 
 /// The case's error among the golden ones of the cases that differ from it along one axis only.

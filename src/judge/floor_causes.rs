@@ -30,6 +30,10 @@ impl Path<'_> {
             return Vec::new();
         }
         let case = &self.records[0].case;
+        if case.is_attached() {
+            // What it holds while the mesh falls is its own business.
+            return Vec::new();
+        }
         let points =
             case.method.configuration_or(case.scene.configuration()).moves_points().then(|| Limiter {
                 kind: LimiterKind::PointsPerCell,

@@ -4,7 +4,9 @@
 //! records to series.
 //! What has no value is returned as a named reason, never as a number that could pass a test.
 
+pub mod absent;
 pub mod case_verdicts;
+pub mod error_place;
 pub mod explanation;
 pub mod floor_causes;
 pub mod locking;
@@ -13,9 +15,11 @@ pub mod peers;
 pub mod profile_checks;
 pub mod scatter;
 pub mod score;
+pub mod situation;
 pub mod soundness;
 pub mod stability_map;
 pub mod stiffness_sweep;
 pub mod study_check;
+pub mod twins;
 pub mod verdict;
 pub mod work_precision;

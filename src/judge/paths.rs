@@ -10,6 +10,8 @@ use crate::convergence::orders::{SlopeFit, finest_order, pair_orders, slope};
 use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
 use crate::convergence::series_demand::SeriesDemand as Demand;
 use crate::convergence::uncertainty::NumericalUncertainty;
+use crate::judge::absent::Absent;
+use crate::judge::error_place::place_of_attached;
 use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::measure::norms::relative_error;
 use crate::mpm::run::integrator::IntegratorKind;
@@ -191,6 +193,28 @@ impl<'a> Path<'a> {
         self.records.iter().filter_map(|record| Some(1.0 + settlement.error(record)?.value)).collect()
     }
 
+    /// A measure at the points, for an attached solver at the places that it has instead.
+    pub fn own_measure(&self, measure: &Measure) -> Measure {
+        let own = self
+            .records
+            .iter()
+            .find(|record| record.attached.as_ref().is_some_and(|one| one.sample.is_some()));
+        match own {
+            Some(record) if measure.sample == Sample::Points => {
+                Measure { sample: record.main_sample(), ..measure.clone() }
+            }
+            _ => measure.clone(),
+        }
+    }
+
+    /// Where most of the error of somebody else's result is: at the level that is bounded, or the finest.
+    fn place(&self, demand: &Demand, measure: &Measure) -> Option<String> {
+        let is_bounded =
+            |record: &&&Record| demand.at.is_some_and(|at| at.size == level_size(record, self.axis));
+        let record = self.records.iter().find(is_bounded).or(self.records.last())?;
+        place_of_attached(record, measure.error(record)?)
+    }
+
     /// What the runs of the path share, in words, the method first.
     pub fn parts(&self) -> Vec<String> {
         let mut case = self.records[0].case.clone();
@@ -199,6 +223,11 @@ impl<'a> Path<'a> {
         }
         case.swept.retain(|name| *name != self.axis.name());
         let mut parts = vec![case.method.to_string()];
+        if case.is_attached() {
+            parts.extend((self.axis != Axis::Cells).then(|| format!("{} cells", case.cells)));
+            parts.extend(Some(case.variant()).filter(|variant| !variant.is_empty()));
+            return parts;
+        }
         if case.integrator != IntegratorKind::Explicit {
             parts.push(case.integrator.name().to_owned());
             // Steps of the explicit integrator go by its limit, and say little of the result.
@@ -235,6 +264,9 @@ fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f
 /// one: constant fields in a cell are of first order at points and of second at the centres.
 fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
     let method = &case.method;
+    if case.is_attached() {
+        return None;
+    }
     let by_points = |second: bool| if second { 2.0 } else { 1.0 };
     match (measure.quantity, measure.sample) {
         (Quantity::Pressure, Sample::Points) => Some(by_points(method.uses_patch())),
@@ -248,8 +280,14 @@ fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
 
 /// Judges every expectation of a study that its tier can answer.
 pub fn judge_study(study: &Study, records: &[Record], tier: Tier) -> Vec<Judgement> {
+    let absent = Absent::among(records);
     let series = study.expectations.iter().filter(|expectation| expectation.tier <= tier);
     let cases = study.case_expectations.iter().filter(|expectation| expectation.tier <= tier);
+    // What was not run, because its solver is not here, is not judged; the check says so.
+    let series =
+        series.filter(|one| !absent.holds_all(|case| one.selection.fits_along(one.axis.name(), case)));
+    let cases =
+        cases.filter(|one| one.asks_for_a_skip() || !absent.holds_all(|case| one.selection.fits(case)));
     series
         .flat_map(|expectation| judge_expectation(expectation, records))
         .chain(cases.flat_map(|expectation| expectation.judge(records)))
@@ -281,10 +319,14 @@ fn judge_expectation(expectation: &SeriesExpectation, records: &[Record]) -> Vec
         .map(|path| {
             let context = path.context(measure);
             let beside = path.beside(&expectation.demand, measure, context.formal_order);
+            let mut verdict = judge(&expectation.demand, &path.series(measure), &context, &beside);
+            if let Some(place) = path.place(&expectation.demand, measure).filter(|_| !verdict.pass) {
+                verdict.reason = format!("{}; {place}", verdict.reason);
+            }
             Judgement {
                 line: expectation.line,
                 subject: format!("{}: {what}", path.label()),
-                verdict: judge(&expectation.demand, &path.series(measure), &context, &beside),
+                verdict,
                 uncertainty: beside.uncertainty.and_then(Result::ok),
             }
         })

@@ -115,7 +115,7 @@ mod tests {
         let mut records = records_of(&text);
         for record in &mut records {
             let seconds = 1e-9 * record.counters.point_updates as f64;
-            record.wall = vec![WallSample { seconds, alone: true, cpu_seconds: None }; 2];
+            record.wall = vec![WallSample { seconds, alone: true, ..WallSample::default() }; 2];
         }
         records
     }

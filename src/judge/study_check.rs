@@ -7,7 +7,9 @@ use crate::golden::case_changes::{CaseChange, case_changes};
 use crate::golden::compare::{Change, Difference, compare};
 use crate::golden::difference_groups::{DifferenceGroup, groups_of};
 use crate::golden::references::{REFERENCES, reference_values};
-use crate::golden::{GoldenError, GoldenFile, seconds_of, values_of};
+use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, values_of};
+use crate::judge::absent::{Absent, differing_repeats};
+use crate::judge::error_place::place_of_attached;
 use crate::judge::paths::{Judgement, judge_study};
 use crate::judge::soundness;
 use crate::record::{Record, Status};
@@ -71,6 +73,8 @@ impl StudyCheck {
         tier: Tier,
         golden: Result<GoldenFile, GoldenError>,
     ) -> Self {
+        let absent = Absent::among(records);
+        let golden = golden.map(|golden| absent.without(golden));
         let slow = golden.as_ref().ok().and_then(|golden| slowness(golden, seconds_of(records)));
         let notes = |of: &dyn Fn(&Record) -> Vec<String>| {
             let of_record = |record: &Record| {
@@ -82,7 +86,8 @@ impl StudyCheck {
         };
         Self {
             failed_cases: notes(&|record| {
-                let failure = record.status.failure().filter(|_| !study.foresees(record));
+                let is_foreseen = record.status.is_skipped() || study.foresees(record);
+                let failure = record.status.failure().filter(|_| !is_foreseen);
                 failure.map(ToString::to_string).into_iter().collect()
             }),
             // What a run that failed leaves behind is no result to complain of.
@@ -91,9 +96,23 @@ impl StudyCheck {
                 Status::Failed(_) => Vec::new(),
             }),
             judgements: judge_study(study, records, tier),
-            warnings: slow.into_iter().collect(),
-            ..Self::of_values(&study.name, &values_of(records), golden)
+            warnings: slow.into_iter().chain(absent.warnings()).chain(differing_repeats(records)).collect(),
+            ..Self::of_values(&study.name, &values_of(records), golden).with_places(records)
         }
+    }
+
+    /// With the places that carry the worst of somebody else's values.
+    fn with_places(mut self, records: &[Record]) -> Self {
+        for group in &mut self.groups {
+            let (label, measure) = parts(&group.worst.name);
+            let record =
+                records.iter().find(|record| record.attached.is_some() && record.case.label() == label);
+            group.place = record.and_then(|record| {
+                let row = record.errors.iter().find(|row| measure_name(row) == measure)?;
+                place_of_attached(record, row)
+            });
+        }
+        self
     }
 
     /// Adds the cases that have no record, a refusing reference or a crash being the reason: they failed.

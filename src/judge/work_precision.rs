@@ -102,14 +102,15 @@ fn timed<'a>(record: &'a Record, reference: &str) -> Option<TimedRun<'a>> {
 /// Error of the pore pressure at the points in its first norm, the worst of all outputs.
 pub fn worst_error(record: &Record, reference: &str) -> Option<f64> {
     let later = record.case.time_factors.iter().filter(|factor| **factor > 0.0);
-    let errors = later.map(|factor| Some(pressure(reference, *factor).error(record)?.value.abs()));
+    let errors = later
+        .map(|factor| Some(pressure(record.main_sample(), reference, *factor).error(record)?.value.abs()));
     errors.collect::<Option<Vec<_>>>()?.into_iter().reduce(f64::max)
 }
 
-fn pressure(reference: &str, time_factor: f64) -> Measure {
+fn pressure(sample: Sample, reference: &str, time_factor: f64) -> Measure {
     Measure {
         quantity: Quantity::Pressure,
-        sample: Sample::Points,
+        sample,
         norm: first_norm(Quantity::Pressure),
         reference: reference.to_owned(),
         time_factor,
@@ -143,7 +144,9 @@ fn next_levels(records: &[Record], reference: &str) -> Vec<NextLevel> {
             })
             .collect();
         let last = *path.records.last()?.case.time_factors.last()?;
-        let class_of = |path: &Path<'_>| path.summary(&pressure(reference, last)).classification;
+        let class_of = |path: &Path<'_>| {
+            path.summary(&pressure(path.records[0].main_sample(), reference, last)).classification
+        };
         let next = predict_next(&levels, &class_of(&path), REFINEMENT)?;
         let (finest, coarser) = levels.split_last()?;
         let known = path.records.len() - 1;
@@ -184,7 +187,7 @@ time_step = [{ growth = 0.005 }]
         for record in &mut records {
             // A cost that is the same on every machine.
             let seconds = 1e-9 * record.counters.point_updates as f64;
-            record.wall = vec![WallSample { seconds, alone: true, cpu_seconds: None }; 2];
+            record.wall = vec![WallSample { seconds, alone: true, ..WallSample::default() }; 2];
         }
         let precision = WorkPrecision::of(&records, "terzaghi").expect("timed runs");
         assert_eq!(precision.next_levels.len(), 2);

@@ -6,6 +6,7 @@ use crate::exact::exact_error::ExactError;
 use crate::exact::reference::Reference;
 use crate::mpm::run::snapshot::Snapshot;
 use crate::record::{Balance, HistoryRow, StartChecks};
+use crate::scene::column::column_parameters;
 
 /// The start against what the scene expects of it.
 ///
@@ -34,9 +35,15 @@ pub fn start_checks(
 pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) -> Balance {
     let load = case.column.load;
     let applied = if case.scene.is_loaded() { load } else { 0.0 };
+    let parameters = column_parameters(&case.column, &case.material);
     let stresses = now.points.effective_stress.iter().zip(&now.points.pressure);
-    let squares: f64 =
-        stresses.map(|(stress, pressure)| elementary::powi((stress - pressure + applied) / load, 2)).sum();
+    let squares: f64 = stresses
+        .zip(&now.points.initial_height)
+        .map(|((stress, pressure), height)| {
+            let of_weight = parameters.initial_stress(1.0 - height / parameters.height);
+            elementary::powi((stress - pressure + applied - of_weight) / load, 2)
+        })
+        .sum();
     // What the load presses out in the end: of what leaves up to now nothing may be left, as at the start
     // or under a cosine.
     let pressed_out = load / case.material.oedometric_modulus() * case.column.height;
@@ -54,6 +61,10 @@ pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) 
             (squares / now.points.pressure.len() as f64).sqrt()
         },
         settlement_curve_gap: 0.0,
+        spurious_velocity: case
+            .scene
+            .is_at_rest()
+            .then(|| now.totals.largest_velocity / case.material.hydraulic_conductivity),
     }
 }
 

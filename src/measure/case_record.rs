@@ -31,7 +31,12 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
             errors.extend(snapshot_errors(case, reference, *time_factor, snapshot)?);
         }
     }
-    let final_settlement = references.first().map_or(Ok(f64::NAN), |own| own.settlement(LONG_AFTER))?;
+    let final_settlement = match references.first() {
+        None => f64::NAN,
+        // What a load of the scale would make, where nothing settles.
+        Some(own) if own.kind() == ReferenceKind::AtRest => parameters.final_settlement(),
+        Some(own) => own.settlement(LONG_AFTER)?,
+    };
     let history: Vec<HistoryRow> = outcome
         .history
         .iter()
@@ -68,6 +73,7 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
         history,
         references: references.iter().map(|one| reference_use(case, one)).collect::<Result<_, _>>()?,
         snapshots: outcome.snapshots,
+        attached: None,
         provenance: Provenance::of_this_program(),
         digest: String::new(),
     })
@@ -100,6 +106,7 @@ pub fn record_of_critical_step(case: &Case, found: CriticalStep) -> Record {
         references: Vec::new(),
         snapshots: Vec::new(),
         stability: Some(found),
+        attached: None,
         provenance: Provenance::of_this_program(),
         digest: String::new(),
     }
@@ -126,7 +133,11 @@ pub fn record_of_stopped_search(case: &Case) -> Record {
     Record { status: Status::Failed(failure), stability: None, ..record_of_critical_step(case, none) }
 }
 
-fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, ExactError> {
+/// How far a reference can be trusted for a case, at all of its outputs.
+///
+/// # Errors
+/// When it refuses a time.
+pub fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, ExactError> {
     let does_not_hold = inertia_rules(case, reference.kind());
     let mut entry =
         ReferenceUse { name: reference.name().to_owned(), terms: 0, tail_bound: 0.0, does_not_hold };

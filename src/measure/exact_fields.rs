@@ -53,6 +53,10 @@ impl ExactFields {
     ) -> Result<Self, ExactError> {
         let mut known: HashMap<u64, FieldValues> = HashMap::new();
         let mut exact = Self::default();
+        // A column strains vertically only, a slab between rigid plates evenly across.
+        let across = reference.strain_across(time_factor)?;
+        exact.horizontal_displacement.extend(places.distances.iter().map(|distance| across * distance));
+        exact.horizontal_displacement.resize(places.heights.len(), 0.0);
         for height in places.heights {
             let fields = match known.entry(height.to_bits()) {
                 Entry::Occupied(found) => *found.get(),
@@ -64,8 +68,6 @@ impl ExactFields {
             exact.pressure.push(fields.pressure);
             exact.effective_stress.push(fields.effective_stress);
             exact.displacement.push(fields.displacement);
-            // A column strains vertically only.
-            exact.horizontal_displacement.push(0.0);
         }
         Ok(exact)
     }

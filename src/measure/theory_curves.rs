@@ -12,22 +12,32 @@ const LINE_POINTS: u32 = 100;
 /// First time factor of a consolidation curve.
 const CURVE_START: f64 = 1e-3;
 
-/// Theory's `p/q` over depth `y/H` from the surface at a time factor.
+/// Theory's line at one output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TheoryIsochrone {
+    /// Time factor.
+    pub time_factor: f64,
+    /// Degree of consolidation by settlement.
+    pub degree: f64,
+    /// `p/q` over depth `y/H` from the surface.
+    pub line: Vec<(f64, f64)>,
+}
+
+/// Theory's lines at all outputs of a case: the reference is prepared once.
 ///
 /// # Errors
 /// When the reference refuses the case.
-pub fn theory_isochrone(
-    case: &Case,
-    kind: ReferenceKind,
-    time_factor: f64,
-) -> Result<Vec<(f64, f64)>, ExactError> {
-    let reference = reference_of(case, kind, &[time_factor])?;
-    (0..=LINE_POINTS)
-        .map(|i| {
+pub fn theory_isochrones(case: &Case, kind: ReferenceKind) -> Result<Vec<TheoryIsochrone>, ExactError> {
+    let reference = reference_of(case, kind, &case.time_factors)?;
+    let at = |time_factor: f64| {
+        let point = |i: u32| {
             let zeta = f64::from(i) / f64::from(LINE_POINTS);
             Ok((reference.fields(time_factor, zeta)?.pressure / case.column.load, zeta))
-        })
-        .collect()
+        };
+        let line = (0..=LINE_POINTS).map(point).collect::<Result<_, _>>()?;
+        Ok(TheoryIsochrone { time_factor, degree: reference.degree_of_consolidation(time_factor)?, line })
+    };
+    case.time_factors.iter().map(|time_factor| at(*time_factor)).collect()
 }
 
 /// Theory's degree of consolidation by settlement over the time factor, up to `end`.
@@ -44,14 +54,6 @@ pub fn theory_consolidation(
         (0..=LINE_POINTS).map(|i| CURVE_START * elementary::exp(growth * f64::from(i))).collect();
     let reference = reference_of(case, kind, &times)?;
     times.iter().map(|time| Ok((*time, reference.degree_of_consolidation(*time)?))).collect()
-}
-
-/// Theory's degree of consolidation by settlement at a time factor.
-///
-/// # Errors
-/// When the reference refuses the case.
-pub fn theory_degree(case: &Case, kind: ReferenceKind, time_factor: f64) -> Result<f64, ExactError> {
-    reference_of(case, kind, &[time_factor])?.degree_of_consolidation(time_factor)
 }
 
 /// A run's `p/q` at its points over depth, at the output of a time factor.
@@ -94,9 +96,10 @@ mod tests {
 
     #[test]
     fn a_theory_line_begins_at_the_drained_surface_and_falls_with_time() {
-        let case = seed_case();
-        let early = theory_isochrone(&case, ReferenceKind::Terzaghi, 0.05).expect("the seed column");
-        let late = theory_isochrone(&case, ReferenceKind::Terzaghi, 0.5).expect("the seed column");
+        let case = Case { time_factors: vec![0.05, 0.5], ..seed_case() };
+        let lines = theory_isochrones(&case, ReferenceKind::Terzaghi).expect("the seed column");
+        let [early, late] = [0, 1].map(|place| &lines[place].line);
+        assert!(lines[0].degree < lines[1].degree && lines[0].time_factor == 0.05);
         assert_eq!(early[0], (0.0, 0.0));
         assert!((early[100].0 - 1.0).abs() < 0.01 && (early[100].1 - 1.0).abs() < 1e-15);
         assert!(late[100].0 < early[100].0);

@@ -2,6 +2,8 @@
 
 use crate::mpm::method::{Configuration, Method};
 use crate::mpm::operators::recovery::RecoveryOperator;
+use crate::mpm::operators::rigid_plate::RigidPlate;
+use crate::mpm::operators::self_weight::SelfWeight;
 use crate::mpm::operators::stencil::PointStencils;
 use crate::mpm::operators::strain_gradient::StrainOperator;
 use crate::mpm::operators::surface_load::{LoadShape, LoadedSurface};
@@ -34,6 +36,11 @@ pub struct Problem<const D: usize> {
     pub load: f64,
     /// How the load varies along the surface.
     pub load_shape: LoadShape,
+    /// Mean pressure, Pa, under a rigid plate on the upper face of the first direction, where there is one.
+    pub plate_load: Option<f64>,
+    /// Gravity, m/s², that skeleton and water weigh with, where they do; the pressures of the points are those
+    /// beyond the hydrostatic one, and their stresses are those of the weight.
+    pub weight: Option<f64>,
     /// Whether the body is to find its undrained equilibrium under the load before it starts.
     pub undrained_start: bool,
     /// Time over which the load grows linearly, s; 0 where it acts at once.
@@ -51,6 +58,8 @@ impl<const D: usize> Problem<D> {
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         self.load *= factor;
+        self.plate_load = self.plate_load.map(|load| factor * load);
+        self.weight = self.weight.map(|gravity| factor * gravity);
         self.pressure_scale *= factor;
         let points = &mut self.points;
         points.pressure.iter_mut().for_each(|pressure| *pressure *= factor);
@@ -86,6 +95,10 @@ pub struct Body<const D: usize> {
     pub is_pushed_forward: bool,
     /// Loaded surface.
     pub surface: LoadedSurface<D>,
+    /// Rigid plate on the upper face of the first direction.
+    pub plate: Option<RigidPlate>,
+    /// Weight of skeleton and water; the pressures of the points are total ones then.
+    pub weight: Option<SelfWeight>,
     /// `N` and `∇N` between points and nodes.
     pub basis: PointStencils<D>,
     /// `G` where it is not the gradient of the basis.
@@ -120,6 +133,8 @@ impl<const D: usize> Body<D> {
             configuration,
             load,
             load_shape,
+            plate_load,
+            weight,
             initial_gradient,
             ..
         } = problem;
@@ -136,6 +151,8 @@ impl<const D: usize> Body<D> {
                 .shaped(load_shape, &points)
                 .spread_by(method.basis, support)
                 .stretching(configuration.moves_points() && !method.domains_follow()),
+            plate: None,
+            weight: weight.map(|gravity| SelfWeight::of(gravity, &points)),
             basis: method.basis.stencils(count),
             strain: StrainOperator::of(method.strain, count),
             cell_memory: CellMemory::new(&grid),
@@ -153,8 +170,14 @@ impl<const D: usize> Body<D> {
             is_pushed_forward: configuration == Configuration::Total,
         };
         body.displace(&initial_gradient);
+        body.add_hydrostatic_pressure();
         body.build_operators();
         body.map_masses();
+        if let Some(load) = plate_load {
+            let volumes = body.points.initial_volume.iter().copied();
+            body.plate = Some(RigidPlate::of(load, &body.grid, &body.nodes, volumes));
+            body.apply_loads();
+        }
         body.map_velocities();
         body
     }
@@ -259,7 +282,7 @@ impl<const D: usize> Body<D> {
         if self.is_pushed_forward {
             self.cells.average_deformation(&self.points);
         }
-        self.surface.apply(&self.grid, &self.points, &mut self.nodes);
+        self.apply_loads();
     }
 
     /// Last node of splines that end at a surface on its way through the grid.

@@ -1,5 +1,6 @@
 //! A method is a choice of four independent operators and of the configuration they live on.
 
+use crate::mpm::attached::{Attached, AttachedText};
 use crate::wording::words;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -183,6 +184,10 @@ pub struct Method {
     pub memory: Memory,
     /// Configuration of the weights, where the method insists on one.
     pub configuration: Option<Configuration>,
+    /// Somebody else's solver, which has operators of its own: those above are then looked at by nobody.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<AttachedText>")]
+    pub attached: Option<Attached>,
 }
 
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
@@ -214,6 +219,19 @@ const TOTAL_PREFIX: &str = "TL-";
 const CELLS_SUFFIX: &str = "-cells";
 
 impl Method {
+    /// Somebody else's solver.
+    pub fn of_attached(attached: Attached) -> Self {
+        Self {
+            basis: Basis::Hat,
+            strain: StrainGradient::Standard,
+            pressure: PressureIntegration::Points,
+            recovery: Recovery::Constant,
+            memory: Memory::Points,
+            configuration: None,
+            attached: Some(attached),
+        }
+    }
+
     /// Whether every point takes the pressure of its cell's centre: reduced integration without recovery.
     pub fn has_constant_recovery(&self) -> bool {
         self.pressure == PressureIntegration::Sri && self.recovery == Recovery::Constant
@@ -242,7 +260,8 @@ impl Method {
             (true, Basis::Cpgimp) => Basis::Ugimp,
             (true, _) => return None,
         };
-        Some(Self { basis, strain, pressure, recovery, memory: Memory::Points, configuration: None })
+        let memory = Memory::Points;
+        Some(Self { basis, strain, pressure, recovery, memory, configuration: None, attached: None })
     }
 
     /// Every name that `named` knows.
@@ -291,6 +310,9 @@ impl Method {
 impl fmt::Display for Method {
     /// The name where there is one, the four choices otherwise.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(attached) = self.attached {
+            return out.write_str(attached.name());
+        }
         let name_of = |method: Self| Self::names().into_iter().find(|name| Self::named(name) == Some(method));
         if let Some(name) = name_of(*self) {
             return out.write_str(&name);
@@ -355,6 +377,7 @@ mod tests {
             recovery: Recovery::Patch,
             memory: Memory::Points,
             configuration: Some(Configuration::Updated),
+            attached: None,
         };
         assert_eq!(method.to_string(), "hat+cmpm+sri+patch (updated)");
     }

@@ -5,13 +5,15 @@
 //! (`cells`) and recovery (`recovery`). A `body` joins them with points and nodes; `explicit` is
 //! the step of Zheng et al. (2021); `assembled` is the same step as one banded map where nothing
 //! moves; `run` drives either from output to output; `implicit` takes steps of any size on the same
-//! operators.
+//! operators, with the linear systems of `direct_solver`.
 //!
 //! Nothing here knows of studies, references or reports.
 
 pub mod assembled;
+pub mod attached;
 pub mod body;
 pub mod critical_step;
+pub mod direct_solver;
 pub mod explicit;
 pub mod implicit;
 pub mod method;

@@ -6,44 +6,65 @@
 
 use crate::mpm::assembled::stiffness::{NodeBlocks, pressure_stiffness};
 use crate::mpm::body::Body;
-use crate::mpm::implicit::banded::{Banded, BandedLu, Singular};
+use crate::mpm::direct_solver::Singular;
+use crate::mpm::direct_solver::bordered::{Bordered, BorderedLu};
 use crate::mpm::method::Configuration;
+use crate::mpm::operators::rigid_plate::NORMAL;
 use crate::mpm::operators::volumetric::VolumetricRows;
+use crate::mpm::state::grid::Grid;
 use crate::soil::tensor::{Tensor, Vector};
 
-/// Free components of the nodes, in the order of the unknowns.
+/// Free components of the nodes, in the order of the unknowns: one for all that go with a rigid plate, the last.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct FreeComponents {
-    /// Node and component of each unknown.
-    places: Vec<(usize, usize)>,
+    /// Node, component and unknown of each free component.
+    places: Vec<(usize, usize, usize)>,
     /// Unknown of each component of each node, node by node.
     number: Vec<Option<usize>>,
+    /// Unknowns.
+    count: usize,
+    /// Unknowns at the end that are a plate's.
+    border: usize,
 }
 
 impl FreeComponents {
     /// Numbers the components that are free.
-    fn of<const D: usize>(free: &[Vector<D>]) -> Self {
-        let mut components = Self { places: Vec::new(), number: vec![None; D * free.len()] };
+    fn of<const D: usize>(body: &Body<D>) -> Self {
+        let free = &body.nodes.free;
+        let border = usize::from(body.plate.is_some());
+        let mut components =
+            Self { places: Vec::new(), number: vec![None; D * free.len()], count: 0, border };
         for (node, free) in free.iter().enumerate() {
-            for d in (0..D).filter(|d| free[*d] > 0.0) {
-                components.number[D * node + d] = Some(components.places.len());
-                components.places.push((node, d));
+            for d in (0..D).filter(|d| free[*d] > 0.0 && !body.is_tied(node, *d)) {
+                components.places.push((node, d, components.places.len()));
             }
+        }
+        let plate = components.places.len();
+        for node in body.plate.iter().flat_map(|plate| &plate.nodes) {
+            components.places.push((*node, NORMAL, plate));
+        }
+        components.count = plate + border;
+        for (node, d, unknown) in &components.places {
+            components.number[D * node + d] = Some(*unknown);
         }
         components
     }
 
-    /// The blocks between free components as a banded matrix.
-    fn banded<const D: usize>(&self, blocks: &NodeBlocks<D>) -> Banded {
+    /// The blocks between free components of the nodes of a grid as a matrix.
+    fn matrix<const D: usize>(&self, blocks: &NodeBlocks<D>, grid: &Grid<D>) -> Bordered {
         let entries = || {
-            self.places.iter().enumerate().flat_map(move |(row, (node, d))| {
+            self.places.iter().flat_map(move |(node, d, row)| {
                 blocks.rows[*node].iter().flat_map(move |(column, block)| {
-                    (0..D).filter_map(move |e| Some((row, self.number[D * column + e]?, block[*d][e])))
+                    (0..D).filter_map(move |e| Some((*row, self.number[D * column + e]?, block[*d][e])))
                 })
             })
         };
         let counting = || entries().filter(|entry| entry.2 != 0.0);
-        let mut matrix = Banded::spanning(self.places.len(), counting().map(|entry| (entry.0, entry.1)));
+        let alone = &self.places[..self.count - self.border];
+        let positions: Vec<Vector<D>> = alone.iter().map(|(node, _, _)| grid.node_position(*node)).collect();
+        let mut matrix = Bordered::spanning(&positions, self.border, |visitor| {
+            counting().for_each(|(row, column, _)| visitor(row, column));
+        });
         for (row, column, value) in counting() {
             matrix.add(row, column, value);
         }
@@ -55,7 +76,7 @@ impl FreeComponents {
 #[derive(Clone, Debug)]
 pub struct UndrainedSystem<const D: usize> {
     unknowns: FreeComponents,
-    factors: BandedLu,
+    factors: BorderedLu,
     rows: VolumetricRows<D>,
 }
 
@@ -68,21 +89,24 @@ impl<const D: usize> UndrainedSystem<D> {
         let rows = body.volumetric_rows();
         let mut stiffness = body.skeleton_stiffness(&rows);
         stiffness.add(&pressure_stiffness(&body.coupled_pressure_forces(&rows), &rows.divergence));
-        let unknowns = FreeComponents::of(&body.nodes.free);
-        let matrix = unknowns.banded(&stiffness);
-        let mut factors = BandedLu::of_shape(&matrix);
+        let unknowns = FreeComponents::of(body);
+        let matrix = unknowns.matrix(&stiffness, &body.grid);
+        let mut factors = BorderedLu::of_shape(&matrix);
         factors.factor(&matrix)?;
         Ok(Self { unknowns, factors, rows })
     }
 
     /// Displacements of the nodes under forces on them.
-    pub fn displacements(&self, forces: &[Vector<D>]) -> Vec<Vector<D>> {
+    pub fn displacements(&mut self, forces: &[Vector<D>]) -> Vec<Vector<D>> {
         let places = &self.unknowns.places;
-        let mut values: Vec<f64> = places.iter().map(|(node, d)| forces[*node][*d]).collect();
+        let mut values = vec![0.0; self.unknowns.count];
+        for (node, d, unknown) in places {
+            values[*unknown] += forces[*node][*d];
+        }
         self.factors.solve(&mut values);
         let mut displacements = vec![[0.0; D]; forces.len()];
-        for ((node, d), value) in places.iter().zip(values) {
-            displacements[*node][*d] = value;
+        for (node, d, unknown) in places {
+            displacements[*node][*d] = values[*unknown];
         }
         displacements
     }
@@ -94,7 +118,7 @@ impl<const D: usize> Body<D> {
     /// # Errors
     /// When its stiffness is singular.
     pub fn settle_undrained(&mut self) -> Result<(), Singular> {
-        let system = UndrainedSystem::of(self)?;
+        let mut system = UndrainedSystem::of(self)?;
         self.map_forces();
         let displacements = system.displacements(&self.nodes.mixture_force);
         let field = &displacements[..];

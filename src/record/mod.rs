@@ -3,6 +3,7 @@
 //! A record is plain data on disk. Tables, plots, verdicts and goldens read records and never a
 //! live solver, so that a report can be made again without solving.
 
+pub mod attached_run;
 pub mod long_tables;
 pub mod origins;
 pub mod provenance;
@@ -18,6 +19,7 @@ pub use crate::mpm::critical_step::observed::{CriticalStep, Probe};
 use crate::mpm::run::outcome::{Counters, Failure, FailureKind, StepSizes};
 pub use crate::mpm::run::profile::PhaseTime;
 use crate::mpm::run::snapshot::Snapshot;
+use crate::record::attached_run::AttachedRun;
 use crate::record::provenance::Provenance;
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +42,16 @@ impl Status {
         self.failure().is_some_and(|failure| failure.kind == FailureKind::TimedOut)
     }
 
+    /// Whether it lies in what may be otherwise by now: time that was too short, or somebody else's program.
+    pub fn is_worth_another_run(&self) -> bool {
+        self.is_late() || self.failure().is_some_and(|failure| failure.kind.is_of_attached())
+    }
+
+    /// Whether an attached solver says that it cannot run here.
+    pub fn is_skipped(&self) -> bool {
+        self.failure().is_some_and(|failure| failure.kind == FailureKind::Skipped)
+    }
+
     /// How it failed, if it did.
     pub fn failure(&self) -> Option<&Failure> {
         match self {
@@ -55,7 +67,7 @@ impl Status {
 }
 
 /// One wall time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct WallSample {
     /// Seconds of wall time.
     pub seconds: f64,
@@ -64,6 +76,15 @@ pub struct WallSample {
     /// Seconds that the processor worked on it, where the system tells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cpu_seconds: Option<f64>,
+    /// Largest memory of an attached solver, bytes, where the system tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_memory: Option<u64>,
+    /// Programs that wanted the processor when an attached solver began, where the system tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load: Option<f64>,
+    /// Time that an attached solver says it took, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub own_seconds: Option<f64>,
 }
 
 /// Dimensionless groups that say which theory can hold.
@@ -112,6 +133,10 @@ pub struct Balance {
     /// Distance of the settlement at this output from the settlement curve, over the final
     /// settlement, beyond what interpolation between the curve's rows explains.
     pub settlement_curve_gap: f64,
+    /// Largest nodal velocity of either phase over the hydraulic conductivity, what flows under a unit gradient,
+    /// in a scene in which nothing may move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spurious_velocity: Option<f64>,
 }
 
 /// One measured error.
@@ -212,6 +237,9 @@ pub struct Record {
     pub references: Vec<ReferenceUse>,
     /// State at each output.
     pub snapshots: Vec<Snapshot>,
+    /// What is known of the run of an attached solver.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attached: Option<AttachedRun>,
     /// What made this record.
     pub provenance: Provenance,
     /// Hash over all the text before it, on disk only: a record with another one was damaged.
@@ -242,6 +270,11 @@ impl Record {
     pub fn snapshot(&self, time_factor: f64) -> Option<&Snapshot> {
         let index = self.case.time_factors.iter().position(|factor| *factor == time_factor)?;
         self.snapshots.get(index)
+    }
+
+    /// Kind of places whose errors stand for the case: the points, or what an attached solver has.
+    pub fn main_sample(&self) -> Sample {
+        self.attached.as_ref().and_then(|attached| attached.sample).unwrap_or(Sample::Points)
     }
 
     /// Wall times of runs that had the machine to themselves, s.

@@ -50,7 +50,12 @@ impl RecordStore {
     }
 
     fn path(&self, hash: &str, file: &str) -> PathBuf {
-        self.folder.join("cases").join(hash).join(file)
+        self.folder_of(hash).join(file)
+    }
+
+    /// Folder of a case, by its hash.
+    pub fn folder_of(&self, hash: &str) -> PathBuf {
+        self.folder.join("cases").join(hash)
     }
 
     /// The finished record of a case, if there is one that a program of these sources made.
@@ -64,12 +69,13 @@ impl RecordStore {
     /// What there is of a case to take up.
     ///
     /// A record that cannot be read, was damaged, is of another layout or of another case is as good as none, and so
-    /// is one that ran out of its time: the case is run again, and so it is where another program made its record.
+    /// is one that ran out of its time, or whose attached solver failed: the case is run again, and so it is where
+    /// another program made its record.
     /// Another build of the same sources gives the same values and is taken up, without its wall times, which are
     /// that build's own.
     pub fn found(&self, case: &Case) -> Found {
         let own = Provenance::of_this_program();
-        let Some(mut record) = self.kept(case).filter(|record| !record.status.is_late()) else {
+        let Some(mut record) = self.kept(case).filter(|record| !record.status.is_worth_another_run()) else {
             return Found::Nothing;
         };
         if !record.provenance.is_of_one_program_with(&own) {

@@ -1,5 +1,6 @@
 //! One row a measure: the tidy CSV of a study.
 
+use crate::case::Case;
 use crate::case::keys::{KEYS, Key};
 use crate::record::{ERROR_COLUMNS, ErrorRow, Record, WallSample};
 
@@ -67,11 +68,16 @@ pub fn tidy_csv<'a>(
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
+/// An input as the table has it: nothing where it says nothing of the case.
+fn input_of(key: &Key, case: &Case) -> String {
+    if key.counts_for(case) { key.get(case).to_string() } else { String::new() }
+}
+
 /// What all rows of a record begin with.
 fn case_fields(study: &str, record: &Record) -> Vec<String> {
     let inputs = CASE_COLUMNS.iter().filter_map(|name| Key::named(name, "sweep"));
     let mut fields = vec![study.to_owned(), record.hash.clone()];
-    fields.extend(inputs.map(|key| key.get(&record.case).to_string()));
+    fields.extend(inputs.map(|key| input_of(key, &record.case)));
     fields.extend([
         format!("{:e}", record.step_sizes.largest),
         record.counters.steps.to_string(),
@@ -93,7 +99,7 @@ fn last_fields(record: &Record) -> LastFields {
     let wall = quickest(&record.wall);
     let seconds = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
     LastFields {
-        inputs: other_inputs().map(|key| key.get(case).to_string()).collect(),
+        inputs: other_inputs().map(|key| input_of(key, case)).collect(),
         others: [
             case.scene.name().to_owned(),
             case.task.name().to_owned(),

@@ -58,13 +58,26 @@ static PLACE: LazyLock<String> = LazyLock::new(|| {
 /// # Errors
 /// When the file system refuses; nothing is left under the name then.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), StoreError> {
-    /// Folders that were looked through already: some have thousands of files.
+    remove_stale_once(folder_of(path));
+    write_renamed(path, content, fs::File::sync_all)
+}
+
+/// The same of a file that can be made again from others: it takes its name whole, and the system puts it on the disk
+/// in its own time.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn write_rebuildable(path: &Path, content: &[u8]) -> Result<(), StoreError> {
+    remove_stale_once(folder_of(path));
+    write_renamed(path, content, |_| Ok(()))
+}
+
+/// Clears a folder of what writers that are no more left, once in a run: some folders have thousands of files.
+fn remove_stale_once(folder: &Path) {
     static SEEN: LazyLock<Mutex<HashSet<PathBuf>>> = LazyLock::new(Mutex::default);
-    let folder = folder_of(path);
     if SEEN.lock().is_ok_and(|mut seen| seen.insert(folder.to_owned())) {
         remove_stale(folder);
     }
-    write_renamed(path, content, fs::File::sync_all)
 }
 
 /// The same, with what is done to the file before it takes its name.

@@ -27,6 +27,9 @@ pub struct Column {
     /// Time over which the load grows linearly, s; 0 where it acts at once.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub loading_time: f64,
+    /// Whether skeleton and water have a weight, under a water level that stands in the surface at the start.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub self_weight: bool,
     /// Where the points lie in their cells.
     #[serde(default, skip_serializing_if = "Arrangement::is_regular")]
     pub points: Arrangement,
@@ -35,6 +38,11 @@ pub struct Column {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_false(value: &bool) -> bool {
+    !*value
 }
 
 fn one() -> usize {
@@ -59,6 +67,7 @@ impl Default for Column {
             dimensions: 1,
             base: None,
             loading_time: 0.0,
+            self_weight: false,
             points: Arrangement::default(),
         }
     }
@@ -68,6 +77,12 @@ impl Column {
     /// The seed layer: as long as it is high, on a rough base.
     pub fn layer() -> Self {
         Self { horizontal_extent: 1.0, dimensions: 2, base: Some(Base::Rough), ..Self::default() }
+    }
+
+    /// The seed slab, on its side: its half width stands as a column's height, and half the distance of its
+    /// plates is the width.
+    pub fn slab() -> Self {
+        Self { dimensions: 2, ..Self::default() }
     }
 
     /// Square cells over the width with `cells` over the height; `None` where they do not fill it.
@@ -104,5 +119,6 @@ pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
         hydraulic_conductivity: soil.hydraulic_conductivity,
         gravity: soil.gravity,
         loading_time: column.loading_time,
+        self_weight: column.self_weight,
     }
 }

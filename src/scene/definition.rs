@@ -37,6 +37,8 @@ pub enum SceneBody {
     Column,
     /// A plane layer, in two dimensions only; its soils show locking.
     Layer,
+    /// A slab between two rigid plates, in two dimensions only; its fields vary as a column's do.
+    Slab,
 }
 
 /// Size of strains.
@@ -57,6 +59,8 @@ pub enum SceneLoad {
     Sudden,
     /// Uniform, at once or growing over a time, for which these references hold.
     SuddenOrGrowing(&'static [ReferenceKind]),
+    /// Uniform, at once, by rigid plates across the body: its surface is free.
+    Plates,
     /// At once, a cosine along the surface: its mean is zero.
     Cosine,
 }

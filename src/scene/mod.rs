@@ -3,11 +3,13 @@
 //! the other. Each scene is one file; what they have in common is asked here.
 
 pub mod arrangement;
+mod at_rest;
 pub mod column;
 mod cosine_layer;
 mod definition;
 mod dynamic_column;
 mod dynamic_single_mode;
+mod mandel;
 pub mod problem;
 mod single_mode;
 mod standing_wave;
@@ -16,7 +18,7 @@ mod xie_leo;
 
 use crate::exact::exact_error::ExactError;
 use crate::exact::reference::{Reference, ReferenceKind};
-use crate::mpm::method::Configuration;
+use crate::mpm::method::{Configuration, Method};
 use crate::scene::column::Column;
 use crate::scene::definition::{
     SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
@@ -43,11 +45,15 @@ pub enum SceneKind {
     DynamicSingleMode,
     /// An undrained wave that stands in an unloaded column.
     StandingWave,
+    /// A slab loaded at once between rigid plates and drained at its sides.
+    Mandel,
+    /// A column at rest under its own weight.
+    AtRest,
 }
 
 impl SceneKind {
     /// Every scene.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Terzaghi,
         Self::SingleMode,
         Self::XieLeo,
@@ -55,6 +61,8 @@ impl SceneKind {
         Self::DynamicColumn,
         Self::DynamicSingleMode,
         Self::StandingWave,
+        Self::Mandel,
+        Self::AtRest,
     ];
 
     /// The scene's own file.
@@ -67,6 +75,8 @@ impl SceneKind {
             Self::DynamicColumn => &dynamic_column::DYNAMIC_COLUMN,
             Self::DynamicSingleMode => &dynamic_single_mode::DYNAMIC_SINGLE_MODE,
             Self::StandingWave => &standing_wave::STANDING_WAVE,
+            Self::Mandel => &mandel::MANDEL,
+            Self::AtRest => &at_rest::AT_REST,
         }
     }
 
@@ -132,6 +142,15 @@ impl SceneKind {
             .then_some("nothing moves in a `frozen` configuration, and this scene is about large strain")
     }
 
+    /// Why the scene cannot take a method, where it cannot.
+    pub fn refuses_method(self, method: Method) -> Option<&'static str> {
+        let is_frozen = method.configuration.is_none_or(|kind| kind == Configuration::Frozen);
+        (self.has_plates() && (method.basis.is_spline() || !is_frozen)).then_some(
+            "a rigid plate holds the nodes of a face: it takes weights that stay (`frozen`), of hats or domains and \
+             not of splines, whose coefficients are no values there",
+        )
+    }
+
     /// Configuration of the weights where the method leaves it open: small strain moves nothing.
     pub fn configuration(self) -> Configuration {
         if self.is_large_strain() { Configuration::Updated } else { Configuration::Frozen }
@@ -147,6 +166,30 @@ impl SceneKind {
         self.definition().load != SceneLoad::None
     }
 
+    /// Whether rigid plates load it across, and not its surface.
+    pub fn has_plates(self) -> bool {
+        self.definition().load == SceneLoad::Plates
+    }
+
+    /// Whether nothing happens in it but by the method's own fault.
+    pub fn is_at_rest(self) -> bool {
+        self == Self::AtRest
+    }
+
+    /// The column that it has where a study names nothing.
+    pub fn default_column(self) -> Column {
+        match self.definition().body {
+            SceneBody::Column => Column { self_weight: self.is_at_rest(), ..Column::default() },
+            SceneBody::Layer => Column::layer(),
+            SceneBody::Slab => Column::slab(),
+        }
+    }
+
+    /// Whether its soil may have a weight.
+    pub fn takes_self_weight(self) -> bool {
+        self.definition().body == SceneBody::Column
+    }
+
     /// Whether the mean of its load is zero: what one half of the body takes in, the other gives.
     pub fn presses_out_no_water(self) -> bool {
         self.definition().load == SceneLoad::Cosine
@@ -157,19 +200,24 @@ impl SceneKind {
         self.definition().has_waves
     }
 
-    /// Whether it cannot be solved in one dimension: a study has its geometry in the table `[layer]`.
+    /// Whether it cannot be solved in one dimension.
     pub fn needs_two_dimensions(self) -> bool {
+        self.definition().body != SceneBody::Column
+    }
+
+    /// Whether a study has its geometry in the table `[layer]`.
+    pub fn is_a_layer(self) -> bool {
         self.definition().body == SceneBody::Layer
     }
 
     /// Whether its exact fields vary along the body too, so that there is no profile over the depth.
     pub fn has_plane_fields(self) -> bool {
-        self.needs_two_dimensions()
+        self.is_a_layer()
     }
 
     /// Whether it is about locking, so that runs are told apart by the stiffness of water and soil.
     pub fn shows_locking(self) -> bool {
-        self.needs_two_dimensions()
+        self.is_a_layer()
     }
 
     /// Whether the solver finds its start, an undrained equilibrium of its own operators.
@@ -209,6 +257,8 @@ impl SceneKind {
             ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible => Self::CosineLayer,
             // The one whose load may grow.
             ReferenceKind::DynamicColumn => Self::DynamicColumn,
+            ReferenceKind::Mandel => Self::Mandel,
+            ReferenceKind::AtRest => Self::AtRest,
             _ => Self::Terzaghi,
         }
     }

@@ -2,7 +2,7 @@
 //! of dimensions into a type.
 
 use crate::exact::exact_error::ExactError;
-use crate::exact::parameters::Base;
+use crate::exact::parameters::{Base, ColumnParameters};
 use crate::mpm::body::Problem;
 use crate::mpm::critical_step::observed::{CriticalStep, Stopped, critical_step};
 use crate::mpm::explicit::ExplicitSettings;
@@ -14,7 +14,7 @@ use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::Support;
 use crate::mpm::state::points::Points;
 use crate::scene::SceneKind;
-use crate::scene::column::Column;
+use crate::scene::column::{Column, column_parameters};
 use crate::scene::definition::{SceneLoad, SceneStart};
 use crate::soil::material::Material;
 
@@ -81,13 +81,19 @@ pub fn column_problem<const D: usize>(
     if let SceneStart::OverDepth(start) = &definition.start {
         let start = start(column, soil)?;
         start.apply(&mut points, column.height)?;
+        if column.self_weight {
+            add_initial_stress(&mut points, &column_parameters(column, soil));
+        }
         initial_gradient[D - 1][D - 1] = start.vertical_gradient;
     }
     extent[D - 1] += HEADROOM;
     let support = match column.base {
         Some(Base::Rough) => Support::oedometer().on_rough_base(),
+        Some(Base::Smooth) | None if scene.has_plates() => Support::oedometer().with_movable_side(),
         Some(Base::Smooth) | None => Support::oedometer(),
     };
+    let load = column.load.abs();
+    let weight = column.self_weight.then_some(soil.gravity);
     Ok(Problem {
         grid: Grid::new(cell_size, extent),
         support,
@@ -95,15 +101,33 @@ pub fn column_problem<const D: usize>(
         material: *soil,
         method,
         configuration: method.configuration_or(scene.configuration()),
-        load: if scene.is_loaded() { column.load } else { 0.0 },
+        load: if scene.is_loaded() && !scene.has_plates() { column.load } else { 0.0 },
         load_shape: match definition.load {
             SceneLoad::Cosine => LoadShape::Cosine { length: column.horizontal_extent },
-            SceneLoad::None | SceneLoad::Sudden | SceneLoad::SuddenOrGrowing(_) => LoadShape::Uniform,
+            SceneLoad::None | SceneLoad::Sudden | SceneLoad::SuddenOrGrowing(_) | SceneLoad::Plates => {
+                LoadShape::Uniform
+            }
         },
+        plate_load: scene.has_plates().then_some(column.load),
+        weight,
         undrained_start: scene.start_is_solved(),
         loading_time: column.loading_time,
         initial_gradient,
-        pressure_scale: column.load.abs(),
+        // Round-off is of the size of what weighs.
+        pressure_scale: weight
+            .map_or(load, |gravity| load.max(soil.mixture_density() * gravity * column.height)),
         is_bounded: true,
     })
+}
+
+/// Gives points the stress of the soil's own weight, that to the sides as an oedometer at rest has it.
+fn add_initial_stress<const D: usize>(points: &mut Points<D>, parameters: &ColumnParameters) {
+    let lateral = parameters.poissons_ratio / (1.0 - parameters.poissons_ratio);
+    for point in 0..points.len() {
+        let depth = 1.0 - points.initial_position[point][D - 1] / parameters.height;
+        let vertical = parameters.initial_stress(depth);
+        for d in 0..D {
+            points.effective_stress[point][d][d] += if d + 1 == D { vertical } else { lateral * vertical };
+        }
+    }
 }

@@ -3,6 +3,7 @@
 //! They are derived from the very types that read the files, and from the table of keys, so that they cannot
 //! fall behind the code.
 
+use crate::foreign::case_file::CaseFile;
 use crate::import::mapping::Mapping;
 use crate::record::Record;
 use crate::study::file::StudyFile;
@@ -19,6 +20,8 @@ pub enum Document {
     Record,
     /// The mapping of somebody else's result
     Mapping,
+    /// The file that tells an attached solver its case
+    Case,
 }
 
 /// The JSON Schema of a document.
@@ -26,6 +29,7 @@ pub fn schema_of(document: Document) -> Value {
     match document {
         Document::Study => without_null(schema_of_type::<StudyFile>("oedometer study")),
         Document::Record => schema_of_type::<Record>("oedometer record"),
+        Document::Case => schema_of_type::<CaseFile>("oedometer case"),
         Document::Mapping => without_null(schema_of_type::<Mapping>("oedometer mapping")),
     }
 }

@@ -74,6 +74,11 @@ impl Material {
         self.water_density * self.gravity
     }
 
+    /// Density of the saturated mixture at the initial porosity, `(1 − n)ρ_s + nρ_w`, kg/m³.
+    pub fn mixture_density(&self) -> f64 {
+        (1.0 - self.porosity) * self.grain_density + self.porosity * self.water_density
+    }
+
     /// `c_v = k_0 E_oed/γ_w`, m²/s.
     #[inline]
     pub fn coefficient_of_consolidation(&self) -> f64 {

@@ -24,6 +24,12 @@ pub fn product_with_transpose<const D: usize>(a: &Tensor<D>, b: &Tensor<D>) -> T
     std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| a[i][k] * b[j][k]).sum()))
 }
 
+/// `a · b`.
+#[inline]
+pub fn dot<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> f64 {
+    (0..D).map(|d| a[d] * b[d]).sum()
+}
+
 /// Solution `x` of `A x = b` for a symmetric matrix that is not indefinite, by elimination without
 /// pivoting; a component whose pivot `is_left_out` is zero.
 #[inline]

@@ -2,8 +2,18 @@
 //! error or a drift may be. Hard cases are judged by this, not by series.
 
 use crate::case::tier::Tier;
+use crate::mpm::run::outcome::FailureKind;
 use crate::record::Record;
 use crate::study::expectation::{Measure, Selection};
+
+/// A range of values: the lower end belongs to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest value.
+    pub above: f64,
+    /// Values are smaller than this.
+    pub below: f64,
+}
 
 /// Bounds on one error of a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +39,12 @@ pub struct CaseDemand {
     pub solid_drift_below: Option<f64>,
     /// Largest imbalance of the water at any output, over what the load presses out.
     pub water_drift_below: Option<f64>,
+    /// Bounds on the largest velocity at any output of a column at rest, over the hydraulic conductivity.
+    pub spurious_velocity: Option<Bounds>,
+    /// Bounds on the time factor at which the pressure at the impermeable end is highest.
+    pub peak_time_factor: Option<Bounds>,
+    /// Bounds on that pressure over the load.
+    pub peak_pressure: Option<Bounds>,
 }
 
 /// An expectation of single cases.
@@ -45,6 +61,11 @@ pub struct CaseExpectation {
 }
 
 impl CaseExpectation {
+    /// Whether it is about an attached solver that is not here.
+    pub fn asks_for_a_skip(&self) -> bool {
+        self.demand.status.as_deref() == Some(FailureKind::Skipped.name())
+    }
+
     /// Whether it says how a record is to end.
     pub fn foresees(&self, record: &Record) -> bool {
         self.selection.fits(&record.case)

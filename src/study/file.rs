@@ -15,6 +15,8 @@ use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
 use crate::study::grammar;
 use crate::study::inputs::{InputTable, List, One, OwnKeys};
 use crate::study::mistakes;
+use crate::study::result_table::ResultTable;
+use crate::study::solver_table::SolverTable;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 
@@ -61,6 +63,12 @@ pub struct StudyFile {
     /// When results are kept, and what they are held against.
     #[serde(default)]
     pub output: OutputTable,
+    /// Somebody else's solvers, whose names then stand among the methods of a sweep.
+    #[serde(default)]
+    pub solver: Vec<Placed<SolverTable>>,
+    /// Results that somebody else's solvers have left already, whose names stand among the methods too.
+    #[serde(default)]
+    pub result: Vec<Placed<ResultTable>>,
     /// Blocks of cases: the product of the lists, or a path.
     #[serde(default)]
     pub sweep: Vec<Placed<SweepTable>>,
@@ -201,6 +209,12 @@ pub struct ExpectCaseKeys {
     pub solid_drift_below: Typed<f64>,
     /// Largest imbalance of the water at any output, over what the load presses out.
     pub water_drift_below: Typed<f64>,
+    /// Bounds on the largest velocity at any output of a column at rest, over the hydraulic conductivity.
+    pub spurious_velocity: Typed<RangeTable>,
+    /// Bounds on the time factor at which the pressure at the impermeable end is highest.
+    pub peak_time_factor: Typed<RangeTable>,
+    /// Bounds on that pressure over the load.
+    pub peak_pressure: Typed<RangeTable>,
     /// Bounds on one error.
     pub error: Typed<RangeTable>,
     /// What is measured.

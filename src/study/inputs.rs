@@ -282,7 +282,9 @@ fn schema_of_values(key: &Key, generator: &mut SchemaGenerator) -> Schema {
     match key.kind {
         Kind::Method => {
             let choices = MethodTable::json_schema(generator);
-            json_schema!({ "anyOf": [{ "enum": Method::names() }, choices] })
+            // The name of an attached solver is any plain word.
+            let solver = json_schema!({ "type": "string", "pattern": "^[A-Za-z][A-Za-z0-9._-]*$" });
+            json_schema!({ "anyOf": [{ "enum": Method::names() }, solver, choices] })
         }
         Kind::TimeStep => TimeStepTable::json_schema(generator),
         Kind::Word(words) => json_schema!({ "enum": words() }),

@@ -76,7 +76,7 @@ fn without(field: &str, span: &Range<usize>, text: &str) -> (String, String) {
         return (
             format!("the study has no `{field}`"),
             format!(
-                "it needs `title`, `scene` and one [[sweep]] block: add `{field} = {example}` at the top"
+                "it needs `title`, `scene` and one [[sweep]] block or [[result]]: add `{field} = {example}` at the top"
             ),
         );
     };

@@ -11,5 +11,8 @@ pub mod inputs;
 pub mod mistakes;
 pub mod name;
 pub mod perturbed;
+pub mod result_table;
 pub mod shipped;
+pub mod solver;
+pub mod solver_table;
 pub mod sweep;

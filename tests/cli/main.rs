@@ -1,15 +1,19 @@
 //! Whole runs through the program, as its users call it.
 
+mod attach;
 mod bad_input;
 mod check;
 mod critical_step;
 mod first_hour;
 mod foreign;
+mod gate;
 mod impossible_results;
+mod mapping;
 mod planted_damage;
 mod portable;
 mod program;
 mod readme;
+mod report_rules;
 mod report_tables;
 mod run;
 mod score;

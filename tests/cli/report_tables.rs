@@ -6,8 +6,8 @@
 use crate::program::assert_snapshot;
 use oedometer::{
     Answers, Block, GoldenFile, Making, Page, Provenance, Record, RunOptions, Study, StudyCheck,
-    StudyResults, StudySource, Table, Tier, WallSample, answer_page, figures, junit, measures, render_html,
-    render_markdown, run_study, study_page, values_of, verdicts,
+    StudyResults, StudySource, Table, Tier, WallSample, answer_page, ends_of, figures, junit, measures,
+    render_html, render_markdown, run_study, study_page, values_of, verdicts,
 };
 
 const STUDY: &str = r#"
@@ -42,7 +42,7 @@ fn small_study() -> (Study, Vec<Record>) {
     let mut records = run_study(&study, &options, None, &|_| {}).records;
     for record in &mut records {
         // What changes from day to day does not belong in a snapshot.
-        record.wall = vec![WallSample { seconds: 0.5, alone: true, cpu_seconds: None }];
+        record.wall = vec![WallSample { seconds: 0.5, alone: true, ..WallSample::default() }];
         record.provenance = Provenance {
             version: "VERSION".to_owned(),
             sources: "SOURCES".to_owned(),
@@ -107,6 +107,7 @@ fn making() -> Making {
         command: "oedometer report".to_owned(),
         seconds: 1.0,
         cases_run: 0,
+        left_out: 0,
     }
 }
 
@@ -115,24 +116,38 @@ fn the_answer_page_answers_from_records_and_says_what_they_do_not_answer() {
     let (study, records) = small_study();
     let results = [StudyResults::new(&study, &records, Tier::Full)];
     let (making, links) = (making(), |study: &str| format!("studies/{study}.html"));
+    let ends = ends_of(&study, &records).expect("sound");
     let answers = Answers {
         results: &results,
         changes: Some(&[]),
         making: &making,
         links: &links,
         index: "studies/index.html",
+        ends: &ends,
+        situations: "situations.html",
     };
     let page = answer_page(&answers).expect("a page");
     let markdown = render_markdown(&page).expect("a page");
-    assert_eq!(markdown.matches("Not in these records: ").count(), 4, "{markdown}");
+    assert_eq!(open_questions(&page), 5, "{markdown}");
     assert!(markdown.contains("[`small`](studies/small.html)"), "{markdown}");
     assert!(render_html(&page).expect("a page").contains("<a href=\"studies/small.html\">small</a>"));
     assert_snapshot("answers_markdown", &markdown);
     // Without records of several methods nothing is recommended.
     let alone: Vec<Record> = records.iter().take(1).cloned().collect();
     let results = [StudyResults::new(&study, &alone, Tier::Full)];
-    let page = answer_page(&Answers { results: &results, changes: None, ..answers }).expect("a page");
-    assert_eq!(render_markdown(&page).expect("a page").matches("Not in these records: ").count(), 7);
+    let page =
+        answer_page(&Answers { results: &results, changes: None, ends: &[], ..answers }).expect("a page");
+    assert_eq!(open_questions(&page), 8, "nothing is answered without runs to answer from");
+}
+
+/// Questions that a page leaves open.
+fn open_questions(page: &Page) -> usize {
+    let open = page.sections.iter().filter(|section| section.heading == "Not in these records");
+    let listed = open.flat_map(|section| &section.blocks).map(|block| match block {
+        Block::List(points) => points.len(),
+        _ => 0,
+    });
+    listed.sum()
 }
 
 #[test]

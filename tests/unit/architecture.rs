@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folders from the ground up; a folder may import what its row names, and nothing else.
-const MAY_IMPORT: [(&str, &str); 16] = [
+const MAY_IMPORT: [(&str, &str); 18] = [
     ("soil", "elementary wording"),
     ("exact", "elementary soil wording"),
     ("convergence", "elementary wording"),
@@ -15,19 +15,21 @@ const MAY_IMPORT: [(&str, &str); 16] = [
     ("record", "case mpm wording"),
     ("measure", "case elementary exact mpm record scene soil wording"),
     ("study", "case convergence elementary exact mpm record scene soil wording"),
-    ("campaign", "case elementary exact measure mpm record scene study wording"),
-    ("golden", "convergence elementary exact record study"),
     ("import", "case study wording"),
+    ("foreign", "case elementary exact import measure mpm record scene soil study wording"),
+    ("campaign", "case elementary exact foreign measure mpm record scene study wording"),
+    ("golden", "convergence elementary exact record study"),
     (
         "judge",
         "campaign case convergence elementary exact golden import measure mpm record scene soil study wording",
     ),
     ("render", "case convergence elementary exact golden judge measure record study wording"),
-    ("schema", "import record study"),
+    ("schema", "foreign import record study"),
     (
         "cli",
-        "campaign case exact golden import judge measure mpm record render scene schema soil study wording",
+        "campaign case exact foreign golden import judge measure mpm record render scene schema soil study wording",
     ),
+    ("api", "case cli convergence exact import judge scene study"),
 ];
 
 /// Every arrow of a source that its folder's row does not name; tests inside it may look anywhere.

@@ -49,6 +49,50 @@ fn the_fields_agree_with_forty_digits() {
 }
 
 #[test]
+fn the_published_case_of_porepy_is_one_of_ours() {
+    // examples/mandel_biot.py of PorePy (Keilegavlen et al. 2021), after Mikelić, Wang & Wheeler (2014): a slab of
+    // half width 100 m under 6e8 N/m with λ = 1.65e9 Pa, μ = 2.475e9 Pa, a storage of 6.0606e-11 1/Pa, α = 1, a
+    // permeability of 9.869e-14 m² and a viscosity of 1e-3 Pa s. Published of it: E = 5.94e9 Pa, ν = 0.2,
+    // B = 0.83333, ν_u = 0.44, c = 0.46526 m²/s.
+    let seed = ColumnParameters::default();
+    let unit_weight = seed.unit_weight_of_water();
+    let (width, force) = (100.0, 6e8);
+    let parameters = ColumnParameters {
+        height: width,
+        load: force / width,
+        youngs_modulus: 5.94e9,
+        poissons_ratio: 0.2,
+        water_bulk_modulus: seed.porosity / 6.0606e-11,
+        hydraulic_conductivity: 9.869e-14 / 1e-3 * unit_weight,
+        ..seed
+    };
+    let slab = Mandel::new(&parameters).expect("a possible slab");
+    let undrained = 0.2 + slab.groups.kappa * 0.8;
+    assert!((undrained - 0.44).abs() < 1e-5, "{undrained}");
+    let diffusivity = parameters.coefficient_of_consolidation() * slab.groups.storage_ratio;
+    assert!((diffusivity - 0.46526).abs() < 5e-6, "{diffusivity}");
+    // F B (1 + ν_u)/(3a) with the published groups: 2.4 MPa.
+    let start = slab.fields(0.0, 1.0).expect("inside").pressure;
+    assert!((start / (force * 0.83333 * 1.44 / (3.0 * width)) - 1.0).abs() < 1e-5, "{start}");
+    // Their own series, of 200 roots found by bisection, at one tenth of the diffusion time in the middle.
+    let ratio = 0.8 / 0.24;
+    let mut sum = 0.0;
+    for root in 0..200 {
+        let pole = f64::from(root) * PI;
+        let (mut low, mut high) = (pole + PI / 4.0, pole + PI / 2.0 - 2.2204e-9);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if middle.tan() < ratio * middle { low = middle } else { high = middle }
+        }
+        let (sine, cosine) = low.sin_cos();
+        sum += sine / (low - sine * cosine) * (1.0 - cosine) * (-low * low * 0.1).exp();
+    }
+    let theirs = 2.0 * 0.4 * sum;
+    let ours = slab.ratios(0.1 / slab.groups.storage_ratio, 0.0).expect("a time").pressure;
+    assert!((ours / theirs - 1.0).abs() < 1e-4, "{ours} for {theirs}");
+}
+
+#[test]
 fn the_pressure_in_the_middle_peaks_when_and_as_high_as_it_should() {
     // ../reference/mandel.csv: T = c t/a², p a/F, and that over the start (40 digits).
     for (case, time, height, over_start) in [

@@ -220,9 +220,9 @@ proptest! {
         flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..6),
         cut in prop::option::of(any::<prop::sample::Index>()),
     ) {
-        let files = real_files();
-        let path = &files[which.index(files.len())];
-        let mut bytes = std::fs::read(path).expect("a file");
+        let files = files_to_damage();
+        let (path, bytes) = &files[which.index(files.len())];
+        let mut bytes = bytes.clone();
         for (place, byte) in flips {
             let place = place.index(bytes.len());
             bytes[place] = byte;
@@ -232,6 +232,34 @@ proptest! {
         }
         read_any(path, &bytes);
     }
+}
+
+/// Real files, and those of ways that no program at hand writes.
+fn files_to_damage() -> Vec<(PathBuf, Vec<u8>)> {
+    let way = Way {
+        format: "binary",
+        is_raw: false,
+        is_packed: false,
+        is_wide: false,
+        is_single: false,
+        is_big: true,
+        block: 64,
+    };
+    let pressure = [0.5, 1.5, 2.5, 3.5];
+    let made = [
+        ("inline.vtu", way.file(&pressure)),
+        ("text.vtu", Way { format: "ascii", ..way }.file(&pressure)),
+        ("packed.vtu", Way { is_packed: true, ..way }.file(&pressure)),
+        ("appended.vtu", Way { format: "appended", is_wide: true, ..way }.file(&pressure)),
+        ("text.vtk", legacy(false)),
+        ("binary.vtk", legacy(true)),
+    ];
+    let made = made.into_iter().map(|(name, bytes)| (PathBuf::from(name), bytes));
+    let real = real_files().into_iter().map(|path| {
+        let bytes = std::fs::read(&path).expect("a file");
+        (path, bytes)
+    });
+    real.chain(made).collect()
 }
 
 fn real_files() -> Vec<PathBuf> {

@@ -324,6 +324,8 @@ fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
         configuration: one.configuration,
         load: one.load,
         load_shape: crate::mpm::operators::surface_load::LoadShape::Uniform,
+        plate_load: None,
+        weight: None,
         undrained_start: false,
         loading_time: 0.0,
         initial_gradient: [[0.0, 0.0], [0.0, strain]],

@@ -238,7 +238,7 @@ fn print(name: &str, rows: &[PrintedRow], accuracy: &[Truncation], format: Forma
 
 /// The column of the seed with the assignments, judged as a study's, and the reference with the
 /// equations that they choose.
-fn parameters_of(
+pub fn parameters_of(
     kind: ReferenceKind,
     assignments: &[String],
 ) -> anyhow::Result<(ColumnParameters, ReferenceKind)> {

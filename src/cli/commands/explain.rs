@@ -1,7 +1,7 @@
 //! `oedometer explain`: which norm and place carries the error of a case, how it stands among the
 //! other levels, what changed against the golden values, and the command that runs it again.
 
-use crate::campaign::case_run::run_case;
+use crate::campaign::case_runner::CaseRunner;
 use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::cli::commands::check::golden_of;
@@ -12,7 +12,6 @@ use crate::cli::stream::{print_data, say};
 use crate::cli::study_files::file_of;
 use crate::golden::GoldenError;
 use crate::judge::explanation::explain;
-use crate::mpm::run::Kernel;
 use crate::record::Record;
 use crate::record::store::RecordStore;
 use crate::render::tables::explanation;
@@ -126,5 +125,5 @@ fn record_of(study: &Study, case: &Case, results: &Path) -> anyhow::Result<Recor
     if let Some(record) = RecordStore::new(results, &study.name).finished(case) {
         return Ok(record);
     }
-    Ok(run_case(case, &study.references, Kernel::Fastest, true, &|_, _| true)?)
+    Ok(CaseRunner::of(study).run_alone(case, None)?)
 }

@@ -5,9 +5,11 @@ use crate::case::work_estimate::{estimated_seconds, estimated_updates};
 use crate::cli::calibrate;
 use crate::cli::commands::run::{TierArgument, jobs_of, load_or_shipped};
 use crate::cli::exit::Exit;
-use crate::cli::output::csv_of;
+use crate::cli::output::{csv_of, json_of};
 use crate::cli::stream::{print_data, say};
 use crate::cli::time_notes::{note_on_longest, side_by_side};
+use crate::foreign::case_file::CaseFile;
+use crate::record::whole_file::write_whole;
 use crate::study::check::Study;
 use crate::wording::{count_of, duration};
 use std::path::PathBuf;
@@ -27,9 +29,24 @@ pub struct Arguments {
     /// Measure on this machine what a step of each kind costs, beside the constants of the estimates
     #[arg(long, conflicts_with_all = ["studies", "tier"])]
     calibrate: bool,
+    /// Output format: one line a case, or the case files that attached solvers are given
+    #[arg(long, value_enum, default_value_t = PlanFormat::Csv)]
+    format: PlanFormat,
+    /// Write the case file of each case into this folder, as HASH/case.json
+    #[arg(long, value_name = "DIR")]
+    case_files: Option<PathBuf>,
 }
 
-/// Prints one line a case as CSV; what it adds up to goes to standard error.
+/// How the plan is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum PlanFormat {
+    /// A line a case
+    Csv,
+    /// The case files in one list
+    Json,
+}
+
+/// Prints one line a case as CSV, or the case files as JSON; what it adds up to goes to standard error.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.calibrate {
         return calibrate::run();
@@ -37,8 +54,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // Every file is judged before anything is printed.
     let studies = load_or_shipped(&arguments.studies)?;
     let mut rows = Vec::new();
+    let mut files = Vec::new();
     for study in &studies {
         for case in study.cases(arguments.tier.into()) {
+            if arguments.case_files.is_some() || arguments.format == PlanFormat::Json {
+                files.push(CaseFile::of(case));
+            }
             rows.push(vec![
                 study.name.clone(),
                 case.hash(),
@@ -49,7 +70,15 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
     }
     let exit = if rows.is_empty() { Exit::NothingSelected } else { Exit::Pass };
-    print_data(&csv_of(COLUMNS, rows)?)?;
+    for (folder, file) in
+        arguments.case_files.iter().flat_map(|folder| files.iter().map(move |file| (folder, file)))
+    {
+        write_whole(&folder.join(&file.case).join("case.json"), file.text()?.as_bytes())?;
+    }
+    match arguments.format {
+        PlanFormat::Csv => print_data(&csv_of(COLUMNS, rows)?)?,
+        PlanFormat::Json => print_data(&json_of(&files)?)?,
+    }
     tell_of_time(&studies, arguments.tier);
     Ok(exit)
 }

@@ -10,6 +10,8 @@ use crate::cli::exit::{Ended, Exit};
 use crate::cli::progress::StudyBar;
 use crate::cli::stream::say;
 use crate::cli::study_files;
+use crate::foreign::reading::mapping_of;
+use crate::judge::absent::Absent;
 use crate::record::Record;
 use crate::record::long_tables::{columns_csv, history_csv, profiles_csv};
 use crate::record::provenance::Provenance;
@@ -107,7 +109,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         if !report.records.is_empty() && exit == Exit::NothingSelected {
             exit = Exit::Pass;
         }
-        if !report.errors.is_empty() || report.failed().any(|record| !study.foresees(record)) {
+        let is_unforeseen = |record: &Record| !(record.status.is_skipped() || study.foresees(record));
+        if !report.errors.is_empty() || report.failed().any(is_unforeseen) {
             exit = Exit::CaseFailed;
         }
     }
@@ -198,6 +201,9 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
         report.failed().count() + report.errors.len(),
         table.display()
     );
+    for warning in Absent::among(&report.records).warnings() {
+        say!("{}: {warning}", study.name);
+    }
     if report.of_another_program > 0 {
         say!(
             "{}: {} of another version or of other sources {} run again",
@@ -266,6 +272,10 @@ pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
 /// A study that can run; what is odd about it goes to standard error.
 pub fn checked(source: &StudySource, purpose: Purpose) -> anyhow::Result<Study> {
     let study = Study::check_for(source, purpose)?;
+    for solver in &study.solvers {
+        mapping_of(solver, study.scene.has_plane_fields())
+            .map_err(|error| Ended::usage(error.to_string()))?;
+    }
     for warning in &study.warnings {
         say!("{warning}");
     }

@@ -21,7 +21,8 @@ use crate::exact::parameters::ColumnParameters;
 const SERIES_FROM: f64 = 0.02;
 
 /// Mandel's slab. A column's height is the half width `a`, so that the time factor is
-/// `T_v = c_v t/a²` with the drained `c_v`; its load is the mean stress `F/a` under the plates.
+/// `T_v = c_v t/a²` with the drained `c_v`; its length is half the distance of the plates, its load the mean
+/// stress `F/a` under them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mandel {
     parameters: ColumnParameters,
@@ -82,12 +83,12 @@ impl Mandel {
         Ok(-self.parameters.load * self.ratios(time_factor, 0.0)?.strain / self.shear_modulus())
     }
 
-    /// What the drained side has gone inward, m: negative, for it bulges.
+    /// What each plate has gone inward, m, at half the distance of the plates: the length of the parameters.
     ///
     /// # Errors
     /// When `time_factor` is negative or not finite.
     pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
-        Ok(-self.fields(time_factor, 0.0)?.displacement)
+        Ok(-self.strain_across(time_factor)? * self.parameters.length)
     }
 
     /// Degree of consolidation: how far the plates have come of the way that they go in the end,

@@ -102,20 +102,28 @@ impl Scalar {
 
     /// The numbers of bytes; a rest that is no whole number is left.
     pub fn decode(self, bytes: &[u8], is_little: bool) -> Vec<f64> {
+        self.decode_as(bytes, is_little, Ok).unwrap_or_default()
+    }
+
+    /// The same as something else than numbers, like places in a list.
+    ///
+    /// # Errors
+    /// Why a number is none of these.
+    pub fn decode_as<T>(
+        self,
+        bytes: &[u8],
+        is_little: bool,
+        take: impl Fn(f64) -> Result<T, String>,
+    ) -> Result<Vec<T>, String> {
+        let mut all = Vec::with_capacity(bytes.len() / self.size());
         macro_rules! numbers {
             ($kind:ty, $size:literal, $as:expr) => {
-                bytes
-                    .chunks_exact($size)
-                    .map(|chunk| {
-                        let chunk: [u8; $size] = chunk.try_into().unwrap_or_default();
-                        let number = if is_little {
-                            <$kind>::from_le_bytes(chunk)
-                        } else {
-                            <$kind>::from_be_bytes(chunk)
-                        };
-                        $as(number)
-                    })
-                    .collect()
+                for chunk in bytes.chunks_exact($size) {
+                    let chunk: [u8; $size] = chunk.try_into().unwrap_or_default();
+                    let number =
+                        if is_little { <$kind>::from_le_bytes(chunk) } else { <$kind>::from_be_bytes(chunk) };
+                    all.push(take($as(number))?);
+                }
             };
         }
         match self {
@@ -130,6 +138,7 @@ impl Scalar {
             Self::F32 => numbers!(f32, 4, f64::from),
             Self::F64 => numbers!(f64, 8, std::convert::identity),
         }
+        Ok(all)
     }
 }
 
@@ -138,8 +147,15 @@ impl Scalar {
 /// # Errors
 /// When one is negative or has a fraction.
 pub fn counts(numbers: &[f64]) -> Result<Vec<usize>, String> {
-    let count = |number: &f64| count(*number).ok_or_else(|| format!("{number} is no place in a list"));
-    numbers.iter().map(count).collect()
+    numbers.iter().map(|number| as_count(*number)).collect()
+}
+
+/// A number as a count.
+///
+/// # Errors
+/// When it is negative or has a fraction.
+pub fn as_count(number: f64) -> Result<usize, String> {
+    count(number).ok_or_else(|| format!("{number} is no place in a list"))
 }
 
 /// A number as a count, where it is one.
@@ -157,14 +173,26 @@ pub fn count(number: f64) -> Option<usize> {
 /// # Errors
 /// The first word that is no number, or more numbers than `most`.
 pub fn numbers_of_text(text: &[u8], most: usize) -> Result<Vec<f64>, String> {
-    let mut numbers = Vec::new();
+    decode_text_as(text, most, Ok)
+}
+
+/// The same as something else than numbers.
+///
+/// # Errors
+/// As above, and why a number is none of these.
+pub fn decode_text_as<T>(
+    text: &[u8],
+    most: usize,
+    take: impl Fn(f64) -> Result<T, String>,
+) -> Result<Vec<T>, String> {
+    let mut all = Vec::new();
     for word in text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
-        if numbers.len() == most {
+        if all.len() == most {
             return Err(format!("there are more than the {most} numbers declared"));
         }
-        numbers.push(number_of_word(word)?);
+        all.push(take(number_of_word(word)?)?);
     }
-    Ok(numbers)
+    Ok(all)
 }
 
 /// One number of a text.
@@ -181,23 +209,43 @@ pub fn short(text: &str) -> String {
     text.chars().take(40).collect()
 }
 
+/// What each character of base64 stands for; 255 where it is none.
+const DIGITS: [u8; 256] = digits();
+
+const fn digits() -> [u8; 256] {
+    let mut digits = [255; 256];
+    let symbols = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut digit = 0_u8;
+    while digit < 64 {
+        digits[symbols[digit as usize] as usize] = digit;
+        digit += 1;
+    }
+    digits
+}
+
 /// The bytes of base64, up to its end or its first padding.
 ///
 /// # Errors
 /// When a character is none of base64's, or the text ends inside a byte.
 pub fn base64(text: &[u8]) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 3);
+    let mut by_fours = 0;
+    for four in text.chunks_exact(4) {
+        let digits = [four[0], four[1], four[2], four[3]].map(|symbol| DIGITS[usize::from(symbol)]);
+        if digits.iter().any(|digit| *digit > 63) {
+            break;
+        }
+        let [a, b, c, d] = digits;
+        bytes.extend_from_slice(&[(a << 2) | (b >> 4), (b << 4) | (c >> 2), (c << 6) | d]);
+        by_fours += 4;
+    }
     let (mut bits, mut held) = (0_u32, 0_u32);
     let mut digits = 0_usize;
-    for symbol in text {
-        let digit = match symbol {
-            b'A'..=b'Z' => symbol - b'A',
-            b'a'..=b'z' => symbol - b'a' + 26,
-            b'0'..=b'9' => symbol - b'0' + 52,
-            b'+' => 62,
-            b'/' => 63,
-            b'=' => break,
-            b' ' | b'\n' | b'\r' | b'\t' => continue,
+    for symbol in &text[by_fours..] {
+        let digit = match (DIGITS[usize::from(*symbol)], symbol) {
+            (digit @ 0..=63, _) => digit,
+            (_, b'=') => break,
+            (_, b' ' | b'\n' | b'\r' | b'\t') => continue,
             _ => return Err(format!("`{}` is no character of base64", char::from(*symbol))),
         };
         digits += 1;

@@ -77,6 +77,19 @@ impl Cells {
         &points[..corners.min(points.len())]
     }
 
+    /// Which of a number of points are corners of a cell.
+    pub fn are_corners(&self, points: usize) -> Vec<bool> {
+        let mut are_corners = vec![false; points];
+        for cell in 0..self.len() {
+            for corner in self.corners(cell) {
+                if let Some(is_corner) = are_corners.get_mut(*corner as usize) {
+                    *is_corner = true;
+                }
+            }
+        }
+        are_corners
+    }
+
     /// Highest dimension of a cell.
     pub fn dimension(&self) -> usize {
         let dimension = |kind: &u8| match kind {
@@ -132,6 +145,13 @@ impl Frame {
     /// An array by its name, on what is asked for or on anything.
     pub fn array(&self, name: &str, on: Option<Association>) -> Option<&Array> {
         self.arrays.iter().find(|array| array.name == name && on.is_none_or(|on| array.on == on))
+    }
+
+    /// Memory of its numbers, bytes.
+    pub fn bytes(&self) -> u64 {
+        let numbers: usize = self.arrays.iter().map(|array| array.values.len()).sum();
+        let of_cells = self.cells.as_ref().map_or(0, |cells| 9 * cells.len() + 4 * cells.connectivity.len());
+        (8 * numbers + 24 * self.coordinates.len() + of_cells) as u64
     }
 
     /// Names of all arrays, as a message lists them.

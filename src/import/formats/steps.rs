@@ -1,10 +1,12 @@
 //! From a file to its states: what kind it is, which states it holds or names, and one of them read.
 
+use crate::import::formats::bytes::Budget;
 use crate::import::formats::collections::{Member, of_blocks, of_pvd, of_series};
 use crate::import::formats::frame::{Frame, Wanted};
 use crate::import::formats::hdf5::Store;
 use crate::import::formats::{legacy_vtk, numpy, vtu, xdmf};
 use crate::import::import_error::ImportError;
+use std::collections::{HashMap, HashSet};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -48,6 +50,10 @@ impl Kind {
     pub fn of(path: &Path) -> Result<Self, ImportError> {
         let io = |source| ImportError::Io { path: path.to_owned(), source };
         let mut head = Vec::new();
+        let is_file = std::fs::metadata(path).map_err(io)?.is_file();
+        if !is_file {
+            return Err(ImportError::table(path, "it is no file: a device or a pipe may never end"));
+        }
         std::fs::File::open(path).map_err(io)?.take(LOOK).read_to_end(&mut head).map_err(io)?;
         Ok(Self::of_head(&head))
     }
@@ -113,77 +119,112 @@ pub struct Step {
 /// # Errors
 /// What cannot be read.
 pub fn steps_of(path: &Path, notes: &mut Vec<String>) -> Result<Vec<Step>, ImportError> {
-    let mut steps = Vec::new();
-    list(path, None, &mut vec![path.to_owned()], &mut steps, notes)?;
+    let mut listing = Listing { above: vec![path.to_owned()], looked_at: 0, steps: Vec::new(), notes };
+    listing.list(path, None)?;
+    let mut steps = listing.steps;
     for step in &mut steps {
         path.clone_into(&mut step.named);
     }
     Ok(steps)
 }
 
-fn list(
-    path: &Path,
-    time: Option<f64>,
-    above: &mut Vec<PathBuf>,
-    steps: &mut Vec<Step>,
-    notes: &mut Vec<String>,
-) -> Result<(), ImportError> {
-    let refused = |why: String| ImportError::table(path, why);
-    let kind = Kind::of(path)?;
-    let step = |place: usize, time: Option<f64>| Step {
-        file: path.to_owned(),
-        kind,
-        place,
-        time,
-        named: PathBuf::new(),
-    };
-    if steps.len() > MOST {
-        return Err(refused(format!("it names more than {MOST} files")));
+/// States found so far.
+struct Listing<'a> {
+    /// Collections that are being read, each named by the one before it.
+    above: Vec<PathBuf>,
+    /// Files looked at, whatever they held.
+    looked_at: usize,
+    steps: Vec<Step>,
+    notes: &'a mut Vec<String>,
+}
+
+impl Listing<'_> {
+    fn list(&mut self, path: &Path, time: Option<f64>) -> Result<(), ImportError> {
+        let refused = |why: String| ImportError::table(path, why);
+        let kind = Kind::of(path)?;
+        let step = |place: usize, time: Option<f64>| Step {
+            file: path.to_owned(),
+            kind,
+            place,
+            time,
+            named: PathBuf::new(),
+        };
+        self.looked_at += 1;
+        if self.looked_at > MOST {
+            return Err(refused(format!("it names more than {MOST} files")));
+        }
+        let members = match kind {
+            Kind::Collection => of_pvd(path, &read(path)?).map_err(refused)?,
+            Kind::Series => of_series(path, &read(path)?).map_err(refused)?,
+            Kind::Hdf5 => {
+                let times = Store::open(path).and_then(|mut store| store.times()).map_err(refused)?;
+                let of_place = |(place, own): (usize, &f64)| step(place, Some(*own));
+                self.steps.extend(times.iter().enumerate().map(of_place));
+                self.steps.extend(times.is_empty().then(|| step(0, time)));
+                return Ok(());
+            }
+            Kind::Xdmf => {
+                let times = xdmf::times(&read(path)?).map_err(refused)?;
+                self.steps.extend(times.iter().enumerate().map(|(place, own)| step(place, own.or(time))));
+                return Ok(());
+            }
+            _ => {
+                self.steps.push(step(0, time));
+                return Ok(());
+            }
+        };
+        self.members(path, time, &members)
     }
-    let members = match kind {
-        Kind::Collection => of_pvd(path, &read(path)?).map_err(refused)?,
-        Kind::Series => of_series(path, &read(path)?).map_err(refused)?,
-        Kind::Hdf5 => {
-            let times = Store::open(path).and_then(|mut store| store.times()).map_err(refused)?;
-            let of_place = |(place, own): (usize, &f64)| step(place, Some(*own));
-            steps.extend(times.iter().enumerate().map(of_place));
-            steps.extend(times.is_empty().then(|| step(0, time)));
-            return Ok(());
+
+    /// The states of the files that a collection names.
+    fn members(&mut self, path: &Path, time: Option<f64>, members: &[Member]) -> Result<(), ImportError> {
+        let refused = |why: String| ImportError::table(path, why);
+        let (mut absent, mut twice) = (0, 0);
+        let mut seen: HashMap<&Path, Option<f64>> = HashMap::new();
+        for Member { file, time: own } in members {
+            if self.above.contains(file) || self.above.len() > DEEPEST {
+                return Err(refused(format!("it names {}, which names it again", file.display())));
+            }
+            match seen.insert(file, *own) {
+                Some(other) if other == *own => {
+                    twice += 1;
+                    continue;
+                }
+                Some(_) => {
+                    let why = format!("it names {} at two times: one state has one time", file.display());
+                    return Err(refused(why));
+                }
+                None => {}
+            }
+            if !file.is_file() {
+                absent += 1;
+                continue;
+            }
+            self.above.push(file.clone());
+            self.list(file, own.or(time))?;
+            self.above.pop();
         }
-        Kind::Xdmf => {
-            let times = xdmf::times(&read(path)?).map_err(refused)?;
-            steps.extend(times.iter().enumerate().map(|(place, own)| step(place, own.or(time))));
-            return Ok(());
+        if absent == members.len() {
+            return Err(refused(format!("none of the {absent} files that it names is there")));
         }
-        _ => {
-            steps.push(step(0, time));
-            return Ok(());
+        let all = members.len();
+        for (count, what) in
+            [(absent, "are not there, and left out"), (twice, "are named twice, and read once")]
+        {
+            if count > 0 {
+                let path = path.display();
+                self.notes.push(format!("{path}: {count} of the {all} files that it names {what}"));
+            }
         }
-    };
-    let mut absent = 0;
-    for Member { file, time: own } in &members {
-        if above.contains(file) || above.len() > DEEPEST {
-            return Err(refused(format!("it names {}, which names it again", file.display())));
-        }
-        if !file.is_file() {
-            absent += 1;
-            continue;
-        }
-        above.push(file.clone());
-        list(file, own.or(time), above, steps, notes)?;
-        above.pop();
+        Ok(())
     }
-    if absent == members.len() {
-        return Err(refused(format!("none of the {absent} files that it names is there")));
-    }
-    if absent > 0 {
-        notes.push(format!(
-            "{}: {absent} of the {} files that it names are not there, and left out",
-            path.display(),
-            members.len()
-        ));
-    }
-    Ok(())
+}
+
+/// Bytes of files together, each once.
+fn size_of_all(files: &[PathBuf]) -> usize {
+    let once: HashSet<&PathBuf> = files.iter().collect();
+    let size = |file: &PathBuf| std::fs::metadata(file).map_or(0, |told| told.len());
+    usize::try_from(once.into_iter().map(size).sum::<u64>()).unwrap_or(usize::MAX)
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
@@ -209,22 +250,38 @@ pub fn frame_of(step: &Step, wanted: Wanted) -> Result<Frame, ImportError> {
             Store::open(path).and_then(|mut store| store.frame(step.place, wanted)).map_err(refused)
         }
         Kind::Xdmf => xdmf::read(path, &read(path)?, step.place, wanted).map_err(refused),
-        Kind::Blocks => blocks(path, wanted, 0),
+        Kind::Blocks => blocks(path, wanted, 0, &mut None),
         Kind::Table | Kind::Collection | Kind::Series => Err(refused("it holds no arrays".to_owned())),
     }
 }
 
-/// The blocks of the highest dimension, joined: loads on edges are blocks too, and repeat points.
-fn blocks(path: &Path, wanted: Wanted, depth: usize) -> Result<Frame, ImportError> {
+/// The blocks of the highest dimension, joined: loads on edges are blocks too, and repeat points. All blocks
+/// together, however deep, have the memory that their files may take.
+fn blocks(
+    path: &Path,
+    wanted: Wanted,
+    depth: usize,
+    budget: &mut Option<Budget>,
+) -> Result<Frame, ImportError> {
     let refused = |why: String| ImportError::table(path, why);
     if depth > DEEPEST {
         return Err(refused("its blocks name each other".to_owned()));
     }
     let mut parts = Vec::new();
-    for file in of_blocks(path, &read(path)?).map_err(refused)? {
+    let files = of_blocks(path, &read(path)?).map_err(refused)?;
+    if budget.is_none() {
+        *budget = Some(Budget::of_file(size_of_all(&files)));
+    }
+    let mut seen = HashSet::new();
+    for file in files {
+        if !seen.insert(file.clone()) {
+            return Err(refused(format!("it names the block {} twice", file.display())));
+        }
+        // A block that holds nothing takes time all the same.
+        let least = 1 << 12;
         let kind = Kind::of(&file)?;
         let frame = match kind {
-            Kind::Blocks => blocks(&file, wanted, depth + 1)?,
+            Kind::Blocks => blocks(&file, wanted, depth + 1, budget)?,
             Kind::Collection | Kind::Series | Kind::Table => {
                 return Err(refused(format!("the block {} holds no arrays", file.display())));
             }
@@ -233,6 +290,8 @@ fn blocks(path: &Path, wanted: Wanted, depth: usize) -> Result<Frame, ImportErro
                 frame_of(&step, wanted)?
             }
         };
+        let taken = budget.as_mut().map_or(Ok(()), |budget| budget.take(frame.bytes().max(least)));
+        taken.map_err(refused)?;
         parts.push((file, frame));
     }
     let dimension = |frame: &Frame| frame.cells.as_ref().map_or(0, |cells| cells.dimension() + 1);

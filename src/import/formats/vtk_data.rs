@@ -1,6 +1,7 @@
 //! The payload of one `DataArray` of VTK's XML files: text, base64, appended, packed or not.
 
-use crate::import::formats::bytes::{Budget, Scalar, base64, counts, numbers_of_text, unzlib};
+use crate::import::formats::bytes::{Budget, Scalar, base64, counts, decode_text_as, unzlib};
+use std::borrow::Cow;
 
 /// How a file keeps its data.
 #[derive(Clone, Debug)]
@@ -27,26 +28,46 @@ pub enum Place<'a> {
 }
 
 impl Payloads<'_> {
-    /// The numbers at a place; `expected` of them, where that is known.
+    /// The numbers at a place, each taken as what it stands for; `expected` of them, where that is known.
     ///
     /// # Errors
-    /// When they are damaged, cut, or not as many as expected.
-    pub fn numbers(
+    /// When they are damaged, cut, not as many as expected, or one stands for nothing.
+    pub fn take<T>(
         &self,
         place: Place,
         scalar: Scalar,
         expected: Option<usize>,
         budget: &mut Budget,
-    ) -> Result<Vec<f64>, String> {
-        let numbers = match place {
-            Place::Ascii(text) => {
-                budget.take(4 * text.len() as u64)?;
-                numbers_of_text(text, expected.unwrap_or(usize::MAX))?
+        take: impl Fn(f64) -> Result<T, String>,
+    ) -> Result<Vec<T>, String> {
+        let all = if let Place::Ascii(text) = place {
+            budget.take(4 * text.len() as u64)?;
+            decode_text_as(text, expected.unwrap_or(usize::MAX), take)?
+        } else {
+            let bytes = self.bytes(place, budget)?;
+            if !bytes.len().is_multiple_of(scalar.size()) {
+                return Err(format!(
+                    "its {} bytes are no whole numbers of {} bytes",
+                    bytes.len(),
+                    scalar.size()
+                ));
             }
-            Place::Inline(text) => {
-                let bytes = self.of_base64(text.trim_ascii(), budget)?;
-                self.decoded(&bytes, scalar, budget)?
+            budget.take(8 * (bytes.len() / scalar.size()) as u64)?;
+            scalar.decode_as(&bytes, self.is_little, take)?
+        };
+        match expected {
+            Some(expected) if expected != all.len() => {
+                Err(format!("it holds {} numbers, and {expected} are declared", all.len()))
             }
+            _ => Ok(all),
+        }
+    }
+
+    /// The bytes at a place, unpacked.
+    fn bytes<'b>(&'b self, place: Place<'b>, budget: &mut Budget) -> Result<Cow<'b, [u8]>, String> {
+        match place {
+            Place::Ascii(text) => Ok(text.into()),
+            Place::Inline(text) => Ok(self.of_base64(text.trim_ascii(), budget)?.into()),
             Place::Appended(offset) => {
                 let (data, is_raw) = self.appended.ok_or("its data are appended, and nothing is")?;
                 let data = data.get(offset..).ok_or_else(|| {
@@ -55,36 +76,17 @@ impl Payloads<'_> {
                         data.len()
                     )
                 })?;
-                if is_raw {
-                    self.of_raw(data, scalar, budget)?
-                } else {
-                    let bytes = self.of_base64(data, budget)?;
-                    self.decoded(&bytes, scalar, budget)?
-                }
+                if is_raw { self.of_raw(data, budget) } else { Ok(self.of_base64(data, budget)?.into()) }
             }
-        };
-        match expected {
-            Some(expected) if expected != numbers.len() => {
-                Err(format!("it holds {} numbers, and {expected} are declared", numbers.len()))
-            }
-            _ => Ok(numbers),
         }
-    }
-
-    fn decoded(&self, bytes: &[u8], scalar: Scalar, budget: &mut Budget) -> Result<Vec<f64>, String> {
-        if !bytes.len().is_multiple_of(scalar.size()) {
-            return Err(format!("its {} bytes are no whole numbers of {} bytes", bytes.len(), scalar.size()));
-        }
-        budget.take(8 * (bytes.len() / scalar.size()) as u64)?;
-        Ok(scalar.decode(bytes, self.is_little))
     }
 
     fn sizes(&self, bytes: &[u8]) -> Result<Vec<usize>, String> {
         counts(&self.header.decode(bytes, self.is_little))
     }
 
-    /// Numbers of raw bytes that begin with a header.
-    fn of_raw(&self, data: &[u8], scalar: Scalar, budget: &mut Budget) -> Result<Vec<f64>, String> {
+    /// Bytes behind the header with which raw ones begin, unpacked.
+    fn of_raw<'b>(&self, data: &'b [u8], budget: &mut Budget) -> Result<Cow<'b, [u8]>, String> {
         let width = self.header.size();
         let part = |from: usize, length: usize| {
             from.checked_add(length).and_then(|end| data.get(from..end)).ok_or_else(|| {
@@ -96,13 +98,12 @@ impl Payloads<'_> {
         };
         let first = self.sizes(part(0, width)?)?[0];
         if !self.is_packed {
-            return self.decoded(part(width, first)?, scalar, budget);
+            return Ok(part(width, first)?.into());
         }
         let head = packed_head(first, width, data.len())?;
         let header = self.sizes(part(0, head)?)?;
         let packed = part(head, blocks_of(&header)?)?;
-        let bytes = unpacked(&header, packed, budget)?;
-        self.decoded(&bytes, scalar, budget)
+        Ok(unpacked(&header, packed, budget)?.into())
     }
 
     /// Bytes of base64 that begins with a header, unpacked.

@@ -3,7 +3,7 @@
 //! Format: "VTK XML Formats", docs.vtk.org. Text, base64 inline or appended, raw appended; packed by zlib or not;
 //! headers of 32 and 64 bits; both byte orders.
 
-use crate::import::formats::bytes::{Budget, Scalar, count, counts};
+use crate::import::formats::bytes::{Budget, Scalar, as_count, count};
 use crate::import::formats::frame::{Array, Association, Cells, Frame, Wanted};
 use crate::import::formats::vtk_data::{Payloads, Place};
 use crate::import::formats::xml::attributes_of;
@@ -103,12 +103,23 @@ impl Head<'_> {
         expected: Option<usize>,
         budget: &mut Budget,
     ) -> Result<Vec<f64>, String> {
+        self.take(declared, expected, budget, Ok)
+    }
+
+    /// The numbers of an array, each taken as what it stands for.
+    fn take<T>(
+        &self,
+        declared: &Declared,
+        expected: Option<usize>,
+        budget: &mut Budget,
+        take: impl Fn(f64) -> Result<T, String>,
+    ) -> Result<Vec<T>, String> {
         let of_array = |why: String| format!("the array `{}`: {why}", declared.name());
         let kind = declared.get("type");
         let scalar =
             Scalar::of_xml(kind).ok_or_else(|| of_array(format!("`{kind}` is no kind of numbers")))?;
         let place = declared.place().map_err(of_array)?;
-        self.payloads.numbers(place, scalar, expected, budget).map_err(of_array)
+        self.payloads.take(place, scalar, expected, budget, take).map_err(of_array)
     }
 
     /// An array, with its values where they are wanted; one of texts is none.
@@ -140,7 +151,7 @@ impl Head<'_> {
     /// A piece as a frame.
     fn part(&self, piece: &Piece, wanted: Wanted, budget: &mut Budget) -> Result<Frame, String> {
         let mut frame = Frame::default();
-        let mut cells = BTreeMap::new();
+        let (mut connectivity, mut ends, mut types) = (None, None, Vec::new());
         for declared in &piece.arrays {
             match declared.section.as_str() {
                 "Points" => {
@@ -156,22 +167,20 @@ impl Head<'_> {
                     let on = Association::Cells;
                     frame.arrays.extend(self.array(declared, on, Some(piece.cells), wanted, budget)?);
                 }
-                "Cells" => {
-                    let expected = (declared.name() != "connectivity").then_some(piece.cells);
-                    if ["connectivity", "offsets", "types"].contains(&declared.name()) {
-                        cells.insert(declared.name().to_owned(), self.numbers(declared, expected, budget)?);
-                    }
-                }
+                "Cells" => match declared.name() {
+                    "connectivity" => connectivity = Some(self.take(declared, None, budget, as_place)?),
+                    "offsets" => ends = Some(self.take(declared, Some(piece.cells), budget, as_count)?),
+                    "types" => types = self.take(declared, Some(piece.cells), budget, as_kind)?,
+                    _ => {}
+                },
                 _ => {}
             }
         }
         if frame.coordinates.len() != piece.points {
             return Err(format!("it declares {} points and has no places for them", piece.points));
         }
-        if let (Some(connectivity), Some(ends)) = (cells.remove("connectivity"), cells.remove("offsets")) {
-            let types = cells.remove("types").unwrap_or_default();
-            let cells =
-                Cells { types: kinds(&types)?, ends: counts(&ends)?, connectivity: places(&connectivity)? };
+        if let (Some(connectivity), Some(ends)) = (connectivity, ends) {
+            let cells = Cells { types, ends, connectivity };
             cells.check(piece.points)?;
             frame.cells = (cells.len() > 0).then_some(cells);
         }
@@ -184,11 +193,12 @@ impl Head<'_> {
 /// # Errors
 /// When one is no such number.
 pub fn kinds(numbers: &[f64]) -> Result<Vec<u8>, String> {
-    let kind = |number: &f64| count(*number).and_then(|kind| u8::try_from(kind).ok());
-    numbers
-        .iter()
-        .map(|number| kind(number).ok_or_else(|| format!("{number} is no type of a cell")))
-        .collect()
+    numbers.iter().map(|number| as_kind(*number)).collect()
+}
+
+fn as_kind(number: f64) -> Result<u8, String> {
+    let kind = count(number).and_then(|kind| u8::try_from(kind).ok());
+    kind.ok_or_else(|| format!("{number} is no type of a cell"))
 }
 
 /// Points that cells name.
@@ -196,8 +206,12 @@ pub fn kinds(numbers: &[f64]) -> Result<Vec<u8>, String> {
 /// # Errors
 /// When one is no such number.
 pub fn places(numbers: &[f64]) -> Result<Vec<u32>, String> {
-    let place = |number: &f64| count(*number).and_then(|place| u32::try_from(place).ok());
-    numbers.iter().map(|number| place(number).ok_or_else(|| format!("{number} names no point"))).collect()
+    numbers.iter().map(|number| as_place(*number)).collect()
+}
+
+fn as_place(number: f64) -> Result<u32, String> {
+    let place = count(number).and_then(|place| u32::try_from(place).ok());
+    place.ok_or_else(|| format!("{number} names no point"))
 }
 
 fn product(tuples: usize, components: usize) -> Result<usize, String> {

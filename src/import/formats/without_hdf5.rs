@@ -6,7 +6,8 @@ use std::path::Path;
 /// No file can be opened.
 pub struct Store;
 
-const ABSENT: &str = "this program was built without its feature `hdf5`";
+const ABSENT: &str = "it is HDF5, or its numbers are in HDF5, and this program was built without its feature `hdf5`: build \
+                      it with its default features, or write VTU";
 
 impl Store {
     /// Refuses.

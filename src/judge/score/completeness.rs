@@ -41,6 +41,8 @@ pub enum Lack {
     TimeMissing,
     /// Pressures of exactly 0 stand inside the body.
     ZerosInside,
+    /// Nobody said which units and signs the columns have.
+    Undeclared,
 }
 
 impl Lack {
@@ -55,6 +57,7 @@ impl Lack {
             Self::SamplesDiffer => "samples-differ",
             Self::TimeMissing => "time-missing",
             Self::ZerosInside => "zeros-inside",
+            Self::Undeclared => "undeclared",
         }
     }
 }
@@ -62,7 +65,7 @@ impl Lack {
 /// One thing that is missing from a result.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Finding {
-    /// What.
+    /// What is missing.
     pub name: Lack,
     /// Where, and how much.
     pub sentence: String,

@@ -19,3 +19,4 @@ pub mod state;
 pub mod step;
 pub mod step_operator;
 pub mod stiffness;
+pub mod tied_rows;

@@ -1,6 +1,7 @@
 //! What a frozen step needs of its body: rows between those nodes that move, and constants of each.
 
 use crate::mpm::assembled::stiffness::entry_of;
+use crate::mpm::assembled::tied_rows::TiedRows;
 use crate::mpm::body::Body;
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::soil::tensor::{Tensor, Vector};
@@ -23,8 +24,10 @@ pub struct FrozenOperators<const D: usize> {
     pub skeleton_force: Vec<Vec<(usize, Tensor<D>)>>,
     /// `P = M⁻¹ Σ N m ⊗ N`: velocities to the points and back, `[row] → (row, 1)`.
     pub projection: Vec<Vec<(usize, f64)>>,
-    /// Rows that span the loaded surface, with the weights there.
-    pub surface: Vec<(usize, f64)>,
+    /// Rows whose displacements are the settlement, with their weights and its sign turned.
+    pub settling: Vec<(usize, Vector<D>)>,
+    /// Rows that go together under a rigid plate.
+    pub tied: TiedRows,
     /// `D` and `R` between nodes, sites and points.
     pub volumetric: VolumetricRows<D>,
 }
@@ -77,7 +80,8 @@ impl<const D: usize> FrozenOperators<D> {
             pressure_force: nodes.iter().map(|node| forces[*node].clone()).collect(),
             skeleton_force: nodes.iter().map(|node| numbered(&skeleton[*node], &number)).collect(),
             projection: nodes.iter().map(|node| numbered(&projection[*node], &number)).collect(),
-            surface: numbered(&body.surface.weights(&body.grid, &body.points), &number),
+            settling: numbered(&body.settling_weights(), &number),
+            tied: TiedRows::of(&body, &number),
             node_count: fields.len(),
             volumetric,
             nodes,

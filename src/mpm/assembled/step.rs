@@ -5,12 +5,13 @@ use crate::mpm::assembled::rows::RowStorage;
 use crate::mpm::assembled::rows::banded_rows::{BandsWithin, REACH};
 use crate::mpm::assembled::rows::block_products::Rows;
 use crate::mpm::assembled::state::{FrozenState, LANES, Lanes, MARGIN, SOLID, WATER, lanes, set_lanes};
+use crate::mpm::assembled::tied_rows::TiedRows;
 use crate::mpm::body::Body;
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::momentum::{NodalBalance, implicit_drag, per_water_inertia};
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::mpm::run::profile::{Phase, enter};
-use crate::soil::tensor::Vector;
+use crate::soil::tensor::{Vector, dot};
 
 /// A frozen body with its step assembled.
 #[derive(Clone, Debug)]
@@ -23,8 +24,10 @@ pub struct AssembledStep<const D: usize> {
     /// Constants of the rows, block by block.
     pub(crate) constants: Vec<BlockConstants<D>>,
     volumetric: VolumetricRows<D>,
-    /// Rows that span the loaded surface, with the weights there.
-    surface: Vec<(usize, f64)>,
+    /// Rows whose displacements are the settlement, with their weights and its sign turned.
+    settling: Vec<(usize, Vector<D>)>,
+    /// Rows that go together under a rigid plate.
+    tied: TiedRows,
     /// Rows that carry the load, with the force of all else and of the whole load.
     loaded: Vec<LoadedRow<D>>,
     pub(crate) state: FrozenState<D>,
@@ -75,7 +78,8 @@ impl<const D: usize> AssembledStep<D> {
             nodes: operators.nodes,
             node_count: operators.node_count,
             volumetric: operators.volumetric,
-            surface: operators.surface,
+            settling: operators.settling,
+            tied: operators.tied,
         };
         for (row, node) in operators.constants.iter().enumerate() {
             step.constants[row / LANES].set(row % LANES, node);
@@ -137,7 +141,7 @@ impl<const D: usize> AssembledStep<D> {
 
     /// One step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
-        let Self { rows, constants, state, .. } = self;
+        let Self { rows, constants, state, tied, .. } = self;
         match rows {
             RowStorage::Banded(bands) => {
                 enter(Phase::Forces);
@@ -159,8 +163,10 @@ impl<const D: usize> AssembledStep<D> {
                 rows.dilate(&state.flux_displacement, &mut state.dilation);
                 enter(Phase::Forces);
                 accelerate(rows, constants, state, kick);
+                tied.tie_accelerations(state, kick);
                 enter(Phase::Motion);
                 advance(rows, constants, state, [kick, dt], settings);
+                tied.tie_velocities(state, dt, settings.mapping_back);
             }
         }
     }
@@ -172,9 +178,10 @@ impl<const D: usize> AssembledStep<D> {
         })
     }
 
-    /// Displacement of the loaded surface since the assembly, m, as its own settlement is measured.
+    /// Displacement of the loaded surface, or of the plate, since the assembly, m, as its own settlement is measured.
     pub fn surface_displacement(&self) -> f64 {
-        self.surface.iter().map(|(row, weight)| weight * self.state.displacement[MARGIN + row][D - 1]).sum()
+        let moved = |(row, weight): &(usize, Vector<D>)| dot(weight, &self.state.displacement[MARGIN + row]);
+        self.settling.iter().map(moved).sum()
     }
 
     /// The body at the present state, from the body that was assembled: stresses, pressures and
@@ -195,7 +202,7 @@ impl<const D: usize> AssembledStep<D> {
             body.nodes.solid_velocity[*node] = self.state.velocity[SOLID][MARGIN + row];
             body.nodes.water_velocity[*node] = self.state.velocity[WATER][MARGIN + row];
         }
-        body.surface_flux += body.surface.mean_of(&body.grid, &body.points, &flux);
+        body.surface_flux += body.outflow_of(&flux);
         body
     }
 

@@ -29,6 +29,9 @@ impl<const D: usize> Body<D> {
         self.reset_grid(settings); // step 1
         enter(Phase::Forces);
         self.nodal_accelerations(kick, settings.drag); // step 2
+        if let Some(plate) = &self.plate {
+            plate.tie_accelerations(&mut self.nodes);
+        }
         enter(Phase::Motion);
         self.nodal_velocities(kick, dt); // step 3
         self.advance_points(kick, dt, settings.flip); // step 4
@@ -261,7 +264,7 @@ impl<const D: usize> Body<D> {
     /// `Δp = −Δt (K_w/n) [∇·v_s + ∇·w]` (docs/theory.md, Eq. 8).
     fn update_pressure(&mut self, dt: f64) {
         self.nodal_flux();
-        self.surface_flux += dt * self.surface.mean_of(&self.grid, &self.points, &self.nodes.flux);
+        self.surface_flux += dt * self.outflow_of(&self.nodes.flux);
         self.evaluate_sites(|body, place, porosity| {
             let rate = body.volume_rate(porosity, |field| body.divergence_at(place, field));
             let bulk_modulus = body.material.water_bulk_modulus;

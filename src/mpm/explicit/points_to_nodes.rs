@@ -31,6 +31,9 @@ impl<const D: usize> Body<D> {
         if MASSES && self.material.conductivity_mean == ConductivityMean::Chord {
             self.take_chord_drag();
         }
+        if let Some(plate) = self.plate.as_ref().filter(|_| VELOCITIES) {
+            plate.tie_velocities(&mut self.nodes);
+        }
     }
 
     fn map_points_by<const MASSES: bool, const VELOCITIES: bool, const W: usize>(
@@ -142,6 +145,9 @@ impl<const D: usize> Body<D> {
         }
         for (node, forces) in nodes.sums.forces.iter().enumerate() {
             [nodes.mixture_force[node], nodes.water_force[node]] = *forces;
+        }
+        if self.weight.is_some() {
+            self.add_weight();
         }
     }
 }

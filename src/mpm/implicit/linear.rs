@@ -5,7 +5,7 @@
 //! extrapolated state has the extrapolated residual: no product with `K` is ever taken.
 
 use crate::mpm::body::Body;
-use crate::mpm::implicit::banded::BandedLu;
+use crate::mpm::direct_solver::bordered::BorderedLu;
 use crate::mpm::implicit::linear_system::{LinearOperators, LinearSystem};
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::run::outcome::FailureKind;
@@ -22,7 +22,7 @@ pub struct LinearStepper<const D: usize> {
     /// Settlement of the start, m.
     settled: f64,
     system: LinearSystem<D>,
-    lu: BandedLu,
+    lu: BorderedLu,
     /// Step size that the factors belong to, s.
     factored: Option<f64>,
     /// State `x`.
@@ -50,7 +50,7 @@ impl<const D: usize> LinearStepper<D> {
         let zero = vec![0.0; system.unknowns.count];
         Self {
             settled: start.settlement(plan.initial_height),
-            lu: BandedLu::of_shape(&system.fixed),
+            lu: BorderedLu::of_shape(&system.fixed),
             factored: None,
             state: zero.clone(),
             residual: system.start_residual.clone(),
@@ -164,6 +164,7 @@ impl<const D: usize> Stepper for LinearStepper<D> {
         let mut body = self.start.clone();
         body.change_points(&unknowns.rows, &displacement, &pressures, &displacement);
         body.nodes.solid_velocity = nodal(&self.increment, self.rate_scale * scales.length);
+        body.take_darcy_velocities();
         body.surface_flux += self.system.mean_displacement.product(0, &self.state) + self.outflow;
         body.snapshot(time, self.settlement(), &self.start.points)
     }

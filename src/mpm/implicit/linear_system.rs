@@ -11,12 +11,14 @@
 
 use crate::mpm::assembled::stiffness::NodeBlocks;
 use crate::mpm::body::Body;
-use crate::mpm::implicit::banded::Banded;
+use crate::mpm::direct_solver::bordered::Bordered;
 use crate::mpm::implicit::unknowns::Unknowns;
+use crate::mpm::operators::rigid_plate::RigidPlate;
 use crate::mpm::operators::sparse_rows::SparseRows;
 use crate::mpm::operators::volumetric::VectorRow;
 use crate::mpm::state::nodes::Nodes;
 use crate::soil::continuity::Continuity;
+use crate::soil::tensor::Vector;
 
 /// A frozen body as sparse operators between nodes and sites, whatever its basis.
 #[derive(Clone, Debug)]
@@ -33,9 +35,11 @@ pub struct LinearOperators<const D: usize> {
     continuity: Continuity,
     /// Nodes with the forces of the start.
     nodes: Nodes<D>,
-    /// Weights of the nodes in the surface's displacement as it settles, and in its mean.
-    surface: Vec<(usize, f64)>,
-    mean_surface: Vec<(usize, f64)>,
+    /// Plate that some of them go with.
+    plate: Option<RigidPlate>,
+    /// Weights of the nodes in the settlement, with its sign turned, and in what leaves the body.
+    settling: Vec<(usize, Vector<D>)>,
+    outflow: Vec<(usize, Vector<D>)>,
 }
 
 /// `C ẋ + K x = g` of a frozen body, scaled.
@@ -44,17 +48,18 @@ pub struct LinearSystem<const D: usize> {
     /// Numbering and scales of `x`.
     pub unknowns: Unknowns<D>,
     /// What a step's matrix has whatever its size: `K` in the mixture's rows, `C` in the others.
-    pub fixed: Banded,
+    pub fixed: Bordered,
     /// What it has in proportion to its size: `K` in the storage's rows, 1/s.
-    pub proportional: Banded,
+    pub proportional: Bordered,
     /// Rows of `C`, one per site.
     pub capacity: SparseRows<f64>,
     /// `g − K x` at the start, where `x` is zero; 1/s in the storage's rows.
     pub start_residual: Vec<f64>,
-    /// Vertical displacement of the loaded surface, as much of it as has the load's shape, as a row
-    /// times `x`, m.
+    /// Vertical displacement of the loaded surface, as much of it as has the load's shape, or that of the
+    /// plate along its normal, as a row times `x`, m.
     pub surface_displacement: SparseRows<f64>,
-    /// Its mean over the surface, as a row times `x`, m.
+    /// What the skeleton's displacement carries through the surface and before the plate, per area of the
+    /// surface, as a row times `x`, m.
     pub mean_displacement: SparseRows<f64>,
     /// Mean over the surface of the relative flux `n (v_w − v_s)`, as a row times `x`, m/s.
     pub surface_outflow: SparseRows<f64>,
@@ -78,10 +83,17 @@ impl<const D: usize> LinearOperators<D> {
             water_bulk_modulus: body.material.water_bulk_modulus,
             continuity: body.material.continuity,
             nodes: loaded.nodes,
-            surface: body.surface.weights(&body.grid, &body.points),
-            mean_surface: body.surface.mean_weights(&body.grid, &body.points),
+            plate: body.plate.clone(),
+            settling: body.settling_weights(),
+            outflow: body.outflow_weights(),
             unknowns,
         }
+    }
+
+    /// Whether the water may flow along a component at a node: not where it is held, nor through a plate.
+    fn flows(&self, node: usize, component: usize) -> bool {
+        let is_tied = self.plate.as_ref().is_some_and(|plate| plate.ties(node, component));
+        self.nodes.water_free[node][component] > 0.0 && !is_tied
     }
 
     /// Relative velocity that a unit of water force makes at a node, one over the drag, m/(N s).
@@ -133,7 +145,7 @@ impl<const D: usize> LinearOperators<D> {
             for (node, coefficients) in divergence {
                 let flux_of_force = self.flux_of_force(site, *node) * self.unknowns.scales.pressure;
                 // Where the water is held, nothing flows; on a rough base it slides.
-                for d in (0..D).filter(|d| self.nodes.water_free[*node][*d] > 0.0) {
+                for d in (0..D).filter(|d| self.flows(*node, *d)) {
                     for (other, force) in self.pressure_forces[*node].iter().filter(|other| other.1[d] != 0.0)
                     {
                         let rate = coefficients[d] * flux_of_force * force[d];
@@ -163,7 +175,7 @@ impl<const D: usize> LinearOperators<D> {
         for (numbers, forces) in unknowns.displacement.iter().zip(&nodes.mixture_force) {
             for (row, force) in numbers.iter().zip(forces) {
                 if let Some(row) = row {
-                    residual[*row] = force / self.unknowns.scales.force;
+                    residual[*row] += force / self.unknowns.scales.force;
                 }
             }
         }
@@ -171,7 +183,7 @@ impl<const D: usize> LinearOperators<D> {
             let mut rate = 0.0;
             for (node, coefficients) in divergence {
                 let flux_of_force = self.flux_of_force(site, *node);
-                for d in (0..D).filter(|d| nodes.water_free[*node][*d] > 0.0) {
+                for d in (0..D).filter(|d| self.flows(*node, *d)) {
                     rate += coefficients[d] * flux_of_force * nodes.water_force[*node][d];
                 }
             }
@@ -180,31 +192,52 @@ impl<const D: usize> LinearOperators<D> {
         residual
     }
 
-    /// The surface's displacement with some weights as a row.
-    fn displacement_row(&self, weights: &[(usize, f64)]) -> SparseRows<f64> {
-        let number = |node: usize| self.unknowns.displacement[node][D - 1];
-        let entry = |(node, weight): &(usize, f64)| {
-            number(*node).map(|number| (number, weight * self.unknowns.scales.length))
-        };
-        SparseRows::of([weights.iter().filter_map(entry).collect()])
+    /// Displacements with some weights as a row.
+    fn displacement_row(&self, weights: &[(usize, Vector<D>)]) -> SparseRows<f64> {
+        let mut row = Vec::new();
+        for (node, weight) in weights {
+            for (number, weight) in self.unknowns.displacement[*node].iter().zip(weight) {
+                let number = number.filter(|_| *weight != 0.0);
+                row.extend(number.map(|number| (number, weight * self.unknowns.scales.length)));
+            }
+        }
+        SparseRows::of([row])
     }
 
     /// The mean relative flux through the surface as a row, and at the start.
     fn outflow(&self) -> (SparseRows<f64>, f64) {
         let (mut row, mut start) = (Vec::new(), 0.0);
         let nodes = &self.nodes;
-        for (node, weight) in &self.mean_surface {
-            let flux_of_force = weight * nodes.porosity[*node] * self.mobility(*node);
-            if nodes.water_free[*node][D - 1] > 0.0 {
-                start += flux_of_force * nodes.water_force[*node][D - 1];
-            }
-            if self.unknowns.displacement[*node][D - 1].is_some() {
-                let scale = flux_of_force * self.unknowns.scales.pressure;
-                let forces = self.pressure_forces[*node].iter();
-                row.extend(forces.map(|(site, force)| (self.unknowns.pressure[*site], scale * force[D - 1])));
+        for (node, weights) in &self.outflow {
+            for d in (0..D).filter(|d| weights[*d] != 0.0) {
+                let flux_of_force = weights[d] * nodes.porosity[*node] * self.mobility(*node);
+                if !self.flows(*node, d) {
+                    continue;
+                }
+                start += flux_of_force * nodes.water_force[*node][d];
+                if self.unknowns.displacement[*node][d].is_some() {
+                    let scale = flux_of_force * self.unknowns.scales.pressure;
+                    let forces = self.pressure_forces[*node].iter();
+                    row.extend(forces.map(|(site, force)| (self.unknowns.pressure[*site], scale * force[d])));
+                }
             }
         }
         (SparseRows::of([row]), start)
+    }
+}
+
+impl<const D: usize> Body<D> {
+    /// Velocities of the water at the nodes from those of the skeleton and Darcy's flow under the present forces.
+    pub(crate) fn take_darcy_velocities(&mut self) {
+        self.map_forces();
+        for node in 0..self.nodes.len() {
+            let per_drag = if self.nodes.drag[node] > 0.0 { 1.0 / self.nodes.drag[node] } else { 0.0 };
+            for d in 0..D {
+                let flows = self.nodes.water_free[node][d] > 0.0 && !self.is_tied(node, d);
+                let relative = if flows { per_drag * self.nodes.water_force[node][d] } else { 0.0 };
+                self.nodes.water_velocity[node][d] = self.nodes.solid_velocity[node][d] + relative;
+            }
+        }
     }
 }
 
@@ -215,12 +248,10 @@ impl<const D: usize> LinearSystem<D> {
             operators.visit_mixture(visitor);
             operators.visit_storage(visitor);
         };
-        let (mut lower, mut upper) = (0, 0);
-        visit(&mut |(row, column, _, _)| {
-            lower = lower.max(row.saturating_sub(column));
-            upper = upper.max(column.saturating_sub(row));
+        let (positions, border) = (&operators.unknowns.positions, operators.unknowns.border);
+        let mut fixed = Bordered::spanning(positions, border, |visitor| {
+            visit(&mut |(row, column, _, _)| visitor(row, column));
         });
-        let mut fixed = Banded::zeros(operators.unknowns.count, lower, upper);
         let mut proportional = fixed.clone();
         visit(&mut |(row, column, constant, rate)| {
             fixed.add(row, column, constant);
@@ -232,8 +263,8 @@ impl<const D: usize> LinearSystem<D> {
             proportional,
             capacity: SparseRows::of((0..operators.porosity.len()).map(|site| operators.capacity_row(site))),
             start_residual: operators.start_residual(),
-            surface_displacement: operators.displacement_row(&operators.surface),
-            mean_displacement: operators.displacement_row(&operators.mean_surface),
+            surface_displacement: operators.displacement_row(&operators.settling),
+            mean_displacement: operators.displacement_row(&operators.outflow),
             surface_outflow,
             start_outflow,
             unknowns: operators.unknowns,

@@ -6,9 +6,8 @@
 //!   factorisation per step size,
 //! - `trial`: a moving or inertial body at a trial state; `residual`: what its balances leave there;
 //!   `tangent`: the residual's differences; `newton`: SDIRK2 with Newton's iteration on it,
-//! - `banded`, `deformation`: the algebra.
+//! The systems are solved by `direct_solver`.
 
-pub mod banded;
 pub mod linear;
 pub mod linear_system;
 pub mod newton;

@@ -1,7 +1,7 @@
 //! A Newton iteration a stage: for finite strain, and for bodies with inertia.
 
 use crate::mpm::body::Body;
-use crate::mpm::implicit::banded::{Banded, BandedLu};
+use crate::mpm::direct_solver::bordered::{Bordered, BorderedLu};
 use crate::mpm::implicit::residual::StageStart;
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::implicit::tangent::Pattern;
@@ -35,8 +35,8 @@ const SINGLE_STAGE: &[Stage] = &[(1.0, 1.0, 1.0)];
 pub struct NewtonStepper<const D: usize> {
     trial: Trial<D>,
     pattern: Pattern,
-    tangent: Banded,
-    lu: BandedLu,
+    tangent: Bordered,
+    lu: BorderedLu,
     /// Stage duration that the factors belong to, s.
     factored: Option<f64>,
     /// Ratio of successive corrections that the last stage ended with.
@@ -73,7 +73,7 @@ impl<const D: usize> NewtonStepper<D> {
         let scales = trial.unknowns.scales;
         let zero = vec![0.0; trial.unknowns.count];
         Self {
-            lu: BandedLu::of_shape(&tangent),
+            lu: BorderedLu::of_shape(&tangent),
             tangent,
             pattern,
             factored: None,
@@ -118,7 +118,7 @@ impl<const D: usize> NewtonStepper<D> {
             }
             self.load_at(self.time + end * dt);
             self.solve_stage()?;
-            flux += share * stage * self.trial.surface_mean(&self.trial.body.nodes.flux);
+            flux += share * stage * self.trial.outflow();
             if *share != 1.0 {
                 self.start_second_stage();
             }
@@ -132,7 +132,7 @@ impl<const D: usize> NewtonStepper<D> {
         for (rate, (end, start)) in self.rate.iter_mut().zip(self.state.iter().zip(&self.start.unknowns)) {
             *rate = (end - start) / stage;
         }
-        self.settlement_rate = -self.trial.surface_mean(&self.trial.body.nodes.solid_velocity);
+        self.settlement_rate = self.trial.settlement_rate();
         enter(Phase::BuildWeights);
         self.trial.end_step(&self.state, flux);
         self.time += dt;
@@ -258,7 +258,7 @@ impl<const D: usize> NewtonStepper<D> {
         }
         self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
         self.tangent = self.pattern.zeros();
-        self.lu = BandedLu::of_shape(&self.tangent);
+        self.lu = BorderedLu::of_shape(&self.tangent);
         self.factored = None;
         let count = self.trial.unknowns.count;
         if count != self.state.len() {

@@ -52,6 +52,7 @@ impl<const D: usize> Trial<D> {
     /// momentum.
     fn momentum(&mut self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
         let per_duration = 1.0 / start.duration;
+        residual.fill(0.0);
         let water_density = self.body.material.water_density;
         let nodes = &mut self.body.nodes;
         for node in 0..nodes.len() {
@@ -73,9 +74,12 @@ impl<const D: usize> Trial<D> {
                 let moved = number.map_or(0.0, |number| increments[number] - start.unknowns[number]);
                 let solid = self.unknowns.scales.length * per_duration * moved;
                 let solid_change = solid - start.solid_velocity[node][d];
+                let is_tied = self.body.plate.as_ref().is_some_and(|plate| plate.ties(node, d));
                 let force = nodes.water_force[node][d];
                 let before = [start.solid_velocity[node][d], start.water_velocity[node][d]];
                 let water = match self.formulation {
+                    // An impermeable plate takes its water with it.
+                    _ if is_tied => solid,
                     Formulation::QuasiStatic => solid + force / drag,
                     Formulation::UP => solid + (force - water_inertia * per_duration * solid_change) / drag,
                     Formulation::VW => {
@@ -90,14 +94,15 @@ impl<const D: usize> Trial<D> {
                 let Some(row) = number else { continue };
                 let water_change = match self.formulation {
                     Formulation::QuasiStatic => {
-                        residual[row] = -nodes.mixture_force[node][d] / self.unknowns.scales.force;
+                        residual[row] -= nodes.mixture_force[node][d] / self.unknowns.scales.force;
                         continue;
                     }
                     Formulation::UP => solid_change,
                     Formulation::VW => water - before[1],
                 };
                 let momentum = nodes.solid_mass[node] * solid_change + nodes.water_mass[node] * water_change;
-                residual[row] =
+                // A sum: the nodes of a plate share a row.
+                residual[row] +=
                     (per_duration * momentum - nodes.mixture_force[node][d]) / self.unknowns.scales.force;
             }
         }

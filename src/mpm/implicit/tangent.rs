@@ -6,7 +6,7 @@
 //! construction: there is no second set of formulas that could disagree with the first.
 
 use crate::mpm::body::Body;
-use crate::mpm::implicit::banded::Banded;
+use crate::mpm::direct_solver::bordered::Bordered;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::soil::conductivity_mean::ConductivityMean;
 
@@ -47,7 +47,7 @@ pub struct Pattern {
     /// Unknowns that are moved together.
     groups: Vec<Vec<usize>>,
     /// Zeros in the shape of the tangent.
-    zeros: Banded,
+    zeros: Bordered,
 }
 
 impl Pattern {
@@ -60,9 +60,11 @@ impl Pattern {
                 rows_of_column[*column].push(row);
             }
         }
-        let places = columns_of_row.iter().enumerate();
-        let places = places.flat_map(|(row, columns)| columns.iter().map(move |column| (row, *column)));
-        let zeros = Banded::spanning(unknowns.count, places);
+        let zeros = Bordered::spanning(&unknowns.positions, unknowns.border, |visitor| {
+            for (row, columns) in columns_of_row.iter().enumerate() {
+                columns.iter().for_each(|column| visitor(row, *column));
+            }
+        });
         let groups = groups_of(&columns_of_row, &rows_of_column);
         Self { structure: Structure::of(body, unknowns), rows_of_column, groups, zeros }
     }
@@ -78,7 +80,7 @@ impl Pattern {
     }
 
     /// Zeros in the shape of the tangent.
-    pub fn zeros(&self) -> Banded {
+    pub fn zeros(&self) -> Bordered {
         self.zeros.clone()
     }
 
@@ -89,7 +91,7 @@ impl Pattern {
         state: &mut [f64],
         base: &[f64],
         scratch: &mut [f64],
-        tangent: &mut Banded,
+        tangent: &mut Bordered,
         mut residual: impl FnMut(&[f64], &mut [f64]),
     ) {
         tangent.clear();
@@ -137,8 +139,15 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
     let mut rows = vec![Vec::new(); unknowns.count];
     for (node, felt) in by_node.iter().enumerate() {
         for row in unknowns.displacement[node].into_iter().flatten() {
-            rows[row].clone_from(felt);
+            // The nodes of a plate share a row.
+            rows[row].extend_from_slice(felt);
         }
+    }
+    if unknowns.border > 0 {
+        rows[unknowns.count - unknowns.border..].iter_mut().for_each(|row| {
+            row.sort_unstable();
+            row.dedup();
+        });
     }
     // Porosity and deformation of a site: of its points.
     let is_by_cells = body.method.pressure.is_by_cells();

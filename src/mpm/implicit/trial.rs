@@ -9,7 +9,7 @@ use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::Memory;
 use crate::mpm::run::integrator::Formulation;
 use crate::mpm::state::points::Points;
-use crate::soil::tensor::{Tensor, Vector, identity, inverse, strain_between};
+use crate::soil::tensor::{Tensor, Vector, dot, identity, inverse, strain_between};
 
 /// Time level at which the effective stress acts in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,12 +74,25 @@ impl<const D: usize> Trial<D> {
     pub fn set_load_share(&mut self, share: f64) {
         let body = &mut self.body;
         body.surface.load = self.full_load * share;
-        body.surface.apply(&body.grid, &body.points, &mut body.nodes);
+        body.apply_loads();
     }
 
-    /// Mean of a nodal field's vertical component over the surface.
-    pub fn surface_mean(&self, field: &[Vector<D>]) -> f64 {
-        self.body.surface.mean_of(&self.body.grid, &self.body.points, field)
+    /// What passes the surface now, per area of it, m/s.
+    pub fn outflow(&self) -> f64 {
+        self.body.outflow_of(&self.body.nodes.flux)
+    }
+
+    /// Rate of the settlement now, m/s: the plate's where there is one, the mean of the surface elsewhere.
+    pub fn settlement_rate(&self) -> f64 {
+        let (body, velocity) = (&self.body, &self.body.nodes.solid_velocity);
+        match &body.plate {
+            Some(_) => -body
+                .settling_weights()
+                .iter()
+                .map(|(node, weight)| dot(weight, &velocity[*node]))
+                .sum::<f64>(),
+            None => -body.surface.mean_of(&body.grid, &body.points, velocity),
+        }
     }
 
     /// Makes the present state the one that increments count from.
@@ -95,6 +108,10 @@ impl<const D: usize> Trial<D> {
         for (nodal, numbers) in self.displacement.iter_mut().zip(&self.unknowns.displacement) {
             *nodal = numbers
                 .map(|number| number.map_or(0.0, |number| self.unknowns.scales.length * increments[number]));
+        }
+        if let Some(weight) = &mut self.body.weight {
+            weight.rise =
+                self.body.surface.amplitude_of(&self.body.grid, &self.body.points, &self.displacement);
         }
         let rows = &self.unknowns.rows;
         let is_bbar = self.body.method.strain.is_bbar();
@@ -186,6 +203,9 @@ impl<const D: usize> Trial<D> {
             if self.formulation != Formulation::QuasiStatic {
                 self.body.map_velocities();
             }
+        }
+        if let Some(weight) = &mut self.body.weight {
+            weight.rise = 0.0;
         }
         self.velocity[0].clone_from(&self.body.nodes.solid_velocity);
         self.velocity[1].clone_from(&self.body.nodes.water_velocity);

@@ -3,6 +3,7 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::method::PressureIntegration;
+use crate::mpm::operators::rigid_plate::NORMAL;
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::soil::material::Material;
 use crate::soil::tensor::Vector;
@@ -31,7 +32,7 @@ impl Scales {
 /// direction of the grid: that keeps the band of the matrices narrow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknowns<const D: usize> {
-    /// Unknown of each component at each node, where it is free.
+    /// Unknown of each component at each node, where it is free: one for all that go with a rigid plate, the last.
     pub displacement: Vec<[Option<usize>; D]>,
     /// Unknown of each site.
     pub pressure: Vec<usize>,
@@ -39,6 +40,10 @@ pub struct Unknowns<const D: usize> {
     pub rows: VolumetricRows<D>,
     /// Number of unknowns.
     pub count: usize,
+    /// Where each unknown before the border lies, `[unknown][component]`, m.
+    pub positions: Vec<Vector<D>>,
+    /// Unknowns at the end that balances everywhere feel: that of a rigid plate.
+    pub border: usize,
     /// Scales of the unknowns and of their equations.
     pub scales: Scales,
 }
@@ -58,6 +63,8 @@ impl<const D: usize> Unknowns<D> {
             pressure: Vec::new(),
             rows: body.volumetric_rows(),
             count: 0,
+            positions: Vec::new(),
+            border: usize::from(body.plate.is_some()),
             scales: Scales::of::<D>(&body.material, body.grid.cell_size),
         };
         unknowns.number(body);
@@ -72,7 +79,7 @@ impl<const D: usize> Unknowns<D> {
         };
         let mut sorted: Vec<(Vector<D>, UnknownKind)> = Vec::new();
         for node in 0..nodes.len() {
-            for direction in (0..D).filter(|d| nodes.free[node][*d] > 0.0) {
+            for direction in (0..D).filter(|d| nodes.free[node][*d] > 0.0 && !body.is_tied(node, *d)) {
                 sorted.push((grid.node_position(node), UnknownKind::Displacement { node, direction }));
             }
         }
@@ -90,7 +97,8 @@ impl<const D: usize> Unknowns<D> {
                 .find(|order| order.is_ne())
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
-        self.count = sorted.len();
+        self.count = sorted.len() + self.border;
+        self.positions = sorted.iter().map(|(position, _)| *position).collect();
         self.displacement = vec![[None; D]; nodes.len()];
         self.pressure = vec![0; sites.len()];
         for (number, (_, kind)) in sorted.iter().enumerate() {
@@ -100,6 +108,9 @@ impl<const D: usize> Unknowns<D> {
                 }
                 UnknownKind::Pressure { site } => self.pressure[site] = number,
             }
+        }
+        for node in body.plate.iter().flat_map(|plate| &plate.nodes) {
+            self.displacement[*node][NORMAL] = Some(sorted.len());
         }
     }
 }

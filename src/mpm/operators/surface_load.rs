@@ -160,9 +160,18 @@ impl<const D: usize> LoadedSurface<D> {
         nodes.external_force.fill([0.0; D]);
         let share = if D == 1 { 1.0 } else { 1.0 / EDGE_SPOTS.len() as f64 };
         self.visit(grid, points, |spot, node, weight| {
-            let half_length = &points.half_length[spot.point];
-            let width: f64 = half_length[..D - 1].iter().map(|half| 2.0 * half).product();
+            let width = width_of(points, spot.point);
             nodes.external_force[node][D - 1] += weight * (-self.load * spot.shape * share * width);
+        });
+    }
+
+    /// Presses on the surface with a pressure, Pa, on mixture and pore water alike: free water above it.
+    pub fn press(&self, pressure: f64, grid: &Grid<D>, points: &Points<D>, nodes: &mut Nodes<D>) {
+        let share = if D == 1 { 1.0 } else { 1.0 / EDGE_SPOTS.len() as f64 };
+        self.visit(grid, points, |spot, node, weight| {
+            let force = weight * pressure * share * width_of(points, spot.point);
+            nodes.mixture_force[node][D - 1] -= force;
+            nodes.water_force[node][D - 1] -= force;
         });
     }
 
@@ -196,6 +205,12 @@ impl<const D: usize> LoadedSurface<D> {
         self.visit(grid, points, |_, node, weight| sum += weight * field[node][D - 1]);
         sum / self.spots.len() as f64
     }
+}
+
+/// Width of a point's domain, m; one in one dimension.
+#[inline]
+fn width_of<const D: usize>(points: &Points<D>, point: usize) -> f64 {
+    points.half_length[point][..D - 1].iter().map(|half| 2.0 * half).product()
 }
 
 #[cfg(test)]

@@ -67,7 +67,7 @@ impl<const D: usize> ExplicitStepper<D> {
         self.load_share = (time / self.loading_time).min(1.0);
         let body = &mut self.body;
         body.surface.load = self.load_share * self.load;
-        body.surface.apply(&body.grid, &body.points, &mut body.nodes);
+        body.apply_loads();
         if let Some(frozen) = &mut self.frozen {
             frozen.set_load_share(self.load_share);
         }

@@ -24,6 +24,22 @@ pub enum FailureKind {
     Stopped,
     /// The run took longer than its study allows.
     TimedOut,
+    /// An attached solver could not be started.
+    NotStartable,
+    /// An attached solver was ended by a signal, and not by this program.
+    Killed,
+    /// An attached solver ended with an exit code other than 0.
+    Failed,
+    /// An attached solver says that it cannot run here: exit code 77.
+    Skipped,
+    /// An attached solver ended well and left no result.
+    NoResult,
+    /// The result of an attached solver cannot be read as its mapping says.
+    Unreadable,
+    /// The result of an attached solver holds what is no finite number.
+    NotFinite,
+    /// The result of an attached solver lacks times or places.
+    Incomplete,
 }
 
 words!(FailureKind: Unstable "unstable",
@@ -32,7 +48,38 @@ words!(FailureKind: Unstable "unstable",
     Singular "singular",
     NotConverged "not-converged",
     Stopped "stopped",
-    TimedOut "timed-out",);
+    TimedOut "timed-out",
+    NotStartable "not-startable",
+    Killed "killed",
+    Failed "failed",
+    Skipped "skipped",
+    NoResult "no-result",
+    Unreadable "unreadable",
+    NotFinite "not-finite",
+    Incomplete "incomplete",);
+
+impl FailureKind {
+    /// Whether it is the end of an attached solver: it lies in programs and files that may have changed since.
+    pub fn is_of_attached(self) -> bool {
+        match self {
+            Self::NotStartable
+            | Self::Killed
+            | Self::Failed
+            | Self::Skipped
+            | Self::NoResult
+            | Self::Unreadable
+            | Self::NotFinite
+            | Self::Incomplete => true,
+            Self::Unstable
+            | Self::PoresClosed
+            | Self::LeftGrid
+            | Self::Singular
+            | Self::NotConverged
+            | Self::Stopped
+            | Self::TimedOut => false,
+        }
+    }
+}
 
 /// The end of a run that did not reach its last output.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -50,10 +97,37 @@ pub struct Failure {
     pub reason: String,
 }
 
+impl Failure {
+    /// The end of an attached solver, whose steps nobody knows.
+    pub fn of_attached(kind: FailureKind, reason: String) -> Self {
+        Self { kind, step: 0, time: 0.0, growth: None, reason }
+    }
+
+    /// Its name, with the step at which it was seen where that is known.
+    pub fn name_with_step(&self) -> String {
+        let step = if self.has_place() { format!(" at step {}", self.step) } else { String::new() };
+        format!("{}{step}", self.kind.name())
+    }
+
+    /// Whether anybody knows the step at which it was seen.
+    fn has_place(&self) -> bool {
+        self.step > 0 || !(self.kind.is_of_attached() || self.kind == FailureKind::TimedOut)
+    }
+
+    /// Step and time at which it was seen, where they are known: ` at step 7, t = 1.0000e-3 s`.
+    pub fn place(&self) -> String {
+        if self.has_place() {
+            format!(" at step {}, t = {:.4e} s", self.step, self.time)
+        } else {
+            String::new()
+        }
+    }
+}
+
 impl fmt::Display for Failure {
     /// What happened, when, and why.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "{} at step {}, t = {:.4e} s: {}", self.kind.name(), self.step, self.time, self.reason)
+        write!(out, "{}{}: {}", self.kind.name(), self.place(), self.reason)
     }
 }
 

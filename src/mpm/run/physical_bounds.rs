@@ -1,6 +1,7 @@
 //! What a sound result cannot leave, whatever the method: looked at while a run goes on.
 
 use crate::mpm::body::Problem;
+use crate::mpm::operators::rigid_plate::NORMAL;
 use crate::mpm::operators::surface_load::{LoadShape, LoadedSurface};
 
 /// Settlements over their scale that no scene reaches.
@@ -66,10 +67,16 @@ impl PhysicalBounds {
     }
 }
 
-/// Settlement, m, that a problem's pressure makes in a column, `m_v q H`; under a cosine at most that
+/// Settlement, m, that a problem's pressure makes in a column, `m_v q H`; of a plate across it,
+/// `(1 − ν²) q b/E`; under a cosine at most that
 /// and the one of a half-space, `2 (1 − ν²) q/(E k)`, which is left where shear is all that gives.
 fn settlement_scale<const D: usize>(problem: &Problem<D>) -> f64 {
     let soil = &problem.material;
+    if problem.plate_load.is_some() {
+        let distance = problem.grid.cells[NORMAL] as f64 * problem.grid.cell_size;
+        let compliance = (1.0 - soil.poissons_ratio * soil.poissons_ratio) / soil.youngs_modulus;
+        return problem.pressure_scale * compliance * distance;
+    }
     // The mean height: a cosine has none of its own.
     let height = LoadedSurface::of(&problem.points, problem.load).height(&problem.points);
     let column = problem.pressure_scale / soil.oedometric_modulus() * height;

@@ -87,7 +87,7 @@ impl<'a> Plan<'a> {
 fn velocity_scale<const D: usize>(problem: &Problem<D>) -> f64 {
     let soil = &problem.material;
     let wave = formula::undrained_wave_speed(soil);
-    let density = (1.0 - soil.porosity) * soil.grain_density + soil.porosity * soil.water_density;
+    let density = soil.mixture_density();
     let flow = soil.hydraulic_conductivity / soil.unit_weight_of_water() / problem.grid.cell_size;
     problem.pressure_scale * (1.0 / (density * wave)).max(flow / soil.porosity)
 }

@@ -2,7 +2,7 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::state::points::Points;
-use crate::soil::tensor::Vector;
+use crate::soil::tensor::{Vector, dot};
 use serde::{Deserialize, Serialize};
 
 /// Fields at one kind of places. Stresses and displacements are the vertical ones; in two
@@ -15,7 +15,7 @@ pub struct Samples {
     pub displacement_height: Option<Vec<f64>>,
     /// Volume that each place stands for, m^D.
     pub volume: Vec<f64>,
-    /// Pore pressure, Pa, compression positive.
+    /// Excess pore pressure, Pa, compression positive: without the hydrostatic one where the soil has a weight.
     pub pressure: Vec<f64>,
     /// Vertical effective stress, Pa, tension positive.
     pub effective_stress: Vec<f64>,
@@ -42,7 +42,9 @@ pub struct PlaneSamples {
 pub struct Snapshot {
     /// Time, s.
     pub time: f64,
-    /// Settlement of the loaded surface, m.
+    /// Settlement of the loaded surface, m. The result of an attached solver may have none: then it is no number,
+    /// and left out on disk.
+    #[serde(default = "unknown", skip_serializing_if = "is_unknown")]
     pub settlement: f64,
     /// Values at the material points.
     pub points: Samples,
@@ -53,6 +55,15 @@ pub struct Snapshot {
     pub nodes: Samples,
     /// Mass and momentum at this time.
     pub totals: Totals,
+}
+
+fn unknown() -> f64 {
+    f64::NAN
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_unknown(value: &f64) -> bool {
+    value.is_nan()
 }
 
 /// Conserved quantities.
@@ -73,12 +84,18 @@ pub struct Totals {
     pub internal_force_imbalance: f64,
     /// Largest force on a free node that nothing balances, N.
     pub unbalanced_force: f64,
+    /// Largest nodal velocity of either phase, m/s.
+    #[serde(default)]
+    pub largest_velocity: f64,
 }
 
 impl<const D: usize> Body<D> {
-    /// Settlement of the loaded surface, m, which was at `initial_height`.
+    /// Settlement, m, of the loaded surface, which was at `initial_height`, or of the rigid plate.
     pub fn settlement(&self, initial_height: f64) -> f64 {
-        if self.configuration.moves_points() {
+        if self.plate.is_some() {
+            let moved = |(node, weight): &(usize, Vector<D>)| dot(weight, &self.nodes.displacement[*node]);
+            -self.settling_weights().iter().map(moved).sum::<f64>()
+        } else if self.configuration.moves_points() {
             initial_height - self.surface.height(&self.points)
         } else {
             -self.surface.amplitude_of(&self.grid, &self.points, &self.nodes.displacement)
@@ -87,12 +104,14 @@ impl<const D: usize> Body<D> {
 
     /// Samples the body at `time`; water is balanced against the points of the `start`.
     pub fn snapshot(&self, time: f64, settlement: f64, start: &Points<D>) -> Snapshot {
+        let in_excess = self.in_excess();
+        let told = in_excess.as_ref().unwrap_or(self);
         Snapshot {
             time,
             settlement,
-            points: self.sample_points(),
-            centres: self.sample_centres(),
-            nodes: self.sample_nodes(),
+            points: told.sample_points(),
+            centres: told.sample_centres(),
+            nodes: told.sample_nodes(),
             totals: self.totals(start),
         }
     }
@@ -173,14 +192,8 @@ impl<const D: usize> Body<D> {
                 / soil.water_bulk_modulus,
             internal_force_imbalance: self.internal_force_imbalance(),
             unbalanced_force: self.unbalanced_force(),
+            largest_velocity: self.largest_velocity(),
         }
-    }
-
-    fn unbalanced_force(&self) -> f64 {
-        let mut body = self.clone();
-        body.map_forces();
-        let forces = body.nodes.mixture_force.iter().flatten().zip(body.nodes.free.iter().flatten());
-        forces.fold(0.0, |largest: f64, (force, free)| largest.max((force * free).abs()))
     }
 
     fn internal_force_imbalance(&self) -> f64 {

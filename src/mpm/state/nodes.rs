@@ -101,6 +101,13 @@ impl<const D: usize> Support<D> {
         Self { lower: [false; D], upper: [false; D], rough_base: false, outermost: None }
     }
 
+    /// The same faces with an upper side that a plate moves.
+    #[must_use]
+    pub fn with_movable_side(mut self) -> Self {
+        self.upper[0] = false;
+        self
+    }
+
     /// The same faces on a base that the skeleton sticks to.
     #[must_use]
     pub fn on_rough_base(self) -> Self {

@@ -1,28 +1,22 @@
 //! What changed since the golden values? Nothing, or the worst first.
 
 use crate::golden::compare::{Change, Difference};
-use crate::render::answers::question::{section, unanswered};
+use crate::render::answers::question::{Answer, Question, short};
 use crate::render::number;
-use crate::render::page::{Block, Section};
+use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, columns};
 
-const HEADING: &str = "What changed since the golden values?";
-
-/// Rows before the rest is only counted.
-const MOST_ROWS: usize = 10;
+/// The question.
+pub const QUESTION: Question = Question { heading: "What changed since the golden values?", id: "changes" };
 
 /// The worst of all differences, of every study together.
-pub fn answer(changes: Option<&[(String, Difference)]>) -> Section {
+pub fn answer(changes: Option<&[(String, Difference)]>) -> Answer {
     let Some(changes) = changes else {
-        return unanswered(
-            HEADING,
-            "changes",
-            "no golden values of these studies were there to hold against",
-        );
+        return QUESTION.open("golden values of these studies, which `oedometer accept` takes");
     };
     if changes.is_empty() {
         let text = "Nothing: every value of these studies that has a golden one agrees with it within its tolerance.";
-        return section(HEADING, "changes", vec![Block::Paragraph(text.to_owned())]);
+        return QUESTION.told(text, Vec::new());
     }
     let mut ranked: Vec<&(String, Difference)> = changes.iter().collect();
     let size = |one: &Difference| one.relative_change().unwrap_or(0.0);
@@ -37,7 +31,7 @@ pub fn answer(changes: Option<&[(String, Difference)]>) -> Section {
     let value = |value: Option<f64>| {
         value.map_or(Cell::missing("no value"), |value| Cell::Text(number::error(value)))
     };
-    let rows = ranked.iter().take(MOST_ROWS).map(|(study, one)| {
+    let rows = ranked.iter().map(|(study, one)| {
         let mood = if one.change == Change::Moved { Mood::Fail } else { Mood::Note };
         vec![
             Cell::Verdict(mood, one.change.name().to_owned()),
@@ -53,14 +47,11 @@ pub fn answer(changes: Option<&[(String, Difference)]>) -> Section {
         columns("change | study | value | > golden | > now | > relative change"),
         rows,
     );
-    let rest = changes.len().saturating_sub(MOST_ROWS);
-    let table =
-        if rest > 0 { table.note(format!("and {rest} more, listed by oedometer check")) } else { table };
-    section(
-        HEADING,
-        "changes",
-        vec![Block::Paragraph(format!("Values that differ: {}.", counted.join(", "))), Block::Table(table)],
-    )
+    let sentence = format!(
+        "Values that differ from the accepted ones: {}; the table has the worst first.",
+        counted.join(", ")
+    );
+    QUESTION.told(sentence, vec![Block::Table(short(table, "listed by oedometer check"))])
 }
 
 #[cfg(test)]
@@ -85,11 +76,11 @@ mod tests {
             change("little | T_v=1", Change::Moved, 1.1),
             change("much | T_v=1", Change::Moved, 2.0),
         ];
-        let section = answer(Some(&all));
+        let Answer::Told(section) = answer(Some(&all)) else { panic!("they differ") };
         let Some(Block::Table(table)) = section.blocks.last() else { panic!("{section:?}") };
         let names: Vec<&Cell> = table.rows.iter().map(|row| &row[2]).collect();
         assert_eq!(names, [&"much | T_v=1".into(), &"little | T_v=1".into(), &"stale | T_v=1".into()]);
         assert!(format!("{:?}", answer(Some(&[]))).contains("Nothing"));
-        assert!(format!("{:?}", answer(None)).contains("Not in these records"));
+        assert!(matches!(answer(None), Answer::Open { .. }));
     }
 }

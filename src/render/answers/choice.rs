@@ -6,23 +6,34 @@ use crate::exact::exact_error::ExactError;
 use crate::judge::locking::{Standing, standings};
 use crate::judge::paths::{Path, paths};
 use crate::judge::work_precision::WorkPrecision;
-use crate::render::answers::question::{Links, link_cell, section, unanswered};
+use crate::render::answers::question::{Answer, Links, Question, link_cell, short};
 use crate::render::answers::regime::{MethodPath, Regime};
 use crate::render::number;
-use crate::render::page::{Block, Section};
+use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::report::labels::first_measure;
 use crate::render::table::{Cell, Table, columns};
 use crate::study::expectation::{Axis, NEXT_FINER};
 
-const HEADING: &str = "Which method should I take?";
+/// The question.
+pub const QUESTION: Question = Question { heading: "Which method should I take?", id: "choice" };
 
 /// Errors of a stiff skeleton may be this many times those of the usual one.
 const KEEPS: f64 = 2.0;
 
+/// Situations of columns, as a row and as the end of a sentence.
+const SMALL: (&str, &str) = ("Small strain: nothing moves far", "while nothing moves far");
+const CROSSING: (&str, &str) =
+    ("Large strain: points cross cells", "at large strain where points cross cells");
+const TOTAL: (&str, &str) = (
+    "Large strain: shape functions of the initial configuration (total Lagrangian) will do",
+    "at large strain where shape functions of the initial configuration will do",
+);
+
 /// A situation with the method to take: what is measured of it, and the study that carries it.
 struct Advice {
-    situation: String,
+    situation: &'static str,
+    place: &'static str,
     take: String,
     evidence: String,
     study: String,
@@ -34,37 +45,35 @@ pub fn answer(
     small: Option<&Regime<'_>>,
     large: Option<&Regime<'_>>,
     links: Links<'_>,
-) -> Result<Section, ExactError> {
+) -> Result<Answer, ExactError> {
     let mut all: Vec<Advice> = Vec::new();
-    all.extend(small.and_then(|regime| of_regime(results, regime, "Nothing moves far", &|_| true)));
+    all.extend(small.and_then(|regime| of_regime(results, regime, SMALL, &|_| true)));
     let stays = |one: &MethodPath<'_>| one.method.starts_with("TL-");
-    all.extend(large.and_then(|regime| {
-        of_regime(results, regime, "Large strain, points cross cells", &|one| !stays(one))
-    }));
-    all.extend(large.and_then(|regime| {
-        of_regime(results, regime, "Large strain, weights may stay on the first configuration", &stays)
-    }));
+    all.extend(large.and_then(|regime| of_regime(results, regime, CROSSING, &|one| !stays(one))));
+    all.extend(large.and_then(|regime| of_regime(results, regime, TOTAL, &stays)));
     for one in results.iter().filter(|one| one.study.scene.shows_locking()) {
         let standings = standings(one.study, one.records)?;
         all.extend(of_stiff_skeleton(&one.study.name, &standings));
     }
     all.extend(of_waves(results));
     if all.is_empty() {
-        return Ok(unanswered(HEADING, "choice", "several methods on the same column or layer"));
+        return Ok(QUESTION.open("several methods on the same column or layer"));
     }
     let rows = all.iter().map(|advice| {
         vec![
-            advice.situation.as_str().into(),
+            advice.situation.into(),
             Cell::Code(advice.take.clone()),
             advice.evidence.as_str().into(),
             link_cell(links, &advice.study),
         ]
     });
     let table = Table::of("", columns("situation | take | because | study"), rows).note(
-        "of the methods that were tried in a situation the one whose largest error is the smallest; the study has the \
-         others",
+        "The rule: of the methods tried on the same column, the one whose largest error (pressure, effective stress, \
+         settlement) on the finest common mesh is smallest. The study has the others.",
     );
-    Ok(section(HEADING, "choice", vec![Block::Table(table)]))
+    let taken: Vec<String> = all.iter().map(|advice| format!("`{}` {}", advice.take, advice.place)).collect();
+    let sentence = format!("Take {}.", taken.join("; "));
+    Ok(QUESTION.told(sentence, vec![Block::Table(short(table, "in the studies"))]))
 }
 
 /// The method whose largest error of pressure, effective stress and settlement on the finest common mesh is the
@@ -72,7 +81,7 @@ pub fn answer(
 fn of_regime(
     results: &[StudyResults<'_>],
     regime: &Regime<'_>,
-    situation: &str,
+    (situation, place): (&'static str, &'static str),
     fits: &dyn Fn(&MethodPath<'_>) -> bool,
 ) -> Option<Advice> {
     let tried: Vec<(&MethodPath<'_>, f64)> = regime
@@ -95,7 +104,8 @@ fn of_regime(
     ];
     let cheapest = cheapest_words(results, &one.method);
     Some(Advice {
-        situation: situation.to_owned(),
+        situation,
+        place,
         take: one.method.clone(),
         evidence: format!(
             "order {}; largest error {} on {} cells, the best of {} tried{cheapest}",
@@ -140,11 +150,12 @@ fn of_stiff_skeleton(study: &str, standings: &[Standing]) -> Option<Advice> {
         error(a).total_cmp(&error(b))
     })?;
     Some(Advice {
-        situation: "Skeleton nearly incompressible".to_owned(),
+        situation: "Skeleton nearly incompressible",
+        place: "where the skeleton hardly compresses",
         take: best.method.to_string(),
         evidence: format!(
-            "errors of the undrained start at the largest ν: u {}, p {}; {} of {tried} methods keep both within twice those of \
-             the usual soil",
+            "errors of the undrained start at the largest Poisson's ratio: displacement {}, pressure {}; {} of {tried} methods keep both \
+             within twice those of the usual soil",
             best.stiff_skeleton.map_or_else(String::new, number::error),
             best.stiff_skeleton_pressure.map_or_else(String::new, number::error),
             holding.len()
@@ -171,10 +182,11 @@ fn of_waves(results: &[StudyResults<'_>]) -> Option<Advice> {
     }
     let (order, _, take, study) = best?;
     Some(Advice {
-        situation: "Waves matter".to_owned(),
+        situation: "Waves matter",
+        place: "for waves",
         take,
         evidence: format!(
-            "order {} in the time step, the highest of {tried} schemes tried",
+            "order {} in the time step, the highest of {tried} time-stepping schemes tried",
             number::order(order)
         ),
         study: study.to_owned(),

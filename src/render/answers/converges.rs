@@ -3,14 +3,16 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::Class;
 use crate::judge::paths::SeriesSummary;
-use crate::render::answers::question::{Links, links_to, section, unanswered};
+use crate::render::answers::question::{Answer, Links, Question, links_to, short};
 use crate::render::answers::regime::{MethodPath, PAPERS, QUOTED_CELLS, Regime, distinct};
 use crate::render::number;
-use crate::render::page::{Block, Figure, Section};
-use crate::render::report::{StudyResults, refinement};
+use crate::render::page::{Block, Figure};
+use crate::render::report::{StudyResults, labels, refinement};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 
-const HEADING: &str = "Does the method converge, and to what?";
+/// The question.
+pub const QUESTION: Question =
+    Question { heading: "Does the method converge, and to what?", id: "converges" };
 
 /// What is quoted of a method at small strain.
 const SMALL: [(Quantity, Sample, &str); 4] = [
@@ -20,37 +22,26 @@ const SMALL: [(Quantity, Sample, &str); 4] = [
     (Quantity::Settlement, Sample::Surface, "settlement"),
 ];
 
-/// Rows of a table that is read and not searched.
-const MOST_ROWS: usize = 10;
-
 /// Sentence, table and figure.
 pub fn answer(
     results: &[StudyResults<'_>],
     small: Option<&Regime<'_>>,
     large: Option<&Regime<'_>>,
     links: Links<'_>,
-) -> Section {
+) -> Answer {
     let regimes: Vec<(&str, &Regime<'_>)> = [("small strain", small), ("large strain", large)]
         .into_iter()
         .filter_map(|(name, one)| Some((name, one?)))
         .collect();
     if regimes.is_empty() {
-        return unanswered(
-            HEADING,
-            "converges",
-            "a column on three meshes, such as `studies/terzaghi-mesh.toml`",
-        );
+        return QUESTION.open("a column on three meshes, as in `terzaghi-mesh`");
     }
-    let mut blocks: Vec<Block> = Vec::new();
     let sentences: Vec<String> = regimes.iter().filter_map(|(name, regime)| sentence(name, regime)).collect();
-    if !sentences.is_empty() {
-        blocks.push(Block::Paragraph(sentences.join(" ")));
-    }
-    blocks.push(Block::Table(table(&regimes)));
     let studies = regimes.iter().flat_map(|(_, regime)| regime.methods.iter().map(|one| one.study));
-    blocks.push(Block::Paragraph(format!("Evidence: {}.", links_to(links, studies))));
+    let sentence = format!("{} Evidence: {}.", sentences.join(" "), links_to(links, studies));
+    let mut blocks = vec![Block::Table(short(table(&regimes), "in the studies"))];
     blocks.extend(small.and_then(|regime| figure(results, regime)).map(Block::Figure));
-    section(HEADING, "converges", blocks)
+    QUESTION.told(sentence, blocks)
 }
 
 /// What the paper's method, or the first of the methods, converges to and how fast.
@@ -60,7 +51,7 @@ fn sentence(name: &str, regime: &Regime<'_>) -> Option<String> {
     let whose = if one.method == PAPERS { ", the paper's method," } else { "" };
     let strain = match regime.strain() {
         Some(strain) if name == "large strain" => {
-            format!("At a strain of {} in the end", number::percent(strain))
+            format!("At large strain, {} in the end,", number::percent(strain))
         }
         _ => format!("At {name}"),
     };
@@ -69,10 +60,10 @@ fn sentence(name: &str, regime: &Regime<'_>) -> Option<String> {
             format!("; on {QUOTED_CELLS} cells its pressure is off by {}", number::percent(error))
         });
     Some(format!(
-        "{strain} `{}`{whose} converges to `{}` with order {} in the pressure at the points, {} in the effective stress \
-         and {} in the settlement{error}.",
+        "{strain} `{}`{whose} converges to {} with order {} in the pressure at the points, {} in the effective stress and {} \
+         in the settlement{error}.",
         one.method,
-        regime.reference,
+        labels::solution(regime.reference),
         order(Quantity::Pressure, Sample::Points),
         order(Quantity::EffectiveStress, Sample::Points),
         order(Quantity::Settlement, Sample::Surface),
@@ -103,8 +94,6 @@ fn table(regimes: &[(&str, &Regime<'_>)]) -> Table {
         let is_papers = |name: &str| usize::from(name == PAPERS);
         is_papers(b).cmp(&is_papers(a)).then(tried(b).cmp(&tried(a))).then(error(a).total_cmp(&error(b)))
     });
-    let left_out = ranked.len().saturating_sub(MOST_ROWS);
-    ranked.truncate(MOST_ROWS);
     let mut columns = columns("method");
     for (name, _) in regimes {
         columns.extend(SMALL.iter().map(|(_, _, what)| TableColumn::text(format!("{name}: {what}"))));
@@ -121,18 +110,17 @@ fn table(regimes: &[(&str, &Regime<'_>)]) -> Table {
     });
     let at: Vec<String> = regimes
         .iter()
-        .map(|(name, regime)| format!("{name}: T_v = {} against `{}`", regime.time_factor, regime.reference))
+        .map(|(name, regime)| {
+            format!("{name}: T_v = {}, against {}", regime.time_factor, labels::solution(regime.reference))
+        })
         .collect();
-    let mut table = Table::of(
-        format!("Order on the finest three meshes, error on {QUOTED_CELLS} cells"),
-        columns,
-        rows,
-    )
-    .note(format!("{}; relative L_2 norm over the volume, |s/s_exact − 1| of the settlement; a class stands where it \
-                   allows no order, or where the order has not settled", at.join("; ")).replace('`', ""));
-    if left_out > 0 {
-        table = table.note(format!("{left_out} more methods stand in the studies"));
-    }
+    let table =
+        Table::of(format!("Order on the finest three meshes, error on {QUOTED_CELLS} cells"), columns, rows)
+            .note(format!(
+                "{}; relative L_2 norm over the volume, |s/s_exact − 1| of the settlement. {}",
+                at.join("; "),
+                labels::CLASSES
+            ));
     table
 }
 

@@ -4,46 +4,38 @@
 use crate::case::IntegratorKind;
 use crate::judge::peers::{self, Peer};
 use crate::judge::work_precision::{TimedRun, WorkPrecision};
-use crate::render::answers::question::{Links, link, section, unanswered};
+use crate::render::answers::question::{Answer, Links, Question, link, short};
 use crate::render::answers::regime::PAPERS;
 use crate::render::chart::describe::{Chart, ChartAxis, PointName, Series, Size, Style};
 use crate::render::number;
-use crate::render::page::{Block, Figure, Section};
+use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, columns};
 
-const HEADING: &str = "What does accuracy cost?";
-
-/// Other programs in the table.
-const MOST_ROWS: usize = 10;
+/// The question.
+pub const QUESTION: Question = Question { heading: "What does accuracy cost?", id: "cost" };
 
 /// Slot of the other programs' markers, apart from those of the integrators.
 const PEERS_SLOT: usize = 6;
 
 /// Sentence, figure and the other programs.
-pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Section {
+pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
     let compared = results.iter().filter(|one| one.study.timing_repeats > 1).filter_map(|one| {
         let precision = WorkPrecision::of(one.records, one.study.references.first()?.name())?;
         Some((one, precision))
     });
     let Some((one, precision)) = compared.max_by_key(|(_, precision)| precision.runs.len()) else {
-        return unanswered(
-            HEADING,
-            "cost",
-            "runs that were timed alone: a study with `[timing] repeats = 12`",
-        );
+        return QUESTION.open("runs that were timed alone: a study with `[timing] repeats = 12`");
     };
     let evidence = format!("Evidence: {}.", link(links, &one.study.name));
     let has_peers = peers::solve_their_column(&precision.runs);
-    let mut blocks = vec![
-        Block::Paragraph(format!("{} {evidence}", sentence(&precision))),
-        Block::Figure(Figure::new("readme-cost", chart_of(&precision, has_peers), caption(has_peers))),
-    ];
+    let figure = Figure::new("readme-cost", chart_of(&precision, has_peers), caption(has_peers));
+    let mut blocks = vec![Block::Figure(figure)];
     if has_peers {
         blocks.push(Block::Paragraph(equal_cells(&precision)));
-        blocks.push(Block::Table(peers_table(&precision)));
+        blocks.push(Block::Table(short(peers_table(&precision), "on the page of the study")));
     }
-    section(HEADING, "cost", blocks)
+    QUESTION.told(format!("{} {evidence}", sentence(&precision)), blocks)
 }
 
 /// The cheapest way to each tolerance.
@@ -81,7 +73,7 @@ fn chart_of(precision: &WorkPrecision<'_>, has_peers: bool) -> Chart {
     }
     let front: Vec<&TimedRun<'_>> = precision.runs.iter().filter(|run| run.on_front).collect();
     chart.series.push(Series::theory(
-        "front: nobody is better in both",
+        "no run is both cheaper and more accurate",
         front.iter().map(|run| point(run)).collect(),
     ));
     chart.names.extend(front.iter().map(|run| PointName { at: point(run), name: short_name(run) }));
@@ -106,9 +98,10 @@ fn name_of_peer(peer: &Peer) -> String {
 }
 
 fn caption(has_peers: bool) -> String {
-    let own = "Each point is a run: method and cells. Wall time is the median over repeats taken in rounds over all runs.";
+    let own = "Each point is a run, named by method and number of cells. Wall time is the median over repeats taken in rounds over \
+               all runs. The line joins the runs than which no other run is both cheaper and more accurate.";
     let others = " Other programs were timed in one sitting of another day, on two cores under load; their error is against \
-                  incompressible water, 2e-4 away.";
+                  the solution for incompressible water, which differs by 2e-4.";
     format!("{own}{}", if has_peers { others } else { "" })
 }
 
@@ -158,14 +151,14 @@ fn equal_cells(precision: &WorkPrecision<'_>) -> String {
 }
 
 fn peers_table(precision: &WorkPrecision<'_>) -> Table {
-    let rows = peers::all().iter().take(MOST_ROWS).map(|peer| {
+    let rows = peers::all().iter().map(|peer| {
         let own = peer.cells.and_then(|cells| on_cells(precision, cells));
         let measured = |value: Option<f64>, kind| Cell::of(value, kind, "not measured");
         let mut row: Vec<Cell> = vec![
             peer.name.as_str().into(),
             peer.cells.map_or(Cell::missing("not measured"), |cells| Cell::Count(cells as u64)),
             peer.samples.as_str().into(),
-            peer.time_scheme.as_str().into(),
+            peer.time_scheme.replace("BE", "backward Euler").as_str().into(),
         ];
         row.extend(peer.errors.map(|error| measured(error, Cell::Error)));
         row.push(measured(peer.seconds, Cell::Seconds));
@@ -184,11 +177,11 @@ fn peers_table(precision: &WorkPrecision<'_>) -> Table {
     });
     let times = peers::TIME_FACTORS.map(|factor| format!("> p, T_v = {factor}")).join(" | ");
     let header = format!(
-        "program | > cells | samples | time scheme | {times} | > CPU | > wall | > {PAPERS} on as many cells, T_v = {} | > its wall",
+        "program | > cells | samples | time scheme | {times} | > CPU | > wall | > {PAPERS} on as many cells, T_v = {} | > its wall time",
         peers::TIME_FACTORS[0]
     );
     Table::of("Other programs on the same column", columns(&header), rows).note(
-        "their CPU and wall times: two cores under load, so wall is about doubled; BE: 1000 backward Euler steps of 0.001 in \
-         T_v, on their time floor from 20 cells on",
+        "Their CPU and wall times: two cores under load, so that wall is about doubled. Backward Euler: 1000 steps of 0.001 in \
+         T_v, whose error in time is all that is left from 20 cells on.",
     )
 }

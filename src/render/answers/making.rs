@@ -3,6 +3,7 @@
 use crate::record::origins::Origins;
 use crate::record::provenance::Provenance;
 use crate::render::report::StudyResults;
+use crate::wording::count_of;
 
 /// When, where and by which command a report was made.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -17,6 +18,8 @@ pub struct Making {
     pub seconds: f64,
     /// Cases that were run for this report; the others had their records.
     pub cases_run: usize,
+    /// Cases of the studies that have no record: those of a larger tier.
+    pub left_out: usize,
 }
 
 impl Making {
@@ -34,7 +37,18 @@ impl Making {
             0 => format!("rendered in {:.1} s from {count} records", self.seconds),
             run => format!("{:.1} s with {run} of {count} cases run", self.seconds),
         };
-        format!("{program} · {} · {} · {run} · `{}`{several}", self.date, self.processor, self.command)
+        let left_out = match self.left_out {
+            0 => String::new(),
+            cases => format!(
+                " {} of the full tier not run; `oedometer report --tier full` runs {}.",
+                count_of(cases, "case", "cases"),
+                if cases == 1 { "it" } else { "them" }
+            ),
+        };
+        format!(
+            "{program} · {} · {} · {run} · `{}`{several}{left_out}",
+            self.date, self.processor, self.command
+        )
     }
 }
 

@@ -1,232 +1,127 @@
-//! Where does it lock, where does it break? Methods × situations, in words and colour.
+//! Where does it lock, where does it break? One row a situation, one column a method, the worst of all studies
+//! in each, in words and colour.
 
-use crate::case::Task;
-use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::class::Class;
-use crate::exact::exact_error::ExactError;
-use crate::judge::locking::standings;
-use crate::record::{Record, Status};
-use crate::render::answers::question::{Links, link_cell, section, unanswered};
-use crate::render::answers::regime::PAPERS;
+use crate::judge::situation::{End, Ended, Situation, situations_of};
+use crate::render::answers::question::{Answer, Links, Question, link, short};
+use crate::render::answers::regime::{PAPERS, distinct};
 use crate::render::number;
-use crate::render::page::{Block, Section};
-use crate::render::report::StudyResults;
-use crate::render::report::labels::first_measure;
+use crate::render::page::Block;
+use crate::render::report::situations;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 
-const HEADING: &str = "Where does it lock, where does it break?";
+/// The question.
+pub const QUESTION: Question = Question { heading: "Where does it lock, where does it break?", id: "breaks" };
 
-/// A tick stands at errors below this only.
-const TICK_BELOW: f64 = 0.01;
+/// Methods that the matrix has.
+const MOST_METHODS: usize = 8;
 
-/// Methods that the matrix has: those that most situations tried.
-const MOST_METHODS: usize = 10;
-
-const UNTRIED: &str = "not tried";
-
-/// A row of the matrix: what was hard, and how each method that was tried came out.
-struct Situation<'a> {
-    name: String,
-    study: &'a str,
-    ends: Vec<(String, Cell)>,
-}
-
-/// The matrix, and how to read it.
-pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Section, ExactError> {
-    let mut situations = Vec::new();
-    for one in results {
-        if one.study.scene.shows_locking() {
-            situations.extend(of_layer(one)?);
-        } else if is_hard(one) || is_of_several_methods(one) {
-            situations.extend(of_study(one));
-        }
-    }
-    let methods = methods_of_most(&situations);
+/// The matrix. `detail` is where every study of every situation stands.
+pub fn answer(ends: &[Ended<'_>], links: Links<'_>, detail: &str) -> Answer {
+    let methods = methods_shown(ends);
     if methods.len() < 2 {
-        return Ok(unanswered(
-            HEADING,
-            "breaks",
-            "several methods in the same hard case, as in the `hard-…` studies",
-        ));
+        return QUESTION.open("several methods in the same situation, as in the `hard-…` studies");
     }
     let mut columns = columns("situation");
-    columns.extend(methods.iter().map(|method| TableColumn::text(method.clone())));
-    columns.push(TableColumn::text("study"));
-    let tried =
-        |situation: &&Situation<'_>| situation.ends.iter().any(|(method, _)| methods.contains(method));
-    let rows = situations.iter().filter(tried).map(|situation| {
-        let mut row: Vec<Cell> = vec![situation.name.as_str().into()];
-        row.extend(methods.iter().map(|method| {
-            let end = situation.ends.iter().find(|(name, _)| name == method);
-            end.map_or(Cell::Text(UNTRIED.to_owned()), |(_, cell)| cell.clone())
+    columns.extend(methods.iter().map(|method| TableColumn::text(*method)));
+    columns.push(TableColumn::number("studies"));
+    let rows = situations_of(ends).into_iter().map(|situation| {
+        let mut row: Vec<Cell> = vec![situation.name().into()];
+        row.extend(methods.iter().map(|method| match worst(ends, situation, method) {
+            None => Cell::Text("not tried".to_owned()),
+            Some(one) => evidence(one, links),
         }));
-        row.push(link_cell(links, situation.study));
+        row.push(Cell::Count(studies_of(ends, situation) as u64));
         row
     });
-    let table = Table::of("", columns, rows).note(format!(
-        "{} below {}: the largest error of the pressure at the points at the last output, over the runs of the study on its \
-         finest mesh (the layer: of the displacement at its undrained start); {} the error where it is larger; {} the name of \
-         a failure, and in how many of the runs, or a body that locks",
-        Mood::Pass.mark(),
-        number::percent(TICK_BELOW),
-        Mood::Note.mark(),
-        Mood::Fail.mark()
-    ));
-    let lead = format!(
-        "{} {}",
-        worst_sentence(&situations),
-        "A study may mean a run to fail: what it expects stands on its page."
-    );
-    Ok(section(HEADING, "breaks", vec![Block::Paragraph(lead), Block::Table(table)]))
-}
-
-/// In how many situations the paper's method was tried, and where it does not hold.
-fn worst_sentence(situations: &[Situation<'_>]) -> String {
-    let of_papers: Vec<(&str, &Cell)> = situations
-        .iter()
-        .filter_map(|one| Some((one.name.as_str(), &one.ends.iter().find(|(method, _)| method == PAPERS)?.1)))
-        .collect();
-    if of_papers.is_empty() {
-        return format!("`{PAPERS}` was not tried here.");
-    }
-    let failing: Vec<String> = of_papers
-        .iter()
-        .filter_map(|(name, cell)| match cell {
-            Cell::Verdict(Mood::Fail, word) => Some(format!("{name} ({word})")),
-            _ => None,
-        })
-        .collect();
-    let held = of_papers.iter().filter(|(_, cell)| matches!(cell, Cell::Verdict(Mood::Pass, _))).count();
-    let fails = if failing.is_empty() {
-        "it fails in none".to_owned()
-    } else {
-        format!("it fails in: {}", failing.join("; "))
-    };
-    format!(
-        "`{PAPERS}`, the paper's method, was tried in {} situations and is within {} in {held}; {fails}.",
-        of_papers.len(),
-        number::percent(TICK_BELOW)
+    let table = Table::of("", columns, rows)
+        .note(format!("the worst of all studies of a situation; {}", situations::legend()));
+    let table = short(table, "on the page of all situations");
+    QUESTION.told(
+        format!("{} [Every study of every situation]({detail}).", sentence(ends, links)),
+        vec![Block::Table(table)],
     )
 }
 
-fn is_hard(one: &StudyResults<'_>) -> bool {
-    one.study.case_expectations.iter().any(|expectation| expectation.demand.status.is_some())
+/// A cell that leads to the study with the worst end.
+fn evidence(one: &Ended<'_>, links: Links<'_>) -> Cell {
+    let (mood, words) = situations::words_of(&one.end);
+    Cell::Evidence { mood, words, target: links(&one.study.name) }
 }
 
-/// Whether a study holds three methods or more against each other.
-fn is_of_several_methods(one: &StudyResults<'_>) -> bool {
-    methods_in(one.records).len() > 2
-}
-
-fn methods_in(records: &[Record]) -> Vec<String> {
-    let mut seen: Vec<String> = Vec::new();
-    for record in records.iter().filter(|record| record.case.task == Task::Solve) {
-        let method = record.case.method.to_string();
-        if !seen.contains(&method) {
-            seen.push(method);
-        }
+/// How the paper's method, or else the first method, stands: where it holds, its largest error, where it fails.
+fn sentence(ends: &[Ended<'_>], links: Links<'_>) -> String {
+    let papers = ends.iter().map(|one| one.method.as_str()).find(|method| *method == PAPERS);
+    let Some(method) = papers.or_else(|| ends.first().map(|one| one.method.as_str())) else {
+        return String::new();
+    };
+    let own: Vec<&Ended<'_>> =
+        situations_of(ends).into_iter().filter_map(|situation| worst(ends, situation, method)).collect();
+    let holds = own.iter().filter(|one| situations::words_of(&one.end).0 == Mood::Pass).count();
+    let place =
+        |one: &Ended<'_>| format!("{} ({})", lower(one.situation.name()), link(links, &one.study.name));
+    let mut parts = vec![format!(
+        "`{method}`{} was tried in {} situations; in {holds} its worst error is below {}",
+        if papers.is_some() { ", the paper's method," } else { "" },
+        own.len(),
+        number::percent(situations::TICK_BELOW)
+    )];
+    let errors = own.iter().filter(|one| matches!(one.end, End::Error(_)));
+    let largest = errors.reduce(|a, b| if b.end.is_worse_than(&a.end) { b } else { a });
+    if let Some(one) = largest.filter(|one| situations::words_of(&one.end).0 != Mood::Pass) {
+        parts.push(format!("its largest is {} in {}", situations::words_of(&one.end).1, place(one)));
     }
-    seen
-}
-
-/// How each method of a study came out: the failures by name, or the largest error on its finest mesh.
-fn of_study<'a>(one: &'a StudyResults<'a>) -> Option<Situation<'a>> {
-    let reference = one.study.references.first()?.name();
-    let ends: Vec<(String, Cell)> = methods_in(one.records)
-        .into_iter()
-        .filter_map(|method| {
-            let own: Vec<&Record> =
-                one.records.iter().filter(|record| record.case.method.to_string() == method).collect();
-            Some((method, end_of(&own, reference)?))
-        })
-        .collect();
-    (!ends.is_empty()).then(|| Situation { name: one.study.title.clone(), study: &one.study.name, ends })
-}
-
-fn end_of(records: &[&Record], reference: &str) -> Option<Cell> {
-    let failed: Vec<&str> = records
+    let failing: Vec<String> = own
         .iter()
-        .filter_map(|record| record.status.failure().map(|failure| failure.kind.name()))
+        .filter(|one| !matches!(one.end, End::Error(_)))
+        .map(|one| format!("{}: **{}**", place(one), situations::words_of(&one.end).1))
         .collect();
-    if let Some(first) = failed.first() {
-        let word = if failed.len() == records.len() {
-            (*first).to_owned()
-        } else {
-            format!("{first} in {} of {}", failed.len(), records.len())
-        };
-        return Some(Cell::Verdict(Mood::Fail, word));
-    }
-    let finest = records.iter().map(|record| record.case.cells).max()?;
-    let on_finest =
-        records.iter().filter(|record| record.case.cells == finest && record.status == Status::Ok);
-    let errors = on_finest.filter_map(|record| {
-        let time = *record.case.time_factors.last()?;
-        let measure = first_measure(Quantity::Pressure, Sample::Points, reference, time);
-        Some(measure.error(record)?.value.abs())
+    parts.push(match failing.as_slice() {
+        [] => "it gives an answer in all of them".to_owned(),
+        all => format!("it gives no answer in {}", all.join(", ")),
     });
-    errors.reduce(f64::max).map(judged)
+    parts.join("; ") + "."
 }
 
-/// An error with a tick where it is small enough, and none where it is not.
-fn judged(error: f64) -> Cell {
-    let text = number::percent(error);
-    match error {
-        error if error < TICK_BELOW => Cell::Verdict(Mood::Pass, text),
-        error if error < 1.0 => Cell::Verdict(Mood::Note, text),
-        _ => Cell::Verdict(Mood::Fail, format!("{text} off")),
-    }
+fn lower(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_lowercase(), letters.as_str()))
 }
 
-/// A layer at its undrained start, with the usual soil and with one that hardly compresses.
-fn of_layer<'a>(one: &'a StudyResults<'a>) -> Result<Vec<Situation<'a>>, ExactError> {
-    let standings = standings(one.study, one.records)?;
-    let locked = || Cell::Verdict(Mood::Fail, Class::Locked.name().to_owned());
-    let usual: Vec<(String, Cell)> = standings
-        .iter()
-        .filter_map(|standing| {
-            let cell =
-                if standing.class == Some(Class::Locked) { locked() } else { judged(standing.displacement?) };
-            Some((standing.method.to_string(), cell))
+/// The worst end of a method in a situation, over all studies.
+fn worst<'b, 'a>(ends: &'b [Ended<'a>], situation: Situation, method: &str) -> Option<&'b Ended<'a>> {
+    let own = ends.iter().filter(|one| (one.situation, one.method.as_str()) == (situation, method));
+    own.reduce(|worst, next| if next.end.is_worse_than(&worst.end) { next } else { worst })
+}
+
+fn studies_of(ends: &[Ended<'_>], situation: Situation) -> usize {
+    let mut names: Vec<&str> =
+        ends.iter().filter(|one| one.situation == situation).map(|one| one.study.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    names.len()
+}
+
+/// The paper's method, those that come out of some situation best, and those that most situations tried.
+fn methods_shown<'b>(ends: &'b [Ended<'_>]) -> Vec<&'b str> {
+    let situations = situations_of(ends);
+    let all = distinct(ends.iter().map(|one| one.method.as_str()));
+    let worsts = |situation: Situation| {
+        all.iter().filter_map(move |method| worst(ends, situation, method)).collect::<Vec<_>>()
+    };
+    let is_best = |method: &str| {
+        situations.iter().any(|situation| {
+            let tried = worsts(*situation);
+            let best = tried.iter().copied().reduce(|a, b| if a.end.is_worse_than(&b.end) { b } else { a });
+            tried.len() > 2 && best.is_some_and(|best| best.method == method)
         })
-        .collect();
-    let stiff: Vec<(String, Cell)> = standings
-        .iter()
-        .filter_map(|standing| {
-            let error = standing.stiff_skeleton?;
-            // Less than half of the displacement is what the class `locked` means.
-            let cell = if error > 0.5 { locked() } else { judged(error) };
-            Some((standing.method.to_string(), cell))
-        })
-        .collect();
-    let name = |what: &str| format!("{}: {what}", one.study.title);
-    let rows = [(name("undrained start"), usual), (name("undrained start at the largest ν"), stiff)];
-    let rows = rows.into_iter().filter(|(_, ends)| !ends.is_empty());
-    Ok(rows.map(|(name, ends)| Situation { name, study: &one.study.name, ends }).collect())
-}
-
-/// The methods that most situations tried, the paper's first.
-fn methods_of_most(situations: &[Situation<'_>]) -> Vec<String> {
-    let mut known: Vec<(String, usize)> = Vec::new();
-    for (method, _) in situations.iter().flat_map(|one| &one.ends) {
-        match known.iter_mut().find(|(name, _)| name == method) {
-            Some((_, count)) => *count += 1,
-            None => known.push((method.clone(), 1)),
-        }
-    }
-    known.sort_by_key(|(name, count)| (name != PAPERS, std::cmp::Reverse(*count)));
-    known.truncate(MOST_METHODS);
-    known.into_iter().map(|(name, _)| name).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_tick_stands_below_a_percent_only_and_no_number_is_no_tick() {
-        assert!(matches!(judged(0.0099), Cell::Verdict(Mood::Pass, _)));
-        assert!(matches!(judged(0.01), Cell::Verdict(Mood::Note, _)));
-        assert!(matches!(judged(1.0), Cell::Verdict(Mood::Fail, _)));
-        assert!(matches!(judged(f64::NAN), Cell::Verdict(Mood::Fail, _)));
-    }
+    };
+    let tried = |method: &str| {
+        situations.iter().filter(|situation| worst(ends, **situation, method).is_some()).count()
+    };
+    let mut ranked: Vec<(&str, (bool, bool, usize))> =
+        all.iter().map(|method| (*method, (*method == PAPERS, is_best(method), tried(method)))).collect();
+    // Stable: of equals the first that a study names.
+    ranked.sort_by_key(|(_, worth)| std::cmp::Reverse(*worth));
+    ranked.truncate(MOST_METHODS);
+    ranked.into_iter().map(|(method, _)| method).collect()
 }

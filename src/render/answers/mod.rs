@@ -8,6 +8,7 @@ pub mod changes;
 pub mod choice;
 pub mod converges;
 pub mod cost;
+pub mod layers;
 pub mod making;
 pub mod matrix;
 pub mod paper;
@@ -16,9 +17,10 @@ pub mod regime;
 
 use crate::exact::exact_error::ExactError;
 use crate::golden::compare::Difference;
+use crate::judge::situation::Ended;
 use crate::render::answers::making::Making;
-use crate::render::answers::question::Links;
-use crate::render::page::{Callout, Page};
+use crate::render::answers::question::{Answer, Links};
+use crate::render::page::{Block, Callout, Page, Section};
 use crate::render::report::StudyResults;
 use crate::render::table::Mood;
 use crate::render::tables::golden_changes::count_of;
@@ -37,6 +39,10 @@ pub struct Answers<'a> {
     pub links: Links<'a>,
     /// Where the list of all studies is.
     pub index: &'a str,
+    /// How every method came out of every situation.
+    pub ends: &'a [Ended<'a>],
+    /// Where every study of every situation stands.
+    pub situations: &'a str,
 }
 
 /// The answer page.
@@ -47,19 +53,29 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
     let (results, links) = (answers.results, answers.links);
     let small = regime::small_strain(results);
     let large = regime::large_strain(results);
-    let sections = vec![
+    let all = vec![
         choice::answer(results, small.as_ref(), large.as_ref(), links)?,
         converges::answer(results, small.as_ref(), large.as_ref(), links),
         paper::answer(results, links)?,
         cost::answer(results, links),
-        matrix::answer(results, links)?,
+        matrix::answer(answers.ends, links, answers.situations),
         audit::answer(results, links),
+        layers::answer(results, links),
         changes::answer(answers.changes),
     ];
+    let mut sections = Vec::new();
+    let mut open = Vec::new();
+    for answer in all {
+        match answer {
+            Answer::Told(section) => sections.push(section),
+            Answer::Open { question, needed } => open.push(format!("**{}** {needed}.", question.heading)),
+        }
+    }
+    sections.extend(open_questions(open));
     Ok(Page {
         title: "Convergence report".to_owned(),
         lead: format!(
-            "{}\n\n[All studies, with every table and figure]({})",
+            "**{MADE}** {}\n\n[All studies, with every table and figure]({})",
             answers.making.words(results),
             answers.index
         ),
@@ -67,6 +83,20 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
         sections,
         is_wide: true,
         ..Page::default()
+    })
+}
+
+/// The question that the first lines of the page answer.
+const MADE: &str = "How was it made?";
+
+/// What these records do not answer, and what would.
+fn open_questions(open: Vec<String>) -> Option<Section> {
+    let lead = "What the studies of this report do not have, and would answer:";
+    (!open.is_empty()).then(|| Section {
+        heading: "Not in these records".to_owned(),
+        id: "open".to_owned(),
+        mood: None,
+        blocks: vec![Block::Paragraph(lead.to_owned()), Block::List(open)],
     })
 }
 

@@ -3,15 +3,16 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::exact_error::ExactError;
 use crate::record::{Record, Status};
-use crate::render::answers::question::{Links, links_to, section, unanswered};
+use crate::render::answers::question::{Answer, Links, Question, links_to};
 use crate::render::answers::regime::{PAPERS, QUOTED_CELLS};
-use crate::render::chart::describe::Size;
+use crate::render::chart::describe::{Size, Style};
 use crate::render::number;
-use crate::render::page::{Block, Figure, Section};
-use crate::render::report::labels::first_measure;
+use crate::render::page::{Block, Figure};
+use crate::render::report::labels::{self, first_measure};
 use crate::render::report::{StudyResults, theory_lines};
 
-const HEADING: &str = "Does it reproduce the paper?";
+/// The question.
+pub const QUESTION: Question = Question { heading: "Does it reproduce the paper?", id: "paper" };
 
 /// Methods of a figure of consolidation, the paper's first.
 const MOST_METHODS: usize = 3;
@@ -26,14 +27,13 @@ struct PaperRun<'a> {
 }
 
 /// Four figures with the theory line, and how far the runs are from it.
-pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Section, ExactError> {
+pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Answer, ExactError> {
     let runs: Vec<(u32, PaperRun<'_>)> = [(3, false), (4, true)]
         .into_iter()
         .filter_map(|(number, is_large)| Some((number, run_of(results, is_large)?)))
         .collect();
     if runs.is_empty() {
-        let needed = format!("`{PAPERS}` on {QUOTED_CELLS} cells of the paper's column");
-        return Ok(unanswered(HEADING, "paper", &needed));
+        return Ok(QUESTION.open(format!("`{PAPERS}` on {QUOTED_CELLS} cells of the paper's column")));
     }
     let mut figures = Vec::new();
     let mut sentences = Vec::new();
@@ -44,19 +44,16 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Section,
         figures.push(quarter(theory_lines::consolidation(run.results, &shown)?, &format!("{number}b")));
         if let Some((error, at)) = largest_error(run.record, own.name()) {
             sentences.push(format!(
-                "Figs {number}a, {number}b: on {QUOTED_CELLS} cells `{PAPERS}` is nowhere further than {} from `{}` in the \
-                 pressure at the points (relative L_2, at T_v = {at}).",
+                "Figs {number}a and {number}b: on {QUOTED_CELLS} cells the pressure of `{PAPERS}` is within {} of {} at every \
+                 output (relative L_2 error at the points; the largest at T_v = {at}).",
                 number::percent(error),
-                own.name()
+                labels::solution(own.name())
             ));
         }
     }
     let studies = runs.iter().map(|(_, run)| run.results.study.name.as_str());
-    let blocks = vec![
-        Block::Paragraph(format!("{} Evidence: {}.", sentences.join(" "), links_to(links, studies))),
-        Block::Figures(figures),
-    ];
-    Ok(section(HEADING, "paper", blocks))
+    let sentence = format!("{} Evidence: {}.", sentences.join(" "), links_to(links, studies));
+    Ok(QUESTION.told(sentence, vec![Block::Figures(figures)]))
 }
 
 /// The sound run of the paper's method on the paper's mesh with most outputs.
@@ -103,6 +100,9 @@ fn quarter(mut figure: Figure, number: &str) -> Figure {
     figure.name = format!("readme-fig-{number}");
     figure.chart.title = format!("Fig. {number}: {}", figure.chart.title);
     figure.chart.size = QUARTER;
+    for series in figure.chart.series.iter_mut().filter(|series| series.style == Style::Theory) {
+        series.name = "theory".to_owned();
+    }
     figure
 }
 

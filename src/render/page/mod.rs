@@ -5,6 +5,7 @@
 //! blank line ends a paragraph. Symbols such as `T_v` get their subscripts by themselves.
 
 pub mod html_page;
+pub mod links;
 pub mod markdown_page;
 pub mod marked_text;
 

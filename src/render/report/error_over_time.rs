@@ -7,7 +7,7 @@ use crate::judge::peers::{Comparison, Peer};
 use crate::judge::work_precision::{NextLevel, TimedRun, WorkPrecision};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Style};
 use crate::render::page::Block;
-use crate::render::report::StudyResults;
+use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 
 /// The comparison of a study with timed runs of several integrators.
@@ -24,7 +24,11 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
         Block::Heading("Error against wall time".to_owned()),
         Block::Figure(results.figure("wall-time", chart_of(&precision), caption(&precision))),
         Block::Table(cheapest_table(&precision)),
-        Block::Table(runs_table("The Pareto front", &front, &precision)),
+        Block::Table(runs_table(
+            "Runs than which no other is both cheaper and more accurate",
+            &front,
+            &precision,
+        )),
     ];
     if !precision.next_levels.is_empty() {
         blocks.push(Block::Table(next_table(&precision.next_levels)));
@@ -60,7 +64,7 @@ fn chart_of(precision: &WorkPrecision<'_>) -> Chart {
         }
     }
     let front = precision.runs.iter().filter(|run| run.on_front).map(point).collect();
-    chart.series.push(Series::theory("Pareto front", front));
+    chart.series.push(Series::theory("no run is both cheaper and more accurate", front));
     chart
 }
 
@@ -70,14 +74,11 @@ fn point(run: &TimedRun<'_>) -> (f64, f64) {
 
 fn caption(precision: &WorkPrecision<'_>) -> String {
     let noise = precision.noise_floor.map_or(String::new(), |noise| {
-        format!(
-            " In this session a run timed against itself came out the same within {:.0} %.",
-            100.0 * noise
-        )
+        format!(" Timed twice in this session, the same run differs by {:.0} %.", 100.0 * noise)
     });
     format!(
-        "Each point is a run: its wall time is the median over repeats taken in rounds over all runs. Nobody is ahead \
-         of a run on the front in both error and time.{noise}"
+        "Each point is a run: its wall time is the median over repeats taken in rounds over all runs. The line joins the \
+         runs than which no other run is both cheaper and more accurate.{noise}"
     )
 }
 
@@ -108,8 +109,8 @@ fn run_cells(run: &TimedRun<'_>) -> [Cell; 6] {
         Cell::Error(run.error),
         Cell::Number(1e3 * run.wall.median),
         Cell::Number(1e3 * run.wall.deviation),
-        Cell::Count(run.record.counters.steps),
-        Cell::Count(run.record.counters.point_updates),
+        labels::counted(run.record, run.record.counters.steps),
+        labels::counted(run.record, run.record.counters.point_updates),
     ]
 }
 
@@ -117,7 +118,9 @@ fn runs_table(title: &str, runs: &[&TimedRun<'_>], precision: &WorkPrecision<'_>
     let mut notes =
         vec!["wall times of runs that had the machine to themselves, in rounds over all runs".to_owned()];
     notes.extend(
-        precision.noise_floor.map(|noise| format!("noise floor of the session: {:.1} %", 100.0 * noise)),
+        precision.noise_floor.map(|noise| {
+            format!("timed twice in this session, the same run differs by {:.1} %", 100.0 * noise)
+        }),
     );
     Table::of(title, run_columns(), runs.iter().map(|run| run_cells(run).to_vec())).notes(notes)
 }
@@ -140,9 +143,8 @@ fn next_table(levels: &[NextLevel]) -> Table {
     Table::of(
         "One more level: cells half as large",
         columns(
-            "path | > wall of the finest [ms] | > its error | > wall predicted [ms] | > error \
-                 predicted | > cost exponent | > finest predicted by the coarser: wall off by | > error \
-                 off by",
+            "runs | > finest mesh: wall [ms] | > error | > next mesh, predicted: wall [ms] | > error | > cost \
+                 exponent | > finest mesh predicted from the coarser ones: wall off by | > error off by",
         ),
         rows,
     )
@@ -168,14 +170,16 @@ fn peers_table(compared: &[Comparison<'_, '_>]) -> Table {
                 row.push(Cell::Number(run.wall.median));
             }
             None => {
-                row.resize_with(10, || Cell::missing("every run here is somewhere worse"));
+                row.resize_with(10, || {
+                    Cell::missing("every run here has a larger error at some of the times")
+                });
             }
         }
         row
     });
     let times = peers::TIME_FACTORS.map(|factor| format!("> T_v = {factor}")).join(" | ");
     Table::of(
-        "Other programs on this column, and the first run here that is nowhere worse",
+        "Other programs on this column, and the cheapest run here whose errors are no larger at any of the times",
         columns(&format!("program | {times} | > CPU [s] | run here | {times} | > wall [s]")),
         rows,
     )

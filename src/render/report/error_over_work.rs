@@ -12,7 +12,9 @@ use crate::study::expectation::{Axis, Measure};
 
 /// Error over point updates, and over wall time where runs had the machine to themselves.
 pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
-    let along_mesh = paths(results.records, Axis::Cells);
+    let mut along_mesh = paths(results.records, Axis::Cells);
+    // Nobody counts the work of an attached solver.
+    along_mesh.retain(|path| path.records.iter().all(|record| !record.case.is_attached()));
     let mut blocks = Vec::new();
     let Some(measure) = measure_of(results) else { return blocks };
     if along_mesh.len() > 1 {
@@ -57,8 +59,9 @@ fn measure_of(results: &StudyResults<'_>) -> Option<Measure> {
 }
 
 fn error(record: &Record, measure: &Measure) -> Option<f64> {
+    let sample = if measure.sample == Sample::Points { record.main_sample() } else { measure.sample };
     record
-        .error(measure.quantity, measure.sample, measure.norm, &measure.reference, measure.time_factor)
+        .error(measure.quantity, sample, measure.norm, &measure.reference, measure.time_factor)
         .map(|row| row.value.abs())
 }
 
@@ -68,15 +71,15 @@ fn timing_table(timed: &[&Record], measure: &Measure) -> Table {
         let middle = median(&wall).unwrap_or(f64::NAN);
         let least = wall.iter().copied().fold(f64::INFINITY, f64::min);
         let most = wall.iter().copied().fold(0.0, f64::max);
-        let nanoseconds = 1e9 * middle / record.counters.point_updates as f64;
+        let counted = (record.counters.point_updates > 0).then_some(record.counters.point_updates as f64);
         vec![
             Cell::Code(record.case.label()),
             Cell::of(error(record, measure), Cell::Error, "no error was measured"),
-            Cell::Count(record.counters.steps),
-            Cell::Count(record.counters.point_updates),
+            labels::counted(record, record.counters.steps),
+            labels::counted(record, record.counters.point_updates),
             Cell::Seconds(middle),
             Cell::Text(format!("{least:.3} … {most:.3} s, {} runs", wall.len())),
-            Cell::Number(nanoseconds),
+            Cell::of(counted.map(|updates| 1e9 * middle / updates), Cell::Number, "of an attached solver"),
         ]
     });
     Table::of(

@@ -57,9 +57,8 @@ pub fn blocks(one: &StudyResults<'_>) -> Vec<Block> {
         return Vec::new();
     }
     let title = "Order on the finest three meshes, error on ten cells";
-    let table = Table::of(title, columns, rows).note(
-        "at the middle output time; relative L_2 norm over the volume; a class stands where it allows no order",
-    );
+    let table = Table::of(title, columns, rows)
+        .note(format!("at the middle output time; relative L_2 norm over the volume. {}", labels::CLASSES));
     let mut blocks = vec![Block::Heading("What converges to what".to_owned()), Block::Table(table)];
     if !floors.is_empty() {
         blocks.push(Block::Paragraph("Floors:".to_owned()));

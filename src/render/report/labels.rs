@@ -1,9 +1,28 @@
 //! Words for quantities, samples and axes, the same in every figure and table.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::judge::paths::{Path, first_norm};
+use crate::judge::paths::{Path, SeriesSummary, first_norm};
+use crate::record::Record;
+use crate::render::table::Cell;
 use crate::study::expectation::{Axis, Measure};
 use std::collections::{BTreeMap, BTreeSet};
+
+/// What the words beside an order, or instead of one, say.
+pub const CLASSES: &str = "Words beside an order say that it is not settled: pre-asymptotic, it still changes from mesh to \
+                           mesh; contaminated, a term of lower order takes over on fine meshes; superconvergent, higher \
+                           than promised. Words instead of one: oscillatory, the error goes up and down; divergent, it \
+                           grows; floor-limited, something else than the mesh limits it; locked, the body hardly moves";
+
+/// A reference in words, for running text and legends.
+pub fn solution(reference: &str) -> String {
+    match reference {
+        "terzaghi" => "Terzaghi's solution with compressible water".to_owned(),
+        "terzaghi-incompressible" => "Terzaghi's solution".to_owned(),
+        "large-strain" => "the exact large-strain solution of its own equations".to_owned(),
+        "xie-leo" => "Xie & Leo's solution".to_owned(),
+        other => format!("the exact solution `{other}`"),
+    }
+}
 
 /// A quantity in words.
 pub fn quantity(quantity: Quantity) -> &'static str {
@@ -23,6 +42,11 @@ pub fn sample(sample: Sample) -> &'static str {
         Sample::Nodes => "at the nodes",
         Sample::Surface => "of the surface",
     }
+}
+
+/// Work of a case, which nobody counts for an attached solver.
+pub fn counted(record: &Record, work: u64) -> Cell {
+    if record.case.is_attached() { Cell::missing("of an attached solver") } else { Cell::Count(work) }
 }
 
 /// A measure in words, without its time.
@@ -64,6 +88,17 @@ pub struct PathLabels {
 }
 
 impl PathLabels {
+    /// The labels with the places of a path's errors, where they are not those of the figure.
+    #[must_use]
+    pub fn with_places(mut self, summaries: &[SeriesSummary<'_>], asked: Sample) -> Self {
+        for (label, summary) in self.each.iter_mut().zip(summaries) {
+            if summary.measure.sample != asked {
+                *label = format!("{label}, {}", sample(summary.measure.sample));
+            }
+        }
+        self
+    }
+
     /// What all share, as the end of a subtitle.
     pub fn subtitle_end(&self) -> String {
         if self.shared.is_empty() { String::new() } else { format!("; {}", self.shared) }

@@ -9,6 +9,7 @@ pub mod labels;
 pub mod pages;
 pub mod plane_fields;
 pub mod refinement;
+pub mod situations;
 pub mod stiffness_sweeps;
 pub mod study_page;
 pub mod survival;
@@ -61,6 +62,11 @@ impl<'a> StudyResults<'a> {
         self
     }
 
+    /// Cases of the study that have no record.
+    pub fn left_out(&self) -> usize {
+        self.study.planned.len().saturating_sub(self.records.len())
+    }
+
     /// Whether an expectation of the study is about a reference.
     pub(crate) fn asks_for(&self, reference: &str) -> bool {
         self.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
@@ -78,7 +84,11 @@ impl<'a> StudyResults<'a> {
 
     /// What runs the study again.
     pub(crate) fn run_command(&self) -> String {
-        format!("oedometer run {}", self.file)
+        if self.file.contains(char::is_whitespace) {
+            format!("oedometer run \"{}\"", self.file)
+        } else {
+            format!("oedometer run {}", self.file)
+        }
     }
 
     /// Whether every expectation is met, by records that are sound.

@@ -41,7 +41,7 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     let standings = standings(results.study, results.records)?;
     // One row says nothing about who stands where; nor do rows without a start.
     if standings.iter().filter(|one| one.displacement.is_some()).count() > 1 {
-        blocks.push(Block::Heading("Who stands incompressibility".to_owned()));
+        blocks.push(Block::Heading("Which methods stand incompressible water and soil".to_owned()));
         blocks.push(Block::List(verdicts(&standings)));
         blocks.push(Block::Table(accuracy(&standings)));
         blocks.push(Block::Table(robustness(&standings)));

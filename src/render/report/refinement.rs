@@ -62,7 +62,7 @@ pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
     }
     if few.len() < all.len() {
         blocks.push(Block::Paragraph(
-            "The figures show the undisturbed soil; the table has every variant too.".to_owned(),
+            "The figures show the plain soil only; the table has every variant too.".to_owned(),
         ));
     }
     blocks.push(Block::Table(orders_table(results, &all, axis, own, shown)));
@@ -133,7 +133,9 @@ fn figure(
     time_factor: f64,
 ) -> Option<Figure> {
     let measure = first_measure(quantity, sample, reference, time_factor);
-    let summaries: Vec<SeriesSummary<'_>> = all.iter().map(|path| path.summary(&measure)).collect();
+    let all = &measured(all, &measure);
+    let summaries: Vec<SeriesSummary<'_>> =
+        all.iter().map(|path| path.summary(&path.own_measure(&measure))).collect();
     if summaries.iter().all(|summary| summary.series.levels().iter().all(|level| level.error.is_none())) {
         return None;
     }
@@ -147,7 +149,7 @@ fn figure(
         ChartAxis::log10(labels::axis(axis)).with_ticks(ticks),
         ChartAxis::log10(labels::error_axis(&measure)),
     );
-    let labels = labels::path_labels(all);
+    let labels = labels::path_labels(all).with_places(&summaries, sample);
     chart.subtitle = Some(format!("T_v = {time_factor}, against {reference}{}", labels.subtitle_end()));
     chart.size = Size::PANEL;
     for (summary, label) in summaries.iter().zip(&labels.each) {
@@ -176,6 +178,16 @@ fn figure(
         }
     };
     Some(results.figure(&name, chart, caption))
+}
+
+/// The paths of this program, and those of attached solvers that have an error of the kind.
+fn measured<'a>(all: &[Path<'a>], measure: &Measure) -> Vec<Path<'a>> {
+    let has = |path: &&Path<'_>| {
+        let is_attached = path.records.iter().any(|record| record.case.is_attached());
+        let measure = path.own_measure(measure);
+        !is_attached || path.series(&measure).levels().iter().any(|level| level.error.is_some())
+    };
+    all.iter().filter(has).cloned().collect()
 }
 
 /// Whether a series along the axis is expected to fall with an order, and not to end in the mesh's
@@ -252,7 +264,10 @@ fn orders_table(
     let mut columns = columns("method | error of");
     columns.extend(levels.iter().map(|level| TableColumn::number(level.clone())));
     if shows_orders(axis, reference) {
-        columns.extend(["pair orders", "fit, 95 %", "finest 3"].map(TableColumn::number));
+        columns.extend(
+            ["order from level to level", "order fitted to all, 95 %", "order of the finest 3"]
+                .map(TableColumn::number),
+        );
     }
     if axis != Axis::PointsPerCell {
         columns.push(TableColumn::text("class"));
@@ -260,9 +275,13 @@ fn orders_table(
     let mut rows = Vec::new();
     let mut notes = Vec::new();
     for (quantity, sample) in panels(results) {
-        let measure = first_measure(quantity, sample, reference, time_factor);
+        let asked = first_measure(quantity, sample, reference, time_factor);
         for (path, label) in all.iter().zip(&labels.each) {
+            let measure = path.own_measure(&asked);
             let summary = path.summary(&measure);
+            if measured(std::slice::from_ref(path), &asked).is_empty() {
+                continue;
+            }
             let told = summary.classification.floor.as_ref().filter(|_| axis != Axis::PointsPerCell);
             if let (Some(floor), Some(advice)) = (told, &summary.classification.advice) {
                 notes.push(format!(

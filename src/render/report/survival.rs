@@ -68,9 +68,7 @@ fn setup_of(record: &Record) -> String {
 
 fn end_of(record: &Record) -> Cell {
     match &record.status {
-        Status::Failed(failure) => {
-            Cell::Verdict(Mood::Fail, format!("{} at step {}", failure.kind.name(), failure.step))
-        }
+        Status::Failed(failure) => Cell::Verdict(Mood::Fail, failure.name_with_step()),
         Status::Ok => {
             let error =
                 record.references.first().zip(record.case.time_factors.last()).and_then(|(own, at)| {

@@ -4,8 +4,8 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::exact_error::ExactError;
 use crate::measure::theory_curves::{
-    computed_consolidation, computed_isochrone, constant_recovery_error, theory_consolidation, theory_degree,
-    theory_isochrone,
+    TheoryIsochrone, computed_consolidation, computed_isochrone, constant_recovery_error,
+    theory_consolidation, theory_isochrones,
 };
 use crate::record::{Record, Status};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
@@ -78,16 +78,12 @@ fn compared<'a>(shown: &[&'a Record]) -> Vec<&'a Record> {
 
 /// Time factor of an isochrone, with the degree of consolidation where large strains make that the
 /// measure of progress.
-fn isochrone_name(
-    results: &StudyResults<'_>,
-    record: &Record,
-    time_factor: f64,
-) -> Result<String, ExactError> {
-    if !results.study.scene.is_large_strain() {
-        return Ok(format!("T_v = {time_factor}"));
+fn isochrone_name(results: &StudyResults<'_>, theory: &TheoryIsochrone) -> String {
+    if results.study.scene.is_large_strain() {
+        format!("T_v = {:.3}, U = {:.0} %", theory.time_factor, 100.0 * theory.degree)
+    } else {
+        format!("T_v = {}", theory.time_factor)
     }
-    let degree = theory_degree(&record.case, results.study.references[0], time_factor)?;
-    Ok(format!("T_v = {time_factor:.3}, U = {:.0} %", 100.0 * degree))
 }
 
 /// The paper's Figs 3a and 4a: `p/q` against depth.
@@ -103,18 +99,11 @@ pub fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure,
         ChartAxis::linear("depth below the surface (H − Y)/H (–)").between(0.0, 1.0).inverted(),
     );
     chart.size = Size::PANEL;
-    for (slot, time_factor) in record.case.time_factors.iter().enumerate() {
-        chart
-            .series
-            .push(Series::theory(own.name(), theory_isochrone(&record.case, own, *time_factor)?).slot(0));
-        chart.series.push(
-            Series::new(
-                isochrone_name(results, record, *time_factor)?,
-                computed_isochrone(record, *time_factor),
-            )
-            .style(Style::Markers)
-            .slot(slot),
-        );
+    for (slot, theory) in theory_isochrones(&record.case, own)?.into_iter().enumerate() {
+        let computed = computed_isochrone(record, theory.time_factor);
+        let name = isochrone_name(results, &theory);
+        chart.series.push(Series::theory(own.name(), theory.line).slot(0));
+        chart.series.push(Series::new(name, computed).style(Style::Markers).slot(slot));
     }
     let caption = format!(
         "Markers: material points of {} on {} cells. Lines: theory.",
@@ -136,15 +125,24 @@ pub fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Fi
     chart.size = Size::PANEL;
     chart.series.push(Series::theory(own.name(), theory_consolidation(case, own, end)?));
     for (slot, record) in shown.iter().enumerate() {
-        chart.series.push(
-            Series::new(record.case.method.to_string(), computed_consolidation(record))
-                .style(Style::Markers)
-                .slot(slot),
-        );
+        let points = thinned(&computed_consolidation(record), slot, shown.len());
+        chart
+            .series
+            .push(Series::new(record.case.method.to_string(), points).style(Style::Markers).slot(slot));
     }
     let caption = "Settlement over its final value, downward as engineers draw it. The methods differ in their \
                    stresses, hardly in their settlement.";
     Ok(results.figure("consolidation", chart, caption))
+}
+
+/// Markers of one run on a curve of consolidation.
+const MARKERS: usize = 12;
+
+/// Every so many of the points, those of another run between them: the line is seen, and no run hides another.
+fn thinned(points: &[(f64, f64)], slot: usize, runs: usize) -> Vec<(f64, f64)> {
+    let stride = (points.len() / MARKERS).max(1);
+    let first = stride * slot / runs.max(1);
+    points.iter().skip(first).step_by(stride).copied().collect()
 }
 
 /// Why a constant in each cell is of first order at the points and of second at the centres, with

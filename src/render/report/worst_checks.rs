@@ -27,9 +27,9 @@ pub fn block(results: &StudyResults<'_>) -> Block {
     let table =
         Table::of("Start checks, balances and groups", columns("what | > worst of all runs | bound"), rows)
             .note(
-                "A patch does not conserve the water's storage exactly: its imbalance falls with the mesh. \
-             A zero equilibrium residual is no evidence: constant recovery leaves both stresses wrong \
-             alike.",
+                "Pressures recovered over a patch of cells (`-patch`) do not conserve the stored water exactly: the imbalance falls with the mesh. \
+             An equilibrium residual of zero proves nothing: with one value a cell both stresses can be wrong \
+             by the same amount.",
             );
     Block::Details {
         summary: "Start checks, balances and dimensionless groups".to_owned(),

@@ -42,9 +42,11 @@ impl Table {
 
 fn show(cell: &Cell) -> (String, String) {
     let value = match cell {
-        Cell::Text(text) | Cell::Code(text) | Cell::Verdict(_, text) | Cell::Link { words: text, .. } => {
-            text.clone()
-        }
+        Cell::Text(text)
+        | Cell::Code(text)
+        | Cell::Verdict(_, text)
+        | Cell::Link { words: text, .. }
+        | Cell::Evidence { words: text, .. } => text.clone(),
         Cell::Error(v) | Cell::Order(v) | Cell::Percent(v) | Cell::Seconds(v) | Cell::Number(v) => {
             number::exact(*v)
         }

@@ -63,6 +63,13 @@ fn show(cell: &Cell, footnotes: &[&str]) -> String {
         (Cell::Verdict(mood, text), _) => {
             format!("<span class=\"{}\">{} {}</span>", mood.class(), mood.mark(), html(text))
         }
+        (Cell::Evidence { mood, words, target }, _) => format!(
+            "<a class=\"{}\" href=\"{}\">{} {}</a>",
+            mood.class(),
+            plain_html(target),
+            mood.mark(),
+            html(words)
+        ),
         (Cell::Missing(reason), (text, mark)) => {
             let mark = mark.map(|m| format!("<sup>{m}</sup>")).unwrap_or_default();
             format!("<span class=\"missing\" title=\"{}\">{text}{mark}</span>", plain_html(reason))

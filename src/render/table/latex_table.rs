@@ -40,7 +40,7 @@ impl Table {
 fn show(cell: &Cell, footnotes: &[&str]) -> String {
     match (cell, marked(cell, footnotes)) {
         (Cell::Code(name), _) => format!("\\texttt{{{}}}", latex(name)),
-        (Cell::Verdict(_, text), _) => latex(text),
+        (Cell::Verdict(_, text) | Cell::Evidence { words: text, .. }, _) => latex(text),
         (Cell::Error(_) | Cell::Number(_), (text, _)) => power(&text),
         (_, (text, Some(mark))) => format!("{}\\textsuperscript{{{mark}}}", latex(&text)),
         (_, (text, None)) => latex(&text),

@@ -44,14 +44,17 @@ fn show(cell: &Cell, footnotes: &[&str]) -> String {
     match (cell, marked(cell, footnotes)) {
         (Cell::Code(name), _) => code(name),
         (Cell::Verdict(mood, text), _) => format!("{} {}", mood.mark(), escape::markdown(text)),
-        (Cell::Link { words, target }, _) => {
-            format!("[{}]({})", escape::markdown(words), target.replace('|', "%7C"))
-        }
+        (Cell::Link { words, target }, _) => link(words, target),
+        (Cell::Evidence { mood, words, target }, _) => format!("{} {}", mood.mark(), link(words, target)),
         (_, (text, Some(mark))) => format!("{text} <sup>{mark}</sup>"),
         // A number may well start with a minus.
         (Cell::Text(_), (text, None)) => escape::markdown(&text),
         (_, (text, None)) => text,
     }
+}
+
+fn link(words: &str, target: &str) -> String {
+    format!("[{}]({})", escape::markdown(words), target.replace('|', "%7C"))
 }
 
 /// A name in back quotes, as many as it takes; a table's bars are escaped even there.

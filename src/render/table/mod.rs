@@ -112,6 +112,15 @@ pub enum Cell {
         /// Where it leads: a path or an address.
         target: String,
     },
+    /// A judgement that leads to the page that carries it.
+    Evidence {
+        /// The judgement.
+        mood: Mood,
+        /// What is read.
+        words: String,
+        /// Where it leads: a path or an address.
+        target: String,
+    },
     /// Nothing, and why.
     Missing(String),
 }
@@ -195,7 +204,9 @@ impl Cell {
             Self::Percent(v) => number::percent(*v),
             Self::Seconds(v) => number::seconds(*v),
             Self::Number(v) => number::number(*v),
-            Self::Verdict(mood, text) => format!("{} {text}", mood.mark()),
+            Self::Verdict(mood, text) | Self::Evidence { mood, words: text, .. } => {
+                format!("{} {text}", mood.mark())
+            }
             Self::Missing(_) => "–".to_owned(),
         }
     }

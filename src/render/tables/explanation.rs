@@ -5,6 +5,7 @@ use crate::judge::explanation::{Carrier, Explanation, LevelSeries};
 use crate::record::{Record, Status};
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
+use crate::render::tables::attached;
 use crate::render::tables::golden_changes::differences_table;
 
 /// Carriers, levels and changes of a case.
@@ -60,10 +61,10 @@ fn carriers_table(record: &Record, carriers: &[Carrier]) -> Table {
     });
     let status = match &record.status {
         Status::Ok => String::new(),
-        Status::Failed(failure) => format!(" ({} at step {})", failure.kind.name(), failure.step),
+        Status::Failed(failure) => format!(" ({})", failure.name_with_step()),
     };
     let reference = record.references.first().map_or("no reference", |used| used.name.as_str());
-    Table::of(
+    let table = Table::of(
         format!("{}: {}{status}", record.case.scene.name(), record.case.label()),
         columns(
             "quantity | sample | > largest at T_v | > L1 | > L2 | > Linf | > worst at ζ | > its share \
@@ -74,7 +75,8 @@ fn carriers_table(record: &Record, carriers: &[Carrier]) -> Table {
     .note(format!(
         "relative errors against {reference}, the largest first; settlement as s/s_exact − 1; share of the \
              squared L2 error; values in Pa and m"
-    ))
+    ));
+    table.notes(attached::notes_of(record))
 }
 
 fn levels_table(first: &Carrier, series: &LevelSeries) -> Table {

@@ -42,6 +42,9 @@ pub(crate) fn summary(group: &DifferenceGroup) -> String {
     if let Some(change) = group.worst.relative_change() {
         let _ = write!(sentence, "; largest relative change {}", number::error(change));
     }
+    if let Some(place) = &group.place {
+        let _ = write!(sentence, "; {place}");
+    }
     sentence
 }
 

@@ -65,7 +65,7 @@ pub(crate) const NOT_RESOLVED: &str = "the exact value is zero, or below what ro
 fn missing_reason(record: &Record) -> String {
     match &record.status {
         Status::Ok => NOT_RESOLVED.to_owned(),
-        Status::Failed(failure) => format!("{} at step {}", failure.kind.name(), failure.step),
+        Status::Failed(failure) => failure.name_with_step(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Tables of records, scores, golden values and measured times, for every command that shows them.
 
+pub mod attached;
 pub mod critical_steps;
 pub mod explanation;
 pub mod golden_changes;

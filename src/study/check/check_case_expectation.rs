@@ -4,7 +4,7 @@ use crate::case::tier::Tier;
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::run::outcome::FailureKind;
 use crate::scene::SceneKind;
-use crate::study::case_expectation::{CaseDemand, CaseExpectation, ErrorRange};
+use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
 use crate::study::check::checker::Checker;
 use crate::study::choice_tables::Placed;
 use crate::study::expectation::Measure;
@@ -36,6 +36,9 @@ impl Checker<'_> {
             error,
             solid_drift_below: bound(self, &table.solid_drift_below, "solid_drift_below"),
             water_drift_below: bound(self, &table.water_drift_below, "water_drift_below"),
+            spurious_velocity: self.spurious_velocity(table, scene),
+            peak_time_factor: table.peak_time_factor.as_ref().map(|range| bounds_of(range)),
+            peak_pressure: table.peak_pressure.as_ref().map(|range| bounds_of(range)),
         };
         if demand == CaseDemand::default() && self.diagnostics.len() == before {
             self.complain(
@@ -48,6 +51,19 @@ impl Checker<'_> {
         let tier = self.choice(table.tier.as_deref(), "tier", Tier::Ci)?;
         let line = self.source.text[..entry.span().start.min(self.source.text.len())].lines().count().max(1);
         (self.diagnostics.len() == before).then_some(CaseExpectation { selection, demand, tier, line })
+    }
+
+    /// Bounds on a velocity where there may be none.
+    fn spurious_velocity(&mut self, table: &ExpectCaseTable, scene: SceneKind) -> Option<Bounds> {
+        let range = table.spurious_velocity.as_ref()?;
+        if !scene.is_at_rest() {
+            self.complain(
+                range.span(),
+                format!("something is to move in the scene `{}`", scene.name()),
+                "a spurious velocity is told of the scene \"at-rest\"",
+            );
+        }
+        Some(bounds_of(range))
     }
 
     /// Bounds on one error of a case.
@@ -74,8 +90,17 @@ impl Checker<'_> {
                 time_factor,
                 probe: None,
             },
-            below: range.get_ref().below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
-            above: range.get_ref().above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
+            below: bounds_of(range).below,
+            above: bounds_of(range).above,
         })
+    }
+}
+
+/// The bounds of a table; what is left out bounds nothing.
+fn bounds_of(range: &Spanned<RangeTable>) -> Bounds {
+    let RangeTable { above, below } = range.get_ref();
+    Bounds {
+        above: above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
+        below: below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
     }
 }

@@ -20,9 +20,12 @@ impl Checker<'_> {
     ) -> Option<Method> {
         let (method, place) = match entry {
             MethodEntry::Name(name) => {
-                let method = Method::named(name);
+                let attached = self.solvers.iter().find(|solver| solver.name() == name);
+                let attached = attached.map(|solver| Method::of_attached(solver.attached));
+                let method = Method::named(name).or(attached);
                 if method.is_none() {
-                    let names = Method::names();
+                    let mut names = Method::names();
+                    names.extend(self.solvers.iter().map(|solver| solver.name().to_owned()));
                     let names: Vec<&str> = names.iter().map(String::as_str).collect();
                     self.complain(
                         span.clone(),
@@ -38,7 +41,11 @@ impl Checker<'_> {
         };
         if let Some(why) = method.configuration.and_then(|kind| scene.refuses_configuration(kind)) {
             let help = "take \"updated\" or \"total\", or leave the key out";
-            self.complain(place.unwrap_or(span), why, help);
+            self.complain(place.unwrap_or(span.clone()), why, help);
+            return None;
+        }
+        if let Some(why) = scene.refuses_method(method) {
+            self.complain(span, why, "take \"GIMP-SRI-patch\", or another method without `TL-`");
             return None;
         }
         Some(method)
@@ -86,6 +93,7 @@ impl Checker<'_> {
             self.complain(word.span(), why, "leave the key out, or take another");
             return None;
         }
-        Some(Method { basis: basis?, strain: strain?, pressure, recovery, memory, configuration })
+        let (basis, strain) = (basis?, strain?);
+        Some(Method { basis, strain, pressure, recovery, memory, configuration, attached: None })
     }
 }

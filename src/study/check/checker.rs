@@ -4,6 +4,7 @@ use crate::case::Case;
 use crate::case::keys::{Key, Value};
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::StudySource;
+use crate::study::solver::Solver;
 use std::ops::Range;
 
 /// What a study is read for.
@@ -24,6 +25,8 @@ pub(crate) struct Checker<'a> {
     /// Cases that the sweeps seen so far multiply out to.
     pub(crate) multiplied_out: usize,
     pub(crate) purpose: Purpose,
+    /// Attached solvers, whose names are methods too.
+    pub(crate) solvers: Vec<Solver>,
     /// What is odd and runs all the same, as a person reads it.
     pub(crate) warnings: Vec<String>,
 }

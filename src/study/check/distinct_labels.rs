@@ -33,7 +33,7 @@ impl Checker<'_> {
 
 /// Whether a key is what its scene calls the input: a column has a width where a layer has a length.
 fn is_of_the_scene(name: &str, planned: &[PlannedCase]) -> bool {
-    let other_name = |case: &Case| if case.scene.needs_two_dimensions() { "width" } else { "length" };
+    let other_name = |case: &Case| if case.scene.is_a_layer() { "width" } else { "length" };
     planned.first().is_none_or(|planned| other_name(&planned.case) != name)
 }
 

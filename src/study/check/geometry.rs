@@ -11,6 +11,7 @@ use crate::study::check::PlannedCase;
 use crate::study::check::checker::Checker;
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::{StudyFile, SweepTable};
+use crate::study::inputs::{One, TypedInput};
 use toml::Spanned;
 
 /// Final strain `m_vl q` up to which small-strain theory is taken without a word.
@@ -20,7 +21,7 @@ impl Checker<'_> {
     /// The values of the column's or the layer's table, whichever the scene is about; the other is refused.
     pub(crate) fn geometry(&mut self, file: &StudyFile, seed: &Case) -> Vec<(&'static Key, Value)> {
         let (scene, name) = (seed.scene, seed.scene.name());
-        if scene.needs_two_dimensions() {
+        if scene.is_a_layer() {
             if let Some(span) =
                 file.column.inputs.iter().map(|(_, typed)| typed.span()).min_by_key(|s| s.start)
             {
@@ -47,13 +48,29 @@ impl Checker<'_> {
                 "a load that grows belongs to the scenes \"xie-leo\" and \"dynamic-column\"",
             );
         }
+        if let Some(typed) = file.column.typed("self_weight").filter(|_| !scene.takes_self_weight()) {
+            self.complain(
+                typed.span(),
+                format!("the soil of `{name}` has no weight"),
+                "own weight belongs to the scenes of a column, like \"terzaghi\", \"xie-leo\" and \"at-rest\"",
+            );
+        }
+        let in_a_line = |typed: &&One| !matches!(typed.get_ref(), TypedInput::Count(2));
+        if let Some(typed) =
+            file.column.typed("dimensions").filter(|_| scene.needs_two_dimensions()).filter(in_a_line)
+        {
+            self.complain(
+                typed.span(),
+                format!("`{name}` has two dimensions"),
+                "leave the key out: the plate presses across the direction in which the water flows",
+            );
+        }
         self.inputs("column", &file.column.inputs, seed)
     }
 
     /// Complains where a sweep names an input of the other kind of body: a width of a layer, a base of a column.
     pub(crate) fn geometry_is_the_scenes(&mut self, table: &SweepTable, scene: SceneKind) {
-        let [own, other] =
-            if scene.needs_two_dimensions() { ["layer", "column"] } else { ["column", "layer"] };
+        let [own, other] = if scene.is_a_layer() { ["layer", "column"] } else { ["column", "layer"] };
         for (key, list) in &table.inputs {
             if key.tables.contains(&other) && !key.tables.contains(&own) {
                 let names: Vec<&str> = Key::of(own).map(|key| key.name).collect();

@@ -3,7 +3,9 @@
 pub mod check_case_expectation;
 pub mod check_material;
 pub mod check_method;
+pub mod check_result;
 pub mod check_series_expectation;
+pub mod check_solver;
 pub mod check_sweep;
 pub mod checker;
 pub mod default_integrator;
@@ -30,6 +32,7 @@ use crate::study::diagnostic::StudyError;
 use crate::study::expectation::SeriesExpectation;
 use crate::study::file::{OutputTable, StudyFile, StudySource};
 use crate::study::name::name_of;
+use crate::study::solver::Solver;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use toml::Spanned;
@@ -70,6 +73,8 @@ pub struct Study {
     pub case_expectations: Vec<CaseExpectation>,
     /// Longest wall time of a case, s.
     pub case_seconds: f64,
+    /// Solvers of somebody else's that it attaches.
+    pub solvers: Vec<Solver>,
     /// Times each case is run alone for its wall time; 0 where it is not timed.
     pub timing_repeats: usize,
     /// What is odd and runs all the same, as a person reads it.
@@ -97,6 +102,7 @@ impl Study {
             column_height: None,
             multiplied_out: 0,
             purpose,
+            solvers: Vec::new(),
             warnings: Vec::new(),
         };
         let study = checker.study(&file);
@@ -104,6 +110,12 @@ impl Study {
             Some(study) if checker.diagnostics.is_empty() => Ok(study),
             _ => Err(source.error(checker.diagnostics)),
         }
+    }
+
+    /// The solver that a case is given to, where that is not this program.
+    pub fn solver_of(&self, case: &Case) -> Option<&Solver> {
+        let attached = case.method.attached?;
+        self.solvers.iter().find(|solver| solver.attached == attached)
     }
 
     /// Whether an expectation says that a record is to end as it did.
@@ -117,18 +129,16 @@ impl Study {
     }
 }
 
-/// Adds cases that are not there yet; one that is there counts from the smaller tier on.
-fn add(planned: &mut Vec<PlannedCase>, places: &mut HashMap<String, usize>, cases: Vec<Case>, tier: Tier) {
-    for case in cases {
-        match places.entry(case.hash()) {
-            Entry::Occupied(place) => {
-                let other = &mut planned[*place.get()];
-                other.tier = other.tier.min(tier);
-            }
-            Entry::Vacant(place) => {
-                place.insert(planned.len());
-                planned.push(PlannedCase { case, tier });
-            }
+/// Puts a case among those that are planned: each once, in the smallest tier that has it.
+fn put(case: Case, tier: Tier, planned: &mut Vec<PlannedCase>, places: &mut HashMap<String, usize>) {
+    match places.entry(case.hash()) {
+        Entry::Occupied(place) => {
+            let other = &mut planned[*place.get()];
+            other.tier = other.tier.min(tier);
+        }
+        Entry::Vacant(place) => {
+            place.insert(planned.len());
+            planned.push(PlannedCase { case, tier });
         }
     }
 }
@@ -143,6 +153,9 @@ impl Checker<'_> {
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.named(&file.scene, "scene")?;
         let task = self.choice(file.task.as_deref(), "task", Task::default())?;
+        let case_seconds =
+            self.positive(file.case_seconds.as_deref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
+        self.solvers = self.solvers(file, case_seconds);
         let common = self.common(file, Case::seed(task, scene));
         let mut base = common.base();
         let strain = self.given_strain(file, &base);
@@ -155,7 +168,8 @@ impl Checker<'_> {
             None => DEFAULT_TIME_FACTORS.to_vec(),
         };
         let references = self.references(&file.output, scene, &base.column);
-        if file.sweep.is_empty() {
+        let given = self.results(file);
+        if file.sweep.is_empty() && file.result.is_empty() {
             let end = self.source.text.trim_end().len();
             let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
             self.complain(
@@ -174,27 +188,32 @@ impl Checker<'_> {
             };
             let Some(mut sweep) = self.sweep(table, block.span(), &common, &base) else { continue };
             if self.purpose == Purpose::Solving {
-                self.cells_fill_the_width(table, sweep.cases(&base));
-                self.memory_fits(table, sweep.cases(&base));
+                self.cells_fill_the_width(table, sweep.cases(&base).filter(|case| !case.is_attached()));
+                self.memory_fits(table, sweep.cases(&base).filter(|case| !case.is_attached()));
                 self.default_integrator(table, block.span().start, &common, &base, &mut sweep);
             }
             let tier = self.choice(table.tier.as_deref(), "tier", Tier::default()).unwrap_or_default();
-            let mut cases: Vec<Case> = sweep.cases(&base).collect();
+            let mut cases: Vec<Case> = sweep.cases(&base).map(Case::for_attached).collect();
             if let Some(strain) = strain {
                 for case in &mut cases {
                     case.column.load = load_of(strain, case);
                 }
             }
             let start = block.span().start;
+            self.attached_are_solved(start, &cases);
             self.pores_stay_open(start..start + 1, cases.iter());
-            add(&mut planned, &mut places, cases, tier);
+            cases.into_iter().for_each(|case| put(case, tier, &mut planned, &mut places));
+        }
+        base.time_factors = time_factors;
+        for meshes in given {
+            for case in meshes.cases(&base) {
+                put(case, meshes.tier, &mut planned, &mut places);
+            }
         }
         Self::tell_apart(&mut planned);
         self.large_for_small_strain(file, &planned);
         self.column_height = common_height(&planned, base.column.height);
         let (expectations, case_expectations) = self.expectations(file, scene, &references, &planned);
-        let case_seconds =
-            self.positive(file.case_seconds.as_deref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
         let timing_repeats =
             self.count(file.timing.repeats.as_deref(), "timing.repeats", 0..=1000).unwrap_or(0);
         Some(Study {
@@ -207,6 +226,7 @@ impl Checker<'_> {
             expectations,
             case_expectations,
             case_seconds,
+            solvers: std::mem::take(&mut self.solvers),
             timing_repeats,
             warnings: std::mem::take(&mut self.warnings),
         })

@@ -1,8 +1,11 @@
 //! The files of a report: the answer page, the list of studies, a page a study, and all tables and figures as
 //! files of their own.
 
+use crate::cli::side_by_side::side_by_side;
+use crate::exact::exact_error::ExactError;
 use crate::golden::compare::Difference;
-use crate::record::whole_file::write_whole;
+use crate::judge::situation::{Ended, ends_of};
+use crate::record::whole_file::write_rebuildable;
 use crate::render::answers::making::Making;
 use crate::render::answers::{Answers, answer_page};
 use crate::render::page::html_page::render_html;
@@ -10,9 +13,16 @@ use crate::render::page::markdown_page::render_markdown;
 use crate::render::page::{Page, all_figures, slug, tables};
 use crate::render::report::StudyResults;
 use crate::render::report::pages::index_page;
+use crate::render::report::situations::situations_page;
 use crate::render::report::study_page::study_page;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+
+/// What stands before the name of a study in a link of the answers, and instead of the pages of all studies and of all
+/// situations: each form of the page leads to its own.
+const STUDY: &str = "study:";
+const INDEX: &str = "page:studies";
+const SITUATIONS: &str = "page:situations";
 
 /// Writes all files below a folder; the path of the answer page.
 pub fn write(
@@ -23,30 +33,50 @@ pub fn write(
     start: Instant,
 ) -> anyhow::Result<PathBuf> {
     let studies = out.join("studies");
-    for one in results {
-        let page = study_page(one)?;
-        let name = slug(&one.study.name);
-        write_page(&studies.join(format!("{name}.html")), &render_html(&page)?)?;
-        write_page(&studies.join(format!("{name}.md")), &render_markdown(&page)?)?;
-        write_exports(&studies, &page)?;
-    }
+    side_by_side(results, |one| write_study(&studies, one)).into_iter().collect::<anyhow::Result<()>>()?;
     let index = index_page(results, "html");
     write_page(&studies.join("index.html"), &render_html(&index)?)?;
     write_exports(&studies, &index)?;
     write_page(&studies.join("README.md"), &render_markdown(&index_page(results, "md"))?)?;
 
+    let ends: Result<Vec<Vec<Ended<'_>>>, ExactError> =
+        side_by_side(results, |one| ends_of(one.study, one.records)).into_iter().collect();
+    let ends = ends?.concat();
+    let situations = situations_page(&ends, "html");
+    write_page(&out.join("situations.html"), &render_html(&situations)?)?;
+    write_exports(out, &situations)?;
+    write_page(&out.join("situations.md"), &render_markdown(&situations_page(&ends, "md"))?)?;
+
     making.seconds = start.elapsed().as_secs_f64();
-    let html = |study: &str| format!("studies/{}.html", slug(study));
-    let markdown = |study: &str| markdown_link(out, results, study);
-    let page = |links: &dyn Fn(&str) -> String, index| {
-        answer_page(&Answers { results, changes, making: &making, links, index })
-    };
-    let front = Page { files: Some("answers".to_owned()), ..page(&html, "studies/index.html")? };
+    let links = |study: &str| format!("{STUDY}{study}");
+    let (index, situations) = (INDEX, SITUATIONS);
+    let answers =
+        Answers { results, changes, making: &making, links: &links, index, ends: &ends, situations };
+    let front = Page { files: Some("answers".to_owned()), ..answer_page(&answers)? };
     write_exports(out, &front)?;
+    let markdown = front.clone().with_links(&|target| match target.strip_prefix(STUDY) {
+        Some(study) => markdown_link(out, results, study),
+        None if target == INDEX => "studies/README.md".to_owned(),
+        None => target.replace(SITUATIONS, "situations.md"),
+    });
+    write_page(&out.join("README.md"), &render_markdown(&markdown)?)?;
+    let html = front.with_links(&|target| match target.strip_prefix(STUDY) {
+        Some(study) => format!("studies/{}.html", slug(study)),
+        None if target == INDEX => "studies/index.html".to_owned(),
+        None => target.replace(SITUATIONS, "situations.html"),
+    });
     let path = out.join("index.html");
-    write_page(&path, &render_html(&front)?)?;
-    write_page(&out.join("README.md"), &render_markdown(&page(&markdown, "studies/README.md")?)?)?;
+    write_page(&path, &render_html(&html)?)?;
     Ok(path)
+}
+
+/// The pages of a study with their figures and tables.
+fn write_study(studies: &Path, one: &StudyResults<'_>) -> anyhow::Result<()> {
+    let page = study_page(one)?;
+    let name = slug(&one.study.name);
+    write_page(&studies.join(format!("{name}.html")), &render_html(&page)?)?;
+    write_page(&studies.join(format!("{name}.md")), &render_markdown(&page)?)?;
+    write_exports(studies, &page)
 }
 
 /// Where the Markdown front page leads for a study: to its file, which a repository has beside the report, and to
@@ -63,8 +93,9 @@ fn markdown_link(out: &Path, results: &[StudyResults<'_>], study: &str) -> Strin
     }
 }
 
+/// Whole or not at all, and not forced to the disk: after a loss of power the report is made again from its records.
 fn write_page(path: &Path, text: &str) -> anyhow::Result<()> {
-    Ok(write_whole(path, text.as_bytes())?)
+    Ok(write_rebuildable(path, text.as_bytes())?)
 }
 
 /// Every figure of a page as SVG with its data as CSV, and every table as CSV and LaTeX.

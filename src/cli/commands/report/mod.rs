@@ -8,20 +8,22 @@ use crate::campaign::run_report::RunReport;
 use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::cli::commands::check::GOLDEN;
-use crate::cli::commands::run::{Beside, DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
+use crate::cli::commands::run::{
+    Beside, DEFAULT_RESULTS, TierArgument, jobs_of, load_or_shipped, run_and_store,
+};
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::side_by_side::side_by_side;
 use crate::cli::stream::say;
 use crate::cli::study_files;
-use crate::golden::GoldenFile;
-use crate::golden::compare::Difference;
-use crate::judge::study_check::StudyCheck;
+use crate::golden::compare::{Difference, compare};
+use crate::golden::{GoldenFile, values_of};
 use crate::record::Record;
 use crate::record::store::RecordStore;
 use crate::render::answers::making::Making;
 use crate::render::report::StudyResults;
 use crate::study::check::Study;
-use std::collections::HashSet;
-use std::path::PathBuf;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Arguments of `report`.
@@ -42,6 +44,9 @@ pub struct Arguments {
     /// Run nothing: render the records that are there, whichever program made them
     #[arg(long, conflicts_with = "jobs")]
     from_records: bool,
+    /// How much of each study is run; what of the rest has its records is rendered too
+    #[arg(long, value_enum, default_value_t = TierArgument::Full, conflicts_with = "from_records")]
+    tier: TierArgument,
     /// Cases at the same time; all cores where not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
@@ -54,21 +59,19 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let studies = load_or_shipped(&arguments.studies)?;
     let reports =
         if arguments.from_records { kept(&studies, arguments)? } else { run_missing(&studies, arguments)? };
-    let results: Vec<StudyResults<'_>> = studies
-        .iter()
-        .zip(&reports)
-        .filter(|(_, report)| !report.records.is_empty())
-        .map(|(study, report)| {
-            let file = study_files::file_of(&study.name, &arguments.studies);
-            StudyResults::new(study, &report.records, Tier::Full).from_file(file)
-        })
-        .collect();
+    let with_records: Vec<(&Study, &RunReport)> =
+        studies.iter().zip(&reports).filter(|(_, report)| !report.records.is_empty()).collect();
+    let results = side_by_side(&with_records, |(study, report)| {
+        let file = typed_name(&study.name, arguments);
+        StudyResults::new(study, &report.records, tier_of(study, report)).from_file(file)
+    });
     let making = Making {
         date: machine::today(),
         processor: machine::processor(),
         command: machine::command(),
         seconds: 0.0,
         cases_run: reports.iter().map(|report| report.records.len() - report.resumed).sum(),
+        left_out: results.iter().map(StudyResults::left_out).sum(),
     };
     let changes = changes(&studies, &reports, arguments);
     let written = files::write(&arguments.out, &results, changes.as_deref(), making, start)?;
@@ -77,9 +80,43 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     Ok(if is_whole { Exit::Pass } else { Exit::CaseFailed })
 }
 
+/// What a study is called at the command line: its file, or its name where it came from inside the program and there
+/// is no such file here.
+fn typed_name(study: &str, arguments: &Arguments) -> String {
+    let file = study_files::file_of(study, &arguments.studies);
+    let is_inside = study_files::is_shipped(study, &arguments.studies) && !Path::new(&file).is_file();
+    if is_inside { study.to_owned() } else { file }
+}
+
 fn run_missing(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunReport>> {
-    let options = RunOptions { resume: true, ..RunOptions::whole(Tier::Full, jobs_of(arguments.jobs)) };
-    run_and_store(studies, studies, &options, &arguments.records, Beside::Nothing)
+    let tier = arguments.tier.into();
+    let options = RunOptions { resume: true, ..RunOptions::whole(tier, jobs_of(arguments.jobs)) };
+    let mut reports = run_and_store(studies, studies, &options, &arguments.records, Beside::Nothing)?;
+    if tier < Tier::Full {
+        for (study, report) in studies.iter().zip(&mut reports) {
+            add_finished(study, report, &arguments.records);
+        }
+    }
+    Ok(reports)
+}
+
+/// Adds the finished records of the cases that the tier left out, where every one of them has its own.
+fn add_finished(study: &Study, report: &mut RunReport, records: &Path) {
+    let store = RecordStore::new(records, &study.name);
+    let run: HashMap<String, Record> =
+        report.records.drain(..).map(|record| (record.hash.clone(), record)).collect();
+    let found = |case: &Case| run.get(&case.hash()).cloned().or_else(|| store.finished(case));
+    let all: Vec<Option<Record>> = study.cases(Tier::Full).into_iter().map(found).collect();
+    let is_whole = all.iter().all(Option::is_some);
+    let kept = all.into_iter().flatten().filter(|record| is_whole || run.contains_key(&record.hash));
+    report.records = kept.collect();
+    report.resumed += report.records.len() - run.len();
+}
+
+/// The tier that a study is judged by: the whole of it, unless it has the records of the CI tier and none beyond.
+fn tier_of(study: &Study, report: &RunReport) -> Tier {
+    let is_of_ci = report.records.len() == study.cases(Tier::Ci).len();
+    if is_of_ci && report.records.len() < study.cases(Tier::Full).len() { Tier::Ci } else { Tier::Full }
 }
 
 /// The records there are, as they are.
@@ -90,7 +127,7 @@ fn kept(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunRepor
             study.cases(Tier::Full).into_iter().filter_map(|case| store.kept(case)).collect();
         RunReport { resumed: records.len(), records, ..RunReport::default() }
     };
-    let reports: Vec<RunReport> = studies.iter().map(of_study).collect();
+    let reports = side_by_side(studies, of_study);
     if reports.iter().all(|report| report.records.is_empty()) {
         let reason = format!(
             "there is no record of these studies in {}: leave `--from-records` out, and `report` makes them",
@@ -108,18 +145,18 @@ fn changes(
     reports: &[RunReport],
     arguments: &Arguments,
 ) -> Option<Vec<(String, Difference)>> {
-    let mut held = false;
-    let mut changes = Vec::new();
-    for (study, report) in studies.iter().zip(reports) {
-        let Ok(golden) = GoldenFile::read_or_embedded(&arguments.golden, &study.name) else { continue };
-        held = true;
+    let of_study = |(study, report): &(&Study, &RunReport)| {
+        let golden = GoldenFile::read_or_embedded(&arguments.golden, &study.name).ok()?;
         let of_tier: HashSet<String> = study.cases(Tier::Ci).into_iter().map(Case::hash).collect();
         let is_of_tier = |record: &&Record| of_tier.contains(&record.hash);
         let records: Vec<Record> = report.records.iter().filter(is_of_tier).cloned().collect();
-        if !records.is_empty() {
-            let check = StudyCheck::new(study, &records, Tier::Ci, Ok(golden));
-            changes.extend(check.differences().iter().map(|one| (study.name.clone(), one.clone())));
+        if records.is_empty() {
+            return Some(Vec::new());
         }
-    }
-    held.then_some(changes)
+        let differences = compare(&golden, &values_of(&records));
+        Some(differences.into_iter().map(|one| (study.name.clone(), one)).collect::<Vec<_>>())
+    };
+    let all: Vec<(&Study, &RunReport)> = studies.iter().zip(reports).collect();
+    let held: Vec<_> = side_by_side(&all, of_study).into_iter().flatten().collect();
+    (!held.is_empty()).then(|| held.concat())
 }

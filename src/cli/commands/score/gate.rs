@@ -6,6 +6,7 @@ use crate::cli::commands::score::results::{Read, Results};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::exact::reference::ReferenceKind;
+use crate::judge::score::completeness::Lack;
 use crate::wording::typed;
 
 /// Tells what the results lack and whether they pass. In a gate, and where it is asked for, a result
@@ -18,11 +19,17 @@ pub fn judge(
 ) -> anyhow::Result<Exit> {
     let is_gate = strict || below.is_some();
     let mut exit = Exit::Pass;
+    let mut is_undeclared_told = false;
     for one in &results.all {
         let name = if results.all.len() > 1 { format!("{}: ", one.name()) } else { String::new() };
         for finding in &one.score.warnings {
             let word = if is_gate { "fail" } else { "warning" };
-            say!("{word}: {}: {name}{}", finding.name.name(), finding.sentence);
+            let is_of_mapping = finding.name == Lack::Undeclared;
+            if !(is_of_mapping && is_undeclared_told) {
+                let name = if is_of_mapping { "" } else { &name };
+                say!("{word}: {}: {name}{}", finding.name.name(), finding.sentence);
+            }
+            is_undeclared_told |= is_of_mapping;
             if is_gate {
                 exit = Exit::VerdictFailed;
             }

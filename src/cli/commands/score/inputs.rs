@@ -106,9 +106,6 @@ fn mapping_of(typed: &Typed, case: &Case, is_tables: bool) -> anyhow::Result<Map
     if is_plane {
         mapping.check_plane(&source)?;
     }
-    if let Some(taken) = mapping.taken_for_granted() {
-        say!("note: the mapping says nothing of {taken}");
-    }
     Ok(mapping)
 }
 

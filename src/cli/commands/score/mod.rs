@@ -89,7 +89,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             "`--time-tolerance {tolerance}` is no share: give a number from 0 to below 1"
         )));
     }
-    let (study, requested) = study_of(arguments)?;
+    let (study, requested) = study_of(&Asked {
+        scene: &arguments.scene,
+        reference: arguments.reference.as_deref(),
+        time_factors: arguments.time_factor.as_deref(),
+        assignments: &arguments.assignments,
+    })?;
     let Some(planned) = study.planned.first() else {
         return Err(Ended::usage("the assignments leave no column"));
     };
@@ -131,12 +136,27 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     gate::judge(&results, arguments.below, arguments.strict, held.references)
 }
 
+/// What a result is held against, as it was asked for.
+pub struct Asked<'a> {
+    /// The scene.
+    pub scene: &'a str,
+    /// One of its references; all where none is named.
+    pub reference: Option<&'a str>,
+    /// Time factors that the result must have, comma-separated.
+    pub time_factors: Option<&'a str>,
+    /// Dotted keys of a study file with their values.
+    pub assignments: &'a [String],
+}
+
 /// The scene with the column that the result is of, as a study with one case, and the time factors
 /// that were asked for.
-fn study_of(arguments: &Arguments) -> anyhow::Result<(Study, Vec<f64>)> {
-    let mut lines = StudyLines::of("score", &arguments.scene, "`--scene`")?;
-    lines.give_outputs(arguments.reference.as_deref(), arguments.time_factor.as_deref())?;
-    lines.assign(&arguments.assignments)?;
+///
+/// # Errors
+/// What is wrong with the scene or an assignment.
+pub fn study_of(asked: &Asked) -> anyhow::Result<(Study, Vec<f64>)> {
+    let mut lines = StudyLines::of("score", asked.scene, "`--scene`")?;
+    lines.give_outputs(asked.reference, asked.time_factors)?;
+    lines.assign(asked.assignments)?;
     lines.refuse_without_effect(&overrides::OF_RUNS)?;
     let is_requested = lines.has("output.time_factors");
     let study = lines.study_with(["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned))?;

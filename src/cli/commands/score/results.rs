@@ -8,7 +8,7 @@ use crate::exact::reference::ReferenceKind;
 use crate::import::mapping::Mapping;
 use crate::import::runs::Run;
 use crate::import::table::SampledState;
-use crate::judge::score::completeness::{Whole, missing_times, uneven_meshes};
+use crate::judge::score::completeness::{Finding, Lack, Whole, missing_times, uneven_meshes};
 use crate::judge::score::diagnosis::diagnosis;
 use crate::judge::score::interior_zeros::interior_zeros;
 use crate::judge::score::score_series::{ScoredSeries, series_of};
@@ -168,6 +168,13 @@ impl Read {
         let missing = std::mem::take(&mut self.score.warnings);
         self.score = score(parameters, held.references, &self.states, held.mapping.sample)?;
         self.score.warnings = missing;
+        self.score.warnings.extend(held.mapping.taken_for_granted().map(|taken| Finding {
+            name: Lack::Undeclared,
+            sentence: format!(
+                "the mapping says nothing of {taken}: write into [units] and [sign] what the file has, for nothing \
+                 is guessed from its numbers"
+            ),
+        }));
         if let Some(own) = held.references.first() {
             let column = &held.case.column;
             let of_scene = match held.mapping.whole_volume {

@@ -149,12 +149,15 @@ pub(crate) fn lay_out(chart: &Chart, legend: &Legend, notes: &[String]) -> Chart
     }
 }
 
+/// Width of a figure up to which nothing stands beside its plot: those in a row keep one shape.
+const NARROW: f64 = 420.0;
+
 /// A legend beside the plot must leave it its room.
 fn side(legend: &Legend, wide: f64, tall: f64, has_bar: bool) -> LegendSide {
     let fits = legend.column_width() <= 0.36 * wide && legend.column_height() <= tall + 24.0;
     match legend.is_empty() {
         true => LegendSide::None,
-        false if fits && !has_bar => LegendSide::Right,
+        false if fits && !has_bar && wide > NARROW => LegendSide::Right,
         false => LegendSide::Below,
     }
 }

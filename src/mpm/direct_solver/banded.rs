@@ -3,6 +3,8 @@
 //! Unknowns ordered along the column keep every operator within a narrow band, so that factoring
 //! and solving are linear in the number of cells (Golub & Van Loan 2013, algorithm 4.3.1).
 
+use crate::mpm::direct_solver::Singular;
+
 /// A square matrix whose entries lie within `lower` diagonals below and `upper` above the main
 /// one, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,28 +18,11 @@ pub struct Banded {
     entries: Vec<f64>,
 }
 
-/// The matrix has no inverse to working precision: the row without a pivot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Singular {
-    /// The row.
-    pub row: usize,
-}
-
 impl Banded {
     /// A matrix of zeros.
     pub fn zeros(size: usize, lower: usize, upper: usize) -> Self {
         let width = 2 * lower + upper + 1;
         Self { size, lower, upper, width, entries: vec![0.0; size * width] }
-    }
-
-    /// A matrix of zeros whose band holds the places, `(row, column)`.
-    pub fn spanning(size: usize, places: impl Iterator<Item = (usize, usize)>) -> Self {
-        let (mut lower, mut upper) = (0, 0);
-        for (row, column) in places {
-            lower = lower.max(row.saturating_sub(column));
-            upper = upper.max(column.saturating_sub(row));
-        }
-        Self::zeros(size, lower, upper)
     }
 
     /// Adds to an entry, which must lie within the band.
@@ -185,7 +170,7 @@ const LANES: usize = 8;
 const SHORT_ROW: usize = 32;
 
 /// `start − Σ a_i b_i` over the shorter of the two.
-fn less_products(start: f64, a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn less_products(start: f64, a: &[f64], b: &[f64]) -> f64 {
     let chain = |start, a: &[f64], b: &[f64]| a.iter().zip(b).fold(start, |sum, (a, b)| sum - a * b);
     let count = a.len().min(b.len());
     if count < SHORT_ROW {

@@ -1,5 +1,8 @@
-//! `oedometer new`: a commented study to start from.
+//! `oedometer new`: a commented study to start from, or an adapter for somebody else's solver.
 
+pub mod solver;
+
+use crate::cli::commands::new::solver::Language;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::study::name::{name_of, refused_name};
@@ -13,9 +16,16 @@ const STARTER: &str = include_str!("starter.toml");
 /// Arguments of `new`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Name of the study, or the file that it shall stand in
+    /// Name of the study, or the file that it shall stand in; `solver` for an adapter of somebody else's solver
     #[arg(value_name = "NAME")]
     name: PathBuf,
+    /// After `solver`: the name of the solver and of the folder for its study, adapter and mapping
+    /// [default: my-solver]
+    #[arg(value_name = "SOLVER")]
+    solver: Option<PathBuf>,
+    /// What the adapter of a solver is written in
+    #[arg(long, value_enum)]
+    language: Option<Language>,
 }
 
 /// The text of a starter of a name.
@@ -25,6 +35,16 @@ fn starter(name: &str) -> String {
 
 /// Writes the file, where there is none yet.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    let is_solver = arguments.solver.is_some() || arguments.language.is_some();
+    if is_solver && arguments.name.as_os_str() == "solver" {
+        let folder = arguments.solver.clone().unwrap_or_else(|| PathBuf::from("my-solver"));
+        return solver::write(&folder, arguments.language.unwrap_or(Language::Python));
+    }
+    if is_solver {
+        return Err(Ended::usage(
+            "a second name or `--language` belongs to `oedometer new solver NAME --language python`",
+        ));
+    }
     let given = arguments.name.display().to_string();
     let name = name_of(&given);
     if let Some(why) = refused_name(name) {

@@ -1,0 +1,5 @@
+"""``python -m oedometer`` is the command."""
+
+from .command import main
+
+main()

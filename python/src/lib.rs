@@ -1,0 +1,143 @@
+//! What Python calls: every function hands on to `oedometer::api`, and computes nothing.
+//!
+//! Lists of numbers cross the border as bytes of doubles in the machine's order, which any buffer of Python has; what is
+//! structured as JSON. The module `oedometer` around this one gives them shapes and names.
+
+use oedometer::api;
+use oedometer::api::convergence::Demand;
+use oedometer::api::score::Samples;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::ffi::OsString;
+
+/// Doubles of bytes.
+fn doubles(bytes: &[u8]) -> Vec<f64> {
+    let (chunks, _) = bytes.as_chunks::<8>();
+    chunks.iter().map(|chunk| f64::from_ne_bytes(*chunk)).collect()
+}
+
+/// Bytes of doubles.
+fn bytes<'py>(py: Python<'py>, numbers: &[f64]) -> Bound<'py, PyBytes> {
+    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_ne_bytes()).collect();
+    PyBytes::new(py, &bytes)
+}
+
+fn refused(why: impl ToString) -> PyErr {
+    PyValueError::new_err(why.to_string())
+}
+
+fn json(value: &impl serde::Serialize) -> PyResult<String> {
+    serde_json::to_string(value).map_err(refused)
+}
+
+/// `--set` assignments of bare names, by their tables.
+fn assignments(scene: &str, inputs: Vec<(String, String)>) -> PyResult<Vec<String>> {
+    let of = |(name, value): (String, String)| {
+        api::dotted_key(scene, &name).map(|key| format!("{key}={value}")).map_err(refused)
+    };
+    inputs.into_iter().map(of).collect()
+}
+
+/// Names and bytes of the fields of an exact solution.
+#[pyfunction]
+fn exact<'py>(
+    py: Python<'py>,
+    solution: &str,
+    time_factors: &[u8],
+    depths: &[u8],
+    inputs: Vec<(String, String)>,
+) -> PyResult<Vec<(&'static str, Bound<'py, PyBytes>)>> {
+    let assignments = assignments(solution, inputs)?;
+    let (time_factors, depths) = (doubles(time_factors), doubles(depths));
+    let found = py.detach(|| api::exact::exact(solution, &time_factors, &depths, &assignments));
+    let found = found.map_err(refused)?;
+    Ok(vec![
+        ("time", bytes(py, &found.time)),
+        ("pressure", bytes(py, &found.pressure)),
+        ("effective_stress", bytes(py, &found.effective_stress)),
+        ("displacement", bytes(py, &found.displacement)),
+        ("settlement", bytes(py, &found.settlement)),
+        ("degree_of_consolidation", bytes(py, &found.degree_of_consolidation)),
+        ("tail_bound", bytes(py, &found.tail_bound)),
+        ("scales", bytes(py, &[found.height, found.load])),
+    ])
+}
+
+/// The score of samples as JSON; `lists` are in the order of the fields of `Samples`.
+#[pyfunction]
+fn score(
+    py: Python<'_>,
+    scene: &str,
+    lists: Vec<Vec<u8>>,
+    sample: &str,
+    reference: Option<&str>,
+    inputs: Vec<(String, String)>,
+) -> PyResult<String> {
+    let assignments = assignments(scene, inputs)?;
+    let lists: Vec<Vec<f64>> = lists.iter().map(|list| doubles(list)).collect();
+    let [
+        time,
+        height,
+        distance,
+        volume,
+        pressure,
+        effective_stress,
+        displacement,
+        horizontal_displacement,
+        settlement,
+    ] = &lists[..]
+    else {
+        return Err(refused(format!("{} lists for 9", lists.len())));
+    };
+    let samples = Samples {
+        time,
+        height,
+        distance,
+        volume,
+        pressure,
+        effective_stress,
+        displacement,
+        horizontal_displacement,
+        settlement,
+    };
+    let found = py.detach(|| api::score::score(scene, &samples, sample, reference, &assignments));
+    json(&found.map_err(refused)?)
+}
+
+/// Class and orders of errors as JSON.
+#[pyfunction]
+fn convergence(sizes: &[u8], errors: &[u8], formal_order: Option<f64>) -> PyResult<String> {
+    let found = api::convergence::convergence(&doubles(sizes), &doubles(errors), formal_order);
+    json(&found.map_err(refused)?)
+}
+
+/// Whether errors meet a demand, and why.
+#[pyfunction]
+fn verdict(
+    sizes: &[u8],
+    errors: &[u8],
+    order: Option<(f64, f64, f64)>,
+    at: Option<(f64, f64)>,
+    class: Option<String>,
+) -> PyResult<(bool, String)> {
+    let demand = Demand { order, at, class };
+    api::convergence::verdict(&doubles(sizes), &doubles(errors), &demand).map_err(refused)
+}
+
+/// Runs a command line, the program's name first; the exit code.
+#[pyfunction]
+fn main(py: Python<'_>, words: Vec<OsString>) -> u8 {
+    py.detach(|| oedometer::main_with(words))
+}
+
+/// The module behind `oedometer`.
+#[pymodule]
+fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_function(wrap_pyfunction!(exact, module)?)?;
+    module.add_function(wrap_pyfunction!(score, module)?)?;
+    module.add_function(wrap_pyfunction!(convergence, module)?)?;
+    module.add_function(wrap_pyfunction!(verdict, module)?)?;
+    module.add_function(wrap_pyfunction!(main, module)?)
+}

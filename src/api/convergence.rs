@@ -1,0 +1,130 @@
+//! Orders, classes and verdicts of a series of errors.
+
+use crate::convergence::class::classify::classify;
+use crate::convergence::class::{Class, Classification, Context};
+use crate::convergence::orders::pair_orders;
+use crate::convergence::series::{ErrorSeries, SeriesLevel};
+use crate::convergence::series_demand::{ErrorBound, OrderBand, SeriesDemand};
+use crate::judge::verdict::{Beside, Verdict, judge};
+use crate::study::diagnostic::one_of;
+
+/// Errors up to this are round-off.
+const ROUND_OFF: f64 = 1e-12;
+
+/// What is found of a series.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Found {
+    /// Sizes of the levels, coarse to fine.
+    pub sizes: Vec<f64>,
+    /// Absolute errors at them.
+    pub errors: Vec<f64>,
+    /// Orders between neighbours, one fewer; none where it has no value.
+    pub pair_orders: Vec<Option<f64>>,
+    /// Class with its reason, order, floor and advice.
+    pub classification: Classification,
+}
+
+/// What is demanded of a series; what is left out is not judged.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Demand {
+    /// The order, and how far below and above it may lie.
+    pub order: Option<(f64, f64, f64)>,
+    /// A level by its size, and the bound on its error.
+    pub at: Option<(f64, f64)>,
+    /// The class; `asymptotic` where an order is demanded and no class is named.
+    pub class: Option<String>,
+}
+
+/// A series of errors, whose signs may count, with what is known beside it.
+fn series_of(
+    sizes: &[f64],
+    errors: &[f64],
+    formal_order: Option<f64>,
+) -> Result<(ErrorSeries, Context), String> {
+    if sizes.len() != errors.len() {
+        return Err(format!(
+            "there are {} sizes and {} errors: give one of each a level",
+            sizes.len(),
+            errors.len()
+        ));
+    }
+    let level = |(size, error): (&f64, &f64)| SeriesLevel { size: *size, error: Some(error.abs()) };
+    let series = ErrorSeries::new(sizes.iter().zip(errors).map(level).collect());
+    let mut signed: Vec<(f64, f64)> = sizes.iter().copied().zip(errors.iter().copied()).collect();
+    signed.sort_by(|a, b| b.0.total_cmp(&a.0));
+    // Norms have no sign, and then the signs tell nothing.
+    let has_signs = errors.iter().any(|error| *error < 0.0);
+    let signed = if has_signs { signed.into_iter().map(|(_, error)| error).collect() } else { Vec::new() };
+    Ok((series, Context { formal_order, round_off: Some(ROUND_OFF), signed, ..Context::default() }))
+}
+
+/// Class, order and pair orders of errors over the sizes of their levels, in any order.
+///
+/// ```
+/// let found = oedometer::api::convergence::convergence(&[0.1, 0.05, 0.025], &[4e-2, 1e-2, 2.5e-3], None);
+/// assert_eq!(found.expect("a series").pair_orders, [Some(2.0), Some(2.0)]);
+/// ```
+///
+/// # Errors
+/// When the lists differ in length.
+pub fn convergence(sizes: &[f64], errors: &[f64], formal_order: Option<f64>) -> Result<Found, String> {
+    let (series, context) = series_of(sizes, errors, formal_order)?;
+    Ok(Found {
+        sizes: series.levels().iter().map(|level| level.size).collect(),
+        errors: series.levels().iter().map(|level| level.error.unwrap_or(f64::NAN)).collect(),
+        pair_orders: pair_orders(&series).into_iter().map(Result::ok).collect(),
+        classification: classify(&series, &context),
+    })
+}
+
+/// The verdict of a demand on a series: whether it passes, and the sentence that says why.
+///
+/// # Errors
+/// When the lists differ in length, or the class is none.
+pub fn verdict(sizes: &[f64], errors: &[f64], demand: &Demand) -> Result<(bool, String), String> {
+    let (series, context) = series_of(sizes, errors, demand.order.map(|(value, ..)| value))?;
+    let class = demand.class.as_deref().map(|word| {
+        let names = Class::ALL.map(Class::name);
+        let found = Class::ALL.into_iter().find(|class| class.name() == word);
+        found.ok_or_else(|| format!("no class is called `{word}`: {}", one_of(word, &names)))
+    });
+    let demand = SeriesDemand {
+        order: demand.order.map(|(value, minus, plus)| OrderBand { value, minus, plus }),
+        at: demand.at.map(|(size, below)| ErrorBound { size, below, above: 0.0 }),
+        class: class.transpose()?,
+        ..SeriesDemand::default()
+    };
+    let Verdict { pass, reason, .. } = judge(&demand, &series, &context, &Beside::default());
+    Ok((pass, reason))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_come_in_any_order_and_signs_count() {
+        let found = convergence(&[0.025, 0.1, 0.05], &[2.5e-3, 4e-2, 1e-2], Some(2.0)).expect("a series");
+        assert_eq!(found.sizes, [0.1, 0.05, 0.025]);
+        assert_eq!(found.classification.class, Class::Asymptotic);
+        assert!((found.classification.order.expect("an order") - 2.0).abs() < 1e-9);
+        assert!(convergence(&[0.1], &[], None).is_err());
+        // 0.171, −0.145, −0.223 % go to a limit, and their sizes alone would grow.
+        let signed = convergence(&[0.1, 0.05, 0.025, 0.0125], &[1.71e-3, -1.45e-3, -2.23e-3, -2.43e-3], None);
+        assert_ne!(signed.expect("a series").classification.class, Class::Divergent);
+    }
+
+    #[test]
+    fn a_demand_is_met_or_told() {
+        let (sizes, errors) = ([0.1, 0.05, 0.025], [4e-2, 1e-2, 2.5e-3]);
+        let demand = Demand { order: Some((2.0, 0.1, 0.1)), at: Some((0.1, 5e-2)), class: None };
+        assert!(verdict(&sizes, &errors, &demand).expect("a series").0);
+        let first = Demand { order: Some((1.0, 0.1, 0.1)), ..Demand::default() };
+        let (pass, reason) = verdict(&sizes, &errors, &first).expect("a series");
+        assert!(!pass && reason.contains("2.0"), "{reason}");
+        let nonsense = verdict(&sizes, &[4e-2, f64::NAN, 2.5e-3], &demand).expect("a series");
+        assert!(!nonsense.0, "{}", nonsense.1);
+        let unknown = Demand { class: Some("asymptotics".to_owned()), ..Demand::default() };
+        assert!(verdict(&sizes, &errors, &unknown).is_err_and(|told| told.contains("asymptotic")));
+    }
+}

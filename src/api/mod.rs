@@ -1,0 +1,73 @@
+//! The door for other languages: names, lists of numbers and `key=value` texts go in, lists and plain values come out.
+//!
+//! Nothing is computed here. Everything goes the way that the command line goes, so that a number from Python is the
+//! number that `oedometer` prints. Numbers are in SI; lists over places are `[time][place]`, one time after the other.
+
+pub mod convergence;
+pub mod exact;
+pub mod read;
+pub mod score;
+
+use crate::case::keys::Key;
+use crate::cli::exit;
+use crate::exact::reference::ReferenceKind;
+use crate::scene::SceneKind;
+
+/// An error as a sentence.
+fn sentence(error: &anyhow::Error) -> String {
+    exit::sentence(error)
+}
+
+/// The scene whose column a solution is of.
+///
+/// # Errors
+/// When no solution is called so: with the names that there are.
+pub fn scene_of(solution: &str) -> Result<(ReferenceKind, SceneKind), String> {
+    let kind: ReferenceKind = solution.parse().map_err(|_| {
+        let names: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
+        format!("no exact solution is called `{solution}`; there are {}", names.join(", "))
+    })?;
+    Ok((kind, SceneKind::of_solution(kind)))
+}
+
+/// The dotted key of a study file that a bare name stands for, like `material.porosity` for `porosity`; what has a dot
+/// already stays. Geometry and load are the column's, or the layer's where the scene is one.
+///
+/// # Errors
+/// When no scene or solution is called so, or no input: with the names that there are.
+pub fn dotted_key(scene: &str, name: &str) -> Result<String, String> {
+    if name.contains('.') {
+        return Ok(name.to_owned());
+    }
+    let scene = match SceneKind::named(scene) {
+        Some(scene) => scene,
+        None => scene_of(scene)?.1,
+    };
+    let body = if scene.needs_two_dimensions() { "layer" } else { "column" };
+    let tables = [body, "material", "integrator", "points"];
+    let found = tables.iter().find(|table| Key::named(name, table).is_some());
+    found.map(|table| format!("{table}.{name}")).ok_or_else(|| {
+        let names: Vec<&str> =
+            [body, "material"].iter().flat_map(|table| Key::of(table)).map(|key| key.name).collect();
+        format!("no input of `{}` is called `{name}`; there are {}", scene.name(), names.join(", "))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bare_name_finds_its_table() {
+        for (scene, name, key) in [
+            ("terzaghi", "porosity", "material.porosity"),
+            ("terzaghi-incompressible", "load", "column.load"),
+            ("cosine-layer", "load", "layer.load"),
+            ("terzaghi", "column.load", "column.load"),
+        ] {
+            assert_eq!(dotted_key(scene, name).as_deref(), Ok(key));
+        }
+        let told = dotted_key("terzaghi", "permeability").expect_err("no such key");
+        assert!(told.contains("`permeability`") && told.contains("hydraulic_conductivity"), "{told}");
+    }
+}

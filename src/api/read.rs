@@ -1,0 +1,37 @@
+//! Files of other programs as states.
+
+use crate::import::mapping::Mapping;
+use crate::import::preset::Preset;
+use crate::import::raw_row::SolvedBody;
+use crate::import::runs::{are_tables, files_of, run_of_tables, runs_of_arrays};
+use crate::import::table::SampledState;
+use clap::ValueEnum;
+use std::path::PathBuf;
+
+/// Reads files with the meaning of a preset (of tables the convention's), one list of states a mesh. `time_step` is
+/// that of `--set-time-step`, s.
+///
+/// # Errors
+/// What cannot be read or taken, with its file.
+pub fn read(
+    files: &[PathBuf],
+    preset: &str,
+    time_step: Option<f64>,
+    height: f64,
+) -> Result<Vec<Vec<SampledState>>, String> {
+    let preset = Preset::from_str(preset, false)?;
+    let body = SolvedBody { height, length: None, seconds_per_time_factor: 1.0 };
+    let given = files_of(files).map_err(|error| error.to_string())?;
+    let is_tables = are_tables(&given).map_err(|error| error.to_string())?;
+    let mapping = if is_tables { Mapping::convention(false) } else { preset.mapping(None, false) };
+    let mut mapping = mapping.map_err(|error| error.to_string())?;
+    mapping.time.step = time_step;
+    let runs = if is_tables {
+        let files = given.into_iter().flat_map(|one| one.files).collect();
+        run_of_tables(files, &mapping, body).map(|run| vec![run])
+    } else {
+        runs_of_arrays(&given, &mapping, body)
+    };
+    let runs = runs.map_err(|error| error.to_string())?;
+    Ok(runs.into_iter().map(|run| run.states).collect())
+}

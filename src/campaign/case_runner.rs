@@ -1,0 +1,89 @@
+//! Runs the cases of a study, each by whom it is given to: this program, or an attached solver.
+
+use crate::campaign::case_run::{run_case, run_case_within};
+use crate::case::Case;
+use crate::exact::exact_error::ExactError;
+use crate::foreign::attachment::{Attachment, Wish};
+use crate::mpm::run::Kernel;
+use crate::mpm::run::outcome::{Failure, FailureKind};
+use crate::record::store::RecordStore;
+use crate::record::{Record, Status};
+use crate::study::check::Study;
+
+/// A study with its attached solvers, ready to run.
+pub struct CaseRunner<'a> {
+    study: &'a Study,
+    attachments: Vec<Attachment<'a>>,
+}
+
+impl<'a> CaseRunner<'a> {
+    /// The runner of a study's cases.
+    pub fn of(study: &'a Study) -> Self {
+        let is_plane = study.scene.has_plane_fields();
+        let attachments = study.solvers.iter().map(|solver| Attachment::new(solver, is_plane)).collect();
+        Self { study, attachments }
+    }
+
+    /// The study.
+    pub fn study(&self) -> &'a Study {
+        self.study
+    }
+
+    /// Runs a case within the time that the study gives it; what an attached solver leaves is kept in the store.
+    ///
+    /// # Errors
+    /// When the exact solutions refuse the case's parameters.
+    pub fn run_within(
+        &self,
+        case: &Case,
+        store: Option<&RecordStore>,
+        alone: bool,
+        observe: &dyn Fn(u64, u64) -> bool,
+    ) -> Result<Record, ExactError> {
+        if case.is_attached() {
+            return self.attached(case, store, alone, observe);
+        }
+        let (seconds, references) = (self.study.case_seconds, &self.study.references);
+        run_case_within(seconds, case, references, Kernel::Fastest, alone, observe)
+    }
+
+    /// Runs a case alone, to be timed or looked at.
+    ///
+    /// # Errors
+    /// When the exact solutions refuse the case's parameters.
+    pub fn run_alone(&self, case: &Case, store: Option<&RecordStore>) -> Result<Record, ExactError> {
+        if case.is_attached() {
+            return self.attached(case, store, true, &|_, _| true);
+        }
+        run_case(case, &self.study.references, Kernel::Fastest, true, &|_, _| true)
+    }
+
+    fn attached(
+        &self,
+        case: &Case,
+        store: Option<&RecordStore>,
+        alone: bool,
+        observe: &dyn Fn(u64, u64) -> bool,
+    ) -> Result<Record, ExactError> {
+        let place = store.map(|store| store.folder_of(&case.hash()));
+        // How far it is nobody knows before its end.
+        let is_wanted = || observe(0, 1);
+        let wish = Wish {
+            references: &self.study.references,
+            place: place.as_deref(),
+            alone,
+            is_wanted: &is_wanted,
+        };
+        let of_case = |one: &&Attachment<'_>| Some(one.solver().attached) == case.method.attached;
+        match self.attachments.iter().find(of_case) {
+            Some(attachment) => attachment.run(case, &wish),
+            None => run_case(case, wish.references, Kernel::Fastest, alone, observe),
+        }
+    }
+}
+
+/// Whether the record of a case tells that it was stopped from outside.
+pub fn is_stopped(record: &Record) -> bool {
+    let is_it = |failure: &Failure| matches!(failure.kind, FailureKind::Stopped | FailureKind::TimedOut);
+    matches!(&record.status, Status::Failed(failure) if is_it(failure))
+}

@@ -1,0 +1,71 @@
+//! `oedometer new solver`: an adapter for somebody else's solver, with its mapping and its study, that run as they are.
+
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::stream::say;
+use crate::mpm::attached::{Attached, DIGEST_DIGITS};
+use crate::mpm::method::Method;
+use crate::study::name::{name_of, refused_name};
+use clap::ValueEnum;
+use std::fs;
+use std::path::Path;
+
+/// What an adapter is written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Language {
+    /// Python 3 without packages
+    Python,
+    /// A POSIX shell with awk
+    Shell,
+}
+
+impl Language {
+    /// The program that runs it, its file, and its text.
+    const fn adapter(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::Python => ("python3", "adapter.py", include_str!("adapter.py")),
+            Self::Shell => ("sh", "adapter.sh", include_str!("adapter.sh")),
+        }
+    }
+}
+
+/// Writes the three files into a new folder of a name.
+pub fn write(folder: &Path, language: Language) -> anyhow::Result<Exit> {
+    let given = folder.display().to_string();
+    let name = name_of(&given);
+    let is_taken = Method::named(name).map(|_| "a method of this program is called so".to_owned());
+    let no_solver = || Attached::new(name, &"0".repeat(DIGEST_DIGITS)).err().map(|why| why.to_string());
+    if let Some(why) = refused_name(name).or(is_taken).or_else(no_solver) {
+        return Err(Ended::usage(format!("a solver and its study cannot be called `{name}`: {why}")));
+    }
+    let refused = |error: std::io::Error| {
+        Ended::with(Exit::CaseFailed, format!("cannot write {}: {error}", folder.display()))
+    };
+    if let Some(parent) = folder.parent() {
+        fs::create_dir_all(parent).map_err(refused)?;
+    }
+    fs::create_dir(folder).map_err(|error| match error.kind() {
+        std::io::ErrorKind::AlreadyExists => {
+            Ended::usage(format!("{} is there already: take another name", folder.display()))
+        }
+        _ => refused(error),
+    })?;
+    let (program, file, adapter) = language.adapter();
+    let study = format!("{name}.toml");
+    let texts = [
+        (study.as_str(), include_str!("solver-study.toml")),
+        ("mapping.toml", include_str!("mapping.toml")),
+        (file, adapter),
+    ];
+    for (file_name, text) in texts {
+        let text = text.replace("@NAME@", name).replace("@LANGUAGE@", program).replace("@ADAPTER@", file);
+        fs::write(folder.join(file_name), text).map_err(refused)?;
+    }
+    let study = folder.join(study);
+    say!(
+        "{} attaches {}, a small solver in the place of yours; next: oedometer check {}",
+        study.display(),
+        folder.join(file).display(),
+        study.display()
+    );
+    Ok(Exit::Pass)
+}

@@ -1,0 +1,140 @@
+//! The end of a run by its name, with whose error it is: a closed list, of which the first that applies holds.
+//!
+//! | status | when | whose |
+//! | :-- | :-- | :-- |
+//! | `timed-out` | its time was over, whatever it had printed by then | the solver's |
+//! | `not-startable` | there is no such program, or no folder for it | the study's command's, or the machine's |
+//! | `killed` | a signal ended it that this program did not send | the solver's, or the machine's |
+//! | `failed` | it ended with an exit code other than 0 and 77 | the solver's, or its adapter's |
+//! | `skipped` | it ended with exit code 77: it cannot run here | nobody's |
+//! | `no-result` | it ended well, and its result is not there | the adapter's |
+//! | `unreadable` | the result is no such file, or not what the mapping says | the adapter's, or the mapping's |
+//! | `not-finite` | the result holds what is no finite number | the solver's |
+//! | `incomplete` | outputs or places are missing | the adapter's |
+//! | `ok` | none of these | |
+
+use crate::foreign::output_tail::last_lines;
+use crate::foreign::process::{Ending, Finished};
+use crate::foreign::reading::Unread;
+use crate::mpm::run::outcome::{Failure, FailureKind};
+use crate::study::solver::Solver;
+use crate::wording::typed;
+use std::process::ExitStatus;
+
+/// Exit code by which a program says that it cannot run here.
+const SKIPPED: i32 = 77;
+/// Most lines that are kept of what a program said before it failed.
+const MOST_LINES: usize = 12;
+/// Those of them that a message repeats.
+const TOLD_LINES: usize = 4;
+/// Longest of these lines, letters.
+const LONGEST_LINE: usize = 200;
+
+/// The end of a run that left no result; none where it may have.
+pub fn of_process(run: &Finished, solver: &Solver) -> Option<Failure> {
+    let (kind, what) = match &run.ending {
+        Ending::TimedOut => (
+            FailureKind::TimedOut,
+            format!(
+                "the solver did not end within the {} s that the study gives it, and was ended with all that it had \
+                 started; its own, or `timeout` is too short",
+                typed(solver.timeout)
+            ),
+        ),
+        Ending::Stopped => (FailureKind::Stopped, "stopped from outside".to_owned()),
+        Ending::NotStarted(error) => (
+            FailureKind::NotStartable,
+            format!(
+                "`{}` could not be started: {error}; the command in the study is wrong, or the program is not here",
+                solver.command.first().map_or("", String::as_str)
+            ),
+        ),
+        Ending::Ended(status) => of_status(*status)?,
+    };
+    Some(Failure::of_attached(kind, what + &last_words(run)))
+}
+
+/// The end of a program by its status; none where it ended well.
+fn of_status(status: ExitStatus) -> Option<(FailureKind, String)> {
+    match status.code() {
+        Some(0) => None,
+        Some(SKIPPED) => {
+            Some((FailureKind::Skipped, format!("it says that it cannot run here (exit code {SKIPPED})")))
+        }
+        Some(code) => Some((
+            FailureKind::Failed,
+            format!("it ended with exit code {code}; an error of the solver, or of its adapter"),
+        )),
+        None => Some((
+            FailureKind::Killed,
+            format!("{status} ended it, and not this program; a crash of the solver, or want of memory"),
+        )),
+    }
+}
+
+/// The end of a run whose result cannot be taken.
+pub fn of_reading(unread: Unread, solver: &Solver, contents: &str) -> Failure {
+    let (kind, what) = match unread {
+        Unread::NoFile => (
+            FailureKind::NoResult,
+            format!(
+                "it ended well and left no {}; in {{out}} there is {contents}: the adapter writes it elsewhere, or \
+                 `result` in the study names it otherwise",
+                solver.result
+            ),
+        ),
+        Unread::Unreadable(why) => (
+            FailureKind::Unreadable,
+            format!("{why}; the adapter wrote it wrongly, or the mapping says of it what is not so"),
+        ),
+        Unread::NotFinite(why) => (FailureKind::NotFinite, format!("{why}; an error of the solver")),
+    };
+    Failure::of_attached(kind, what)
+}
+
+/// The end of a result that was there already and cannot be taken.
+pub fn of_given(unread: Unread, files: &[String]) -> Failure {
+    let (kind, what) = match unread {
+        Unread::NoFile => (
+            FailureKind::NoResult,
+            format!(
+                "there is no file {}: the solver was not run, or `files` in the study names its result otherwise",
+                files.join(", ")
+            ),
+        ),
+        Unread::Unreadable(why) => (FailureKind::Unreadable, why),
+        Unread::NotFinite(why) => (FailureKind::NotFinite, format!("{why}; an error of the solver")),
+    };
+    Failure::of_attached(kind, what)
+}
+
+/// The end of a run whose result lacks something.
+pub fn of_incomplete(lack: &str) -> Failure {
+    let reason =
+        format!("{lack}; the adapter does not write all, or the solver ended early and said nothing");
+    Failure::of_attached(FailureKind::Incomplete, reason)
+}
+
+/// The end of a run for which the machine had no place.
+pub fn of_folder(error: &std::io::Error) -> Failure {
+    let reason =
+        format!("no fresh folder could be made for it: {error}; the machine's, and not the solver's");
+    Failure::of_attached(FailureKind::NotStartable, reason)
+}
+
+/// The end of a run whose mapping is wrong.
+pub fn of_mapping(why: &str) -> Failure {
+    Failure::of_attached(FailureKind::Unreadable, format!("the mapping cannot be taken: {why}"))
+}
+
+/// The last lines of a run: of its errors, or where there are none of its output.
+pub fn kept_words(run: &Finished) -> Vec<String> {
+    let errors = last_lines(&run.errors, MOST_LINES, LONGEST_LINE);
+    if errors.is_empty() { last_lines(&run.output, MOST_LINES, LONGEST_LINE) } else { errors }
+}
+
+fn last_words(run: &Finished) -> String {
+    let lines = kept_words(run);
+    let told = &lines[lines.len().saturating_sub(TOLD_LINES)..];
+    if told.is_empty() { String::new() } else { format!(". The last it said: {}", told.join(" / ")) }
+}

@@ -1,0 +1,228 @@
+//! One run of a program: in a folder and a process group of its own, without input, bounded in time and output.
+
+use crate::foreign::output_tail::Listener;
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+/// Time between two questions whether the run is still wanted.
+const LOOK: Duration = Duration::from_millis(50);
+/// Time that streams are given to end after their program; what holds them open longer was left behind.
+const STREAMS: Duration = Duration::from_millis(500);
+/// Time that a killed program is given to be gone.
+const GONE: Duration = Duration::from_secs(10);
+
+/// What is started, and for how long.
+#[derive(Clone, Debug)]
+pub struct Order<'a> {
+    /// The program and its arguments.
+    pub words: &'a [OsString],
+    /// Variables beside those of this program.
+    pub environment: &'a [(String, String)],
+    /// Folder in which it is started.
+    pub folder: &'a Path,
+    /// Longest wall time.
+    pub timeout: Duration,
+}
+
+/// How a program ended.
+#[derive(Debug)]
+pub enum Ending {
+    /// It could not be started.
+    NotStarted(std::io::Error),
+    /// Its time was over, and it was ended.
+    TimedOut,
+    /// It was not wanted any more, and was ended.
+    Stopped,
+    /// It ended by itself.
+    Ended(ExitStatus),
+}
+
+/// What a run of a program came to.
+#[derive(Debug)]
+pub struct Finished {
+    /// How it ended.
+    pub ending: Ending,
+    /// Wall time from its start to its end, s.
+    pub seconds: f64,
+    /// Processor time of it and of the children that it waited for, s, where the system tells.
+    pub cpu_seconds: Option<f64>,
+    /// Largest memory of it or of one of those children, bytes, where the system tells.
+    pub peak_memory: Option<u64>,
+    /// The end of its standard output.
+    pub output: String,
+    /// The end of its standard error.
+    pub errors: String,
+    /// Whether it left processes behind, which were ended.
+    pub left_processes: bool,
+}
+
+/// The end of a process with what it took.
+struct Reaped {
+    at: Instant,
+    status: std::io::Result<ExitStatus>,
+    cpu_seconds: Option<f64>,
+    peak_memory: Option<u64>,
+}
+
+/// Runs a program to its end, to the end of its time, or until `is_wanted` says no.
+pub fn run(order: &Order<'_>, is_wanted: &dyn Fn() -> bool) -> Finished {
+    let start = Instant::now();
+    let mut child = match started(order) {
+        Ok(child) => child,
+        Err(error) => return Finished::not_started(error),
+    };
+    let listeners = (child.stdout.take().map(Listener::to), child.stderr.take().map(Listener::to));
+    let group = Group::of(&child);
+    let end = reaped(child);
+    let deadline = start + order.timeout;
+    let (ending, reaped) = loop {
+        let left = deadline.saturating_duration_since(Instant::now());
+        match end.recv_timeout(left.min(LOOK)) {
+            Ok(reaped) => break (None, Some(reaped)),
+            Err(RecvTimeoutError::Disconnected) => break (None, None),
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        let over = if Instant::now() >= deadline {
+            Some(Ending::TimedOut)
+        } else {
+            (!is_wanted()).then_some(Ending::Stopped)
+        };
+        if let Some(over) = over {
+            group.kill();
+            break (Some(over), end.recv_timeout(GONE).ok());
+        }
+    };
+    let (output, errors) = listeners;
+    let mut left_processes = false;
+    for listener in [&output, &errors].into_iter().flatten() {
+        if !listener.ends_within(STREAMS) {
+            left_processes = ending.is_none();
+            group.kill();
+            listener.ends_within(STREAMS);
+        }
+    }
+    let text = |listener: Option<Listener>| listener.map_or_else(String::new, |listener| listener.text());
+    let seconds = reaped.as_ref().map_or_else(|| start.elapsed(), |reaped| reaped.at - start).as_secs_f64();
+    let (cpu_seconds, peak_memory) =
+        reaped.as_ref().map_or((None, None), |reaped| (reaped.cpu_seconds, reaped.peak_memory));
+    Finished {
+        ending: ending.unwrap_or_else(|| ended(reaped)),
+        seconds,
+        cpu_seconds,
+        peak_memory,
+        output: text(output),
+        errors: text(errors),
+        left_processes,
+    }
+}
+
+impl Finished {
+    fn not_started(error: std::io::Error) -> Self {
+        Self {
+            ending: Ending::NotStarted(error),
+            seconds: 0.0,
+            cpu_seconds: None,
+            peak_memory: None,
+            output: String::new(),
+            errors: String::new(),
+            left_processes: false,
+        }
+    }
+}
+
+fn ended(reaped: Option<Reaped>) -> Ending {
+    match reaped.map(|reaped| reaped.status) {
+        Some(Ok(status)) => Ending::Ended(status),
+        Some(Err(error)) => Ending::NotStarted(error),
+        None => Ending::NotStarted(std::io::Error::other("nobody could wait for its end")),
+    }
+}
+
+fn started(order: &Order<'_>) -> std::io::Result<Child> {
+    let Some((program, arguments)) = order.words.split_first() else {
+        return Err(std::io::Error::other("the command is empty"));
+    };
+    let mut command = Command::new(program);
+    command
+        .args(arguments)
+        .envs(order.environment.iter().map(|(name, value)| (name, value)))
+        .current_dir(order.folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    command.spawn()
+}
+
+/// Waits for a process in a thread of its own, which tells its end.
+fn reaped(mut child: Child) -> Receiver<Reaped> {
+    let (tell, end) = channel();
+    std::thread::spawn(move || {
+        // Nobody listens any more where the process would not go.
+        let _ = tell.send(reap(&mut child));
+    });
+    end
+}
+
+/// Waits for a process: its end, and what it took with the children that it waited for.
+#[cfg(unix)]
+fn reap(child: &mut Child) -> Reaped {
+    use wait4::Wait4;
+    let ended = child.wait4();
+    let at = Instant::now();
+    match ended {
+        Ok(end) => Reaped {
+            at,
+            status: Ok(end.status),
+            cpu_seconds: Some((end.rusage.utime + end.rusage.stime).as_secs_f64()),
+            peak_memory: Some(end.rusage.maxrss).filter(|bytes| *bytes > 0),
+        },
+        Err(error) => Reaped { at, status: Err(error), cpu_seconds: None, peak_memory: None },
+    }
+}
+
+#[cfg(not(unix))]
+fn reap(child: &mut Child) -> Reaped {
+    let status = child.wait();
+    Reaped { at: Instant::now(), status, cpu_seconds: None, peak_memory: None }
+}
+
+/// The processes that a program has started, itself among them.
+struct Group {
+    #[cfg(unix)]
+    leader: rustix::process::Pid,
+    #[cfg(not(unix))]
+    leader: u32,
+}
+
+impl Group {
+    #[cfg(unix)]
+    fn of(child: &Child) -> Self {
+        Self { leader: rustix::process::Pid::from_child(child) }
+    }
+
+    #[cfg(not(unix))]
+    fn of(child: &Child) -> Self {
+        Self { leader: child.id() }
+    }
+
+    /// Ends them all; those that are gone already are none.
+    #[cfg(unix)]
+    fn kill(&self) {
+        let _ = rustix::process::kill_process_group(self.leader, rustix::process::Signal::KILL);
+    }
+
+    #[cfg(not(unix))]
+    fn kill(&self) {
+        let arguments = ["/T", "/F", "/PID", &self.leader.to_string()].map(str::to_owned);
+        let _ = Command::new("taskkill").args(arguments).output();
+    }
+}
+
+#[cfg(all(test, unix))]
+#[path = "../../tests/unit/foreign_process.rs"]
+mod tests;

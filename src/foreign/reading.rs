@@ -1,0 +1,197 @@
+//! From the files that a solver left to states, with what they were read as.
+
+use crate::case::Case;
+use crate::case::quantity::Sample;
+use crate::import::import_error::ImportError;
+use crate::import::mapping::Mapping;
+use crate::import::preset::Preset;
+use crate::import::raw_row::SolvedBody;
+use crate::import::runs::{are_tables, files_of, run_of_tables, runs_of_arrays};
+use crate::import::table::SampledState;
+use crate::study::diagnostic::StudyError;
+use crate::study::file::StudySource;
+use crate::study::solver::Solver;
+use clap::ValueEnum;
+use std::fs::File;
+use std::path::PathBuf;
+
+/// A result as it was read.
+#[derive(Debug)]
+pub struct ReadResult {
+    /// Its states, by time.
+    pub states: Vec<SampledState>,
+    /// Kind of its places.
+    pub sample: Sample,
+    /// What was taken from where.
+    pub notes: Vec<String>,
+    /// Digest of the content of its files.
+    pub digest: String,
+}
+
+/// Why there is no result.
+#[derive(Debug)]
+pub enum Unread {
+    /// No file of that name.
+    NoFile,
+    /// A file cannot be read as its mapping says.
+    Unreadable(String),
+    /// It holds what is no finite number.
+    NotFinite(String),
+}
+
+/// Why a solver's mapping cannot be taken.
+#[derive(Debug, thiserror::Error)]
+pub enum MappingError {
+    /// The file cannot be read.
+    #[error("cannot read the mapping {path}: {source}")]
+    Io {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// It does not say what a result means.
+    #[error("{name} says nothing of {taken}: write it into [units] and [sign]")]
+    Undeclared {
+        /// The mapping.
+        name: String,
+        /// What would have been taken for granted.
+        taken: String,
+    },
+    /// It says what no file can have.
+    #[error(transparent)]
+    Wrong(#[from] StudyError),
+}
+
+/// What the columns or arrays of a solver's result mean.
+///
+/// # Errors
+/// When the mapping file cannot be read or is wrong.
+pub fn mapping_of(solver: &Solver, is_plane: bool) -> Result<Mapping, MappingError> {
+    let own = solver.mapping.as_ref().map(|name| {
+        let path = solver.folder.join(name);
+        match std::fs::read_to_string(&path) {
+            Ok(text) => Ok(StudySource { name: path.display().to_string(), text }),
+            Err(source) => Err(MappingError::Io { path, source }),
+        }
+    });
+    let own = own.transpose()?;
+    let preset = solver.preset.as_deref().and_then(|name| Preset::from_str(name, false).ok());
+    let mut mapping = match (preset, own) {
+        (Some(preset), own) => preset.mapping(own.as_ref(), is_plane)?,
+        (None, None) => Mapping::convention(is_plane)?,
+        (None, Some(source)) => {
+            let mapping = Mapping::read(&source)?;
+            if is_plane {
+                mapping.check_plane(&source)?;
+            }
+            // A gate takes nothing for granted that nobody said.
+            if let Some(taken) = mapping.taken_for_granted().filter(|_| solver.is_given()) {
+                return Err(MappingError::Undeclared { name: source.name, taken });
+            }
+            mapping
+        }
+    };
+    mapping.time.step = solver.time_step.or(mapping.time.step);
+    Ok(mapping)
+}
+
+/// The result of a case.
+///
+/// # Errors
+/// Why there is none.
+pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadResult, Unread> {
+    let given = files_of(result).map_err(|_| Unread::NoFile)?;
+    let files: Vec<PathBuf> = given.iter().flat_map(|one| one.files.iter().cloned()).collect();
+    if files.iter().any(|file| !file.is_file()) {
+        return Err(Unread::NoFile);
+    }
+    let digest = digest_of(&files);
+    let body = SolvedBody {
+        height: case.column.height,
+        length: case.scene.has_plane_fields().then_some(case.column.horizontal_extent),
+        seconds_per_time_factor: case.seconds_per_time_factor(),
+    };
+    let unread = |error: ImportError| why_unread(&error);
+    let runs = if are_tables(&given).map_err(unread)? {
+        vec![run_of_tables(files, mapping, body).map_err(unread)?]
+    } else {
+        runs_of_arrays(&given, mapping, body).map_err(unread)?
+    };
+    if runs.len() > 1 {
+        return Err(Unread::Unreadable(format!(
+            "the files hold {} results, of different meshes or names: let the study's `result` name one",
+            runs.len()
+        )));
+    }
+    let Some(run) = runs.into_iter().next() else {
+        return Err(Unread::Unreadable("the files hold no state".to_owned()));
+    };
+    if let Some(cells) = run.cells.filter(|cells| *cells != case.cells) {
+        return Err(Unread::Unreadable(format!(
+            "the mesh of the result has {cells} cells over the height, and the case asks for {}",
+            case.cells
+        )));
+    }
+    let open = run.sample.filter(|_| mapping.is_sample_open);
+    Ok(ReadResult { states: run.states, sample: open.unwrap_or(mapping.sample), notes: run.notes, digest })
+}
+
+/// An error of the import, told apart where it is about a value that is no finite number.
+fn why_unread(error: &ImportError) -> Unread {
+    let told = error.to_string();
+    let is_value = matches!(error, ImportError::Row { .. } | ImportError::Table { .. });
+    if is_value && names_no_finite_number(&told) { Unread::NotFinite(told) } else { Unread::Unreadable(told) }
+}
+
+/// Whether a sentence of the import names a value that is infinite or no number: quoted, or at the end of `is`.
+fn names_no_finite_number(told: &str) -> bool {
+    let is_it = |word: &str| word.parse::<f64>().is_ok_and(|number| !number.is_finite());
+    let quoted = told.split('`').skip(1).step_by(2).any(is_it);
+    let said = told.split(" is ").skip(1).filter_map(|rest| rest.split([' ', ';', ',']).next());
+    quoted || said.into_iter().any(is_it)
+}
+
+/// Digest over the contents of files in their order; where one cannot be read, what could.
+fn digest_of(files: &[PathBuf]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for path in files {
+        // A file that vanishes meanwhile is told when it is read.
+        let _ = File::open(path).and_then(|file| hasher.update_reader(file).map(|_| ()));
+    }
+    hasher.finalize().to_hex()[..16].to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::solver::PRESETS;
+
+    #[test]
+    fn the_presets_of_study_files_are_those_of_the_import() {
+        let known: Vec<&str> = Preset::value_variants().iter().map(|preset| preset.name()).collect();
+        assert_eq!(known, PRESETS);
+        for name in PRESETS {
+            assert!(Preset::from_str(name, false).is_ok(), "{name}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_finite_number_is_told_from_what_is_no_number() {
+        for told in [
+            "a.csv:7: `NaN` in the column `p` is no finite number",
+            "a.csv:7: `-inf` in the column `p` is no finite number",
+            "a.vtu: point 3: `p` is NaN",
+            "a.vtu: its time is inf",
+        ] {
+            assert!(names_no_finite_number(told), "{told}");
+        }
+        for told in [
+            "a.csv:7: `1.0.0` in the column `p` is no finite number",
+            "a.csv: no column `nan_p`; the header has `t`",
+            "inf/a.csv: the initial height 2 m is outside the column of 1 m",
+        ] {
+            assert!(!names_no_finite_number(told), "{told}");
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! The folder of a run: fresh, under a name of its own until the run is whole, then beside the record.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Name of the folder of a whole run beside its record.
+pub const WHOLE: &str = "solver";
+/// Name of the folder of a run that failed.
+pub const FAILED: &str = "solver.failed";
+/// What the name of a folder begins with while its run goes on.
+const STAGED: &str = ".solver-";
+/// Most names that a message lists.
+const MOST_NAMES: usize = 8;
+
+/// A fresh folder for the run of a solver, with `case.json` and an empty folder `out`.
+#[derive(Debug)]
+pub struct Staged {
+    folder: PathBuf,
+    /// Where it goes in the end; a run of which nothing is kept has no place.
+    place: Option<PathBuf>,
+}
+
+impl Staged {
+    /// A fresh folder, within the folder of the record where there is one, with the text of the case file.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn new(place: Option<&Path>, case_file: &str) -> std::io::Result<Self> {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let parent = match place {
+            Some(place) => std::path::absolute(place)?,
+            None => std::env::temp_dir(),
+        };
+        fs::create_dir_all(&parent)?;
+        if place.is_some() {
+            remove_left(&parent);
+        }
+        let folder = parent.join(format!("{STAGED}{}-{number}", std::process::id()));
+        // What an earlier process of this number left there is nobody's.
+        remove(&folder);
+        let staged = Self { folder, place: place.map(|_| parent) };
+        fs::create_dir_all(staged.out())?;
+        fs::write(staged.case_file(), case_file)?;
+        Ok(staged)
+    }
+
+    /// The folder in which the solver is started and leaves its result.
+    pub fn out(&self) -> PathBuf {
+        self.folder.join("out")
+    }
+
+    /// The file that says what is to be solved.
+    pub fn case_file(&self) -> PathBuf {
+        self.folder.join("case.json")
+    }
+
+    /// Keeps what the solver said.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn keep_words(&self, output: &str, errors: &str) -> std::io::Result<()> {
+        fs::write(self.folder.join("stdout.txt"), output)?;
+        fs::write(self.folder.join("stderr.txt"), errors)
+    }
+
+    /// What lies in the folder of the result, in a few words.
+    pub fn contents(&self) -> String {
+        let mut names: Vec<String> = fs::read_dir(self.out())
+            .into_iter()
+            .flatten()
+            .flatten()
+            .map(|entry| entry.file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        let more = names.len().saturating_sub(MOST_NAMES);
+        names.truncate(MOST_NAMES);
+        match (names.is_empty(), more) {
+            (true, _) => "nothing".to_owned(),
+            (false, 0) => names.join(", "),
+            (false, more) => format!("{} and {more} more", names.join(", ")),
+        }
+    }
+
+    /// A text with the paths of this folder as the study writes them: what is kept does not tell where it was made.
+    pub fn without_paths(&self, text: &str) -> String {
+        text.replace(&self.out().display().to_string(), "{out}")
+            .replace(&self.case_file().display().to_string(), "{case}")
+            .replace(&self.folder.display().to_string(), "{out}/..")
+    }
+
+    /// Moves the folder to its place, in one step: whoever finds it there finds all of it.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn keep(self, is_whole: bool) -> std::io::Result<()> {
+        let Some(place) = &self.place else { return Ok(()) };
+        for name in [WHOLE, FAILED] {
+            remove(&place.join(name));
+        }
+        fs::rename(&self.folder, place.join(if is_whole { WHOLE } else { FAILED }))
+    }
+}
+
+impl Drop for Staged {
+    fn drop(&mut self) {
+        remove(&self.folder);
+    }
+}
+
+/// Removes a folder where there is one; what cannot be removed stays, and is in nobody's way.
+fn remove(folder: &Path) {
+    let _ = fs::remove_dir_all(folder);
+}
+
+/// Removes the staged folders of processes that are no more, where the system tells.
+fn remove_left(parent: &Path) {
+    let all = Path::new("/proc");
+    if !all.join("self").exists() {
+        return;
+    }
+    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let process = name.to_str().and_then(|name| name.strip_prefix(STAGED)?.split('-').next());
+        if process.is_some_and(|process| !all.join(process).exists()) {
+            remove(&entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_takes_its_place_in_the_end_and_replaces_what_was_there() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let names = || {
+            let entries = fs::read_dir(folder.path()).expect("a folder").map(|entry| entry.expect("one"));
+            let mut names: Vec<_> = entries.map(|entry| entry.file_name()).collect();
+            names.sort();
+            names
+        };
+        let staged = Staged::new(Some(folder.path()), "{}").expect("fresh");
+        fs::write(staged.out().join("result.csv"), "first").expect("a file");
+        assert_eq!(staged.contents(), "result.csv");
+        let told = staged.without_paths(&format!("see {}/result.csv", staged.out().display()));
+        assert_eq!(told, "see {out}/result.csv");
+        staged.keep(false).expect("kept");
+        assert_eq!(names(), [FAILED]);
+        let second = Staged::new(Some(folder.path()), "{}").expect("fresh");
+        assert_eq!(second.contents(), "nothing", "nothing of the first run is there");
+        second.keep(true).expect("kept");
+        assert_eq!(names(), [WHOLE]);
+        drop(Staged::new(Some(folder.path()), "{}").expect("fresh"));
+        assert_eq!(names(), [WHOLE], "what is given up leaves nothing");
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn what_a_dead_process_left_is_cleared_and_a_living_ones_stays() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let living = folder.path().join(format!("{STAGED}{}-77", std::process::id()));
+        let dead = folder.path().join(format!("{STAGED}4194305-0"));
+        for path in [&living, &dead] {
+            fs::create_dir(path).expect("a folder");
+        }
+        let staged = Staged::new(Some(folder.path()), "{}").expect("fresh");
+        assert!(living.exists() && !dead.exists() && staged.out().exists());
+    }
+}

@@ -1,0 +1,160 @@
+//! Whether a result has all that was asked for: a state at every output, and samples over the whole height.
+
+use crate::case::Case;
+use crate::import::table::SampledState;
+use crate::wording::{short, typed};
+
+/// How far, relative, a state may lie from the output that it stands for.
+const SAME_TIME: f64 = 1e-3;
+/// Distance between neighbouring samples, over the cell size, from which on a cell between them has none.
+const GAP: f64 = 1.5;
+/// Distance of the last samples from base and surface, over the cell size, from which on the last cell has none.
+const END: f64 = 0.75;
+/// Share of a distance that round-off may add.
+const ROUND_OFF: f64 = 1e-6;
+/// Most outputs that a message names.
+const MOST_TIMES: usize = 6;
+
+/// The states at the outputs of a case, one an output.
+///
+/// # Errors
+/// What is missing, a sentence.
+pub fn states_at_outputs(case: &Case, states: &[SampledState]) -> Result<Vec<SampledState>, String> {
+    let unit = case.seconds_per_time_factor();
+    let nearest = |factor: f64| {
+        let off = |state: &&SampledState| (state.time / unit - factor).abs();
+        let near = states.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+        near.filter(|state| off(state) <= SAME_TIME * factor)
+    };
+    let found: Vec<Option<&SampledState>> = case.time_factors.iter().map(|factor| nearest(*factor)).collect();
+    let missing: Vec<f64> = (case.time_factors.iter().zip(&found))
+        .filter_map(|(factor, state)| state.is_none().then_some(*factor))
+        .collect();
+    if !missing.is_empty() {
+        let listed = |factors: &mut dyn Iterator<Item = f64>| {
+            factors.take(MOST_TIMES).map(short).collect::<Vec<_>>().join(", ")
+        };
+        let there = if states.is_empty() {
+            "it has none".to_owned()
+        } else {
+            format!("it has {}", listed(&mut states.iter().map(|state| state.time / unit)))
+        };
+        return Err(format!(
+            "there is no state at T_v = {} (within {SAME_TIME} of it); {there}",
+            listed(&mut missing.into_iter())
+        ));
+    }
+    let states: Vec<SampledState> = found.into_iter().flatten().cloned().collect();
+    match case.time_factors.iter().zip(&states).find_map(|(factor, state)| lack(case, *factor, state)) {
+        Some(lack) => Err(lack),
+        None => same_counts(case, &states).map_or(Ok(states), Err),
+    }
+}
+
+/// What the samples of a state leave bare.
+fn lack(case: &Case, time_factor: f64, state: &SampledState) -> Option<String> {
+    let when = format!("at T_v = {}", typed(time_factor));
+    if state.repeated > 0 {
+        return Some(format!("{when}, {} samples stand twice", state.repeated));
+    }
+    let mut heights = state.initial_height.clone();
+    heights.sort_by(f64::total_cmp);
+    let (Some(lowest), Some(highest)) = (heights.first(), heights.last()) else {
+        return Some(format!("{when}, there is no sample"));
+    };
+    let size = case.cell_size();
+    let bare = |from: f64, to: f64| {
+        let (from, to) = (short(from), short(to));
+        Some(format!(
+            "{when}, no sample lies between the heights {from} m and {to} m, with cells of {} m",
+            short(size)
+        ))
+    };
+    let beyond = |distance: f64, share: f64| distance > share * size * (1.0 + ROUND_OFF);
+    if beyond(*lowest, END) {
+        return bare(0.0, *lowest);
+    }
+    // A top cell that is partly filled has its surface where the case puts it.
+    if case.column.points.is_regular() && beyond(case.column.height - highest, END) {
+        return bare(*highest, case.column.height);
+    }
+    let gap = heights.windows(2).find(|pair| beyond(pair[1] - pair[0], GAP));
+    gap.and_then(|pair| bare(pair[0], pair[1]))
+}
+
+/// What to say of states with different numbers of samples.
+fn same_counts(case: &Case, states: &[SampledState]) -> Option<String> {
+    let first = states.first()?;
+    let differs = |state: &SampledState| state.initial_height.len() != first.initial_height.len();
+    let place = states.iter().position(differs)?;
+    Some(format!(
+        "there are {} samples at T_v = {}, and {} at {}",
+        states[place].initial_height.len(),
+        typed(case.time_factors[place]),
+        first.initial_height.len(),
+        typed(case.time_factors[0])
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Task;
+    use crate::scene::SceneKind;
+
+    fn case() -> Case {
+        Case { cells: 10, time_factors: vec![0.05, 0.1], ..Case::seed(Task::Solve, SceneKind::Terzaghi) }
+    }
+
+    /// States at the outputs with samples at heights.
+    fn states(heights: &[f64]) -> Vec<SampledState> {
+        let state = |factor: f64| SampledState {
+            time: factor * case().seconds_per_time_factor(),
+            initial_height: heights.to_vec(),
+            ..SampledState::default()
+        };
+        vec![state(0.05), state(0.1)]
+    }
+
+    fn lattice(count: usize, first: f64, spacing: f64) -> Vec<f64> {
+        (0..count).map(|place| first + spacing * place as f64).collect()
+    }
+
+    fn said(states: &[SampledState]) -> String {
+        states_at_outputs(&case(), states).expect_err("something is missing")
+    }
+
+    #[test]
+    fn nodes_centres_and_points_are_whole() {
+        for heights in [lattice(11, 0.0, 0.1), lattice(10, 0.05, 0.1), lattice(20, 0.025, 0.05)] {
+            assert!(states_at_outputs(&case(), &states(&heights)).is_ok(), "{heights:?}");
+        }
+    }
+
+    #[test]
+    fn a_missing_half_every_other_row_and_a_hole_are_told_with_their_heights() {
+        let nodes = lattice(11, 0.0, 0.1);
+        let told = said(&states(&nodes[..6]));
+        assert!(told.contains("between the heights 0.5 m and 1 m"), "{told}");
+        assert!(said(&states(&nodes[5..])).contains("between the heights 0 m and 0.5 m"));
+        let every_other: Vec<f64> = nodes.iter().copied().step_by(2).collect();
+        assert!(said(&states(&every_other)).contains("between the heights 0 m and 0.2 m"));
+        assert!(said(&states(&[])).contains("no sample"));
+    }
+
+    #[test]
+    fn missing_times_and_uneven_ones_are_told() {
+        let mut all = states(&lattice(11, 0.0, 0.1));
+        let late = all.remove(1);
+        let told = said(&all);
+        assert!(told.contains("no state at T_v = 0.1") && told.contains("it has 0.05"), "{told}");
+        let near = SampledState { time: late.time * 1.0009, ..late.clone() };
+        assert!(states_at_outputs(&case(), &[all[0].clone(), near]).is_ok());
+        let far = SampledState { time: late.time * 1.0011, ..late.clone() };
+        assert!(states_at_outputs(&case(), &[all[0].clone(), far]).is_err());
+        let more = SampledState { initial_height: lattice(21, 0.0, 0.05), ..late.clone() };
+        assert_eq!(said(&[all[0].clone(), more]), "there are 21 samples at T_v = 0.1, and 11 at 0.05");
+        let twice = SampledState { repeated: 3, ..late };
+        assert!(said(&[all[0].clone(), twice]).contains("3 samples stand twice"));
+    }
+}

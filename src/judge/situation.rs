@@ -1,0 +1,319 @@
+//! Situations: what a run has to stand, read off its inputs, and how each method of a study came out of it.
+
+use crate::case::quantity::{Quantity, Sample};
+use crate::case::{Case, Task};
+use crate::convergence::class::Class;
+use crate::elementary;
+use crate::exact::exact_error::ExactError;
+use crate::judge::locking::{Standing, standings};
+use crate::judge::paths::first_norm;
+use crate::mpm::method::Method;
+use crate::mpm::run::TimeStepRule;
+use crate::record::{Record, Status};
+use crate::study::check::Study;
+use std::collections::HashMap;
+
+/// Strain in the end from which on a column has lost so much of its height that nothing else counts.
+const MUCH_OF_THE_HEIGHT: f64 = 0.4;
+/// Heights, m, of a usual column.
+const USUAL_HEIGHTS: [f64; 2] = [0.05, 500.0];
+/// Porosities of a usual soil.
+const USUAL_POROSITIES: [f64; 2] = [0.1, 0.8];
+/// `n E_oed/K_w` of a usual soil in water: from stiff rock to soft clay with some air.
+const USUAL_STORAGE: [f64; 2] = [1e-6, 1e-1];
+/// `c_v/(H V)` below which the water cannot move in any time that a run with inertia can wait for.
+const USUAL_INERTIA: f64 = 1e-9;
+/// A last output before this time factor is a very early one.
+const EARLY: f64 = 1e-3;
+/// Variation of the pressure beyond that of the exact one, over it, from which on it oscillates.
+const OSCILLATES: f64 = 1.0;
+/// A displacement that misses more than this is what the class `locked` means.
+const LOCKS: f64 = 0.5;
+
+/// What a run has to stand. In the order of a report: the easy ones first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Situation {
+    /// Small strain in a usual soil, points on their lattice.
+    Usual,
+    /// Small strain with points off their lattice, or one a cell.
+    OutOfPlace,
+    /// Small strain in an unusual soil, size or time.
+    Extreme,
+    /// Waves.
+    Waves,
+    /// A layer at its undrained start: how far it moves.
+    LayerDisplacement,
+    /// The same: its pressure.
+    LayerPressure,
+    /// The same with a skeleton that hardly compresses: how far it moves.
+    StiffSkeleton,
+    /// Large strain under a load that is there at once.
+    LoadAtOnce,
+    /// Large strain under a load that grows.
+    GrowingLoad,
+    /// Large strain that takes much of the height.
+    MuchOfTheHeight,
+    /// Large strain without a load on the surface.
+    BodyForces,
+}
+
+impl Situation {
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Usual => "Small strain, usual soil",
+            Self::OutOfPlace => "Small strain, points out of place",
+            Self::Extreme => "Small strain, extreme soil, size or time",
+            Self::Waves => "Waves",
+            Self::LayerDisplacement => "Undrained layer in the plane: displacement",
+            Self::LayerPressure => "Undrained layer in the plane: pressure",
+            Self::StiffSkeleton => "The same, skeleton nearly incompressible: displacement",
+            Self::LoadAtOnce => "Large strain, load at once",
+            Self::GrowingLoad => "Large strain, load that grows",
+            Self::MuchOfTheHeight => "Large strain of 40 % and more",
+            Self::BodyForces => "Large strain under body forces",
+        }
+    }
+
+    /// What its runs have in common, in a sentence without its full stop.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Usual => "points on their lattice, soil and water of the seed column or near it",
+            Self::OutOfPlace => {
+                "points jittered, on cell faces, one a cell, or in a top cell that is partly filled"
+            }
+            Self::Extreme => {
+                "water or pores far stiffer or softer than usual, columns of a micrometre or of kilometres, hardly any \
+                 permeability, or outputs before a thousandth of the consolidation time"
+            }
+            Self::Waves => "columns with the inertia of both phases, held against solutions that have it too",
+            Self::LayerDisplacement => {
+                "a layer under a cosine load before any water has left: does it move as it should?"
+            }
+            Self::LayerPressure => {
+                "the same layer: is its pressure right, or does it jump from cell to cell?"
+            }
+            Self::StiffSkeleton => "the same layer with the largest Poisson's ratio that was tried",
+            Self::LoadAtOnce => "the whole load at once, points that cross cells where the method lets them",
+            Self::GrowingLoad => "the same column under a load that takes its time",
+            Self::MuchOfTheHeight => "columns that lose 40 % of their height or more",
+            Self::BodyForces => "forces and sources that make a known motion",
+        }
+    }
+
+    /// The situation of a run.
+    pub fn of(record: &Record) -> Self {
+        let within = |value: f64, range: [f64; 2]| (range[0]..=range[1]).contains(&value);
+        let (case, groups) = (&record.case, &record.groups);
+        let column = &case.column;
+        let last = case.time_factors.last().copied().unwrap_or(0.0);
+        if case.scene.is_large_strain() {
+            return match 1.0 - elementary::exp(-groups.finite_strain) {
+                _ if !case.scene.is_loaded() => Self::BodyForces,
+                strain if strain >= MUCH_OF_THE_HEIGHT => Self::MuchOfTheHeight,
+                _ if column.loading_time > 0.0 => Self::GrowingLoad,
+                _ => Self::LoadAtOnce,
+            };
+        }
+        let is_usual = within(column.height, USUAL_HEIGHTS)
+            && within(case.material.porosity, USUAL_POROSITIES)
+            && within(groups.storage, USUAL_STORAGE)
+            && groups.inertia >= USUAL_INERTIA
+            && last >= EARLY;
+        match () {
+            () if case.scene.has_waves() => Self::Waves,
+            () if !column.points.is_regular() || case.points_per_cell == 1 => Self::OutOfPlace,
+            () if !is_usual => Self::Extreme,
+            () => Self::Usual,
+        }
+    }
+}
+
+/// How runs of a method ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum End {
+    /// With this largest error.
+    Error(f64),
+    /// With a pressure whose variation is so many times that of the exact one.
+    Oscillates(f64),
+    /// Hardly moved at all.
+    Locked,
+    /// So many runs by this failure.
+    Failed {
+        /// Name of the first of the failures.
+        name: &'static str,
+        /// Runs that failed.
+        failed: usize,
+        /// Runs there are.
+        of: usize,
+    },
+}
+
+impl End {
+    /// How bad it is: no answer at all, then no answer that is one, then by the error. What is no number is as bad
+    /// as an error can be.
+    fn badness(&self) -> (u8, f64) {
+        match self {
+            Self::Error(error) => (0, error.abs()),
+            Self::Oscillates(times) => (1, *times),
+            Self::Locked => (2, 0.0),
+            Self::Failed { failed, of, .. } => (3, *failed as f64 / (*of).max(1) as f64),
+        }
+    }
+
+    /// Whether it is worse than another.
+    pub fn is_worse_than(&self, other: &Self) -> bool {
+        let (own, other) = (self.badness(), other.badness());
+        own.0.cmp(&other.0).then(own.1.total_cmp(&other.1)).is_gt()
+    }
+}
+
+/// How a method came out of one situation in one study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ended<'a> {
+    /// The situation.
+    pub situation: Situation,
+    /// The method, by its name.
+    pub method: String,
+    /// The study.
+    pub study: &'a Study,
+    /// The worst end of its runs on the finest mesh, each with the best of its time steps.
+    pub end: End,
+}
+
+/// How every method of a study came out of every situation that the study has.
+///
+/// # Errors
+/// When a reference refuses a case.
+pub fn ends_of<'a>(study: &'a Study, records: &[Record]) -> Result<Vec<Ended<'a>>, ExactError> {
+    let ended = |situation, method: Method, end| Ended { situation, method: method.to_string(), study, end };
+    if study.scene.shows_locking() {
+        let standings = standings(study, records)?;
+        return Ok(standings
+            .iter()
+            .flat_map(|one| {
+                of_layer(one).into_iter().map(|(situation, end)| ended(situation, one.method, end))
+            })
+            .collect());
+    }
+    let Some(reference) = study.references.first() else { return Ok(Vec::new()) };
+    let mut groups: Vec<(Situation, Method, Vec<&Record>)> = Vec::new();
+    for record in records.iter().filter(|record| record.case.task == Task::Solve) {
+        let (situation, method) = (Situation::of(record), record.case.method);
+        match groups.iter_mut().find(|group| (group.0, group.1) == (situation, method)) {
+            Some(group) => group.2.push(record),
+            None => groups.push((situation, method, vec![record])),
+        }
+    }
+    let end = |group: (Situation, Method, Vec<&Record>)| {
+        Some(ended(group.0, group.1, end_of(&group.2, reference.name())?))
+    };
+    Ok(groups.into_iter().filter_map(end).collect())
+}
+
+/// The situations there are, the easy ones first.
+pub fn situations_of(ends: &[Ended<'_>]) -> Vec<Situation> {
+    let mut all: Vec<Situation> = ends.iter().map(|one| one.situation).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+/// The failures of runs, or else the largest error of the pressure at the points at the last output on the finest
+/// mesh; none where no run has one. Of runs alike but for their step the best counts: a study of steps has long ones.
+fn end_of(records: &[&Record], reference: &str) -> Option<End> {
+    let mut failures = records.iter().filter_map(|record| record.status.failure());
+    if let Some(first) = failures.next() {
+        return Some(End::Failed {
+            name: first.kind.name(),
+            failed: 1 + failures.count(),
+            of: records.len(),
+        });
+    }
+    let finest = records.iter().map(|record| record.case.cells).max()?;
+    let mut best: HashMap<String, f64> = HashMap::new();
+    for record in records.iter().filter(|record| record.case.cells == finest && record.status == Status::Ok) {
+        let Some(error) = last_error(record, reference) else { continue };
+        let without_step = Case { time_step: TimeStepRule::Stable(1.0), ..record.case.clone() };
+        let known = best.entry(without_step.hash()).or_insert(error);
+        if error.total_cmp(known).is_lt() {
+            *known = error;
+        }
+    }
+    best.into_values().max_by(f64::total_cmp).map(End::Error)
+}
+
+/// Error of the pressure at the points at the last output.
+fn last_error(record: &Record, reference: &str) -> Option<f64> {
+    let (quantity, sample) = (Quantity::Pressure, Sample::Points);
+    let time = *record.case.time_factors.last()?;
+    Some(record.error(quantity, sample, first_norm(quantity), reference, time)?.value.abs())
+}
+
+/// A layer at its undrained start: displacement and pressure in the usual soil, displacement in a stiff one.
+fn of_layer(one: &Standing) -> Vec<(Situation, End)> {
+    let moved = |error: f64| if error > LOCKS { End::Locked } else { End::Error(error) };
+    let usual = one.displacement.map(|error| {
+        let end = if one.class == Some(Class::Locked) { End::Locked } else { moved(error) };
+        (Situation::LayerDisplacement, end)
+    });
+    let pressure = one.pressure.map(|error| {
+        let oscillates = one.oscillation.filter(|index| *index > OSCILLATES);
+        (Situation::LayerPressure, oscillates.map_or(End::Error(error), |index| End::Oscillates(1.0 + index)))
+    });
+    let stiff = one.stiff_skeleton.map(|error| (Situation::StiffSkeleton, moved(error)));
+    [usual, pressure, stiff].into_iter().flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::study::file::StudySource;
+
+    fn study_of(text: &str) -> (Study, Vec<Record>) {
+        let source = StudySource { name: "s.toml".to_owned(), text: text.to_owned() };
+        (Study::check(&source).expect("a sound study"), records_of(text))
+    }
+
+    fn situations(table: &str, sweep: &str) -> Vec<(Situation, End)> {
+        let text = format!(
+            "title = 't'\n{table}\n[output]\ntime_factors = [0.05]\n[[sweep]]\nmethod = ['GC-SRI-patch']\n\
+             integrator = ['implicit']\ncells = [4]\n{sweep}"
+        );
+        let (study, records) = study_of(&text);
+        ends_of(&study, &records).expect("sound").iter().map(|one| (one.situation, one.end)).collect()
+    }
+
+    #[test]
+    fn a_situation_is_read_off_the_inputs() {
+        let one = |table: &str, sweep: &str| situations(table, sweep)[0].0;
+        assert_eq!(one("scene = 'terzaghi'", ""), Situation::Usual);
+        assert_eq!(one("scene = 'terzaghi'\npoints.jitter = 0.1", ""), Situation::OutOfPlace);
+        assert_eq!(one("scene = 'terzaghi'", "points_per_cell = [1]"), Situation::OutOfPlace);
+        assert_eq!(one("scene = 'terzaghi'\ncolumn.height = 1e-6", ""), Situation::Extreme);
+        assert_eq!(one("scene = 'xie-leo'\ncolumn.load = 2e5", ""), Situation::LoadAtOnce);
+        let growing = "scene = 'xie-leo'\ncolumn = { load = 2e5, loading_time = 1.0 }";
+        assert_eq!(one(growing, ""), Situation::GrowingLoad);
+        let much = "scene = 'xie-leo'\ncolumn.load = 8.4e5\nmaterial.porosity = 0.7";
+        assert_eq!(one(much, ""), Situation::MuchOfTheHeight);
+    }
+
+    #[test]
+    fn of_runs_alike_but_for_their_step_the_best_counts_and_of_others_the_worst() {
+        let steps = "time_step = [{ growth = 0.01 }, { growth = 0.5 }]";
+        let fine = situations("scene = 'terzaghi'", "time_step = [{ growth = 0.01 }]");
+        assert_eq!(situations("scene = 'terzaghi'", steps), fine);
+        let points = situations("scene = 'terzaghi'", "points_per_cell = [2, 3]");
+        assert_eq!(points.len(), 1, "one method, one situation");
+    }
+
+    #[test]
+    fn a_failure_is_worse_than_any_error_and_no_number_worse_than_any_number() {
+        let failed = End::Failed { name: "unstable", failed: 1, of: 2 };
+        assert!(failed.is_worse_than(&End::Locked) && End::Locked.is_worse_than(&End::Error(f64::NAN)));
+        assert!(End::Error(f64::NAN).is_worse_than(&End::Error(f64::INFINITY)));
+        assert!(End::Error(-0.2).is_worse_than(&End::Error(0.1)));
+        assert!(!End::Error(0.1).is_worse_than(&End::Error(0.1)));
+    }
+}

@@ -1,0 +1,73 @@
+//! The record of a case that somebody else's solver has solved.
+
+use crate::case::Case;
+use crate::exact::exact_error::ExactError;
+use crate::exact::reference::{Reference, ReferenceKind};
+use crate::measure::case_record::reference_use;
+use crate::measure::dimensionless_groups::groups;
+use crate::measure::field_errors::{LONG_AFTER, snapshot_errors};
+use crate::mpm::run::outcome::{Counters, StepSizes};
+use crate::mpm::run::snapshot::Snapshot;
+use crate::record::attached_run::AttachedRun;
+use crate::record::provenance::Provenance;
+use crate::record::{HistoryRow, Record, SCHEMA, Status};
+use crate::scene::column::column_parameters;
+
+/// The record of a case whose states at its outputs, one an output, came from outside; none where it failed. Each
+/// state is held against the solution at its own time. Wall times are added by who measured them.
+///
+/// # Errors
+/// When a reference refuses the case's parameters.
+pub fn record_of_attached(
+    case: &Case,
+    references: &[ReferenceKind],
+    status: Status,
+    snapshots: Vec<Snapshot>,
+    suggested_step: f64,
+    attached: AttachedRun,
+) -> Result<Record, ExactError> {
+    let parameters = column_parameters(&case.column, &case.material);
+    let own_times: Vec<f64> =
+        snapshots.iter().map(|snapshot| parameters.time_factor(snapshot.time)).collect();
+    let mut prepared = [case.time_factors.clone(), own_times.clone()].concat();
+    prepared.push(LONG_AFTER);
+    let references: Vec<Reference> = references
+        .iter()
+        .map(|kind| Reference::new(kind.of_soil(&case.material), &parameters, &prepared))
+        .collect::<Result<_, _>>()?;
+    let mut errors = Vec::new();
+    for ((asked, own), snapshot) in case.time_factors.iter().zip(&own_times).zip(&snapshots) {
+        for reference in &references {
+            let rows = snapshot_errors(case, reference, *own, snapshot)?;
+            errors.extend(rows.into_iter().map(|mut row| {
+                row.time_factor = *asked;
+                row
+            }));
+        }
+    }
+    let final_settlement = references.first().map_or(Ok(f64::NAN), |own| own.settlement(LONG_AFTER))?;
+    let degrees = own_times.iter().zip(&snapshots).map(|(time_factor, snapshot)| HistoryRow {
+        time_factor: *time_factor,
+        degree_of_consolidation: snapshot.settlement / final_settlement,
+    });
+    Ok(Record {
+        schema: SCHEMA,
+        hash: case.hash(),
+        case: case.clone(),
+        status,
+        counters: Counters::default(),
+        step_sizes: StepSizes { predicted_critical: 0.0, target: suggested_step, largest: suggested_step },
+        wall: Vec::new(),
+        stability: None,
+        groups: groups(case, 0.0),
+        start: None,
+        balance: Vec::new(),
+        errors,
+        history: degrees.filter(|row| row.degree_of_consolidation.is_finite()).collect(),
+        references: references.iter().map(|one| reference_use(case, one)).collect::<Result<_, _>>()?,
+        snapshots,
+        attached: Some(attached),
+        provenance: Provenance::of_this_program(),
+        digest: String::new(),
+    })
+}

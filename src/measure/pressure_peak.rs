@@ -1,0 +1,91 @@
+//! The peak of the pressure at an impermeable end over time: of Mandel and of Cryer, where it rises before it falls.
+
+use crate::elementary;
+use crate::record::Record;
+
+/// When and how high.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PressurePeak {
+    /// Time factor.
+    pub time_factor: f64,
+    /// Excess pressure over the load.
+    pub height: f64,
+}
+
+/// The peak at the base of a column, or in the middle of a slab: the parabola in `ln T_v` through the highest of the
+/// outputs and its neighbours. None where the highest is the first or the last, or the start.
+pub fn pressure_peak(record: &Record) -> Option<PressurePeak> {
+    let outputs = record.case.time_factors.iter().zip(&record.snapshots);
+    let rows: Vec<(f64, f64)> = outputs
+        .filter(|(time_factor, _)| **time_factor > 0.0)
+        .map(|(time_factor, snapshot)| {
+            let centres = &snapshot.centres;
+            let end = pressure_at_the_end(&centres.initial_height, &centres.pressure);
+            (elementary::ln(*time_factor), end / record.case.column.load)
+        })
+        .collect();
+    let highest = (0..rows.len()).max_by(|a, b| rows[*a].1.total_cmp(&rows[*b].1))?;
+    let (before, after) = (rows.get(highest.checked_sub(1)?)?, rows.get(highest + 1)?);
+    let (time, height) = rows[highest];
+    // Newton's form about the highest: slopes to both sides, and how they change.
+    let slopes = [(height - before.1) / (time - before.0), (after.1 - height) / (after.0 - time)];
+    let bend = (slopes[1] - slopes[0]) / (after.0 - before.0);
+    let slope = slopes[0] + bend * (time - before.0);
+    let shift = -0.5 * slope / bend;
+    // What is no number is no peak.
+    (bend < 0.0).then(|| PressurePeak {
+        time_factor: elementary::exp(time + shift),
+        height: height + 0.5 * slope * shift,
+    })
+}
+
+/// Pressure at the height 0 from the means of the lowest two rows of cells: nothing flows there, so that the
+/// pressure is even in the height, `p_1 − (p_2 − p_1)/8`.
+fn pressure_at_the_end(heights: &[f64], pressures: &[f64]) -> f64 {
+    let row_above = |floor: f64| {
+        let lowest = heights.iter().copied().filter(|height| *height > floor).fold(f64::INFINITY, f64::min);
+        let reach = 1e-6 * lowest;
+        let in_row = heights.iter().zip(pressures).filter(|(height, _)| (**height - lowest).abs() <= reach);
+        let (count, sum) =
+            in_row.fold((0.0, 0.0), |(count, sum), (_, pressure)| (count + 1.0, sum + pressure));
+        (lowest + reach, sum / count)
+    };
+    let (first_height, first) = row_above(f64::NEG_INFINITY);
+    let (_, second) = row_above(first_height);
+    first - (second - first) / 8.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+
+    #[test]
+    fn the_middle_is_found_from_two_rows_of_an_even_field() {
+        let even = |height: f64| 3.0 - 2.0 * height * height;
+        let heights = [0.15, 0.05, 0.05, 0.25, 0.15];
+        let pressures = heights.map(even);
+        assert!((pressure_at_the_end(&heights, &pressures) - 3.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_peak_lies_between_outputs_and_none_at_their_ends() {
+        let study = "title = \"t\"\nscene = \"mandel\"\noutput = { time_factors = [0.05, 0.06, 0.07] }\n[[sweep]]\n\
+                     method = [\"GIMP-SRI\"]\nintegrator = [\"implicit\"]\ncells = [10]\n";
+        let mut record = records_of(study).remove(0);
+        let set = |record: &mut Record, heights: [f64; 3]| {
+            for (snapshot, height) in record.snapshots.iter_mut().zip(heights) {
+                snapshot.centres.pressure.fill(height);
+            }
+        };
+        // A parabola in ln T_v about 0.062.
+        let of = |time: f64| 0.55 - 0.3 * (time / 0.062_f64).ln().powi(2);
+        set(&mut record, [0.05, 0.06, 0.07].map(of));
+        let peak = pressure_peak(&record).expect("a peak");
+        assert!((peak.time_factor - 0.062).abs() < 1e-12 && (peak.height - 0.55).abs() < 1e-12, "{peak:?}");
+        for monotone in [[0.1, 0.2, 0.3], [0.3, 0.2, 0.1], [0.2; 3]] {
+            set(&mut record, monotone);
+            assert_eq!(pressure_peak(&record), None);
+        }
+    }
+}

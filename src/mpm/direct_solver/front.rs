@@ -1,0 +1,216 @@
+//! Dense partial factorisation of a front: LU with pivots among its first rows, the rest updated.
+
+/// Columns that are factored before the rest is updated by them at once.
+const PANEL: usize = 32;
+/// Rows and columns of the blocks that stay in registers.
+const TILE: usize = 4;
+
+/// Rows of a panel by tiles of columns, `[tile][row][column]`: what the inner loop reads lies side by side.
+#[derive(Clone, Debug)]
+pub struct Panel(Vec<f64>);
+
+impl Panel {
+    /// Room for the panels of fronts of up to `size` rows.
+    pub fn for_fronts_of(size: usize) -> Self {
+        Self(Vec::with_capacity(PANEL * size))
+    }
+}
+
+/// A dense square matrix of which some first unknowns are eliminated.
+pub struct Front<'a> {
+    /// Its entries, `[row][column]`.
+    pub entries: &'a mut [f64],
+    /// Rows.
+    pub size: usize,
+    /// Room for a panel.
+    pub panel: &'a mut Panel,
+}
+
+impl Front<'_> {
+    /// Eliminates as many first unknowns as there are `pivots`, each with the largest pivot among their rows,
+    /// and notes the row that took each one's place; behind them is left their Schur complement.
+    ///
+    /// # Errors
+    /// The column without a pivot.
+    pub fn eliminate(&mut self, pivots: &mut [usize]) -> Result<(), usize> {
+        let (mut start, count) = (0, pivots.len());
+        while start < count {
+            let end = (start + PANEL).min(count);
+            self.factor_panel(start, end, pivots)?;
+            self.solve_panel_rows(start, end);
+            self.update_rest(start, end);
+            start = end;
+        }
+        Ok(())
+    }
+
+    /// LU of the panel's columns in all rows.
+    fn factor_panel(&mut self, start: usize, end: usize, pivots: &mut [usize]) -> Result<(), usize> {
+        let size = self.size;
+        for column in start..end {
+            let mut pivot = column;
+            let mut largest = self.entries[column * size + column].abs();
+            for row in column + 1..pivots.len() {
+                let value = self.entries[row * size + column].abs();
+                if value > largest {
+                    (pivot, largest) = (row, value);
+                }
+            }
+            if largest == 0.0 || !largest.is_finite() {
+                return Err(column);
+            }
+            pivots[column] = pivot;
+            if pivot != column {
+                let (above, below) = self.entries.split_at_mut(pivot * size);
+                above[column * size..][..size].swap_with_slice(&mut below[..size]);
+            }
+            let (above, below) = self.entries.split_at_mut((column + 1) * size);
+            let pivot_row = &above[column * size..][column..end];
+            let per_pivot = 1.0 / pivot_row[0];
+            for row in below.chunks_exact_mut(size) {
+                let row = &mut row[column..end];
+                let multiplier = row[0] * per_pivot;
+                row[0] = multiplier;
+                if multiplier != 0.0 {
+                    for (entry, above) in row[1..].iter_mut().zip(&pivot_row[1..]) {
+                        *entry -= multiplier * above;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// `U ← L⁻¹ U` in the panel's rows.
+    fn solve_panel_rows(&mut self, start: usize, end: usize) {
+        let size = self.size;
+        for row in start + 1..end {
+            let (above, below) = self.entries.split_at_mut(row * size);
+            let (left, right) = below[..size].split_at_mut(end);
+            for other in start..row {
+                let multiplier = left[other];
+                if multiplier != 0.0 {
+                    let source = &above[other * size + end..][..size - end];
+                    for (entry, above) in right.iter_mut().zip(source) {
+                        *entry -= multiplier * above;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Takes the panel's product from the rows and columns behind it.
+    fn update_rest(&mut self, start: usize, end: usize) {
+        let (size, depth) = (self.size, end - start);
+        let columns = size - end;
+        let tiles = columns / TILE;
+        let packed = &mut self.panel.0;
+        packed.clear();
+        for tile in 0..tiles {
+            for k in start..end {
+                packed.extend_from_slice(&self.entries[k * size + end + tile * TILE..][..TILE]);
+            }
+        }
+        let (above, below) = self.entries.split_at_mut(end * size);
+        let mut blocks = below.chunks_exact_mut(TILE * size);
+        let mut multipliers = [[0.0; TILE]; PANEL];
+        for block in &mut blocks {
+            for k in 0..depth {
+                for i in 0..TILE {
+                    multipliers[k][i] = block[i * size + start + k];
+                }
+            }
+            for tile in 0..tiles {
+                let panel = &packed[tile * depth * TILE..][..depth * TILE];
+                let sums = tile_product(&multipliers[..depth], panel);
+                let column = end + tile * TILE;
+                for i in 0..TILE {
+                    let row = &mut block[i * size + column..][..TILE];
+                    for j in 0..TILE {
+                        row[j] -= sums[i][j];
+                    }
+                }
+            }
+            for i in 0..TILE {
+                let (left, right) = block[i * size..][..size].split_at_mut(end + tiles * TILE);
+                take_products(&left[start..end], &above[start * size..], size, end + tiles * TILE, right);
+            }
+        }
+        for row in blocks.into_remainder().chunks_exact_mut(size) {
+            let (left, right) = row.split_at_mut(end);
+            take_products(&left[start..end], &above[start * size..], size, end, right);
+        }
+    }
+}
+
+/// `Σ_k l_k u_k` over tiles.
+#[inline]
+fn tile_product(multipliers: &[[f64; TILE]], panel: &[f64]) -> [[f64; TILE]; TILE] {
+    let mut sums = [[0.0; TILE]; TILE];
+    for (l, u) in multipliers.iter().zip(panel.chunks_exact(TILE)) {
+        for i in 0..TILE {
+            for j in 0..TILE {
+                sums[i][j] += l[i] * u[j];
+            }
+        }
+    }
+    sums
+}
+
+/// Takes multiples of the panel's rows from a row's end.
+fn take_products(multipliers: &[f64], panel: &[f64], size: usize, from: usize, row: &mut [f64]) {
+    for (k, multiplier) in multipliers.iter().enumerate() {
+        for (entry, above) in row.iter_mut().zip(&panel[k * size + from..]) {
+            *entry -= multiplier * above;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DMatrix;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn what_is_left_is_the_schur_complement(size in 1..90usize, share in 0.0..1.0f64, seed in 0..1000u32) {
+            let count = (share * size as f64).ceil() as usize;
+            let mut state = seed;
+            let mut random = || {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                f64::from(state >> 8) / f64::from(1 << 23) - 1.0
+            };
+            let dense = DMatrix::from_fn(size, size, |row, column| {
+                random() + if row == column { 4.0 } else { 0.0 }
+            });
+            let mut entries: Vec<f64> = dense.transpose().as_slice().to_vec();
+            let mut pivots = vec![0; count];
+            let mut panel = Panel::for_fronts_of(size);
+            let eliminated = Front { entries: &mut entries, size, panel: &mut panel }.eliminate(&mut pivots);
+            prop_assert_eq!(eliminated, Ok(()));
+            let behind = size - count;
+            let first = dense.view((0, 0), (count, count)).into_owned();
+            prop_assume!(first.clone().svd(false, false).singular_values.min() > 1e-3);
+            let right = dense.view((0, count), (count, behind)).into_owned();
+            let solved = first.lu().solve(&right).expect("a pivot was found");
+            let schur = dense.view((count, count), (behind, behind))
+                - dense.view((count, 0), (behind, count)) * solved;
+            for row in 0..behind {
+                for column in 0..behind {
+                    let left = entries[(count + row) * size + count + column];
+                    prop_assert!((left - schur[(row, column)]).abs() < 1e-9, "{row} {column}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_column_without_a_pivot_is_named() {
+        let mut entries = [1.0, 2.0, 3.0, 2.0, 4.0, 5.0, 0.0, 0.0, 1.0];
+        let mut panel = Panel::for_fronts_of(3);
+        let mut pivots = [0; 2];
+        let eliminated = Front { entries: &mut entries, size: 3, panel: &mut panel }.eliminate(&mut pivots);
+        assert_eq!(eliminated, Err(1));
+    }
+}

@@ -1,0 +1,107 @@
+//! A solver of somebody else's, checked: what is started for a case, and how its result is read.
+
+use crate::mpm::attached::Attached;
+use std::path::PathBuf;
+
+/// Programs whose files are known; `import` has what their arrays mean.
+pub const PRESETS: [&str; 5] = ["ogs", "kratos", "porepy", "geotaichi", "meshio"];
+
+/// What stands for values of a case in commands, environment and result.
+pub const PLACEHOLDERS: [(&str, &str); 7] = [
+    ("case", "path of the case file, case.json"),
+    ("out", "fresh folder in which the solver is started and leaves its result"),
+    ("study", "folder of the study file"),
+    ("cells", "cells over the height"),
+    ("points_per_cell", "material points per cell and direction"),
+    ("time_step", "suggested time step, s"),
+    ("end_time", "time of the last output, s"),
+];
+
+/// A program that solves a case of the study and leaves a result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solver {
+    /// Its name, with the digest of its command and files.
+    pub attached: Attached,
+    /// Folder of the study file, against which its files are named.
+    pub folder: PathBuf,
+    /// The program and its arguments, as typed.
+    pub command: Vec<String>,
+    /// The result, as typed: below `{out}`.
+    pub result: String,
+    /// Files of a result that is there already, as typed; empty where the command makes one.
+    pub files: Vec<String>,
+    /// Seconds from one numbered step to the next, where file names have the number of the step.
+    pub time_step: Option<f64>,
+    /// Mapping file, below the folder.
+    pub mapping: Option<String>,
+    /// Program whose files are known.
+    pub preset: Option<String>,
+    /// Command that prints its version; empty where there is none.
+    pub version: Vec<String>,
+    /// Longest wall time of one run, s.
+    pub timeout: f64,
+    /// Runs of each case that are timed.
+    pub repeats: usize,
+    /// Whether a run goes before the timed ones.
+    pub warm_up: bool,
+    /// How many of its runs may go on at the same time.
+    pub at_once: usize,
+    /// Variables of its environment, as typed.
+    pub environment: Vec<(String, String)>,
+    /// Pattern of the time that it says it took.
+    pub solve_seconds: Option<String>,
+}
+
+impl Solver {
+    /// Whether its results are there already, and nothing is run.
+    pub fn is_given(&self) -> bool {
+        !self.files.is_empty()
+    }
+
+    /// The name that the study gives it.
+    pub fn name(&self) -> &str {
+        self.attached.name()
+    }
+
+    /// The file that a word names, where one of that name is in the study's folder.
+    pub fn file(&self, word: &str) -> Option<PathBuf> {
+        file_beside(&self.folder, word)
+    }
+}
+
+/// The file of a folder that a word names; a word without a letter is none, nor is one that begins like an option.
+pub fn file_beside(folder: &std::path::Path, word: &str) -> Option<PathBuf> {
+    let is_name = word.contains(|letter: char| letter.is_alphabetic()) && !word.starts_with('-');
+    Some(folder.join(word)).filter(|path| is_name && path.is_file())
+}
+
+/// The placeholders of a text, `{case}` and its like, without their braces.
+pub fn placeholders_of(text: &str) -> impl Iterator<Item = &str> {
+    let parts = text.split('{').skip(1).filter_map(|part| part.split_once('}'));
+    parts.map(|(name, _)| name).filter(|name| {
+        let is_word = |letter: char| letter.is_ascii_lowercase() || letter == '_';
+        !name.is_empty() && name.chars().all(is_word)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn placeholders_are_words_in_braces_and_nothing_else() {
+        let found: Vec<&str> = placeholders_of("a{case}/{out}/x{}{1}{ \"a\": 1 }{end_time").collect();
+        assert_eq!(found, ["case", "out"]);
+    }
+
+    #[test]
+    fn a_word_is_a_file_only_where_the_folder_has_one() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        std::fs::write(folder.path().join("adapter.py"), "").expect("a file");
+        std::fs::write(folder.path().join("10"), "").expect("a file");
+        assert!(file_beside(folder.path(), "adapter.py").is_some());
+        for word in ["python3", "10", "-adapter.py", "{case}"] {
+            assert_eq!(file_beside(folder.path(), word), None, "{word}");
+        }
+    }
+}
