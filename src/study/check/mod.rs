@@ -202,7 +202,9 @@ impl Checker<'_> {
             let start = block.span().start;
             self.attached_are_solved(start, &cases);
             self.pores_stay_open(start..start + 1, cases.iter());
-            cases.into_iter().for_each(|case| put(case, tier, &mut planned, &mut places));
+            for case in cases {
+                put(case, tier, &mut planned, &mut places);
+            }
         }
         base.time_factors = time_factors;
         for meshes in given {
@@ -214,8 +216,6 @@ impl Checker<'_> {
         self.large_for_small_strain(file, &planned);
         self.column_height = common_height(&planned, base.column.height);
         let (expectations, case_expectations) = self.expectations(file, scene, &references, &planned);
-        let timing_repeats =
-            self.count(file.timing.repeats.as_deref(), "timing.repeats", 0..=1000).unwrap_or(0);
         Some(Study {
             name: name_of(&self.source.name).to_owned(),
             title: file.title.get_ref().clone(),
@@ -227,7 +227,9 @@ impl Checker<'_> {
             case_expectations,
             case_seconds,
             solvers: std::mem::take(&mut self.solvers),
-            timing_repeats,
+            timing_repeats: self
+                .count(file.timing.repeats.as_deref(), "timing.repeats", 0..=1000)
+                .unwrap_or(0),
             warnings: std::mem::take(&mut self.warnings),
         })
     }
