@@ -43,7 +43,11 @@
 //! | 16 | Mandel's slab | `src/exact/mandel/series.rs:sum`, `src/exact/mandel/early.rs:ratios` |
 //! | 17 | chord mean of the conductivity | `src/mpm/operators/chord_mean.rs:take_chord_drag`, `src/soil/conductivity_mean.rs:flow_potential` |
 //! | 18 | rigid plate | `src/mpm/operators/rigid_plate.rs:tie`, `src/mpm/direct_solver/bordered.rs:solve` |
-//! | 19 | own weight, free water | `src/mpm/operators/self_weight.rs:add_weight` |
+//! | 19 | own weight, free water | `src/mpm/weighing_body.rs:add_weight` |
+//! | 20 | pressure as a nodal field | `src/mpm/operators/recovery/nodal_field.rs:fit` |
+//! | 21 | domains of water points | `src/mpm/layers/water_domains.rs:take_domains` |
+//! | 22 | balances of two layers | `src/mpm/layers/water_to_nodes.rs:map_water_masses`, `src/mpm/layers/water_to_nodes.rs:map_forces` |
+//! | 23 | pressure along the water | `src/mpm/layers/water_pressure.rs:update_pressure` |
 //!
 //! # The step
 //!

@@ -199,7 +199,9 @@ impl Copies {
         let path = &files[place(share, files.len())];
         let whole = fs::read(path).expect("a file");
         let mut bytes = whole.clone();
-        damages.iter().for_each(|damage| damage.done(&mut bytes));
+        for damage in damages {
+            damage.done(&mut bytes);
+        }
         fs::write(path, &bytes).expect("a file");
         let all: u64 = files.iter().map(|file| fs::metadata(file).map_or(0, |told| told.len())).sum();
         let bound = ANY + PER_BYTE * usize::try_from(all).expect("small");
@@ -240,7 +242,7 @@ fn every_family_is_read_where_nothing_is_damaged() {
 
 #[test]
 fn damaged_files_are_refused_within_bounds() {
-    damage_many(240);
+    damage_many(120);
 }
 
 #[test]
@@ -260,7 +262,7 @@ fn claims_of_ten_gigabytes_and_bombs_allocate_next_to_nothing() {
         let region = Region::new(ALLOCATOR);
         let refused = read(&[path], "meshio", Some(1.0), 1.0).expect_err(name);
         let allocated = region.change().bytes_allocated;
-        assert!(allocated < (400 << 20), "{name}: {allocated} bytes allocated; {refused}");
+        assert!(allocated < (32 << 20), "{name}: {allocated} bytes allocated; {refused}");
         assert!(
             refused.contains("claim") || refused.contains("cut") || refused.contains("hold"),
             "{refused}"
@@ -284,12 +286,12 @@ fn packed_zeros(length: usize) -> (Vec<u8>, Vec<u8>) {
 
 /// Files that are small and claim or hold much.
 fn bombs() -> Vec<(&'static str, Vec<u8>)> {
-    let block = 64 << 20;
+    let block = 8 << 20;
     let (zlib, bare) = packed_zeros(block);
     vec![
-        ("many-blocks.vtu", vtu_of_blocks(&zlib, block, 16)),
+        ("many-blocks.vtu", vtu_of_blocks(&zlib, block, 64)),
         ("claimed.vtu", vtu_of_blocks(&zlib[..100], 10_000_000_000, 1)),
-        ("overlapping.npz", npz_of_one_member_many_times(&bare, block, 16)),
+        ("overlapping.npz", npz_of_one_member_many_times(&bare, block, 64)),
         ("claimed.npz", npz_of_one_member_many_times(&bare[..100], 4_000_000_000, 1)),
     ]
 }

@@ -5,6 +5,7 @@ pub mod norm;
 pub mod quantity;
 pub mod step_cost;
 pub mod tier;
+pub mod two_layers;
 pub mod work_estimate;
 
 use crate::case::keys::{Key, Value};
@@ -159,13 +160,16 @@ impl Case {
         self.column.points.cell_size(self.column.height, self.cells)
     }
 
-    /// Points there are to be: cells times points a cell, in every direction.
+    /// Points there are to be, in all layers: cells times points a cell, in every direction.
     pub fn expected_points(&self) -> usize {
-        let along = self.cells * self.points_per_cell;
-        match self.column.dimensions {
-            1 => along,
-            _ => along * self.column.cells_across(self.cells).unwrap_or(1) * self.points_per_cell,
-        }
+        let of_layer = |per_cell: usize| {
+            let along = self.cells * per_cell;
+            match self.column.dimensions {
+                1 => along,
+                _ => along * self.column.cells_across(self.cells).unwrap_or(1) * per_cell,
+            }
+        };
+        of_layer(self.points_per_cell) + of_layer(self.column.points.water_per_cell)
     }
 
     /// Time, s, at which `T_v = 1`.
@@ -235,18 +239,23 @@ impl Case {
         })
     }
 
-    /// Where the points lie, where that is not the regular lattice.
+    /// Where the points lie, where that is not the regular lattice in one layer.
     fn arrangement(&self) -> Vec<String> {
         let (points, regular) = (&self.column.points, Arrangement::default());
-        [
+        let layers = match points.water_per_cell {
+            0 => None,
+            of_water if of_water == self.points_per_cell => Some("two layers".to_owned()),
+            of_water => Some(format!("two layers, {of_water} of the water")),
+        };
+        let places = [
             (points.offset, regular.offset, "points shifted by"),
             (points.jitter, regular.jitter, "points jittered by"),
             (points.filling, regular.filling, "top cell filled to"),
         ]
         .into_iter()
         .filter(|(value, usual, _)| value != usual)
-        .map(|(value, _, what)| format!("{what} {value}"))
-        .collect()
+        .map(|(value, _, what)| format!("{what} {value}"));
+        layers.into_iter().chain(places).collect()
     }
 
     /// Parameters that maps of the critical step sweep, where they are not the seed's.
@@ -368,9 +377,15 @@ mod tests {
     }
 
     #[test]
+    fn a_case_without_own_weight_has_the_identity_that_it_had_before_there_was_any() {
+        let text = serde_json::to_string(&seed()).expect("plain data");
+        assert!(!text.contains("self_weight"), "{text}");
+    }
+
+    #[test]
     fn the_hash_follows_every_input() {
         let mut hashes = vec![seed().hash()];
-        let changes: [fn(&mut Case); 40] = [
+        let changes: [fn(&mut Case); 41] = [
             |case| case.task = Task::Stability,
             |case| case.scene = SceneKind::XieLeo,
             |case| case.column.height = 2.0,
@@ -379,9 +394,12 @@ mod tests {
             |case| case.column.dimensions = 2,
             |case| case.column.base = Some(Base::ALL[0]),
             |case| case.column.loading_time = 2.0,
+            |case| case.column.self_weight = true,
             |case| case.column.points.offset = 0.1,
             |case| case.column.points.jitter = 0.1,
             |case| case.column.points.filling = 0.5,
+            |case| case.column.points.layers = 2,
+            |case| case.column.points.water_per_cell = 3,
             |case| case.material.law = Law::LogLinear,
             |case| case.material.youngs_modulus = 2.0,
             |case| case.material.poissons_ratio = 0.1,

@@ -51,7 +51,7 @@ impl StepKind {
     pub fn of(case: &Case) -> Self {
         let frozen = case.method.configuration_or(case.scene.configuration()) == Configuration::Frozen;
         match case.integrator {
-            IntegratorKind::Explicit if frozen => Self::Assembled,
+            IntegratorKind::Explicit if frozen && !case.column.points.has_two_layers() => Self::Assembled,
             IntegratorKind::Explicit => Self::PointWise,
             _ if frozen && case.formulation == Formulation::QuasiStatic => Self::Linear,
             _ if frozen => Self::Inertial,

@@ -303,6 +303,7 @@ fn snapshot_of(case: &Case, sample: Sample, state: SampledState) -> Snapshot {
         effective_stress: state.effective_stress,
         displacement: state.displacement,
         plane,
+        water: None,
     };
     let mut snapshot =
         Snapshot { time: state.time, settlement: surface.map_or(f64::NAN, |up| -up), ..Snapshot::default() };

@@ -63,6 +63,9 @@ pub struct CaseColumn {
     pub load: f64,
     /// Time over which the load grows, s; 0 where it acts at once.
     pub loading_time: f64,
+    /// Whether skeleton and water have a weight; the water level stands in the surface at the start. Pressures of a
+    /// result are excess pressures all the same.
+    pub self_weight: bool,
     /// Directions that this program would solve, 1 or 2.
     pub dimensions: usize,
     /// How a layer rests on its base, `rough` or `smooth`; of a column nothing.
@@ -102,6 +105,7 @@ impl CaseFile {
                 width: column.horizontal_extent,
                 load: column.load,
                 loading_time: column.loading_time,
+                self_weight: column.self_weight,
                 dimensions: column.dimensions,
                 base: column.base.map(|base| base.name().to_owned()),
             },

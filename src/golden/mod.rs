@@ -215,6 +215,14 @@ pub fn values_of(records: &[Record]) -> BTreeMap<String, f64> {
                 format!("{label} | water balance T_v={}", balance.time_factor),
                 balance.water_imbalance,
             );
+            if let Some(layers) = &balance.layers {
+                let at = balance.time_factor;
+                values.insert(format!("{label} | water balance of pores T_v={at}"), layers.pore_water);
+                values.insert(
+                    format!("{label} | water balance of what left T_v={at}"),
+                    layers.water_left_error,
+                );
+            }
         }
     }
     values

@@ -174,7 +174,9 @@ mod tests {
 
     fn states(rows: &[SampleRow]) -> Result<Vec<SampledState>, ImportError> {
         let mut all = Rows::default();
-        rows.iter().for_each(|row| all.push(row));
+        for row in rows {
+            all.push(row);
+        }
         all.states()
     }
 

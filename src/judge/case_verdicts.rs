@@ -6,7 +6,7 @@ use crate::judge::error_place::place_of_attached;
 use crate::judge::paths::Judgement;
 use crate::judge::verdict::{Check, Verdict, VerdictOutcome, check};
 use crate::measure::pressure_peak::pressure_peak;
-use crate::record::{Balance, Record};
+use crate::record::{Balance, LayerBalance, Record};
 use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
 use crate::wording::typed;
 
@@ -21,7 +21,12 @@ impl CaseExpectation {
         }
         selected
             .iter()
-            .map(|record| self.judgement(record.case.label(), self.demand.checks(record)))
+            .map(|record| {
+                let mut checks = self.demand.checks(record);
+                let as_one = self.demand.one_layer_within;
+                checks.extend(as_one.map(|within| one_layer_found(within, record, records)));
+                self.judgement(record.case.label(), checks)
+            })
             .collect()
     }
 
@@ -51,6 +56,23 @@ impl CaseDemand {
         ];
         let asked = drifts.into_iter().filter_map(|(what, found, below)| Some((what, found, below?)));
         checks.extend(asked.map(|(what, found, below)| drift_found(what, found, below)));
+        let worst_layer = |of: fn(&LayerBalance) -> f64| {
+            let layers =
+                record.balance.iter().map(|balance| balance.layers.as_ref().map(|one| of(one).abs()));
+            // What is no number stays.
+            let larger = |worst: f64, next: f64| if worst > next || worst.is_nan() { worst } else { next };
+            layers.reduce(|worst, next| Some(larger(worst?, next?))).flatten()
+        };
+        checks.extend(self.pore_water.map(|[above, below]| {
+            layer_found("water over pores, less one", worst_layer(|one| one.pore_water), [above, below])
+        }));
+        checks.extend(self.water_left_within.map(|within| {
+            layer_found(
+                "water that left, less s/(n_0 H)",
+                worst_layer(|one| one.water_left_error),
+                [0.0, within],
+            )
+        }));
         let spurious = record.balance.iter().filter_map(|balance| balance.spurious_velocity).reduce(f64::max);
         let peak = pressure_peak(record);
         let ranges = [
@@ -62,6 +84,57 @@ impl CaseDemand {
         checks.extend(asked.map(|(what, found, bounds)| value_found(what, found, bounds)));
         checks
     }
+}
+
+/// A measure of two layers, the largest at any output, between two bounds.
+fn layer_found(what: &str, found: Option<f64>, [above, below]: [f64; 2]) -> Check {
+    let Some(found) = found else {
+        let reason = format!("{what}: the case has no two layers of points that move");
+        return check("layers", false, None, reason);
+    };
+    let pass = found >= above && found < below;
+    let inside = if pass { "in" } else { "outside" };
+    check("layers", pass, Some(found), format!("{what}: {found:.2e} {inside} {above:.1e} … {below:.1e}"))
+}
+
+/// Every error of a case of two layers against that of the same case in one.
+fn one_layer_found(within: f64, record: &Record, records: &[Record]) -> Check {
+    let fail = |reason: &str| check("one layer", false, None, reason.to_owned());
+    let mut twin = record.case.clone();
+    twin.column.points.layers = 1;
+    twin.column.points.water_per_cell = 0;
+    if twin == record.case {
+        return fail("the case has one layer itself");
+    }
+    let Some(one) = records.iter().find(|other| other.case == twin) else {
+        return fail("the study has no such case in one layer");
+    };
+    if record.errors.is_empty() || record.errors.len() != one.errors.len() {
+        let reason = format!("{} errors in two layers and {} in one", record.errors.len(), one.errors.len());
+        return fail(&reason);
+    }
+    let mut worst = 0.0;
+    for (two, one) in record.errors.iter().zip(&one.errors) {
+        let is_same = (two.quantity, two.sample, two.norm, &two.reference, two.time_factor)
+            == (one.quantity, one.sample, one.norm, &one.reference, one.time_factor);
+        let difference = (two.value - one.value).abs();
+        // Written so that what is no number fails.
+        if !(is_same && difference <= within) {
+            let reason = format!(
+                "{} {} {} at T_v = {}: {:.10e} in two layers and {:.10e} in one, {within:.0e} allowed",
+                two.quantity.name(),
+                two.norm,
+                two.sample.name(),
+                typed(two.time_factor),
+                two.value,
+                one.value
+            );
+            return check("one layer", false, Some(difference), reason);
+        }
+        worst = f64::max(worst, difference);
+    }
+    let reason = format!("{} errors are those of one layer within {worst:.1e}", record.errors.len());
+    check("one layer", true, Some(worst), reason)
 }
 
 fn status_found(wanted: &str, record: &Record) -> Check {
@@ -188,6 +261,46 @@ time_step = [{ growth = 0.05 }]
         assert!(!found(&record, 0.0, 1e9).pass);
         record.errors.clear();
         assert!(!found(&record, 0.0, 1e9).pass);
+    }
+
+    #[test]
+    fn two_layers_are_held_to_one_and_their_water_to_its_pores() {
+        let study = STUDY.replace("cells = [10]", "cells = [3]\nlayers = [1, 2]");
+        let study = study.replace("\"implicit\"", "\"explicit\"").replace("growth = 0.05", "stable = 0.7");
+        let study = study.replace("[0.05]", "[1e-5]");
+        let mut records = records_of(&study);
+        let demand = CaseDemand { one_layer_within: Some(1e-9), ..CaseDemand::default() };
+        let selection = crate::study::expectation::Selection::default();
+        let expectation = CaseExpectation { selection, demand, tier: crate::case::tier::Tier::Ci, line: 1 };
+        let verdicts = |records: &[Record]| -> Vec<(bool, String)> {
+            let judged = expectation.judge(records);
+            judged.into_iter().map(|one| (one.verdict.pass, one.verdict.reason)).collect()
+        };
+        let found = verdicts(&records);
+        assert!(!found[0].0 && found[0].1.contains("one layer itself"), "{found:?}");
+        assert!(found[1].0 && found[1].1.contains("are those of one layer"), "{found:?}");
+        records[1].errors[3].value += 2e-9;
+        let found = verdicts(&records);
+        assert!(!found[1].0 && found[1].1.contains("1e-9 allowed"), "{found:?}");
+        records[1].errors[3].value = f64::NAN;
+        assert!(!verdicts(&records)[1].0);
+        records.remove(0);
+        assert!(verdicts(&records)[0].1.contains("no such case in one layer"));
+        // Nothing moves here, so there is nothing to hold; and what is not as it must be fails.
+        let demand = CaseDemand {
+            pore_water: Some([1e-3, 2e-3]),
+            water_left_within: Some(1e-3),
+            ..CaseDemand::default()
+        };
+        assert!(demand.checks(&records[0]).iter().all(|check| !check.pass));
+        for (pore_water, water_left_error, passes) in
+            [(-1.5e-3, -5e-4, [true, true]), (5e-4, 2e-3, [false, false]), (f64::NAN, f64::NAN, [false; 2])]
+        {
+            let layers = LayerBalance { pore_water, water_left: 0.1, water_left_error, water_points: 3 };
+            records[0].balance[0].layers = Some(layers);
+            let found: Vec<bool> = demand.checks(&records[0]).iter().map(|check| check.pass).collect();
+            assert_eq!(found, passes, "{pore_water}");
+        }
     }
 
     #[test]

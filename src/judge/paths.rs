@@ -269,7 +269,9 @@ fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
     }
     let by_points = |second: bool| if second { 2.0 } else { 1.0 };
     match (measure.quantity, measure.sample) {
-        (Quantity::Pressure, Sample::Points) => Some(by_points(method.uses_patch())),
+        (Quantity::Pressure, Sample::Points) => {
+            Some(by_points(method.uses_patch() || method.has_nodal_pressure()))
+        }
         (Quantity::EffectiveStress, Sample::Points) => Some(by_points(method.strain.is_composite())),
         (Quantity::Pressure | Quantity::EffectiveStress, Sample::Centres)
         | (Quantity::Settlement, _)

@@ -5,7 +5,7 @@ use crate::elementary;
 use crate::exact::exact_error::ExactError;
 use crate::exact::reference::Reference;
 use crate::mpm::run::snapshot::Snapshot;
-use crate::record::{Balance, HistoryRow, StartChecks};
+use crate::record::{Balance, HistoryRow, LayerBalance, StartChecks};
 use crate::scene::column::column_parameters;
 
 /// The start against what the scene expects of it.
@@ -19,11 +19,14 @@ pub fn start_checks(
 ) -> Result<StartChecks, ExactError> {
     let soil = &case.material;
     let load = case.column.load;
-    let found = (&*start.points.initial_height, &*start.points.pressure);
+    let samples = &start.points;
+    let found = samples.water.as_ref().map_or((&*samples.initial_height, &*samples.pressure), |water| {
+        (&*water.initial_height, &*water.pressure)
+    });
     let expected = case.scene.expected_start_pressures(&case.column, soil, references.first(), found)?;
     let off = found.1.iter().zip(&expected).map(|(pressure, expected)| (pressure - expected).abs() / load);
     Ok(StartChecks {
-        points: start.points.pressure.len(),
+        points: samples.pressure.len() + samples.water.as_ref().map_or(0, |water| water.pressure.len()),
         points_expected: case.expected_points(),
         volume_error: start.totals.volume / case.column.volume() - 1.0,
         undrained_pressure_error: off.fold(0.0, f64::max),
@@ -61,6 +64,15 @@ pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) 
             (squares / now.points.pressure.len() as f64).sqrt()
         },
         settlement_curve_gap: 0.0,
+        layers: now.totals.layers.map(|layers| {
+            let pressed_out = now.settlement / (case.material.porosity * case.column.height);
+            LayerBalance {
+                pore_water: layers.water_volume / layers.pore_volume - 1.0,
+                water_left: layers.water_left,
+                water_left_error: layers.water_left - pressed_out,
+                water_points: layers.water_points,
+            }
+        }),
         spurious_velocity: case
             .scene
             .is_at_rest()

@@ -5,7 +5,7 @@ use crate::exact::cosine_layer::{LayerFields, LayerState};
 use crate::exact::exact_error::ExactError;
 use crate::exact::field_values::FieldValues;
 use crate::exact::reference::{Reference, ReferenceKind};
-use crate::mpm::run::snapshot::{PlaneSamples, Samples};
+use crate::mpm::run::snapshot::{PlaneSamples, Samples, WaterSamples};
 use crate::scene::column::column_parameters;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -128,7 +128,14 @@ pub fn exact_samples(
         exact.displacement = there.displacement;
         exact.horizontal_displacement = there.horizontal_displacement;
     }
+    let water = samples.water.as_ref().map(|water| -> Result<WaterSamples, ExactError> {
+        let distances = water.initial_distance.as_deref().unwrap_or(&[]);
+        let there = SamplePlaces { heights: &water.initial_height, distances, ..own };
+        let pressure = ExactFields::of(reference, time_factor, there)?.pressure;
+        Ok(WaterSamples { pressure, ..water.clone() })
+    });
     Ok(Samples {
+        water: water.transpose()?,
         initial_height: samples.initial_height.clone(),
         pressure: exact.pressure,
         effective_stress: exact.effective_stress,

@@ -114,13 +114,14 @@ pub fn snapshot_errors(
         let exact = exact_samples(case, reference, time_factor, samples)?;
         let displacements = (displacement_components(samples), displacement_components(&exact));
         let volumes = samples.volume.repeat(if samples.plane.is_some() { 2 } else { 1 });
+        let (pressure, pressure_volume) = samples.pressures();
         for (quantity, computed, exact, volume, scale) in [
-            (Quantity::Pressure, &samples.pressure, &exact.pressure, &samples.volume, load),
+            (Quantity::Pressure, pressure, exact.pressures().0, pressure_volume, load),
             (
                 Quantity::EffectiveStress,
-                &samples.effective_stress,
-                &exact.effective_stress,
-                &samples.volume,
+                &samples.effective_stress[..],
+                &exact.effective_stress[..],
+                &samples.volume[..],
                 load,
             ),
             (Quantity::Displacement, &displacements.0, &displacements.1, &volumes, final_settlement),

@@ -6,6 +6,8 @@ use crate::exact::exact_error::ExactError;
 use crate::exact::reference::ReferenceKind;
 use crate::measure::exact_fields::reference_of;
 use crate::record::Record;
+use std::collections::HashMap;
+use std::sync::{LazyLock, Mutex};
 
 /// Points of a theory line.
 const LINE_POINTS: u32 = 100;
@@ -28,6 +30,41 @@ pub struct TheoryIsochrone {
 /// # Errors
 /// When the reference refuses the case.
 pub fn theory_isochrones(case: &Case, kind: ReferenceKind) -> Result<Vec<TheoryIsochrone>, ExactError> {
+    static KNOWN: KnownLines<TheoryIsochrone> = LazyLock::new(Mutex::default);
+    known_or(&KNOWN, key_of(case, kind, &case.time_factors), || new_isochrones(case, kind))
+}
+
+/// Lines by what they depend on: the columns of many methods and studies are the same, and a reference at large strain
+/// is the dearest thing in a report.
+type KnownLines<T> = LazyLock<Mutex<HashMap<String, Vec<T>>>>;
+
+/// Lines that are kept of each kind.
+const MOST_KNOWN: usize = 256;
+
+fn key_of(case: &Case, kind: ReferenceKind, times: &[f64]) -> String {
+    format!("{:?} {:?} {kind:?} {times:?}", case.column, case.material)
+}
+
+/// What is known by a key, or else is made and kept.
+fn known_or<T: Clone>(
+    known: &KnownLines<T>,
+    key: String,
+    make: impl FnOnce() -> Result<Vec<T>, ExactError>,
+) -> Result<Vec<T>, ExactError> {
+    if let Some(found) = known.lock().ok().and_then(|known| known.get(&key).cloned()) {
+        return Ok(found);
+    }
+    let made = make()?;
+    if let Ok(mut known) = known.lock() {
+        if known.len() >= MOST_KNOWN {
+            known.clear();
+        }
+        known.insert(key, made.clone());
+    }
+    Ok(made)
+}
+
+fn new_isochrones(case: &Case, kind: ReferenceKind) -> Result<Vec<TheoryIsochrone>, ExactError> {
     let reference = reference_of(case, kind, &case.time_factors)?;
     let at = |time_factor: f64| {
         let point = |i: u32| {
@@ -49,17 +86,21 @@ pub fn theory_consolidation(
     kind: ReferenceKind,
     end: f64,
 ) -> Result<Vec<(f64, f64)>, ExactError> {
+    static KNOWN: KnownLines<(f64, f64)> = LazyLock::new(Mutex::default);
     let growth = elementary::ln(end / CURVE_START) / f64::from(LINE_POINTS);
     let times: Vec<f64> =
         (0..=LINE_POINTS).map(|i| CURVE_START * elementary::exp(growth * f64::from(i))).collect();
-    let reference = reference_of(case, kind, &times)?;
-    times.iter().map(|time| Ok((*time, reference.degree_of_consolidation(*time)?))).collect()
+    known_or(&KNOWN, key_of(case, kind, &times), || {
+        let reference = reference_of(case, kind, &times)?;
+        times.iter().map(|time| Ok((*time, reference.degree_of_consolidation(*time)?))).collect()
+    })
 }
 
 /// A run's `p/q` at its points over depth, at the output of a time factor.
 pub fn computed_isochrone(record: &Record, time_factor: f64) -> Vec<(f64, f64)> {
     let Some(snapshot) = record.snapshot(time_factor) else { return Vec::new() };
-    let points = &snapshot.points;
+    // Of an attached solver the places that it has.
+    let points = record.main_sample().of(snapshot).unwrap_or(&snapshot.points);
     let pairs = points.pressure.iter().zip(&points.initial_height);
     pairs
         .map(|(pressure, height)| {

@@ -26,6 +26,8 @@ pub struct Problem<const D: usize> {
     pub support: Support<D>,
     /// Points in their initial state.
     pub points: Points<D>,
+    /// Points of the water in their initial state, where it has a layer of its own.
+    pub water: Option<Points<D>>,
     /// Soil.
     pub material: Material,
     /// Operators.
@@ -66,6 +68,10 @@ impl<const D: usize> Problem<D> {
         points.effective_stress.iter_mut().flatten().flatten().for_each(|stress| *stress *= factor);
         points.solid_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
         points.water_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
+        if let Some(water) = &mut self.water {
+            water.pressure.iter_mut().for_each(|pressure| *pressure *= factor);
+            water.water_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
+        }
         self.initial_gradient.iter_mut().flatten().for_each(|gradient| *gradient *= factor);
         self
     }
@@ -283,6 +289,11 @@ impl<const D: usize> Body<D> {
             self.cells.average_deformation(&self.points);
         }
         self.apply_loads();
+    }
+
+    /// Faces that are held, and where splines end.
+    pub fn support(&self) -> Support<D> {
+        self.support
     }
 
     /// Last node of splines that end at a surface on its way through the grid.

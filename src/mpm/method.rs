@@ -96,8 +96,9 @@ pub enum Recovery {
     Constant,
     /// Moving least squares over the surrounding block of cells (MLSA).
     Patch,
-    /// Means at the nodes of their cells, interpolated to the points: nodal averaging of the
-    /// volumetric rate (Detournay & Dzik 2006; Jassim, Stolle & Vermeer 2013).
+    /// Means at the nodes, interpolated to the points: of the cells around a node, nodal averaging of the
+    /// volumetric rate (Detournay & Dzik 2006; Jassim, Stolle & Vermeer 2013); of the points around it,
+    /// pressure as a nodal field of its own (Chen, Zhang, Sze, Kan & Qiu 2018).
     Nodal,
     /// Of values at the points, without the part that no nodal force feels: null-space filter by
     /// cells (Gritton & Berzins 2017; Tran & Sołowski 2019).
@@ -111,7 +112,7 @@ impl Recovery {
     pub fn refuses(self, pressure: PressureIntegration) -> Option<&'static str> {
         match (self, pressure.is_by_cells()) {
             (Self::NullSpace, true) => Some("a single value in a cell has no null space"),
-            (Self::Patch | Self::Nodal, false) => Some("values at the points need no recovery from cells"),
+            (Self::Patch, false) => Some("values at the points need no recovery from cells"),
             _ => None,
         }
     }
@@ -191,7 +192,7 @@ pub struct Method {
 }
 
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
-const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 13] = {
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 14] = {
     use Basis::{Cpdi, Cpgimp, Hat};
     use PressureIntegration::{Mean, Points, Sri};
     use Recovery::{Constant, Nodal, NullSpace, Patch};
@@ -207,6 +208,7 @@ const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 13] 
         ("GIMP-null-space", Cpgimp, Standard, Points, NullSpace),
         ("GIMP-mean", Cpgimp, Standard, Mean, Constant),
         ("GIMP-SRI-nodal", Cpgimp, Standard, Sri, Nodal),
+        ("VP", Cpgimp, Standard, Points, Nodal),
         ("GIMP-Bbar", Cpgimp, Bbar, Sri, Constant),
         ("GIMP-Bbar-patch", Cpgimp, Bbar, Sri, Patch),
         ("GC-Bbar-patch", Cpgimp, CmpmBbar, Sri, Patch),
@@ -294,6 +296,11 @@ impl Method {
     /// Whether increments come back from the cells by a patch.
     pub fn uses_patch(&self) -> bool {
         self.pressure.is_by_cells() && self.recovery == Recovery::Patch
+    }
+
+    /// Whether the pressure is a nodal field of its own.
+    pub fn has_nodal_pressure(&self) -> bool {
+        self.pressure == PressureIntegration::Points && self.recovery == Recovery::Nodal
     }
 
     /// Whether the domains of the points follow the deformation.

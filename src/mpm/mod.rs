@@ -1,11 +1,12 @@
-//! The solver core: the v–w single-layer material point method for saturated soil.
+//! The solver core: the v–w material point method for saturated soil, in one layer of points or in two.
 //!
 //! A method is four independent operators (`method`), each sparse between points, nodes and cell
 //! centres: weights (`shape`, `stencil`), strain gradient (`stencil`), pressure divergence
 //! (`cells`) and recovery (`recovery`). A `body` joins them with points and nodes; `explicit` is
 //! the step of Zheng et al. (2021); `assembled` is the same step as one banded map where nothing
-//! moves; `run` drives either from output to output; `implicit` takes steps of any size on the same
-//! operators, with the linear systems of `direct_solver`.
+//! moves; `layers` puts the water into points of its own; `run` drives any of them from output to
+//! output; `implicit` takes steps of any size on the same operators, with the linear systems of
+//! `direct_solver`.
 //!
 //! Nothing here knows of studies, references or reports.
 
@@ -16,9 +17,12 @@ pub mod critical_step;
 pub mod direct_solver;
 pub mod explicit;
 pub mod implicit;
+pub mod layers;
+pub mod loaded_body;
 pub mod method;
 pub mod momentum;
 pub mod operators;
 pub mod run;
 pub mod state;
 pub mod undrained_start;
+pub mod weighing_body;

@@ -137,6 +137,23 @@ pub struct Balance {
     /// in a scene in which nothing may move.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spurious_velocity: Option<f64>,
+    /// Pores and water, where points of two layers move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layers: Option<LayerBalance>,
+}
+
+/// Pores and water of two layers at one output.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct LayerBalance {
+    /// Water there is in the soil over the pores there are, minus one: an identity in one layer, and in two the
+    /// detector of a wrong continuity.
+    pub pore_water: f64,
+    /// Share of the water's mass that has left the soil.
+    pub water_left: f64,
+    /// That share less `s/(n_0 H)`, which it is where grains and water are incompressible.
+    pub water_left_error: f64,
+    /// Water points that are in the soil still.
+    pub water_points: usize,
 }
 
 /// One measured error.

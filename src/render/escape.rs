@@ -1,5 +1,5 @@
 //! Text made safe for the document it goes into.
-use crate::render::script::{ScriptLevel, runs};
+use crate::render::script::{ScriptLevel, ScriptRun, runs};
 
 /// Text for HTML, with real subscripts and superscripts.
 pub(crate) fn html(text: &str) -> String {
@@ -56,7 +56,17 @@ pub(crate) fn markdown(text: &str) -> String {
     out
 }
 
-/// Text for LaTeX: what it reads as commands is spelled, symbols become mathematics.
+/// Text for LaTeX with real subscripts and superscripts.
+pub(crate) fn latex_text(text: &str) -> String {
+    let piece = |run: ScriptRun| match run.level {
+        ScriptLevel::Base => latex(&run.text),
+        ScriptLevel::Sub => format!("\\textsubscript{{{}}}", latex(&run.text)),
+        ScriptLevel::Super => format!("\\textsuperscript{{{}}}", latex(&run.text)),
+    };
+    runs(text).into_iter().map(piece).collect()
+}
+
+/// Text for LaTeX as it is spelled: what would be read as commands is escaped, symbols become mathematics.
 pub(crate) fn latex(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars().filter(|c| !c.is_control()) {
@@ -94,6 +104,7 @@ mod tests {
             html("<a href=\"x\">T_v & 10⁻³"),
             "&lt;a href=&quot;x&quot;&gt;T<sub>v</sub> &amp; 10<sup>−3</sup>"
         );
+        assert_eq!(latex_text("T_v = 0.1 & h²"), "T\\textsubscript{v} = 0.1 \\& h\\textsuperscript{2}");
         assert_eq!(plain_html("a\u{0}'b"), "a&#39;b");
         assert_eq!(markdown("a|b *c* <i> T_v _x_"), "a\\|b \\*c\\* &lt;i&gt; T_v \\_x\\_");
         assert_eq!(markdown("# not a heading\n- nor a list"), "\\# not a heading - nor a list");

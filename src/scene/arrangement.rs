@@ -1,5 +1,5 @@
 //! Where the points lie in their cells: the regular lattice, or one of the arrangements that moving
-//! points come to sooner or later.
+//! points come to sooner or later; and in how many layers.
 
 use crate::mpm::state::points::Points;
 use serde::{Deserialize, Serialize};
@@ -13,19 +13,58 @@ pub struct Arrangement {
     pub jitter: f64,
     /// Share of the top cell that is filled; its points share it.
     pub filling: f64,
+    /// Layers of points: one that carries skeleton and water, or one of each.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub layers: usize,
+    /// Points of the water a cell and direction, where it has a layer of its own; 0 where it has none.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub water_per_cell: usize,
+}
+
+fn one() -> usize {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_one(count: &usize) -> bool {
+    *count == 1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 impl Default for Arrangement {
-    /// The regular lattice, every cell full.
+    /// The regular lattice, every cell full, in one layer.
     fn default() -> Self {
-        Self { offset: 0.0, jitter: 0.0, filling: 1.0 }
+        Self { offset: 0.0, jitter: 0.0, filling: 1.0, layers: 1, water_per_cell: 0 }
     }
 }
 
 impl Arrangement {
-    /// Whether this is the regular lattice.
+    /// Whether this is the regular lattice in one layer.
     pub fn is_regular(&self) -> bool {
         *self == Self::default()
+    }
+
+    /// Whether every point lies where the regular lattice has it, in however many layers.
+    pub fn is_lattice(&self) -> bool {
+        Self { layers: 1, water_per_cell: 0, ..*self }.is_regular()
+    }
+
+    /// Whether the water has a layer of its own.
+    pub fn has_two_layers(&self) -> bool {
+        self.layers == 2
+    }
+
+    /// Names the water's points where nothing else does: as many as the skeleton's, or none in one layer.
+    pub fn name_water_points(&mut self, points_per_cell: usize) {
+        if !self.has_two_layers() {
+            self.water_per_cell = 0;
+        } else if self.water_per_cell == 0 {
+            self.water_per_cell = points_per_cell;
+        }
     }
 
     /// Cell size, m, with which `cells` cells hold a column of a height, the top one partly.
@@ -35,7 +74,7 @@ impl Arrangement {
 
     /// Moves the points of a full lattice of `cells` cells to their places.
     pub fn arrange<const D: usize>(&self, points: &mut Points<D>, cell_size: f64, cells: usize) {
-        if self.is_regular() {
+        if self.is_lattice() {
             return;
         }
         let top_cell = (cells - 1) as f64 * cell_size;

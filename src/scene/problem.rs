@@ -74,18 +74,31 @@ pub fn column_problem<const D: usize>(
     let cell_size = column.points.cell_size(column.height, cells);
     let mut extent = [column.cells_across(cells).unwrap_or(1); D];
     extent[D - 1] = cells;
-    let mut points = Points::lattice(cell_size, extent, points_per_cell);
-    column.points.arrange(&mut points, cell_size, cells);
     let definition = scene.definition();
     let mut initial_gradient = [[0.0; D]; D];
-    if let SceneStart::OverDepth(start) = &definition.start {
-        let start = start(column, soil)?;
-        start.apply(&mut points, column.height)?;
-        if column.self_weight {
-            add_initial_stress(&mut points, &column_parameters(column, soil));
-        }
+    let start = match &definition.start {
+        SceneStart::OverDepth(start) => Some(start(column, soil)?),
+        SceneStart::Solved => None,
+    };
+    if let Some(start) = &start {
         initial_gradient[D - 1][D - 1] = start.vertical_gradient;
     }
+    let layer_of = |per_cell: usize| -> Result<Points<D>, ExactError> {
+        let mut points = Points::lattice(cell_size, extent, per_cell);
+        column.points.arrange(&mut points, cell_size, cells);
+        if let Some(start) = &start {
+            start.apply(&mut points, column.height)?;
+            if column.self_weight {
+                add_initial_stress(&mut points, &column_parameters(column, soil));
+            }
+        }
+        Ok(points)
+    };
+    let points = layer_of(points_per_cell)?;
+    let of_water = column.points.water_per_cell;
+    let water =
+        column.points.has_two_layers().then_some(if of_water == 0 { points_per_cell } else { of_water });
+    let water = water.map(layer_of).transpose()?;
     extent[D - 1] += HEADROOM;
     let support = match column.base {
         Some(Base::Rough) => Support::oedometer().on_rough_base(),
@@ -98,6 +111,7 @@ pub fn column_problem<const D: usize>(
         grid: Grid::new(cell_size, extent),
         support,
         points,
+        water,
         material: *soil,
         method,
         configuration: method.configuration_or(scene.configuration()),

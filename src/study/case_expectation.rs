@@ -39,6 +39,12 @@ pub struct CaseDemand {
     pub solid_drift_below: Option<f64>,
     /// Largest imbalance of the water at any output, over what the load presses out.
     pub water_drift_below: Option<f64>,
+    /// Bounds on the largest size, at any output, of the water in the soil over its pores, less one: of two layers.
+    pub pore_water: Option<[f64; 2]>,
+    /// Largest difference, at any output, of the share of the water that left from the settlement over `n_0 H`.
+    pub water_left_within: Option<f64>,
+    /// Largest difference of any error from that of the same case in one layer.
+    pub one_layer_within: Option<f64>,
     /// Bounds on the largest velocity at any output of a column at rest, over the hydraulic conductivity.
     pub spurious_velocity: Option<Bounds>,
     /// Bounds on the time factor at which the pressure at the impermeable end is highest.

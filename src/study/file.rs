@@ -209,6 +209,12 @@ pub struct ExpectCaseKeys {
     pub solid_drift_below: Typed<f64>,
     /// Largest imbalance of the water at any output, over what the load presses out.
     pub water_drift_below: Typed<f64>,
+    /// Bounds on the largest size, at any output, of the water in the soil over its pores, less one: of two layers.
+    pub pore_water: Typed<RangeTable>,
+    /// Largest difference, at any output, of the share of the water that left from the settlement over `n_0 H`.
+    pub water_left_within: Typed<f64>,
+    /// Largest difference of any error from that of the same case in one layer.
+    pub one_layer_within: Typed<f64>,
     /// Bounds on the largest velocity at any output of a column at rest, over the hydraulic conductivity.
     pub spurious_velocity: Typed<RangeTable>,
     /// Bounds on the time factor at which the pressure at the impermeable end is highest.

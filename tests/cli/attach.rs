@@ -139,7 +139,8 @@ method = "toy"
 quantity = "settlement"
 reference = "terzaghi"
 time_factor = 0.5
-order = { value = 2.0, minus = 0.1, plus = 0.3 }
+class = "pre-asymptotic"
+at = { cells = 40, below = 5.0e-4 }
 
 [[expect]]
 method = "GC-SRI-patch"
@@ -170,7 +171,7 @@ fn a_solver_is_judged_beside_the_methods_and_a_per_cent_of_permeability_is_seen(
     let told = call(folder.path(), &["check", "beside.toml"]);
     assert_eq!(told.code, 1, "{}", told.out);
     let said = told.words();
-    assert!(said.contains("toy: pressure L2 nodes against terzaghi at T_v = 0.5"), "{said}");
+    assert!(said.contains("toy: pressure l2 nodes against terzaghi at T_v = 0.5"), "{said}");
 }
 
 #[test]
@@ -276,4 +277,75 @@ fn the_plan_prints_case_files_that_a_solver_can_read() {
         .args([file.as_os_str(), folder.path().join("by-hand").as_os_str(), "right".as_ref()])
         .status();
     assert!(run.expect("it starts").success() && folder.path().join("by-hand/result.csv").is_file());
+}
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn the_page_on_attaching_has_every_status_placeholder_and_key() {
+    let page = fs::read_to_string(root().join("docs/attach.md")).expect("the page");
+    for (_, status, _) in ENDS {
+        assert!(page.contains(&format!("| `{status}` |")), "{status}");
+    }
+    assert!(page.contains("| `not-startable` |"));
+    let schema = |document: &str| -> serde_json::Value {
+        let told = call(&root(), &["schema", document]);
+        serde_json::from_str(&told.out).expect("JSON")
+    };
+    let names = |value: &serde_json::Value| -> Vec<String> {
+        value.as_object().expect("an object").keys().cloned().collect()
+    };
+    for key in names(&schema("study")["properties"]["solver"]["items"]["properties"]) {
+        assert!(page.contains(&format!("| `{key}` |")), "no row on the key {key}");
+    }
+    // The case file that the page shows has the keys of the schema, at its top and in each part.
+    let shown = page.split("```json\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
+    let shown: serde_json::Value = serde_json::from_str(shown).expect("JSON");
+    let case = schema("case");
+    assert_eq!(names(&shown), names(&case["properties"]));
+    for part in ["column", "derived"] {
+        assert_eq!(names(&shown[part]), names(&case["properties"][part]["properties"]), "{part}");
+    }
+    // A study with the solver that the page shows is sound, beside the files of the shipped example.
+    let block = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
+    let folder = TempDir::new().expect("a folder");
+    for file in ["ogs_column.py", "ogs_column.prj"] {
+        fs::copy(root().join("studies/foreign").join(file), folder.path().join(file)).expect("copied");
+    }
+    write_study(
+        folder.path(),
+        "page.toml",
+        block,
+        "[[sweep]]\nmethod = [\"GC-SRI-patch\", \"ogs\"]\ncells = [10]\n",
+    );
+    let told = call(folder.path(), &["plan", "page.toml"]);
+    assert!(told.code == 0 && told.out.contains(",ogs cells=10,"), "{}{}", told.out, told.err);
+}
+
+#[test]
+fn the_shipped_examples_are_sound_and_fail_nothing_where_their_packages_are_missing() {
+    for entry in fs::read_dir(root().join("studies/foreign")).expect("the examples").flatten() {
+        let path = entry.path();
+        if path.extension().is_none_or(|kind| kind != "toml") || path.ends_with("nodes.toml") {
+            continue;
+        }
+        let told = call(&root(), &["plan", path.to_str().expect("UTF-8")]);
+        assert_eq!(told.code, 0, "{}: {}", path.display(), told.err);
+    }
+    // A Python without site packages has none of them.
+    if Command::new("python3").arg("--version").output().is_err() {
+        skip("there is no python3");
+        return;
+    }
+    let folder = TempDir::new().expect("a folder");
+    for file in ["scikit-fem.toml", "scikit_fem_column.py", "nodes.toml"] {
+        let text = fs::read_to_string(root().join("studies/foreign").join(file)).expect("a file");
+        let text = text.replace("\"python3\", \"scikit", "\"python3\", \"-I\", \"-S\", \"scikit");
+        fs::write(folder.path().join(file), text).expect("a file");
+    }
+    let told = call(folder.path(), &["check", "scikit-fem.toml"]);
+    let said = told.words();
+    assert!(said.contains("scikit-fem: 3 cases were skipped") && told.code == 5, "{said}");
 }

@@ -10,6 +10,7 @@ mod gate;
 mod impossible_results;
 mod mapping;
 mod planted_damage;
+mod plate_and_weight;
 mod portable;
 mod program;
 mod readme;

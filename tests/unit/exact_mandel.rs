@@ -52,8 +52,8 @@ fn the_fields_agree_with_forty_digits() {
 fn the_published_case_of_porepy_is_one_of_ours() {
     // examples/mandel_biot.py of PorePy (Keilegavlen et al. 2021), after Mikelić, Wang & Wheeler (2014): a slab of
     // half width 100 m under 6e8 N/m with λ = 1.65e9 Pa, μ = 2.475e9 Pa, a storage of 6.0606e-11 1/Pa, α = 1, a
-    // permeability of 9.869e-14 m² and a viscosity of 1e-3 Pa s. Published of it: E = 5.94e9 Pa, ν = 0.2,
-    // B = 0.83333, ν_u = 0.44, c = 0.46526 m²/s.
+    // permeability of 9.869e-14 m² and a viscosity of 1e-3 Pa s: E = 5.94e9 Pa, ν = 0.2, B = 1/(1 + S K) = 5/6,
+    // ν_u = 0.44, c = 0.46525 m²/s.
     let seed = ColumnParameters::default();
     let unit_weight = seed.unit_weight_of_water();
     let (width, force) = (100.0, 6e8);
@@ -70,8 +70,8 @@ fn the_published_case_of_porepy_is_one_of_ours() {
     let undrained = 0.2 + slab.groups.kappa * 0.8;
     assert!((undrained - 0.44).abs() < 1e-5, "{undrained}");
     let diffusivity = parameters.coefficient_of_consolidation() * slab.groups.storage_ratio;
-    assert!((diffusivity - 0.46526).abs() < 5e-6, "{diffusivity}");
-    // F B (1 + ν_u)/(3a) with the published groups: 2.4 MPa.
+    assert!((diffusivity - 0.46525).abs() < 5e-6, "{diffusivity}");
+    // F B (1 + ν_u)/(3a): 2.4 MPa.
     let start = slab.fields(0.0, 1.0).expect("inside").pressure;
     assert!((start / (force * 0.83333 * 1.44 / (3.0 * width)) - 1.0).abs() < 1e-5, "{start}");
     // Their own series, of 200 roots found by bisection, at one tenth of the diffusion time in the middle.

@@ -77,6 +77,19 @@ mod runs {
     }
 
     #[test]
+    fn a_state_near_an_output_is_held_against_the_solution_at_its_own_time() {
+        let error = |time: &str| {
+            let record = run(&format!("{} > result.csv", ROWS.replace("8.175", time)), |_| {});
+            record
+                .error(Quantity::Pressure, Sample::Points, Norm::L2, "terzaghi", 0.1)
+                .expect("an error")
+                .value
+        };
+        let (on_time, late) = (error("8.175"), error("8.182"));
+        assert!((late - on_time).abs() > 1e-6 * on_time, "{on_time} {late}");
+    }
+
+    #[test]
     fn without_a_sample_at_the_surface_no_settlement_is_made_up() {
         let rows = "printf 't,y,p,u_y\\n8.175,0.25,0.9,0\\n8.175,0.75,0.6,-1e-7\\n' > result.csv";
         let record = run(rows, |_| {});

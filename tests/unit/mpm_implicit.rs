@@ -316,6 +316,7 @@ fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
     points.pressure.fill(one.points.pressure[0]);
     points.effective_stress.fill(one.material.stiffness().stress(&[[0.0, 0.0], [0.0, strain]]));
     Problem {
+        water: None,
         grid: Grid::new(h, [across, cells + 1]),
         support: Support::oedometer(),
         points,

@@ -27,6 +27,19 @@ fn slab(method: &str, soil: &Material, cells: usize, rows: usize) -> Problem<2> 
 }
 
 fn solved(problem: Problem<2>, integrator: IntegratorKind, kernel: Kernel, rule: TimeStepRule) -> Outcome {
+    let formulation = match integrator {
+        IntegratorKind::Explicit => Formulation::VW,
+        _ => Formulation::QuasiStatic,
+    };
+    solved_with(problem, (integrator, formulation), kernel, rule)
+}
+
+fn solved_with(
+    problem: Problem<2>,
+    (integrator, formulation): (IntegratorKind, Formulation),
+    kernel: Kernel,
+    rule: TimeStepRule,
+) -> Outcome {
     let soil = problem.material;
     let seconds = 1.0 / soil.coefficient_of_consolidation();
     let schedule = Schedule {
@@ -37,10 +50,7 @@ fn solved(problem: Problem<2>, integrator: IntegratorKind, kernel: Kernel, rule:
         kernel,
         integrator,
         critical_step: None,
-        formulation: match integrator {
-            IntegratorKind::Explicit => Formulation::VW,
-            _ => Formulation::QuasiStatic,
-        },
+        formulation,
     };
     let outcome = run(problem, &schedule, &|_, _| true);
     assert_eq!(outcome.status, RunStatus::Ok);
@@ -153,5 +163,20 @@ fn water_leaves_by_the_drained_side_and_before_the_plate_in_balance() {
         let expanded = totals.water_expansion / 0.25;
         assert!(expanded.abs() > 1e-9, "{expanded}");
         assert!((totals.surface_flux / expanded - 1.0).abs() < 1e-6, "{totals:?}");
+    }
+}
+
+#[test]
+fn newtons_iteration_ends_with_a_plate_and_gives_what_the_linear_system_does() {
+    let calm = implicit(slab("GIMP-SRI", &soft(), 4, 1));
+    for formulation in [Formulation::UP, Formulation::VW] {
+        let kind = (IntegratorKind::Implicit, formulation);
+        let rule = TimeStepRule::Growth(0.02);
+        let outcome = solved_with(slab("GIMP-SRI", &soft(), 4, 1), kind, Kernel::Fastest, rule);
+        let (steps, iterations) = (outcome.counters.steps, outcome.counters.iterations);
+        assert!(outcome.counters.rejected_steps == 0 && iterations < 12 * steps, "{iterations} in {steps}");
+        let (waves, calm) = (&outcome.snapshots[2], &calm.snapshots[2]);
+        assert!((waves.settlement / calm.settlement - 1.0).abs() < 1e-3, "{formulation:?}");
+        assert!(apart(&waves.centres.pressure, &calm.centres.pressure) < 3e-3, "{formulation:?}");
     }
 }

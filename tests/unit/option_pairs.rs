@@ -34,6 +34,7 @@ fn options() -> Vec<(&'static str, Vec<&'static str>)> {
         ("base", Base::ALL.map(Base::name).to_vec()),
         ("load", vec!["at once", "while it grows", "after it has grown"]),
         ("points", vec!["regular", "shifted", "jittered", "top cell part filled"]),
+        ("layers", vec!["one", "two"]),
         ("water", vec!["seed", "softer", "stiffer"]),
         words("law"),
         words("continuity"),
@@ -143,6 +144,7 @@ fn choices_of(case: &Case) -> BTreeSet<Choice> {
     if arranged.iter().all(|(is, _)| !is) {
         choices.insert(("points", "regular"));
     }
+    choices.insert(("layers", if points.has_two_layers() { "two" } else { "one" }));
     if case.integrator == IntegratorKind::Explicit {
         let settings = &case.settings;
         choices.extend(["scheme", "drag"].map(|name| word_of(case, name)));
@@ -183,6 +185,9 @@ fn study_with(pair: [Choice; 2], scene: &str, integrator: &str, pressure: &str) 
         Some("top cell part filled") => "points.filling = 0.5\n",
         _ => "",
     };
+    if asked("layers") == Some("two") {
+        text += "points.layers = 2\n";
+    }
     text += match asked("water") {
         Some("softer") => "material.water_bulk_modulus = 1e8\n",
         Some("stiffer") => "material.water_bulk_modulus = 1e11\n",

@@ -14,10 +14,15 @@ pub fn read_npz(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
     let mut budget = Budget::of_file(bytes.len());
     let mut frame = Frame::default();
     let mut skipped = Vec::new();
-    for entry in entries_of(bytes)? {
+    let entries = entries_of(bytes)?;
+    // What all members claim together, before any is unpacked.
+    for entry in &entries {
+        budget.take(entry.size)?;
+    }
+    for entry in entries {
         let name = entry.name.strip_suffix(".npy").unwrap_or(&entry.name).to_owned();
         let of_member = |why: String| format!("the member `{name}`: {why}");
-        let content = entry.content(bytes, &mut budget).map_err(of_member)?;
+        let content = entry.content(bytes).map_err(of_member)?;
         let header = header_of(&content).map_err(of_member)?;
         match header.scalar {
             Some(_) => frame.arrays.push(header.array(name.clone(), &content, wanted).map_err(of_member)?),
@@ -216,11 +221,7 @@ fn widen(extra: &[u8], numbers: [&mut u64; 3]) -> Result<(), String> {
 }
 
 impl Entry {
-    fn content<'a>(
-        &self,
-        bytes: &'a [u8],
-        budget: &mut Budget,
-    ) -> Result<std::borrow::Cow<'a, [u8]>, String> {
+    fn content<'a>(&self, bytes: &'a [u8]) -> Result<std::borrow::Cow<'a, [u8]>, String> {
         let start = place(self.start)?;
         if number::<4>(bytes, start)? != 0x0403_4b50 {
             return Err("it does not begin where the list says".to_owned());
@@ -228,7 +229,6 @@ impl Entry {
         let skip = 30 + place(number::<2>(bytes, start + 26)?)? + place(number::<2>(bytes, start + 28)?)?;
         let end = (start + skip).checked_add(place(self.packed)?);
         let packed = end.and_then(|end| bytes.get(start + skip..end)).ok_or("it is cut")?;
-        budget.take(self.size)?;
         match self.method {
             0 if self.size == self.packed => Ok(packed.into()),
             8 => {

@@ -165,12 +165,15 @@ fn blocks_of(header: &[usize]) -> Result<usize, String> {
 /// The blocks of a header, unpacked one after the other.
 fn unpacked(header: &[usize], packed: &[u8], budget: &mut Budget) -> Result<Vec<u8>, String> {
     let (block, last, sizes) = (header[1], header[2], &header[3..]);
+    let length_of = |place: usize| if place + 1 == sizes.len() && last > 0 { last } else { block };
+    // What all blocks claim together, before any is unpacked.
+    for place in 0..sizes.len() {
+        budget.take(length_of(place) as u64)?;
+    }
     let mut bytes = Vec::new();
     let mut from = 0;
     for (place, size) in sizes.iter().enumerate() {
-        let is_last = place + 1 == sizes.len();
-        let length = if is_last && last > 0 { last } else { block };
-        budget.take(length as u64)?;
+        let length = length_of(place);
         unzlib(&packed[from..from + size], length, &mut bytes)?;
         from += size;
     }

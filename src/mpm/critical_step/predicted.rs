@@ -48,12 +48,23 @@ pub fn predict<const D: usize>(
     most_cells: usize,
 ) -> Prediction<D> {
     let safe = formula::combined_limit(&problem.material, problem.grid.cell_size, settings.drag);
+    let problem = &one_layer(problem);
     let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
     let problem =
         if is_narrow { without_middle(problem, most_cells) } else { corner(problem, most_cells / 2) };
     let assembled = AssembledStep::new(&Body::new(problem));
     let critical_step = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE);
     Prediction { critical_step, assembled, settings: *settings }
+}
+
+/// The problem in one layer, with as many points as the layer that has more of them: layers of equal points have the
+/// limit of one, and unequal ones a limit between those of one layer with the points of either.
+fn one_layer<const D: usize>(problem: &Problem<D>) -> Problem<D> {
+    let mut one = problem.clone();
+    if let Some(water) = one.water.take().filter(|water| water.len() > one.points.len()) {
+        one.points = water;
+    }
+    one
 }
 
 /// The problem on so many cells of its lower corner, with the load on their top: the sides stay held,

@@ -10,10 +10,11 @@ use crate::mpm::body::Body;
 use crate::mpm::explicit::deformation::{Following, rotated, stretch_of};
 use crate::mpm::method::{Configuration, Memory, PressureIntegration};
 use crate::mpm::momentum::{NodalBalance, implicit_drag, per_water_inertia};
-use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
+use crate::mpm::operators::recovery::points_in_cells::points_in_cells;
 use crate::mpm::operators::stencil::{Blocks, with_stencils};
 use crate::mpm::operators::strain_gradient::StrainOperator;
 use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::state::nodes::Nodes;
 use crate::soil::tensor::{Tensor, Vector, product};
 
 pub use crate::mpm::explicit::scheme::{Drag, ExplicitSettings};
@@ -66,6 +67,18 @@ impl<const D: usize> Body<D> {
     fn nodal_accelerations(&mut self, kick: f64, drag_level: Drag) {
         self.map_forces();
         let water_density = self.material.water_density;
+        self.accelerate_nodes(kick, drag_level, |nodes, node| water_density * nodes.volume[node]);
+    }
+
+    /// Accelerations of both phases from the forces on the nodes, with the water's inertia per volume of water
+    /// at each, kg.
+    #[inline]
+    pub(crate) fn accelerate_nodes(
+        &mut self,
+        kick: f64,
+        drag_level: Drag,
+        water_inertia: impl Fn(&Nodes<D>, usize) -> f64,
+    ) {
         let nodes = &mut self.nodes;
         for node in 0..nodes.len() {
             if !nodes.is_active(node) {
@@ -73,7 +86,7 @@ impl<const D: usize> Body<D> {
                 nodes.water_acceleration[node] = [0.0; D];
                 continue;
             }
-            let (water_inertia, drag) = (water_density * nodes.volume[node], nodes.drag[node]);
+            let (water_inertia, drag) = (water_inertia(nodes, node), nodes.drag[node]);
             let whole_share = nodes.water_mass[node] * nodes.per_solid_mass[node];
             let implicit_drag = implicit_drag(drag_level, kick, drag, whole_share, water_inertia);
             for d in 0..D {
@@ -100,7 +113,7 @@ impl<const D: usize> Body<D> {
     }
 
     /// Step 3: nodal velocities by forward Euler.
-    fn nodal_velocities(&mut self, kick: f64, dt: f64) {
+    pub(crate) fn nodal_velocities(&mut self, kick: f64, dt: f64) {
         let nodes = &mut self.nodes;
         for node in 0..nodes.len() {
             for d in 0..D {
@@ -112,7 +125,7 @@ impl<const D: usize> Body<D> {
     }
 
     /// Step 4: velocities and places of the points.
-    fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
+    pub(crate) fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
         let basis = std::mem::take(&mut self.basis);
         with_stencils!(&basis, stencils => if flip < 1.0 {
             self.advance_points_by::<true, _>(stencils.blocks(), kick, dt, flip);
@@ -173,7 +186,7 @@ impl<const D: usize> Body<D> {
 
     /// Step 6: effective stress by the method's strain gradient; at finite strain also volume and
     /// domain.
-    fn update_effective_stress(&mut self, dt: f64) {
+    pub(crate) fn update_effective_stress(&mut self, dt: f64) {
         if self.method.strain.is_bbar() {
             self.recover_dilation_rates();
         }
@@ -274,7 +287,7 @@ impl<const D: usize> Body<D> {
                 PressureIntegration::Sri | PressureIntegration::Mean => -dt * bulk_modulus / porosity * rate,
             }
         });
-        let at = PointsInCells::of(&self.grid, &self.cells, &self.nodes, &self.points.position);
+        let at = points_in_cells!(self);
         let pressures = &mut self.points.pressure;
         self.recovery
             .recover(&at, &self.site_values, pressures, |pressure, increment| *pressure += increment);

@@ -155,6 +155,22 @@ impl<const D: usize> LoadedSurface<D> {
         sum / self.squares
     }
 
+    /// Height of the lowest place of the surface now, m.
+    pub fn lowest(&self, points: &Points<D>) -> f64 {
+        let height = |spot| self.place(points, spot)[D - 1];
+        self.spots.iter().map(height).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Height of the surface over a place now, m: that of its nearest topmost point.
+    pub fn height_over(&self, points: &Points<D>, place: &Vector<D>) -> f64 {
+        let distance = |spot: &Spot| {
+            let along = &points.position[spot.point][..D - 1];
+            along.iter().zip(place).map(|(there, here)| (there - here) * (there - here)).sum::<f64>()
+        };
+        let nearest = self.spots.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.map_or(f64::INFINITY, |spot| self.place(points, spot)[D - 1])
+    }
+
     /// Puts the load on the nodes as the external force of the mixture.
     pub fn apply(&self, grid: &Grid<D>, points: &Points<D>, nodes: &mut Nodes<D>) {
         nodes.external_force.fill([0.0; D]);

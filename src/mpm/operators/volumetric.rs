@@ -6,7 +6,7 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::method::PressureIntegration;
-use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
+use crate::mpm::operators::recovery::points_in_cells::points_in_cells;
 use crate::soil::tensor::Vector;
 
 /// A linear functional of a nodal vector field: one vector of coefficients a node.
@@ -107,7 +107,7 @@ impl<const D: usize> Body<D> {
     /// takes.
     pub fn recover_dilation_rates(&mut self) {
         self.evaluate_sites(|body, place, _| body.divergence_at(place, &body.nodes.solid_velocity));
-        let at = PointsInCells::of(&self.grid, &self.cells, &self.nodes, &self.points.position);
+        let at = points_in_cells!(self);
         self.recovery
             .recover(&at, &self.site_values, &mut self.dilation_rates, |rate, recovered| *rate = recovered);
     }
@@ -122,7 +122,7 @@ impl<const D: usize> Body<D> {
         for (site, place) in sites.iter().enumerate() {
             site_of_place[*place] = Some(site);
         }
-        let at = PointsInCells::of(&self.grid, &self.cells, &self.nodes, &self.points.position);
+        let at = points_in_cells!(self);
         let numbered = |row: Vec<(usize, f64)>| {
             let entries = row.into_iter().filter(|(_, weight)| *weight != 0.0);
             entries.filter_map(|(place, weight)| Some((site_of_place[place]?, weight))).collect()

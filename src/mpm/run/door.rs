@@ -4,6 +4,7 @@ use crate::mpm::body::{Body, Problem};
 use crate::mpm::direct_solver::Singular;
 use crate::mpm::implicit::linear::LinearStepper;
 use crate::mpm::implicit::newton::NewtonStepper;
+use crate::mpm::layers::two_layer_stepper::TwoLayerStepper;
 use crate::mpm::method::Configuration;
 use crate::mpm::run::driver::Driver;
 use crate::mpm::run::explicit_stepper::ExplicitStepper;
@@ -17,11 +18,19 @@ use crate::mpm::run::stepper::Stepper;
 /// named status, and what was finished before stays.
 pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
     let plan = Plan::of(&problem, schedule);
-    let undrained_start = problem.undrained_start;
+    let (undrained_start, gradient) = (problem.undrained_start, problem.initial_gradient);
+    let mut problem = problem;
+    let water = problem.water.take();
     let mut body = Body::new(problem);
-    let start_failure = if undrained_start { body.settle_undrained().err() } else { None };
-    let mut stepper = stepper_of(body, &plan);
-    Driver::new(stepper.as_mut(), &plan, observer).solve(start_failure.map(no_start))
+    let start_failure = if undrained_start { body.settle_undrained().err().map(no_start) } else { None };
+    match water {
+        Some(lattice) => {
+            let start_failure = start_failure.or_else(|| no_layers(schedule.integrator));
+            let mut stepper = TwoLayerStepper::new(body, &lattice, &gradient, undrained_start, &plan);
+            Driver::new(&mut stepper, &plan, observer).solve(start_failure)
+        }
+        None => Driver::new(stepper_of(body, &plan).as_mut(), &plan, observer).solve(start_failure),
+    }
 }
 
 /// The integrator of a body: explicit; one linear system where the body is frozen and at rest;
@@ -40,6 +49,13 @@ fn stepper_of<const D: usize>(body: Body<D>, plan: &Plan<'_>) -> Box<dyn Stepper
 fn no_start(singular: Singular) -> Failure {
     let reason = format!("the undrained start has no pivot in row {}: nothing holds the body", singular.row);
     Failure { kind: FailureKind::Singular, step: 0, time: 0.0, growth: None, reason }
+}
+
+/// The end of a run in two layers by an integrator that has none.
+fn no_layers(integrator: IntegratorKind) -> Option<Failure> {
+    let reason = format!("two layers of points are integrated explicitly, not by `{}`", integrator.name());
+    let failure = Failure { kind: FailureKind::NotConverged, step: 0, time: 0.0, growth: None, reason };
+    (integrator != IntegratorKind::Explicit).then_some(failure)
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ use crate::mpm::run::watch::lost_point;
 use crate::mpm::state::points::Points;
 
 /// Steps between two looks.
-const WATCH_INTERVAL: u64 = 64;
+pub(crate) const WATCH_INTERVAL: u64 = 64;
 
 /// A body that goes by explicit steps.
 pub struct ExplicitStepper<const D: usize> {
@@ -31,10 +31,57 @@ pub struct ExplicitStepper<const D: usize> {
     rhythm: Rhythm,
     /// Kick that the assembled step is made for, s.
     kick: f64,
+    load: GrowingLoad,
+}
+
+/// A load that grows linearly to its full value, or acts at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct GrowingLoad {
     /// Whole load, Pa, and the time over which it grows, s.
     load: f64,
     loading_time: f64,
-    load_share: f64,
+    /// Share of it that acts.
+    pub share: f64,
+}
+
+impl GrowingLoad {
+    /// The load of a body, which grows over a time, s.
+    pub fn of<const D: usize>(body: &Body<D>, loading_time: f64) -> Self {
+        Self { load: body.surface.load, loading_time, share: 1.0 }
+    }
+
+    /// Whether it still grows.
+    pub fn grows(&self) -> bool {
+        self.share < 1.0
+    }
+
+    /// Puts the load of a time, s, on the surface, where it grows.
+    pub fn act_at<const D: usize>(&mut self, body: &mut Body<D>, time: f64) {
+        if self.loading_time > 0.0 {
+            self.share = (time / self.loading_time).min(1.0);
+            body.surface.load = self.share * self.load;
+            body.apply_loads();
+        }
+    }
+}
+
+/// Share of the first step that is stable still: it shrinks as the pores close and waves get faster, and as cells
+/// shrink that go with the points.
+pub(crate) fn step_reduction<const D: usize>(body: &Body<D>, follows: bool) -> Option<f64> {
+    if !body.configuration.deforms() {
+        return None;
+    }
+    if !follows {
+        return Some(1.0);
+    }
+    let soil = &body.material;
+    let least_ratio = body.points.volume_ratio.iter().copied().fold(1.0, f64::min);
+    let porosity = soil.porosity_at(least_ratio).max(1e-3);
+    let shrunk = if body.configuration.moves_points() { 1.0 } else { least_ratio };
+    Some(
+        shrunk * formula::fastest_wave_speed(soil, soil.porosity)
+            / formula::fastest_wave_speed(soil, porosity),
+    )
 }
 
 impl<const D: usize> ExplicitStepper<D> {
@@ -51,9 +98,7 @@ impl<const D: usize> ExplicitStepper<D> {
             step_follows: !matches!(schedule.rule, TimeStepRule::Seconds(_)),
             rhythm: Rhythm::default(),
             kick: f64::NAN,
-            load: body.surface.load,
-            loading_time: plan.loading_time,
-            load_share: 1.0,
+            load: GrowingLoad::of(&body, plan.loading_time),
             body,
         };
         if plan.loading_time > 0.0 {
@@ -64,12 +109,9 @@ impl<const D: usize> ExplicitStepper<D> {
 
     /// Puts the load of a growing time on the surface.
     fn set_load_at(&mut self, time: f64) {
-        self.load_share = (time / self.loading_time).min(1.0);
-        let body = &mut self.body;
-        body.surface.load = self.load_share * self.load;
-        body.apply_loads();
+        self.load.act_at(&mut self.body, time);
         if let Some(frozen) = &mut self.frozen {
-            frozen.set_load_share(self.load_share);
+            frozen.set_load_share(self.load.share);
         }
     }
 }
@@ -78,7 +120,7 @@ impl<const D: usize> Stepper for ExplicitStepper<D> {
     fn advance(&mut self, steps: &EqualSteps, _most_error: f64) -> Result<f64, StepFailure> {
         let (settings, dt) = (self.settings, steps.dt);
         for step in 0..steps.count {
-            if self.load_share < 1.0 {
+            if self.load.grows() {
                 self.set_load_at(steps.time_after(step));
             }
             let kick = self.rhythm.kick(dt, &settings);
@@ -100,23 +142,8 @@ impl<const D: usize> Stepper for ExplicitStepper<D> {
         WATCH_INTERVAL
     }
 
-    /// Shrinks as the pores close and waves get faster, and as cells shrink that go with the points.
     fn step_reduction(&self) -> Option<f64> {
-        let body = &self.body;
-        if !body.configuration.deforms() {
-            return None;
-        }
-        if !self.step_follows {
-            return Some(1.0);
-        }
-        let soil = &body.material;
-        let least_ratio = body.points.volume_ratio.iter().copied().fold(1.0, f64::min);
-        let porosity = soil.porosity_at(least_ratio).max(1e-3);
-        let shrunk = if body.configuration.moves_points() { 1.0 } else { least_ratio };
-        Some(
-            shrunk * formula::fastest_wave_speed(soil, soil.porosity)
-                / formula::fastest_wave_speed(soil, porosity),
-        )
+        step_reduction(&self.body, self.step_follows)
     }
 
     fn settlement(&self) -> f64 {

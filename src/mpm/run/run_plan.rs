@@ -10,6 +10,7 @@ use crate::mpm::run::physical_bounds::PhysicalBounds;
 use crate::mpm::run::profile::{self, Phase, enter};
 use crate::mpm::run::schedule::Schedule;
 use crate::mpm::run::step_limit::StepLimit;
+use crate::mpm::state::points::Points;
 
 /// Share of a semi-implicit run's critical step that growing steps end at.
 const LARGEST_SHARE: f64 = 0.8;
@@ -23,7 +24,7 @@ pub struct Plan<'a> {
     pub limit: StepLimit,
     /// Step sizes as far as they are known before.
     pub sizes: StepSizes,
-    /// Material points.
+    /// Material points, of all layers.
     pub points: usize,
     /// Grid nodes, ghosts included.
     pub nodes: usize,
@@ -68,7 +69,7 @@ impl<'a> Plan<'a> {
         Self {
             limit: schedule.rule.limit(problem, sizes.target, most, &schedule.outputs),
             sizes,
-            points: problem.points.len(),
+            points: problem.points.len() + problem.water.as_ref().map_or(0, Points::len),
             nodes: problem.grid.node_count(),
             pressure_scale: problem.pressure_scale,
             velocity_scale: velocity_scale(problem),

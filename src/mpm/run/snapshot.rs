@@ -24,6 +24,33 @@ pub struct Samples {
     /// What a second dimension adds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plane: Option<PlaneSamples>,
+    /// What a layer of water points adds: `pressure` is then that of the nearest of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub water: Option<WaterSamples>,
+}
+
+impl Samples {
+    /// Pressures, Pa, and the volumes that they stand for, m^D: of the water's own layer where there is one.
+    pub fn pressures(&self) -> (&[f64], &[f64]) {
+        match &self.water {
+            Some(water) => (&water.pressure, &water.volume),
+            None => (&self.pressure, &self.volume),
+        }
+    }
+}
+
+/// The pressure where the water has a layer of points of its own.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct WaterSamples {
+    /// Initial height above the base of the soil that is there now, m.
+    pub initial_height: Vec<f64>,
+    /// Its initial distance along the layer, m, in two dimensions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub initial_distance: Option<Vec<f64>>,
+    /// Volume that each place stands for, m^D.
+    pub volume: Vec<f64>,
+    /// Pore pressure, Pa, compression positive.
+    pub pressure: Vec<f64>,
 }
 
 /// What the samples of two dimensions have beside those of a column.
@@ -87,6 +114,22 @@ pub struct Totals {
     /// Largest nodal velocity of either phase, m/s.
     #[serde(default)]
     pub largest_velocity: f64,
+    /// Pores and water, where both are counted apart: in two layers of points that move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layers: Option<LayerTotals>,
+}
+
+/// Pores and water of two layers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct LayerTotals {
+    /// Volume of the pores, `Σ n_s V_s`, m^D.
+    pub pore_volume: f64,
+    /// Volume of the water in the soil, `Σ m_w/ρ_w`, m^D.
+    pub water_volume: f64,
+    /// Share of the water's mass that has left the soil.
+    pub water_left: f64,
+    /// Water points that are in the soil still.
+    pub water_points: usize,
 }
 
 impl<const D: usize> Body<D> {
@@ -133,6 +176,7 @@ impl<const D: usize> Body<D> {
                 displacement_distance: None,
                 horizontal_displacement: horizontal(&points.displacement),
             }),
+            water: None,
         }
     }
 
@@ -192,6 +236,7 @@ impl<const D: usize> Body<D> {
                 / soil.water_bulk_modulus,
             internal_force_imbalance: self.internal_force_imbalance(),
             unbalanced_force: self.unbalanced_force(),
+            layers: None,
             largest_velocity: self.largest_velocity(),
         }
     }
@@ -214,7 +259,7 @@ impl<const D: usize> Body<D> {
 }
 
 /// Volume-weighted means over the points that belong to a place.
-struct Means {
+pub(crate) struct Means {
     /// Volume of each place.
     volume: Vec<f64>,
     /// Place, point and volume that they share.
@@ -222,11 +267,13 @@ struct Means {
 }
 
 impl Means {
-    fn new(places: usize) -> Self {
+    /// No points yet at so many places.
+    pub fn new(places: usize) -> Self {
         Self { volume: vec![0.0; places], shares: Vec::new() }
     }
 
-    fn add(&mut self, place: usize, point: usize, volume: f64) {
+    /// Gives a place a volume of a point, m^D.
+    pub fn add(&mut self, place: usize, point: usize, volume: f64) {
         self.volume[place] += volume;
         self.shares.push((place, point, volume));
     }
@@ -237,27 +284,34 @@ impl Means {
         (0..self.volume.len()).filter(|place| self.volume[*place] > least).collect()
     }
 
+    /// Their volumes, m^D.
+    pub fn volumes(&self) -> Vec<f64> {
+        self.places().into_iter().map(|place| self.volume[place]).collect()
+    }
+
+    /// Means at them of what each point has.
+    pub fn of(&self, value: &dyn Fn(usize) -> f64) -> Vec<f64> {
+        let mut sums = vec![0.0; self.volume.len()];
+        for (place, point, volume) in &self.shares {
+            sums[*place] += volume * value(*point);
+        }
+        self.places().into_iter().map(|place| sums[place] / self.volume[place]).collect()
+    }
+
     fn sample<const D: usize>(&self, points: &Points<D>) -> Samples {
-        let places = self.places();
-        let mean = |value: &dyn Fn(usize) -> f64| {
-            let mut sums = vec![0.0; self.volume.len()];
-            for (place, point, volume) in &self.shares {
-                sums[*place] += volume * value(*point);
-            }
-            places.iter().map(|place| sums[*place] / self.volume[*place]).collect()
-        };
         Samples {
-            initial_height: mean(&|point| points.initial_position[point][D - 1]),
+            initial_height: self.of(&|point| points.initial_position[point][D - 1]),
             displacement_height: None,
-            volume: places.iter().map(|place| self.volume[*place]).collect(),
-            pressure: mean(&|point| points.pressure[point]),
-            effective_stress: mean(&|point| points.effective_stress[point][D - 1][D - 1]),
-            displacement: mean(&|point| points.displacement[point][D - 1]),
+            volume: self.volumes(),
+            pressure: self.of(&|point| points.pressure[point]),
+            effective_stress: self.of(&|point| points.effective_stress[point][D - 1][D - 1]),
+            displacement: self.of(&|point| points.displacement[point][D - 1]),
             plane: (D > 1).then(|| PlaneSamples {
-                initial_distance: mean(&|point| points.initial_position[point][0]),
+                initial_distance: self.of(&|point| points.initial_position[point][0]),
                 displacement_distance: None,
-                horizontal_displacement: mean(&|point| points.displacement[point][0]),
+                horizontal_displacement: self.of(&|point| points.displacement[point][0]),
             }),
+            water: None,
         }
     }
 }

@@ -72,6 +72,49 @@ impl<const D: usize> Cells<D> {
         self.sum_volumes(points, initial_porosity);
     }
 
+    /// Finds the cells of other points among those that `holders` knows to hold the material, but for some that are
+    /// closed: a point in none of them belongs to the next below that is one.
+    pub fn locate_among(
+        &mut self,
+        grid: &Grid<D>,
+        positions: &[Vector<D>],
+        holders: &Self,
+        is_closed: impl Fn(usize) -> bool,
+    ) {
+        self.point_count.clone_from(&holders.point_count);
+        self.volume.clone_from(&holders.volume);
+        self.porosity.clone_from(&holders.porosity);
+        for cell in 0..self.point_count.len() {
+            if self.is_occupied(cell) && is_closed(cell) {
+                self.point_count[cell] = 0;
+            }
+        }
+        self.of_point.truncate(positions.len());
+        self.place.truncate(positions.len());
+        let down = grid.cell_stride()[D - 1];
+        for (point, position) in positions.iter().enumerate() {
+            let place = grid.held_in_cells(position);
+            let home = grid.flat_cell(&grid.cell_at(&place));
+            let mut cell = home;
+            while !self.is_occupied(cell) && cell >= down {
+                cell -= down;
+            }
+            self.place[point] = place;
+            self.of_point[point] = if self.is_occupied(cell) { cell } else { home };
+        }
+    }
+
+    /// Keeps of the cells those in which points were located, with the volumes of these, m^D: `volumes` times
+    /// `shares`.
+    pub fn keep_located(&mut self, volumes: &[f64], shares: &[f64]) {
+        self.point_count.fill(0);
+        self.volume.fill(0.0);
+        for (cell, (volume, share)) in self.of_point.iter().zip(volumes.iter().zip(shares)) {
+            self.point_count[*cell] += 1;
+            self.volume[*cell] += volume * share;
+        }
+    }
+
     /// Sums volumes over each cell's points.
     pub fn sum_volumes(&mut self, points: &Points<D>, initial_porosity: f64) {
         self.volume.fill(0.0);

@@ -142,6 +142,18 @@ impl<const D: usize> Grid<D> {
         (0..D).map(|d| cell[d] * self.cell_stride[d]).sum()
     }
 
+    /// Index, a direction, of a cell by its flat one.
+    #[inline]
+    pub fn cell_index(&self, flat: usize) -> [usize; D] {
+        let mut rest = flat;
+        let mut index = [0; D];
+        for direction in (0..D).rev() {
+            index[direction] = rest / self.cell_stride[direction];
+            rest %= self.cell_stride[direction];
+        }
+        index
+    }
+
     /// Flat index of a node.
     #[inline]
     pub fn flat_node(&self, node: &[usize; D]) -> usize {

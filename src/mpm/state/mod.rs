@@ -5,3 +5,4 @@ pub mod cells;
 pub mod grid;
 pub mod nodes;
 pub mod points;
+pub mod water_points;

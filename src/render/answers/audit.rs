@@ -107,7 +107,7 @@ fn pairings(records: &[Record]) -> Vec<Pairing<'_>> {
             let levels = &mut all[place].levels;
             match levels.iter_mut().find(|other| other.case.cells == record.case.cells) {
                 Some(other) if other.case.time_factors.len() < record.case.time_factors.len() => {
-                    *other = record
+                    *other = record;
                 }
                 Some(_) => {}
                 None => levels.push(record),

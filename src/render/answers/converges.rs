@@ -114,14 +114,13 @@ fn table(regimes: &[(&str, &Regime<'_>)]) -> Table {
             format!("{name}: T_v = {}, against {}", regime.time_factor, labels::solution(regime.reference))
         })
         .collect();
-    let table =
-        Table::of(format!("Order on the finest three meshes, error on {QUOTED_CELLS} cells"), columns, rows)
-            .note(format!(
-                "{}; relative L_2 norm over the volume, |s/s_exact − 1| of the settlement. {}",
-                at.join("; "),
-                labels::CLASSES
-            ));
-    table
+    Table::of(format!("Order on the finest three meshes, error on {QUOTED_CELLS} cells"), columns, rows).note(
+        format!(
+            "{}; relative L_2 norm over the volume, |s/s_exact − 1| of the settlement. {}",
+            at.join("; "),
+            labels::CLASSES
+        ),
+    )
 }
 
 /// A method's name; the paper's own marked.

@@ -101,7 +101,7 @@ fn quarter(mut figure: Figure, number: &str) -> Figure {
     figure.chart.title = format!("Fig. {number}: {}", figure.chart.title);
     figure.chart.size = QUARTER;
     for series in figure.chart.series.iter_mut().filter(|series| series.style == Style::Theory) {
-        series.name = "theory".to_owned();
+        "theory".clone_into(&mut series.name);
     }
     figure
 }

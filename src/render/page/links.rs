@@ -22,13 +22,23 @@ impl Page {
 fn in_block(block: &mut Block, lead_to: &dyn Fn(&str) -> String) {
     match block {
         Block::Paragraph(text) | Block::Callout(_, text) => *text = in_text(text, lead_to),
-        Block::List(points) => points.iter_mut().for_each(|point| *point = in_text(point, lead_to)),
+        Block::List(points) => {
+            for point in points {
+                *point = in_text(point, lead_to);
+            }
+        }
         Block::Table(table) => in_table(table, lead_to),
         Block::Figure(figure) => figure.caption = in_text(&figure.caption, lead_to),
         Block::Figures(figures) => {
-            figures.iter_mut().for_each(|figure| figure.caption = in_text(&figure.caption, lead_to));
+            for figure in figures {
+                figure.caption = in_text(&figure.caption, lead_to);
+            }
         }
-        Block::Details { blocks, .. } => blocks.iter_mut().for_each(|block| in_block(block, lead_to)),
+        Block::Details { blocks, .. } => {
+            for block in blocks {
+                in_block(block, lead_to);
+            }
+        }
         Block::Heading(_) => {}
     }
 }

@@ -17,8 +17,10 @@ for (const table of document.querySelectorAll("main table")) {
         const numbers = x !== "" && y !== "" && !Number.isNaN(s) && !Number.isNaN(t);
         return numbers ? s - t : x.localeCompare(y);
       };
-      const rows = [...body.rows].sort(compare);
-      body.append(...(down ? rows.reverse() : rows));
+      // What is missing stands last, whichever way.
+      const lacks = (row) => row.cells[place].querySelector(".missing") !== null;
+      const rows = [...body.rows].filter((row) => !lacks(row)).sort(compare);
+      body.append(...(down ? rows.reverse() : rows), ...[...body.rows].filter(lacks));
     };
     head.addEventListener("click", sort);
     head.addEventListener("keydown", (event) => { if (event.key === "Enter") sort(); });

@@ -42,7 +42,8 @@ pub fn blocks(one: &StudyResults<'_>) -> Vec<Block> {
         let Some(time_factor) = times.get((times.len() - 1) / 2) else { continue };
         for reference in &one.study.references {
             let cells = QUOTED.map(|(quantity, sample)| {
-                let measure = first_measure(quantity, sample, reference.name(), *time_factor);
+                let measure =
+                    path.own_measure(&first_measure(quantity, sample, reference.name(), *time_factor));
                 quote(path, &measure, &mut floors)
             });
             // Against another theory than its own a run is quoted where that is the question.
@@ -59,6 +60,9 @@ pub fn blocks(one: &StudyResults<'_>) -> Vec<Block> {
     let title = "Order on the finest three meshes, error on ten cells";
     let table = Table::of(title, columns, rows)
         .note(format!("at the middle output time; relative L_2 norm over the volume. {}", labels::CLASSES));
+    let is_attached = all.iter().any(|path| path.records.iter().any(|record| record.attached.is_some()));
+    let places = "of an attached solver its own places stand for the points".to_owned();
+    let table = table.notes(is_attached.then_some(places));
     let mut blocks = vec![Block::Heading("What converges to what".to_owned()), Block::Table(table)];
     if !floors.is_empty() {
         blocks.push(Block::Paragraph("Floors:".to_owned()));

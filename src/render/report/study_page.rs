@@ -9,7 +9,7 @@ use crate::render::report::{
     survival, theory_lines, worst_checks,
 };
 use crate::render::table::Mood;
-use crate::render::tables::uncertainties;
+use crate::render::tables::{attached_runs, uncertainties};
 use crate::study::expectation::Axis;
 use std::fmt::Write;
 
@@ -33,6 +33,10 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     blocks.extend(uncertainties::table_of(&results.judgements).map(Block::Table));
     let is_solved = results.records.iter().any(|record| record.stability.is_none());
     blocks.extend(critical_step_maps::blocks(results));
+    if let Some(table) = attached_runs::table_of(results.records) {
+        blocks.push(Block::Heading("Attached solvers".to_owned()));
+        blocks.push(Block::Table(table));
+    }
     if is_solved {
         blocks.extend(error_over_work::blocks(results));
         blocks.extend(error_over_time::blocks(results));

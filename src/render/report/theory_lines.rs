@@ -106,8 +106,10 @@ pub fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure,
         chart.series.push(Series::new(name, computed).style(Style::Markers).slot(slot));
     }
     let caption = format!(
-        "Markers: material points of {} on {} cells. Lines: theory.",
-        record.case.method, record.case.cells
+        "Markers: {} of {} on {} cells. Lines: theory.",
+        if record.case.is_attached() { record.main_sample().name() } else { "material points" },
+        record.case.method,
+        record.case.cells
     );
     Ok(results.figure(&format!("isochrones-{}", record.case.method), chart, caption))
 }

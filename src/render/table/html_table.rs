@@ -33,7 +33,8 @@ impl Table {
             for (cell, column) in row.iter().zip(&self.columns) {
                 let value = cell.value().map_or(String::new(), |value| format!(" data-v=\"{value:.5e}\""));
                 let shown = show(cell, &footnotes);
-                let _ = write!(out, "<td class=\"{}\"{value}>{shown}</td>", class(column.align));
+                let long = if is_long(cell) { " long" } else { "" };
+                let _ = write!(out, "<td class=\"{}{long}\"{value}>{shown}</td>", class(column.align));
             }
             out.push_str("</tr>\n");
         }
@@ -44,6 +45,13 @@ impl Table {
         }
         Ok(out)
     }
+}
+
+/// Letters from which on a cell is a sentence, which must not be squeezed into a column of single words.
+const LONG: usize = 60;
+
+fn is_long(cell: &Cell) -> bool {
+    matches!(cell, Cell::Text(text) if text.chars().count() > LONG)
 }
 
 fn class(align: Align) -> &'static str {

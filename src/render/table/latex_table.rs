@@ -1,5 +1,5 @@
 //! Tables for papers: `tabular` with the rules of the package `booktabs`.
-use crate::render::escape::latex;
+use crate::render::escape::{latex, latex_text};
 use crate::render::render_error::RenderError;
 use crate::render::table::{Align, Cell, Table, marked};
 use std::fmt::Write as _;
@@ -21,7 +21,7 @@ impl Table {
             Align::Right => 'r',
         });
         let _ = writeln!(out, "\\begin{{tabular}}{{{}}}\n\\toprule", aligned.collect::<String>());
-        let heads: Vec<String> = self.columns.iter().map(|column| latex(&column.heading())).collect();
+        let heads: Vec<String> = self.columns.iter().map(|column| latex_text(&column.heading())).collect();
         let _ = writeln!(out, "{} \\\\\n\\midrule", heads.join(" & "));
         for row in &self.rows {
             let cells: Vec<String> = row.iter().map(|cell| show(cell, &footnotes)).collect();
@@ -40,10 +40,10 @@ impl Table {
 fn show(cell: &Cell, footnotes: &[&str]) -> String {
     match (cell, marked(cell, footnotes)) {
         (Cell::Code(name), _) => format!("\\texttt{{{}}}", latex(name)),
-        (Cell::Verdict(_, text) | Cell::Evidence { words: text, .. }, _) => latex(text),
+        (Cell::Verdict(_, text) | Cell::Evidence { words: text, .. }, _) => latex_text(text),
         (Cell::Error(_) | Cell::Number(_), (text, _)) => power(&text),
-        (_, (text, Some(mark))) => format!("{}\\textsuperscript{{{mark}}}", latex(&text)),
-        (_, (text, None)) => latex(&text),
+        (_, (text, Some(mark))) => format!("{}\\textsuperscript{{{mark}}}", latex_text(&text)),
+        (_, (text, None)) => latex_text(&text),
     }
 }
 

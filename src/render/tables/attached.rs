@@ -2,6 +2,7 @@
 
 use crate::measure::wall_times::spread;
 use crate::record::{Record, WallSample};
+use crate::render::tables::attached_runs::is_busy;
 use crate::wording::{count_of, short};
 
 /// Sentences on the run of an attached solver: how it failed, what it is, what it took; none for other cases.
@@ -49,5 +50,8 @@ fn times(samples: &[WallSample]) -> Option<String> {
         of(|sample| sample.own_seconds).map(|own| format!("of its own account {} s", short(own.median))),
     );
     parts.extend(of(|sample| sample.load).map(|load| format!("load of the machine {}", short(load.maximum))));
+    if is_busy(samples) {
+        parts.push("the machine was busy, or it waited: compare processor times".to_owned());
+    }
     Some(parts.join(", "))
 }

@@ -1,6 +1,7 @@
 //! Tables of records, scores, golden values and measured times, for every command that shows them.
 
 pub mod attached;
+pub mod attached_runs;
 pub mod critical_steps;
 pub mod explanation;
 pub mod golden_changes;

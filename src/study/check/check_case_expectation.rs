@@ -30,12 +30,21 @@ impl Checker<'_> {
         let bound = |c: &mut Self, typed: &Option<Placed<f64>>, name: &str| {
             typed.as_deref().map(|typed| c.positive(Some(typed), name, "", 1e-12))
         };
+        let pore_water = table.pore_water.as_ref().map(|range| {
+            let of = |typed: &Option<Placed<f64>>, default| {
+                typed.as_deref().map_or(default, |typed| *typed.get_ref())
+            };
+            [of(&range.get_ref().above, 0.0), of(&range.get_ref().below, f64::MAX)]
+        });
         let demand = CaseDemand {
             status,
             critical_step_within: bound(self, &table.critical_step_within, "critical_step_within"),
             error,
             solid_drift_below: bound(self, &table.solid_drift_below, "solid_drift_below"),
             water_drift_below: bound(self, &table.water_drift_below, "water_drift_below"),
+            pore_water,
+            water_left_within: bound(self, &table.water_left_within, "water_left_within"),
+            one_layer_within: bound(self, &table.one_layer_within, "one_layer_within"),
             spurious_velocity: self.spurious_velocity(table, scene),
             peak_time_factor: table.peak_time_factor.as_ref().map(|range| bounds_of(range)),
             peak_pressure: table.peak_pressure.as_ref().map(|range| bounds_of(range)),

@@ -143,10 +143,15 @@ fn digest_of(table: &ResultTable, files: &[String], cells: &[usize], folder: &Pa
             }
         }
     }
-    let mapping = table.mapping.iter().map(|typed| digest_of_file(&folder.join(typed.get_ref())));
-    mapping.for_each(|digest| take("mapping", &digest));
-    table.preset.iter().for_each(|typed| take("preset", typed.get_ref()));
-    table.time_step.iter().for_each(|typed| take("time step", &format!("{:e}", typed.get_ref())));
+    for typed in &table.mapping {
+        take("mapping", &digest_of_file(&folder.join(typed.get_ref())));
+    }
+    for typed in &table.preset {
+        take("preset", typed.get_ref());
+    }
+    for typed in &table.time_step {
+        take("time step", &format!("{:e}", typed.get_ref()));
+    }
     hasher.finalize().to_hex()[..DIGEST_DIGITS].to_owned()
 }
 

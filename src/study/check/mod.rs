@@ -12,6 +12,7 @@ pub mod default_integrator;
 pub mod distinct_labels;
 pub mod end_state;
 pub mod geometry;
+pub mod layers;
 pub mod matching;
 pub mod step_rule;
 pub mod value;
@@ -194,6 +195,7 @@ impl Checker<'_> {
             }
             let tier = self.choice(table.tier.as_deref(), "tier", Tier::default()).unwrap_or_default();
             let mut cases: Vec<Case> = sweep.cases(&base).map(Case::for_attached).collect();
+            self.layers_fit(file, table, block.span().start, &mut cases);
             if let Some(strain) = strain {
                 for case in &mut cases {
                     case.column.load = load_of(strain, case);

@@ -6,12 +6,14 @@
 
 pub mod constant;
 pub mod nodal;
+pub mod nodal_field;
 pub mod null_space;
 pub mod patch;
 pub mod points_in_cells;
 
 use crate::mpm::method::{Method, Recovery};
 use crate::mpm::operators::recovery::nodal::NodalMeans;
+use crate::mpm::operators::recovery::nodal_field::NodalField;
 use crate::mpm::operators::recovery::null_space::CellPlanes;
 use crate::mpm::operators::recovery::patch::PatchRows;
 use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
@@ -29,6 +31,8 @@ pub enum RecoveryOperator<const D: usize> {
     Patch(PatchRows<D>),
     /// [`nodal`].
     Nodal(NodalMeans),
+    /// [`nodal_field`]; the sites are the points.
+    NodalField(NodalField),
     /// [`null_space`]; the sites are the points.
     NullSpace(CellPlanes<D>),
 }
@@ -38,7 +42,8 @@ impl<const D: usize> RecoveryOperator<D> {
     pub fn of(method: Method, grid: &Grid<D>, points: usize) -> Self {
         match (method.pressure.is_by_cells(), method.recovery) {
             (false, Recovery::NullSpace) => Self::NullSpace(CellPlanes::with_cells(grid.cell_count())),
-            (false, _) => Self::Own,
+            (false, Recovery::Nodal) => Self::NodalField(NodalField::with_nodes(grid.node_count())),
+            (false, Recovery::Constant | Recovery::Patch) => Self::Own,
             (true, Recovery::Constant | Recovery::NullSpace) => Self::Constant,
             (true, Recovery::Patch) => Self::Patch(PatchRows::with_points(points)),
             (true, Recovery::Nodal) => Self::Nodal(NodalMeans::with_nodes(grid.node_count())),
@@ -69,6 +74,10 @@ impl<const D: usize> RecoveryOperator<D> {
                 means.fit(at, sites);
                 each(out, put, |point| means.value(at, point));
             }
+            Self::NodalField(field) => {
+                field.fit(at, sites);
+                each(out, put, |point| field.value(at, point));
+            }
             Self::NullSpace(planes) => {
                 planes.fit(at, |point| sites[point]);
                 each(out, put, |point| planes.value(at, point));
@@ -84,6 +93,7 @@ impl<const D: usize> RecoveryOperator<D> {
             Self::Constant => points.map(|point| constant::row(at, point)).collect(),
             Self::Patch(rows) => points.map(|point| rows.row(at.grid, point)).collect(),
             Self::Nodal(_) => nodal::rows(at),
+            Self::NodalField(_) => nodal_field::rows(at),
             Self::NullSpace(_) => null_space::rows(at),
         }
     }
@@ -100,6 +110,8 @@ fn each(out: &mut [f64], put: impl Fn(&mut f64, f64), value: impl Fn(usize) -> f
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::mpm::method::Basis;
+    use crate::mpm::operators::stencil::PointStencils;
     use crate::mpm::state::nodes::{Nodes, Support};
     use crate::mpm::state::points::Points;
 
@@ -108,6 +120,7 @@ pub(crate) mod tests {
         grid: Grid<2>,
         pub(crate) cells: Cells<2>,
         pub(crate) nodes: Nodes<2>,
+        basis: PointStencils<2>,
         points: Points<2>,
     }
 
@@ -120,12 +133,14 @@ pub(crate) mod tests {
             let mut nodes = Nodes::new(&grid, &Support::free(), 1.0);
             nodes.solid_mass.fill(1.0);
             nodes.finish_masses();
-            Self { grid, cells, nodes, points }
+            let mut basis = Basis::Cpgimp.stencils(points.len());
+            let places = [&cells.place[..], &points.half_length[..]];
+            Basis::Cpgimp.build(&mut basis, &grid, &Support::free(), places);
+            Self { grid, cells, nodes, basis, points }
         }
 
         pub(crate) fn at(&self) -> PointsInCells<'_, 2> {
-            let Self { grid, cells, nodes, points } = self;
-            PointsInCells::of(grid, cells, nodes, &points.position)
+            crate::mpm::operators::recovery::points_in_cells::points_in_cells!(self)
         }
     }
 
@@ -138,7 +153,7 @@ pub(crate) mod tests {
     fn every_way_is_one_in_place_and_as_rows() {
         let block = SiteBlock::new(0.25, [4, 3], 2);
         let at = block.at();
-        for name in ["GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GIMP-SRI-nodal", "GIMP-null-space"] {
+        for name in ["GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GIMP-SRI-nodal", "GIMP-null-space", "VP"] {
             let method = Method::named(name).expect("a known method");
             let mut operator = RecoveryOperator::of(method, at.grid, at.positions.len());
             operator.build(at.grid, at.cells);

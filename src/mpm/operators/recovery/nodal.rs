@@ -81,9 +81,11 @@ fn hats<const D: usize>(
     at: &PointsInCells<'_, D>,
     point: usize,
 ) -> impl Iterator<Item = (usize, f64)> + use<D> {
-    let (cell, place) = (at.grid.cell_of(&at.positions[point]), at.grid.held_in_cells(&at.positions[point]));
+    // Of the cell that the point belongs to, which for water above the last cell is the one below it.
+    let (home, place) = (at.cells.of_point[point], at.grid.held_in_cells(&at.positions[point]));
+    let cell = at.grid.cell_index(home);
     let rows: [Row<2>; D] = std::array::from_fn(|d| Hat::row(place[d], cell[d], 0.0));
-    let nodes = at.grid.corners(at.cells.first_node(at.cells.of_point[point]));
+    let nodes = at.grid.corners(at.cells.first_node(home));
     nodes
         .enumerate()
         .map(move |(corner, node)| (node, (0..D).map(|d| rows[d].weights[corner >> d & 1]).product()))

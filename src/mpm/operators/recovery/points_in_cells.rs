@@ -1,5 +1,6 @@
 //! Where the points are among cells and nodes: what every way of recovery looks at.
 
+use crate::mpm::operators::stencil::PointStencils;
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::Nodes;
@@ -14,19 +15,33 @@ pub struct PointsInCells<'a, const D: usize> {
     pub cells: &'a Cells<D>,
     /// Nodes with their supports.
     pub nodes: &'a Nodes<D>,
+    /// Weights between points and nodes.
+    pub basis: &'a PointStencils<D>,
     /// Places of the points, m, `[point][component]`.
     pub positions: &'a [Vector<D>],
+    /// Volumes of the points in another state, m^D, and what they have become over those.
+    pub volumes: [&'a [f64]; 2],
 }
 
-impl<'a, const D: usize> PointsInCells<'a, D> {
-    /// The parts of a body.
+impl<const D: usize> PointsInCells<'_, D> {
+    /// Volume of a point, m^D.
     #[inline]
-    pub fn of(
-        grid: &'a Grid<D>,
-        cells: &'a Cells<D>,
-        nodes: &'a Nodes<D>,
-        positions: &'a [Vector<D>],
-    ) -> Self {
-        Self { grid, cells, nodes, positions }
+    pub fn volume(&self, point: usize) -> f64 {
+        self.volumes[0][point] * self.volumes[1][point]
     }
 }
+
+/// [`PointsInCells`] of a body, field by field: what is recovered may be another field of it.
+macro_rules! points_in_cells {
+    ($body:expr) => {
+        $crate::mpm::operators::recovery::points_in_cells::PointsInCells {
+            grid: &$body.grid,
+            cells: &$body.cells,
+            nodes: &$body.nodes,
+            basis: &$body.basis,
+            positions: &$body.points.position,
+            volumes: [&$body.points.initial_volume, &$body.points.volume_ratio],
+        }
+    };
+}
+pub(crate) use points_in_cells;

@@ -1,0 +1,23 @@
+//! Two layers of material points: those of the skeleton, and those of the water (docs/theory.md, Eqs 21–23).
+//!
+//! The skeleton is a [`Body`](crate::mpm::body::Body) whose points carry no water: its grid, weights, strains, load
+//! and nodal fields. `two_layers` puts the water beside it and takes the explicit step; each part of what the water
+//! does has its file:
+//!
+//! - `water_domains`: porosity, volume and domain of a water point, cut at the soil's surface,
+//! - `water_to_nodes`: mass, drag, momentum and pressure of the water on their way to the nodes,
+//! - `sliver_nodes`: nodes that the surface has all but left,
+//! - `water_pressure`: the continuity at the water points,
+//! - `samples`: what a snapshot tells of them,
+//! - `two_layer_stepper`: the driver's view of it.
+//!
+//! Momentum, kicks and the skeleton's strain are those of one layer, from where one layer takes them.
+
+pub mod samples;
+pub mod sliver_nodes;
+pub mod two_layer_stepper;
+pub mod two_layers;
+pub mod water_domains;
+pub mod water_pressure;
+pub mod water_sums;
+pub mod water_to_nodes;

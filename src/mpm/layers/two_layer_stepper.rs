@@ -1,0 +1,94 @@
+//! The explicit step of two layers on its way through time.
+
+use crate::mpm::body::Body;
+use crate::mpm::explicit::ExplicitSettings;
+use crate::mpm::explicit::scheme::Rhythm;
+use crate::mpm::layers::samples::TwoLayerStart;
+use crate::mpm::layers::two_layers::TwoLayers;
+use crate::mpm::run::explicit_stepper::{GrowingLoad, WATCH_INTERVAL, step_reduction};
+use crate::mpm::run::run_plan::Plan;
+use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper};
+use crate::mpm::run::time_step_rule::TimeStepRule;
+use crate::mpm::run::watch::lost_point;
+use crate::mpm::state::points::Points;
+use crate::soil::tensor::Tensor;
+
+/// Two layers that go by explicit steps.
+pub struct TwoLayerStepper<const D: usize> {
+    layers: TwoLayers<D>,
+    start: TwoLayerStart<D>,
+    initial_height: f64,
+    settings: ExplicitSettings,
+    /// Whether the step follows the deformation of the body.
+    step_follows: bool,
+    rhythm: Rhythm,
+    load: GrowingLoad,
+}
+
+impl<const D: usize> TwoLayerStepper<D> {
+    /// A body at its start, undrained or not, with its water on a lattice.
+    pub fn new(
+        body: Body<D>,
+        lattice: &Points<D>,
+        gradient: &Tensor<D>,
+        is_settled: bool,
+        plan: &Plan<'_>,
+    ) -> Self {
+        let displacement = is_settled.then(|| body.nodes.displacement.clone());
+        let load = GrowingLoad::of(&body, plan.loading_time);
+        let mut layers = TwoLayers::new(body, lattice, gradient);
+        if let Some(displacement) = displacement {
+            layers.compress_by(&displacement);
+        }
+        let mut stepper = Self {
+            start: TwoLayerStart::of(&layers),
+            layers,
+            initial_height: plan.initial_height,
+            settings: plan.schedule.settings,
+            step_follows: !matches!(plan.schedule.rule, TimeStepRule::Seconds(_)),
+            rhythm: Rhythm::default(),
+            load,
+        };
+        stepper.load.act_at(&mut stepper.layers.body, 0.0);
+        stepper
+    }
+}
+
+impl<const D: usize> Stepper for TwoLayerStepper<D> {
+    fn advance(&mut self, steps: &EqualSteps, _most_error: f64) -> Result<f64, StepFailure> {
+        for step in 0..steps.count {
+            if self.load.grows() {
+                self.load.act_at(&mut self.layers.body, steps.time_after(step));
+            }
+            let kick = self.rhythm.kick(steps.dt, &self.settings);
+            self.layers.kick_and_drift(kick, steps.dt, &self.settings);
+        }
+        Ok(0.0)
+    }
+
+    fn steps_unwatched(&self) -> u64 {
+        WATCH_INTERVAL
+    }
+
+    fn step_reduction(&self) -> Option<f64> {
+        step_reduction(&self.layers.body, self.step_follows)
+    }
+
+    fn settlement(&self) -> f64 {
+        self.layers.body.settlement(self.initial_height)
+    }
+
+    fn largest_velocity(&self) -> Option<f64> {
+        Some(self.layers.body.largest_velocity())
+    }
+
+    fn lost_point(&self) -> Option<StepFailure> {
+        let body = &self.layers.body;
+        if body.configuration.deforms() { lost_point(body) } else { None }
+    }
+
+    fn snapshot(&self, time: f64) -> Snapshot {
+        self.layers.snapshot(time, self.settlement(), &self.start)
+    }
+}

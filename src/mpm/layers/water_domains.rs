@@ -1,0 +1,89 @@
+//! Porosity, volume and domain of the water points: from their mass, and the porosity of the soil where they are.
+//!
+//! ```text
+//! n_w = Σ_i N_iw n_i / Σ_i N_iw       V_w = m_w/(ρ_w(p) n_w),   ρ_w = ρ_w0 exp(p/K_w)
+//! ```
+//!
+//! over the nodes with soil. Water stands still above the soil while the soil sinks under it: only the share of a
+//! domain that lies below the surface of the soil counts, and a point without one is out.
+
+use crate::elementary;
+use crate::mpm::layers::two_layers::TwoLayers;
+
+/// Share of a domain that is too little to stand alone.
+const LEAST_SHARE: f64 = 1e-3;
+
+impl<const D: usize> TwoLayers<D> {
+    /// Brings porosities, volumes and domains of the water up to the soil, and the operators up to the domains.
+    pub fn follow_water(&mut self) {
+        self.take_porosities();
+        self.take_domains();
+        self.build_water_operators();
+    }
+
+    /// Porosity at every point by its last weights; a point that no node with soil knows keeps its own.
+    fn take_porosities(&mut self) {
+        let (stride, nodes) = (*self.body.grid.node_stride(), &self.body.nodes);
+        for point in 0..self.water.len() {
+            let (mut sum, mut weights) = (0.0, 0.0);
+            self.basis.visit(&stride, point, |node, weight, _| {
+                if nodes.is_active(node) {
+                    sum += weight * nodes.porosity[node];
+                    weights += weight;
+                }
+            });
+            if weights > 0.0 {
+                self.water.porosity[point] = sum / weights;
+            }
+        }
+    }
+
+    /// Volumes and domains, cut at the surface.
+    fn take_domains(&mut self) {
+        let (soil, up) = (self.body.material, D - 1);
+        let lowest_surface = self.body.surface.lowest(&self.body.points);
+        let water = &mut self.water;
+        let mut point = 0;
+        while point < water.len() {
+            let density =
+                soil.water_density * elementary::exp(water.pressure[point] / soil.water_bulk_modulus);
+            let volume = water.mass[point] / (density * water.porosity[point]);
+            let across: f64 = water.half_length[point][..up].iter().map(|half| 2.0 * half).product();
+            let half = 0.5 * volume / across;
+            water.volume[point] = volume;
+            // An oedometer strains vertically only, and so does its water.
+            water.half_length[point][up] = half;
+            water.place[point] = water.position[point];
+            water.reach[point] = water.half_length[point];
+            water.share[point] = 1.0;
+            let (low, high) = (water.position[point][up] - half, water.position[point][up] + half);
+            if high > lowest_surface {
+                let surface = self.body.surface.height_over(&self.body.points, &water.position[point]);
+                let kept = high.min(surface) - low;
+                if kept < 2.0 * half * LEAST_SHARE {
+                    water.remove(point);
+                    continue;
+                }
+                water.share[point] = kept / (2.0 * half);
+                water.place[point][up] = low + 0.5 * kept;
+                water.reach[point][up] = 0.5 * kept;
+            }
+            point += 1;
+        }
+    }
+
+    /// Builds weights and recovery of the water points on their places.
+    pub(crate) fn build_water_operators(&mut self) {
+        let (body, water) = (&self.body, &self.water);
+        let slivers = &self.slivers;
+        self.cells.locate_among(&body.grid, &water.place, &body.cells, |cell| {
+            slivers.close(&body.grid, body.cells.first_node(cell))
+        });
+        if self.takes_means {
+            self.cells.keep_located(&water.volume, &water.share);
+        }
+        let places = [&self.cells.place[..], &water.reach[..]];
+        body.method.basis.build(&mut self.basis, &body.grid, &body.support(), places);
+        self.recovery.build(&body.grid, &self.cells);
+    }
+}

@@ -1,0 +1,19 @@
+//! What water points give to the nodes, while it is summed.
+
+use crate::soil::tensor::Vector;
+
+/// What the water points give to each node, while it is summed; `[node]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WaterSums<const D: usize> {
+    /// Mass and mass per volume of water `A` (kg), drag (N s/m), and nothing.
+    pub masses: Vec<[f64; 4]>,
+    /// Momentum, kg m/s.
+    pub momenta: Vec<Vector<D>>,
+}
+
+impl<const D: usize> WaterSums<D> {
+    /// Room for so many nodes.
+    pub fn with_nodes(count: usize) -> Self {
+        Self { masses: vec![[0.0; 4]; count], momenta: vec![[0.0; D]; count] }
+    }
+}
