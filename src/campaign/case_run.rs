@@ -8,6 +8,7 @@ use crate::elementary;
 use crate::exact::exact_error::{ExactError, normal};
 use crate::exact::reference::ReferenceKind;
 use crate::measure::case_record::{record_of, record_of_critical_step, record_of_stopped_search};
+use crate::mpm::body::Problem;
 use crate::mpm::critical_step::formula;
 use crate::mpm::critical_step::observed::Stopped;
 use crate::mpm::run::outcome::FailureKind;
@@ -16,7 +17,7 @@ use crate::mpm::run::{Kernel, Schedule};
 use crate::record::machine::Machine;
 use crate::record::{Record, Status, WallSample};
 use crate::scene::column::column_parameters;
-use crate::scene::problem::SceneProblem;
+use crate::scene::problem::{SceneProblem, column_problem};
 use std::time::Instant;
 
 /// Points of the settlement curve of a run.
@@ -99,8 +100,15 @@ pub fn run_case(
 }
 
 fn problem_of(case: &Case) -> Result<SceneProblem, ExactError> {
+    Ok(match case.column.dimensions {
+        1 => SceneProblem::Column(problem_in(case)?),
+        _ => SceneProblem::Plane(problem_in(case)?),
+    })
+}
+
+fn problem_in<const D: usize>(case: &Case) -> Result<Problem<D>, ExactError> {
     let Case { scene, column, material, method, cells, points_per_cell, .. } = case;
-    SceneProblem::new(*scene, column, material, *method, *cells, *points_per_cell)
+    column_problem(*scene, column, material, *method, *cells, *points_per_cell)
 }
 
 /// Refuses numbers that no run can go on from, before anything is computed and whoever computes it.

@@ -8,6 +8,7 @@ pub mod tier;
 pub mod two_layers;
 pub mod work_estimate;
 
+use crate::case::keys::{Key, Value};
 use crate::elementary;
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery, StrainGradient};
@@ -20,7 +21,7 @@ use crate::scene::column::Column;
 use crate::soil::conductivity_mean::ConductivityMean;
 use crate::soil::continuity::Continuity;
 use crate::soil::material::Material;
-use crate::wording::words;
+use crate::wording::{typed, words};
 use serde::{Deserialize, Serialize};
 
 /// State and operators of a point, bytes.
@@ -80,6 +81,10 @@ pub struct Case {
     pub time_step: TimeStepRule,
     /// Time factors of the outputs, ascending.
     pub time_factors: Vec<f64>,
+    /// Inputs by their keys that its label names, for other cases of the same study have all else in common. They are
+    /// the study's business, neither part of the identity of a case nor kept in its record.
+    #[serde(skip)]
+    pub swept: Vec<&'static str>,
 }
 
 impl Case {
@@ -107,6 +112,7 @@ impl Case {
             points_per_cell: USUAL_POINTS,
             time_step: integrator.default_rule(),
             time_factors: Vec::new(),
+            swept: Vec::new(),
         }
     }
 
@@ -223,7 +229,20 @@ impl Case {
         if self.task == Task::Stability {
             parts.extend(self.departure_from_the_seed());
         }
+        parts.extend(self.swept_inputs());
         parts.join(", ")
+    }
+
+    /// The inputs that tell it from other cases of its study, as `key=value`.
+    fn swept_inputs(&self) -> impl Iterator<Item = String> {
+        self.swept.iter().filter_map(|name| {
+            let value = match Key::named(name, "sweep")?.get(self) {
+                // A digit of round-off is no other case.
+                Value::Number(number) => typed(format!("{number:.7e}").parse().unwrap_or(number)),
+                other => other.to_string(),
+            };
+            Some(format!("{name}={value}"))
+        })
     }
 
     /// Where the points lie, where that is not the regular lattice in one layer.

@@ -15,8 +15,11 @@ use crate::study::file::StudySource;
 /// Runs of each case; the least counts.
 const ROUNDS: usize = 3;
 
+/// Stands for columns of large strain in the plane, half as wide as high, whose points move.
+const PLANE: &str = "moving plane";
+
 /// Cases that cost mostly steps, of every kind and size: heads and sweeps of a study.
-const CASES: [(&str, &str); 12] = [
+const CASES: [(&str, &str); 16] = [
     ("terzaghi", "integrator = [\"explicit\"]\ncells = [5, 40]\ntime_factors = [0.05]"),
     ("terzaghi", "integrator = [\"explicit\"]\nmethod = [\"MPM\"]\ncells = [10]\ntime_factors = [0.05]"),
     ("cosine-layer", "integrator = [\"explicit\"]\ncells = [4, 8]\ntime_factors = [0.01]"),
@@ -30,6 +33,10 @@ const CASES: [(&str, &str); 12] = [
     ("cosine-layer", "integrator = [\"implicit\"]\ncells = [4, 8, 16]\ntime_factors = [1.0]"),
     ("xie-leo", "integrator = [\"implicit\"]\nmethod = [\"MPM\"]\ncells = [10, 40]\ntime_factors = [1.0]"),
     ("xie-leo", "integrator = [\"implicit\"]\ncells = [10, 40]\ntime_factors = [1.0]"),
+    (PLANE, "integrator = [\"explicit\"]\nmethod = [\"MPM\"]\ncells = [4, 8]\ntime_factors = [0.005]"),
+    (PLANE, "integrator = [\"explicit\"]\ncells = [4, 8]\ntime_factors = [0.005]"),
+    (PLANE, "integrator = [\"implicit\"]\nmethod = [\"MPM\"]\ncells = [4, 8]\ntime_factors = [0.02]"),
+    (PLANE, "integrator = [\"implicit\"]\ncells = [8, 16]\ntime_factors = [0.02]"),
     ("cosine-layer", "integrator = [\"semi-implicit\"]\ncells = [4, 8]\ntime_factors = [0.01]"),
     ("dynamic-column", "integrator = [\"implicit\"]\ncells = [20]\ntime_factors = [0.1]"),
 ];
@@ -39,7 +46,11 @@ pub fn run() -> anyhow::Result<Exit> {
     let mut rows = Vec::new();
     for (scene, sweep) in CASES {
         let method = if sweep.contains("method") { "" } else { "method = [\"GC-SRI-patch\"]\n" };
-        let load = if scene == "xie-leo" { "column.load = 2e5\n" } else { "" };
+        let (scene, load) = match scene {
+            "xie-leo" => (scene, "column.load = 2e5\n"),
+            PLANE => ("xie-leo", "column = { dimensions = 2, width = 0.5, load = 1e4 }\n"),
+            _ => (scene, ""),
+        };
         let text =
             format!("title = \"calibration\"\nscene = \"{scene}\"\n{load}[[sweep]]\n{method}{sweep}\n");
         let study = checked(&StudySource { name: "calibration".to_owned(), text }, Purpose::Solving)?;
@@ -49,7 +60,9 @@ pub fn run() -> anyhow::Result<Exit> {
             for _ in 0..ROUNDS {
                 // The first reference is the scene's own: what is measured is the solver.
                 let record = run_case(case, &study.references[..1], Kernel::Fastest, true, &|_, _| true)?;
-                least = record.wall.iter().map(|sample| sample.seconds).fold(least, f64::min);
+                // The processor's time where the system tells it: others may use the machine meanwhile.
+                let times = record.wall.iter().map(|sample| sample.cpu_seconds.unwrap_or(sample.seconds));
+                least = times.fold(least, f64::min);
                 steps = record.counters.steps;
             }
             let per_point = |seconds: f64| 1e9 * seconds / case.expected_points() as f64;

@@ -63,8 +63,43 @@ impl Exit {
 
 /// An error as a person reads it.
 pub fn sentence(error: &anyhow::Error) -> String {
-    match error.downcast_ref::<StudyError>() {
-        Some(study) => study.to_string(),
-        None => format!("error: {error:#}"),
+    if let Some(study) = error.downcast_ref::<StudyError>() {
+        return study.to_string();
+    }
+    // An error that already has its cause in its own words does not say it twice.
+    let mut told = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if told.is_empty() {
+            told = cause;
+        } else if !told.ends_with(&cause) {
+            told = format!("{told}: {cause}");
+        }
+    }
+    format!("error: {}", without_numbers_of_the_system(&told))
+}
+
+/// A sentence without what only the system's manual explains: ` (os error 2)`.
+fn without_numbers_of_the_system(sentence: &str) -> String {
+    let mut rest = sentence;
+    let mut told = String::new();
+    while let Some((before, after)) = rest.split_once(" (os error ") {
+        told.push_str(before);
+        rest = after.split_once(')').map_or("", |(_, after)| after);
+    }
+    told + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anyhow::Context;
+
+    #[test]
+    fn a_cause_is_told_once_and_without_the_number_of_the_system() {
+        let none = || std::io::Error::from_raw_os_error(2);
+        let error = anyhow::Error::from(none()).context("cannot read a.csv");
+        assert_eq!(sentence(&error), "error: cannot read a.csv: No such file or directory");
+        let twice = Err::<(), _>(none()).context(format!("cannot read a.csv: {}", none())).expect_err("none");
+        assert_eq!(sentence(&twice), "error: cannot read a.csv: No such file or directory");
     }
 }

@@ -24,13 +24,14 @@ use crate::cli::commands::{
 };
 use crate::cli::exit::Exit;
 use crate::cli::stream::{say, written};
+use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::io::Write;
 use std::process::ExitCode;
 
 /// Verifies coupled material point solvers for saturated soil against exact solutions.
 #[derive(Debug, Parser)]
-#[command(name = "oedometer", version, about, after_help = exit::HELP, max_term_width = 100)]
+#[command(name = "oedometer", version, about, after_help = exit::HELP, max_term_width = 80)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -91,6 +92,17 @@ fn command() -> clap::Command {
     plain(Arguments::command())
 }
 
+/// A complaint about the value of an option in words for people, where the parser of numbers wrote it.
+fn of_a_value(said: &str) -> String {
+    let words = [
+        ("invalid digit found in string", "it is no whole number"),
+        ("invalid float literal", "it is no number"),
+        ("cannot parse integer from empty string", "it is empty"),
+        ("number too large to fit in target type", "it is too large"),
+    ];
+    words.iter().fold(said.trim_end().to_owned(), |said, (from, to)| said.replace(from, to))
+}
+
 /// Parses the command line, runs the command, and turns its end into an exit code.
 pub fn main() -> ExitCode {
     ExitCode::from(main_with(std::env::args_os()))
@@ -102,6 +114,10 @@ pub fn main_with(words: impl IntoIterator<Item = std::ffi::OsString>) -> u8 {
         command().try_get_matches_from(words).and_then(|matches| Arguments::from_arg_matches(&matches));
     let arguments = match parsed {
         Ok(arguments) => arguments,
+        Err(error) if error.kind() == ErrorKind::ValueValidation => {
+            say!("{}", of_a_value(&error.render().to_string()));
+            return Exit::Usage as u8;
+        }
         Err(error) => {
             // Help and version are asked for, and no usage error.
             let said = error.print().and_then(|()| std::io::stdout().flush());

@@ -48,20 +48,51 @@ pub fn is_shipped(study: &str, named: &[PathBuf]) -> bool {
     named.is_empty() || named.iter().any(|path| path.as_os_str() == study && shipped_of(path).is_some())
 }
 
+/// What is said of a study that is neither a file nor shipped, with what may have been meant.
+fn not_there(path: &Path) -> String {
+    let told = path.display().to_string();
+    let with_end = PathBuf::from(format!("{told}.toml"));
+    let shipped = shipped_names();
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let beside = files_beside(path);
+    let help = if with_end.is_file() {
+        format!("did you mean the file `{}`?", with_end.display())
+    } else if path.extension().is_some() && shipped.contains(&stem) {
+        format!("the shipped study is called `{stem}`, without a folder and an end")
+    } else if let Some(near) =
+        nearest(&told, shipped.iter().map(String::as_str).chain(beside.iter().map(String::as_str)))
+    {
+        format!("did you mean `{near}`?")
+    } else {
+        "`oedometer list` names the shipped ones, and `oedometer new NAME` writes one of your own".to_owned()
+    };
+    format!("cannot read the study {told}: no such file, and no shipped study: {help}")
+}
+
+/// The study files in the folder of a path, as they would be named.
+fn files_beside(path: &Path) -> Vec<String> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let searched = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let entries = std::fs::read_dir(searched).into_iter().flatten().flatten();
+    let names = entries.map(|entry| folder.join(entry.file_name()));
+    names
+        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
+        .map(|path| path.display().to_string())
+        .collect()
+}
+
 /// The text of one file, or of a pipe.
 fn read(path: &Path) -> anyhow::Result<StudySource> {
     if let Some(shipped) = shipped_of(path) {
         return Ok(shipped);
     }
-    if !path.exists() && path.extension().is_none() {
-        let names = shipped_names();
-        let told = path.display().to_string();
-        let near = nearest(&told, names.iter().map(String::as_str));
-        let help = near.map_or("`oedometer list` names those there are".to_owned(), |near| {
-            format!("did you mean `{near}`?")
-        });
+    if !path.exists() {
+        return Err(Ended::usage(not_there(path)));
+    }
+    if path.is_dir() {
+        let told = path.display();
         return Err(Ended::usage(format!(
-            "cannot read the study {told}: No such file, and no shipped study: {help}"
+            "cannot read the study {told}: it is a folder; name the study files in it, like {told}/*.toml"
         )));
     }
     let refused =

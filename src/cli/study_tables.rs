@@ -10,14 +10,14 @@ use crate::record::machines_table::MachinesTable;
 use crate::record::packed_table::{RowsOf, write_packed_table};
 use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;
+use crate::record::table_file::TableForm;
 use crate::record::tidy;
-use crate::record::whole_file::{write_streamed, write_whole};
+use crate::record::whole_file::write_whole;
 use crate::study::check::Study;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Cases up to which a table is plain CSV; that of more is compressed, to a fifteenth.
 const MOST_PLAIN_CASES: usize = 2000;
@@ -30,9 +30,9 @@ const MACHINES: &str = "machines.csv";
 pub enum Beside {
     /// Nothing.
     Nothing,
-    /// Tables of profiles, of settlement over time, and of what every column means. Of a packed study the last
-    /// alone: `oedometer records` prints the others.
-    Tables,
+    /// Tables of profiles, of settlement over time, and of what every column means; the first two in a form. Of a
+    /// packed study the last alone: `oedometer records` prints the others.
+    Tables(TableForm),
 }
 
 /// Writes the CSV of every record that a store keeps of a study, whichever run made it: a run of
@@ -52,9 +52,9 @@ pub fn write_table(
     let table = if store.is_packed() && cases.len() > MOST_PLAIN_CASES {
         compressed_table(study, store, &cases)?
     } else {
-        plain_tables(study, store, at_hand, &cases, beside == Beside::Tables && !store.is_packed())?
+        single_tables(study, store, at_hand, &cases, beside)?
     };
-    if beside == Beside::Tables {
+    if let Beside::Tables(_) = beside {
         write_whole(&store.folder().join("columns.csv"), columns_csv()?.as_bytes())?;
     }
     Ok(table)
@@ -86,19 +86,22 @@ fn with_records(
     Ok(())
 }
 
-fn plain_tables(
+fn single_tables(
     study: &Study,
     store: &RecordStore,
     at_hand: &[Record],
     cases: &[&Case],
-    with_long_tables: bool,
+    beside: Beside,
 ) -> anyhow::Result<PathBuf> {
     let at_hand: HashMap<&str, &Record> =
         at_hand.iter().map(|record| (record.hash.as_str(), record)).collect();
     let own = Provenance::of_this_program().sources;
     let (mut foreign, mut machines) = (0, MachinesTable::default());
-    let table = store.folder().join(format!("{}.csv", study.name));
-    write_rows(&table, &tidy::header_line(), |out| {
+    let form = match beside {
+        Beside::Nothing => TableForm::Plain,
+        Beside::Tables(form) => form,
+    };
+    let table = form.write(store.folder(), &study.name, &tidy::header_line(), |out| {
         with_records(store, &at_hand, cases, |record| {
             foreign += usize::from(record.provenance.sources != own);
             machines.add(record);
@@ -107,29 +110,13 @@ fn plain_tables(
     })?;
     tell_of_foreign(study, foreign);
     write_whole(&store.folder().join(MACHINES), machines.to_csv()?.as_bytes())?;
+    let with_long_tables = beside != Beside::Nothing && !store.is_packed();
     for long in LongTable::ALL.into_iter().filter(|_| with_long_tables) {
-        let path = store.folder().join(format!("{}.csv", long.name()));
-        write_rows(&path, &long.header_line(), |out| {
+        form.write(store.folder(), long.name(), &long.header_line(), |out| {
             with_records(store, &at_hand, cases, |record| Ok(long.write_rows(&mut *out, record)?))
         })?;
     }
     Ok(table)
-}
-
-/// Writes a file of a header and of rows as they are made, on the disk at the end.
-fn write_rows(
-    path: &Path,
-    header: &str,
-    fill: impl FnOnce(&mut BufWriter<&mut std::fs::File>) -> std::io::Result<()>,
-) -> anyhow::Result<()> {
-    Ok(write_streamed(path, |file| {
-        let mut out = BufWriter::with_capacity(1 << 16, &mut *file);
-        out.write_all(header.as_bytes())?;
-        fill(&mut out)?;
-        out.flush()?;
-        drop(out);
-        file.sync_all()
-    })?)
 }
 
 /// Writes which machines and builds the records of a packed study are of.

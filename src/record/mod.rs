@@ -15,6 +15,7 @@ pub mod provenance;
 pub(crate) mod seal;
 pub(crate) mod single_files;
 pub mod store;
+pub mod table_file;
 pub mod tidy;
 pub mod whole_file;
 

@@ -31,26 +31,6 @@ pub enum SceneProblem {
 }
 
 impl SceneProblem {
-    /// The scene's problem on `cells` cells over the height with `points_per_cell` points a cell
-    /// and direction.
-    ///
-    /// # Errors
-    /// When the parameters are impossible.
-    pub fn new(
-        scene: SceneKind,
-        column: &Column,
-        soil: &Material,
-        method: Method,
-        cells: usize,
-        points_per_cell: usize,
-    ) -> Result<Self, ExactError> {
-        Ok(if column.dimensions == 1 {
-            Self::Column(column_problem(scene, column, soil, method, cells, points_per_cell)?)
-        } else {
-            Self::Plane(column_problem(scene, column, soil, method, cells, points_per_cell)?)
-        })
-    }
-
     /// Predicts and observes its critical step, with runs beside it up to `end` seconds or
     /// `most_steps` steps.
     ///

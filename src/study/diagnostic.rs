@@ -7,6 +7,8 @@ use std::ops::Range;
 
 /// Width of a rendered diagnostic: fixed, so that output does not depend on the terminal.
 const RENDER_WIDTH: usize = 110;
+/// Names that are listed where none is near.
+const MOST_LISTED: usize = 12;
 /// Edit distance up to which a name is taken for a misspelt one.
 const CLOSE: f64 = 0.6;
 
@@ -102,7 +104,15 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 
 /// Help for a word that is none of the candidates.
 pub fn one_of(word: &str, candidates: &[&str]) -> String {
-    match nearest(word, candidates.iter().copied()) {
+    let near = nearest(word, candidates.iter().copied());
+    match near {
+        Some(near) if candidates.len() > MOST_LISTED => {
+            format!("did you mean `{near}`? `oedometer list` has all {}", candidates.len())
+        }
+        None if candidates.len() > MOST_LISTED => {
+            let some = listed(&candidates[..MOST_LISTED]);
+            format!("it can be {some}, …: `oedometer list` has all {}", candidates.len())
+        }
         Some(near) => format!("did you mean `{near}`? It can be {}", listed(candidates)),
         None => format!("it can be {}", listed(candidates)),
     }

@@ -1,7 +1,7 @@
 //! A study as it was typed: every value with its place in the text, nothing judged yet.
 
 use crate::case::Task;
-use crate::case::keys::{Key, choices};
+use crate::case::keys::{KEYS, Key, choices};
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
@@ -12,6 +12,7 @@ use crate::scene::SceneKind;
 use crate::study::choice_tables::{Named, Placed, Typed, TypedList};
 use crate::study::diagnostic::{Diagnostic, StudyError, nearest};
 use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
+use crate::study::grammar;
 use crate::study::inputs::{InputTable, List, One, OwnKeys};
 use crate::study::mistakes;
 use crate::study::result_table::ResultTable;
@@ -347,33 +348,34 @@ impl StudySource {
 /// A parser's error with the nearest key, where the key is unknown.
 fn explained(error: &toml::de::Error, text: &str) -> Diagnostic {
     let message = error.message().trim().replace('\n', "; ");
-    if let Some((message, help)) = mistakes::explained(&message, error.span().as_ref(), text) {
-        return Diagnostic { message, span: error.span(), help: Some(help) };
+    let span = error.span();
+    if let Some((message, help)) = mistakes::explained(&message, span.as_ref(), text) {
+        return Diagnostic { message, span, help: Some(help) };
+    }
+    if let Some(diagnostic) = grammar::explained(&message, span.as_ref(), text) {
+        return diagnostic;
     }
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let help = match quoted.split_first() {
+    let (message, help) = match quoted.split_first() {
         Some((word, candidates)) if message.starts_with("unknown field") => {
-            Some(match nearest(word, candidates.iter().copied()) {
+            let help = match nearest(word, candidates.iter().copied()) {
                 Some(near) => format!("did you mean `{near}`?"),
-                None => format!("the keys here are {}", candidates.join(", ")),
-            })
+                None => {
+                    table_of(word).unwrap_or_else(|| format!("the keys here are {}", candidates.join(", ")))
+                }
+            };
+            (format!("unknown key `{word}`"), help)
         }
-        _ if is_bare_word(error, text) => Some("words are written in quotes, like \"terzaghi\"".to_owned()),
-        _ if ["missing field `title`", "missing field `scene`"].contains(&message.as_str()) => {
-            Some("a study needs at least `title`, `scene` and one [[sweep]] block or [[result]]".to_owned())
-        }
-        _ => None,
+        _ => grammar::in_short(&message),
     };
-    let message = match (message.starts_with("unknown field"), quoted.first()) {
-        (true, Some(word)) => format!("unknown key `{word}`"),
-        _ => message,
-    };
-    Diagnostic { message, span: error.span(), help }
+    Diagnostic { message, span, help: Some(help) }
 }
 
-/// Whether the parser stumbled over a word where a value should be.
-fn is_bare_word(error: &toml::de::Error, text: &str) -> bool {
-    let found = error.span().and_then(|span| text.get(span.start..)).unwrap_or_default();
-    let before = error.span().and_then(|span| text.get(..span.start)).unwrap_or_default();
-    found.starts_with(char::is_alphabetic) && before.trim_end_matches([' ', '\t']).ends_with(['=', '[', ','])
+/// Where a key belongs that stands outside its table.
+fn table_of(word: &str) -> Option<String> {
+    let key = KEYS.iter().find(|key| key.name == word)?;
+    let (table, is_block) =
+        key.tables.iter().find(|table| **table != "sweep").map_or(("sweep", true), |t| (t, false));
+    let header = if is_block { format!("[[{table}]]") } else { format!("[{table}]") };
+    Some(format!("`{word}` belongs to {header}: `{table}.{word}`"))
 }

@@ -1,5 +1,6 @@
 //! The parser's complaints in the words of study files: what was written, what the key takes, what to write.
 
+use crate::case::keys::{Key, Kind};
 use std::ops::Range;
 
 /// What a key takes, by what the parser says it expected: in words, and as an example.
@@ -19,27 +20,43 @@ const TAKES: [(&str, &str, &str); 10] = [
 /// A complaint about a wrong kind of value as a sentence with what to write; none where the parser complains of
 /// something else.
 pub fn explained(message: &str, span: Option<&Range<usize>>, text: &str) -> Option<(String, String)> {
-    let (_, expected) = message.strip_prefix("invalid type: ")?.split_once(", expected ")?;
     let span = span?;
+    if let Some(field) = message.strip_prefix("missing field `") {
+        return Some(without(field.trim_end_matches('`'), span, text));
+    }
+    let wrong = message.strip_prefix("invalid type: ").or_else(|| message.strip_prefix("invalid length "));
+    let (_, expected) = wrong?.split_once(", expected ")?;
+    let expected = expected.split(" with ").next().unwrap_or(expected);
     let written = written_at(text, span);
     let Some(key) = key_before(text, span.start) else {
         return Some((format!("`{written}` stands where a table belongs"), of_a_header(expected, &written)));
     };
     let told = |takes: &str| format!("`{key}` takes {takes}, and `{written}` is none");
     let write = |value: &str| format!("write `{key} = {value}`");
+    let bare = written.trim_matches('"');
+    let is_number = bare.parse::<f64>().is_ok();
     if expected == "a sequence" {
-        let inner = if key == "time_step" && written.parse::<f64>().is_ok() {
-            format!("{{ seconds = {written} }}")
-        } else {
-            written.clone()
+        let inner = match Key::named(key, "sweep").map(|key| key.kind) {
+            Some(Kind::TimeStep) if is_number => format!("{{ seconds = {bare} }}"),
+            Some(Kind::Count(_) | Kind::Number(_)) if is_number => bare.to_owned(),
+            _ => written.clone(),
         };
         return Some((told("a list"), write(&format!("[{inner}]"))));
     }
     if expected == "a string" {
-        return Some((told("a word in quotes"), write(&format!("\"{}\"", written.trim_matches('"')))));
+        let word = written.trim_matches(['[', ']', '"', ' ']);
+        return Some((told("a word in quotes"), write(&format!("\"{word}\""))));
+    }
+    if ["i64", "f64"].contains(&expected) && written.starts_with('[') && Key::named(key, "sweep").is_some() {
+        return Some((
+            told("one value here"),
+            format!("several values stand in a [[sweep]]: `{key} = {written}`"),
+        ));
+    }
+    if ["i64", "f64"].contains(&expected) && is_number && bare != written {
+        return Some((told("a number"), format!("numbers stand without quotes: `{bare}`")));
     }
     let (_, takes, example) = TAKES.iter().find(|(word, _, _)| *word == expected)?;
-    let is_number = written.parse::<f64>().is_ok();
     let help = match expected {
         "struct OrderTable" if is_number => {
             write(&format!("{{ value = {written}, minus = 0.1, plus = 0.1 }}"))
@@ -50,6 +67,25 @@ pub fn explained(message: &str, span: Option<&Range<usize>>, text: &str) -> Opti
         _ => format!("write it like `{key} = {example}`"),
     };
     Some((told(takes), help))
+}
+
+/// A key that a table cannot do without.
+fn without(field: &str, span: &Range<usize>, text: &str) -> (String, String) {
+    let Some(key) = key_before(text, span.start).filter(|_| text[span.start..].starts_with('{')) else {
+        let example = if field == "scene" { "\"terzaghi\"" } else { "\"what the study is about\"" };
+        return (
+            format!("the study has no `{field}`"),
+            format!(
+                "it needs `title`, `scene` and one [[sweep]] block or [[result]]: add `{field} = {example}` at the top"
+            ),
+        );
+    };
+    let takes = TAKES.iter().map(|(_, _, example)| *example);
+    let example = takes.rev().find(|example| example.contains(&format!("{{ {field} =")));
+    (
+        format!("`{key}` has no `{field}`"),
+        format!("write it like `{key} = {}`", example.unwrap_or("{ below = 1e-3 }")),
+    )
 }
 
 /// What to write where a whole table is of the wrong kind.
@@ -127,7 +163,19 @@ mod tests {
             ),
             ("cells = [4, 8]", "cells = 4", ["`cells` takes a list", "write `cells = [4]`"]),
             ("cells = [4, 8]", "cells = [2.5]", ["`cells` takes a whole number", "`2.5` is none"]),
-            ("porosity = 0.3", "porosity = \"0.3\"", ["`porosity` takes a number", "like `porosity = 0.1`"]),
+            ("porosity = 0.3", "porosity = \"0.3\"", ["`porosity` takes a number", "without quotes: `0.3`"]),
+            ("porosity = 0.3", "porosity = \"a\"", ["`porosity` takes a number", "like `porosity = 0.1`"]),
+            (
+                "porosity = 0.3",
+                "porosity = [0.3, 0.4]",
+                ["one value here", "[[sweep]]: `porosity = [0.3, 0.4]`"],
+            ),
+            (
+                "scene = \"terzaghi\"",
+                "scene = [\"terzaghi\"]",
+                ["a word in quotes", "`scene = \"terzaghi\"`"],
+            ),
+            ("cells = [4, 8]", "cells = \"4\"", ["`cells` takes a list", "write `cells = [4]`"]),
             ("[true]", "[\"yes\"]", ["`mapping_back` takes true or false", "`\"yes\"` is none"]),
             ("method = [\"MPM\"]", "method = [3]", ["`method` takes the name of a method", "GC-SRI-patch"]),
             (

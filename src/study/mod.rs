@@ -6,6 +6,7 @@ pub mod choice_tables;
 pub mod diagnostic;
 pub mod expectation;
 pub mod file;
+pub mod grammar;
 pub mod inputs;
 pub mod mistakes;
 pub mod name;

@@ -2,8 +2,8 @@
 
 /// Longest name, bytes: file systems take 255, and what is made of a name puts more around it.
 const LONGEST: usize = 100;
-/// Names by which the report and the golden values call parts of their own.
-const TAKEN: [&str; 4] = ["findings", "survival", "how", "references"];
+/// Names by which the report, the golden values and the tables call parts of their own.
+const TAKEN: [&str; 7] = ["findings", "survival", "how", "references", "profiles", "history", "columns"];
 
 /// Name of a study by its file: without folders and extension.
 pub fn name_of(file: &str) -> &str {
@@ -30,9 +30,9 @@ pub fn refused_name(name: &str) -> Option<String> {
     if name.len() > LONGEST {
         return Some(format!("it has {} letters: take {LONGEST} at most", name.len()));
     }
-    TAKEN
-        .contains(&name)
-        .then(|| format!("`{name}` is what a part of the report or of the golden values is called"))
+    TAKEN.contains(&name).then(|| {
+        format!("`{name}` is what a part of the report, of the golden values or of the tables is called")
+    })
 }
 
 #[cfg(test)]

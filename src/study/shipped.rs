@@ -13,7 +13,7 @@ macro_rules! shipped {
 /// The names in the order of the report, and the texts.
 const SHIPPED: &[(&str, &str)] = shipped! {
     "terzaghi-mesh" "terzaghi-floor" "terzaghi-points" "terzaghi-time-step" "step-control"
-    "value-uncertainty" "terzaghi-methods" "terzaghi-integrators" "any-soil" "jittered-points" "work-precision" "terzaghi-moving"
+    "value-uncertainty" "terzaghi-methods" "terzaghi-integrators" "any-soil" "any-column" "jittered-points" "work-precision" "terzaghi-moving"
     "single-mode" "dynamic-column" "dynamic-ramp" "dynamic-growth" "dynamic-mode" "standing-wave-mesh"
     "standing-wave-step" "column-in-the-plane" "column-in-the-plane-steps" "layer-locking" "layer-mesh"
     "layer-smooth" "mandel" "self-weight" "self-weight-large" "at-rest" "stability-conductivity" "stability-stiffness" "stability-porosity" "stability-points"

@@ -272,8 +272,8 @@ fn every_complaint_is_made_at_once() {
 fn what_is_no_study_at_all_is_refused() {
     let told = refused_with("scene = \"terzaghi\"", "scene = terzaghi");
     assert_snapshot("bad_input_not_toml", &told);
-    assert_says(&refused_with("title = \"Sound\"\n", ""), &["missing field `title`", "needs at least"]);
-    assert_says(&refused_study(""), &["missing field"]);
+    assert_says(&refused_with("title = \"Sound\"\n", ""), &["the study has no `title`", "it needs"]);
+    assert_says(&refused_study(""), &["the study has no"]);
     assert_says(&refused_study("# Heading\n\nSome *Markdown*, and no study.\n"), &["study.toml:3:", "^"]);
     assert_says(&refused_study([0_u8, 159, 146, 150, 255, 1, 2, 3]), &["study.toml", "UTF-8"]);
     let nested = format!("title = {}1{}\n", "[".repeat(5000), "]".repeat(5000));
@@ -285,9 +285,9 @@ fn files_that_cannot_be_read_are_named() {
     let folder = TempDir::new().expect("a folder");
     for command in ["run", "plan"] {
         let told = refused_in(folder.path(), &[command, "nowhere.toml"]);
-        assert_says(&told, &["nowhere.toml", "No such file"]);
+        assert_says(&told, &["nowhere.toml", "no such file"]);
         let told = refused_in(folder.path(), &[command, "."]);
-        assert_says(&told, &["the study .", "directory"]);
+        assert_says(&told, &["the study .", "folder"]);
     }
     // A sound study beside a missing one: nothing of it is run.
     std::fs::write(folder.path().join("study.toml"), SOUND).expect("a file");

@@ -1,7 +1,11 @@
 //! The first hour of a new user: a study of one's own, a soft soil, a shipped study by its name.
 
 use crate::program::{call, folder_with};
+use flate2::read::GzDecoder;
 use std::fs;
+use std::io::Read;
+use std::path::Path;
+use std::process::Command;
 
 const SOFT: &str = r#"title = "A softer soil"
 scene = "terzaghi"
@@ -71,4 +75,187 @@ fn a_shipped_study_is_there_by_its_name() {
     assert!(told.code == 0 && told.out.contains("stability-slow-growth,"), "{}", told.err);
     let told = call(at, &["plan", "terzaghi-mehs"]);
     assert!(told.code == 2 && told.err.contains("did you mean `terzaghi-mesh`?"), "{}", told.err);
+}
+
+/// Says why a test proves nothing here.
+#[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
+fn skipped(why: &str) {
+    eprintln!("skipped: {why}");
+}
+
+/// A python that has pandas, if there is one: that of the environment, or the one on the path.
+fn python_with_pandas() -> Option<String> {
+    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let asked = Command::new(&python).args(["-c", "import numpy, pandas"]).output();
+    asked.is_ok_and(|output| output.status.success()).then_some(python)
+}
+
+#[test]
+fn the_examples_of_pandas_print_what_the_manual_shows() {
+    let Some(python) = python_with_pandas() else {
+        return skipped("no python3 with pandas here (PYTHON names one)");
+    };
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let at = folder.path();
+    call(at, &["new", "my-study"]);
+    assert_eq!(call(at, &["run", "my-study.toml"]).code, 0);
+    let manual = include_str!("../../docs/csv.md");
+    let fences: Vec<&str> = manual.split("```").collect();
+    let mut run = 0;
+    for place in (0..fences.len()).filter(|place| fences[*place].starts_with("python\n")) {
+        let output = Command::new(&python)
+            .args(["-c", &fences[place]["python\n".len()..]])
+            .current_dir(at)
+            .output()
+            .expect("python");
+        let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        let printed = String::from_utf8_lossy(&output.stdout);
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(words(&printed), words(fences[place + 2]), "{printed}{told}");
+        run += 1;
+    }
+    assert_eq!(run, 2);
+}
+
+#[test]
+fn compressed_tables_have_the_text_of_the_plain_ones() {
+    let folder = folder_with(SOFT);
+    let at = folder.path();
+    assert_eq!(call(at, &["run", "short.toml"]).code, 0);
+    let plain = fs::read(at.join("out/short/profiles.csv")).expect("a table");
+    assert_eq!(call(at, &["run", "short.toml", "--resume", "--compress"]).code, 0);
+    assert!(!at.join("out/short/short.csv").exists(), "one form of a table is left");
+    let packed = fs::read(at.join("out/short/profiles.csv.gz")).expect("a table");
+    let mut text = Vec::new();
+    GzDecoder::new(packed.as_slice()).read_to_end(&mut text).expect("gzip");
+    assert_eq!(text, plain);
+}
+
+#[test]
+fn a_change_of_a_percent_is_seen_by_golden_values_of_swept_soils() {
+    let study = SOFT.replace("youngs_modulus = 0.2e6\n", "").replace(
+        "cells = [5, 10]",
+        "integrator = [\"implicit\"]\ncells = [5, 10]\nyoungs_modulus = [0.2e6, 1e6]",
+    );
+    let folder = folder_with(&study);
+    let at = folder.path();
+    let told = call(at, &["plan", "short.toml"]);
+    assert!(
+        told.out.contains("youngs_modulus=200000") && told.out.contains("youngs_modulus=1000000"),
+        "{}",
+        told.out
+    );
+    let told = call(at, &["explain", "cells=10 youngs_modulus=200000", "short.toml"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+}
+
+#[test]
+fn geometry_is_swept_and_labels_tell_it() {
+    let study = SOFT.replace("cells = [5, 10]", "cells = [5, 10]\nheight = [1.0, 2.0]\nload = [1.0, 10.0]");
+    let folder = folder_with(&study);
+    let told = call(folder.path(), &["run", "short.toml"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    let table = fs::read_to_string(folder.path().join("out/short/short.csv")).expect("a table");
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    let header = reader.headers().expect("a head").clone();
+    let place = |name: &str| header.iter().position(|column| column == name).expect(name);
+    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
+    // In T_v a linear column knows neither its height nor its load.
+    let error = |height: &str, load: &str| {
+        let is = |row: &&csv::StringRecord| {
+            [("height", height), ("load", load), ("cells", "10"), ("quantity", "pressure"), ("norm", "l2")]
+                .iter()
+                .all(|(name, value)| &row[place(name)] == *value)
+        };
+        rows.iter().find(is).map(|row| row[place("value")].parse::<f64>().expect("a number")).expect("a row")
+    };
+    let first = error("1", "1");
+    for (height, load) in [("1", "10"), ("2", "1"), ("2", "10")] {
+        assert!((error(height, load) / first - 1.0).abs() < 1e-6, "{height} {load}");
+    }
+    let refused = SOFT.replace("cells = [5, 10]", "cells = [5]\nlength = [1.0]");
+    let folder = folder_with(&refused);
+    let told = call(folder.path(), &["plan", "short.toml"]);
+    assert!(told.code == 2 && told.err.contains("`terzaghi` has no `length`"), "{}", told.err);
+    let unnamed = SOFT.replace("cells = [5, 10]", "cells = [5, 10]\nheight = [1.0, 2.0]")
+        + "[[expect]]\ntime_factor = 0.1\nat = { cells = 10, below = 1 }\n";
+    let told = call(folder_with(&unnamed).path(), &["plan", "short.toml"]);
+    assert!(told.code == 2 && told.err.contains("several heights"), "{}", told.err);
+}
+
+/// What a shell would be offered for a line.
+fn offered(at: &Path, words: &[&str]) -> String {
+    let script = "source ./completions; COMP_WORDS=(oedometer \"$@\"); COMP_CWORD=$#; \
+                  _oedometer_with_studies oedometer \"${@: -1}\" \"${COMP_WORDS[COMP_CWORD-1]}\"; echo \"${COMPREPLY[@]}\"";
+    let output =
+        Command::new("bash").args(["--norc", "-c", script, "bash"]).args(words).current_dir(at).output();
+    String::from_utf8_lossy(&output.expect("bash").stdout).trim().to_owned()
+}
+
+#[test]
+fn bash_offers_shipped_studies_files_scenes_and_methods() {
+    if Command::new("bash").arg("--version").output().is_err() {
+        return skipped("no bash here");
+    }
+    let folder = folder_with(SOFT);
+    let at = folder.path();
+    fs::write(at.join("completions"), call(at, &["completions", "bash"]).out).expect("a file");
+    assert_eq!(offered(at, &["run", "terzaghi-m"]), "terzaghi-mesh terzaghi-methods terzaghi-moving");
+    assert_eq!(offered(at, &["check", "sh"]), "short.toml");
+    assert_eq!(offered(at, &["check", "short.toml", "any-s"]), "any-soil");
+    assert_eq!(offered(at, &["check", "--jo"]), "--jobs");
+    assert_eq!(offered(at, &["list", "--show", "any-s"]), "any-soil");
+    assert_eq!(offered(at, &["solve", "cos"]), "cosine-layer");
+    assert_eq!(offered(at, &["exact", "mand"]), "mandel");
+    assert_eq!(offered(at, &["solve", "terzaghi", "--method", "GC-B"]), "GC-Bbar-patch GC-Bbar-patch-cells");
+    for shell in ["zsh", "fish"] {
+        let script = call(at, &["completions", shell]).out;
+        assert!(script.contains("terzaghi-mesh") && script.contains("cosine-layer"), "{shell}");
+    }
+}
+
+#[test]
+fn every_help_fits_a_terminal_and_has_no_marks_of_the_source() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let commands = call(folder.path(), &["--help"]).out;
+    let names =
+        commands.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let mut seen = 0;
+    for name in names.filter_map(|line| line.split_whitespace().next()).filter(|name| *name != "help") {
+        let help = call(folder.path(), &[name, "--help"]).out;
+        for line in help.lines() {
+            assert!(line.chars().count() <= 80, "{name}: {line}");
+            assert!(!line.contains('`') && !line.contains("]("), "{name}: {line}");
+        }
+        seen += 1;
+    }
+    assert!(seen >= 16, "{seen} commands");
+}
+
+#[test]
+fn mistakes_at_the_command_line_are_answered_with_what_to_type() {
+    let folder = folder_with(SOFT);
+    let at = folder.path();
+    for (typed, parts) in [
+        (&["check", "short"][..], &["did you mean the file `short.toml`?"][..]),
+        (&["check", "shrt.toml"], &["did you mean `short.toml`?"]),
+        (&["check", "terzaghi-mesh.toml"], &["the shipped study is called `terzaghi-mesh`"]),
+        (&["run", "."], &["it is a folder"]),
+        (&["run", "nothing-like-it"], &["`oedometer new NAME`"]),
+        (&["run", "short.toml", "--case", "zzz"], &["no case has a hash that begins with `zzz`"]),
+        (&["explain", "zzz", "short.toml"], &["no case of `short` is described by `zzz`"]),
+        (&["solve", "terzaghi", "--cells", "ten"], &["it is no whole number"]),
+        (&["solve", "terzaghi", "--method", "mpm"], &["did you mean `MPM`?", "`oedometer list` has all"]),
+        (&["solve", "terzaghi", "--set", "porosity=0.4"], &["belongs to [material]", "material.porosity"]),
+        (&["score", "none.csv", "--scene", "terzaghi"], &["none.csv: No such file or directory\n"]),
+    ] {
+        let told = call(at, typed);
+        assert!(told.code == 2 || told.code == 4, "{typed:?}: {}", told.code);
+        for part in parts {
+            assert!(told.err.contains(part), "{typed:?}: no `{part}` in {}", told.err);
+        }
+        for word in ["os error", "invalid digit", "expected", "literal"] {
+            assert!(!told.err.contains(word), "{typed:?}: `{word}` in {}", told.err);
+        }
+    }
 }

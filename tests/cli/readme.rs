@@ -1,4 +1,4 @@
-//! What README and CONTRIBUTING show is what the program does: every command of a text block is run and
+//! What README, the manual and CONTRIBUTING show is what the program does: every command of a text block is run and
 //! its printed output compared, words as words and numbers to the digits shown; study files are run under
 //! the names given; figures in the text that a command prints are held against it; what is named exists.
 //!
@@ -21,7 +21,23 @@ fn root() -> &'static Path {
 }
 
 fn readme() -> String {
-    fs::read_to_string(root().join("README.md")).expect("README.md")
+    text_of("README.md")
+}
+
+fn text_of(document: &str) -> String {
+    fs::read_to_string(root().join(document)).expect(document)
+}
+
+/// README and the pages of the manual.
+fn documents() -> Vec<String> {
+    let pages =
+        fs::read_dir(root().join("docs")).expect("docs/").map(|entry| entry.expect("a page").file_name());
+    let is_page = |name: &std::ffi::OsString| Path::new(name).extension().is_some_and(|end| end == "md");
+    let pages = pages.filter(is_page).map(|name| format!("docs/{}", name.to_string_lossy()));
+    let mut names: Vec<String> = pages.collect();
+    names.sort();
+    names.insert(0, "README.md".to_owned());
+    names
 }
 
 /// A scratch folder that looks like the repository.
@@ -180,34 +196,95 @@ fn lines_are_compared_by_words_and_by_the_digits_shown() {
 
 #[test]
 fn every_command_shown_prints_what_is_shown() {
-    let folder = place();
     let mut run = 0;
     let mut wrong = Vec::new();
-    for (first, lines) in blocks(&readme(), "text") {
-        let mut at = folder.path().to_owned();
-        for shown in commands(first, &lines) {
-            let words: Vec<&str> = shown.words.iter().map(String::as_str).collect();
-            match words.as_slice() {
-                ["cd", to] => at = at.join(to),
-                ["oedometer", arguments @ ..] => {
-                    run += 1;
-                    let found = printed(&call(&at, arguments));
-                    if let Some(what) = mismatch(&shown.output, &found) {
-                        wrong.push(format!(
-                            "README.md:{}: {}: {what}\n--- shown\n{}\n--- printed\n{}\n",
-                            shown.line,
-                            words.join(" "),
-                            shown.output.join("\n"),
-                            found.join("\n")
-                        ));
+    for document in documents() {
+        // The commands of a document see what those before them left.
+        let folder = place();
+        for (first, lines) in blocks(&text_of(&document), "text") {
+            let mut at = folder.path().to_owned();
+            for shown in commands(first, &lines) {
+                let words: Vec<&str> = shown.words.iter().map(String::as_str).collect();
+                match words.as_slice() {
+                    ["cd", to] => at = at.join(to),
+                    ["oedometer", arguments @ .., ">", file] => {
+                        fs::write(at.join(file), call(&at, arguments).out).expect("written");
                     }
+                    ["oedometer", arguments @ ..] => {
+                        run += 1;
+                        let found = printed(&call(&at, arguments));
+                        if let Some(what) = mismatch(&shown.output, &found) {
+                            wrong.push(format!(
+                                "{document}:{}: {}: {what}\n--- shown\n{}\n--- printed\n{}\n",
+                                shown.line,
+                                words.join(" "),
+                                shown.output.join("\n"),
+                                found.join("\n")
+                            ));
+                        }
+                    }
+                    ["echo", words @ .., ">>", file] => append(&at.join(file), &words.join(" ")),
+                    other => panic!("{document}:{}: no command of a test: {other:?}", shown.line),
                 }
-                other => panic!("README.md:{}: no command of a test: {other:?}", shown.line),
             }
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(run >= 6, "{run} commands");
+    assert!(run >= 15, "{run} commands");
+}
+
+/// Does what `echo 'TEXT' >> FILE` does.
+fn append(file: &Path, quoted: &str) {
+    let text = fs::read_to_string(file).expect("a file");
+    fs::write(file, text + quoted.trim_matches('\'') + "\n").expect("written");
+}
+
+#[test]
+fn every_link_leads_to_a_file_and_a_heading() {
+    let mut led = 0;
+    for document in documents() {
+        let text = text_of(&document);
+        let folder = root().join(&document).parent().expect("a folder").to_owned();
+        for target in
+            text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target)
+        {
+            if target.contains("://") {
+                continue;
+            }
+            let (file, heading) = target.split_once('#').unwrap_or((target, ""));
+            let path = if file.is_empty() { root().join(&document) } else { folder.join(file) };
+            assert!(path.exists(), "{document} leads to {target}");
+            if !heading.is_empty() {
+                let page = fs::read_to_string(&path).expect("a page");
+                let anchors = page.lines().filter_map(|line| line.strip_prefix("## ")).map(anchor);
+                assert!(anchors.into_iter().any(|anchor| anchor == heading), "{document} leads to {target}");
+            }
+            led += 1;
+        }
+    }
+    assert!(led > 30, "{led} links");
+}
+
+/// The anchor of a heading, as forges make it.
+fn anchor(heading: &str) -> String {
+    let kept = heading
+        .to_lowercase()
+        .chars()
+        .filter(|c| c.is_alphanumeric() || " -_".contains(*c))
+        .collect::<String>();
+    kept.replace(' ', "-")
+}
+
+#[test]
+fn readme_is_read_in_one_sitting_and_the_manual_knows_its_pages() {
+    let length = readme().len();
+    assert!(length < 12_000, "README has {length} bytes: the manual has room for more");
+    let contents = text_of("docs/README.md");
+    for page in
+        documents().iter().filter_map(|name| name.strip_prefix("docs/")).filter(|name| *name != "README.md")
+    {
+        assert!(contents.contains(&format!("]({page})")), "docs/README.md does not name {page}");
+    }
 }
 
 /// The numbers of a table's cell: `3.98e-2 → 1.98e-2 → 9.90e-3`.
@@ -288,7 +365,8 @@ fn between<'a>(text: &'a str, before: &str, after: &str) -> &'a str {
 
 #[test]
 fn figures_in_the_text_are_what_their_commands_print() {
-    let text = readme().split_whitespace().collect::<Vec<_>>().join(" ");
+    let on_one_line = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = on_one_line(readme());
     let folder = place();
     let told = call(folder.path(), &["solve", "terzaghi", "--time-step", "seconds=1e-4"]);
     assert_eq!(told.code, 3);
@@ -297,6 +375,7 @@ fn figures_in_the_text_are_what_their_commands_print() {
     let share = between(&text, "A step of 10⁻⁴ s is reported as ", " of the predicted critical one");
     let found = between(&told.err, "1.0000e-4 s is ", " of the predicted critical one");
     assert!(is_equal(share, found), "{share}: {}", told.err);
+    let text = on_one_line(text_of("docs/methods.md"));
     let told = call(folder.path(), &["solve", "terzaghi", "--integrator", "implicit"]);
     let steps = between(&text, "`solve terzaghi --integrator implicit` takes ", " steps");
     assert!(
@@ -329,7 +408,7 @@ fn the_study_file_runs_is_judged_and_is_reported() {
     assert_eq!(told.code, 0, "{}", told.err);
     let told = call(folder.path(), &["check", "my.toml"]);
     assert_eq!(told.code, 5, "{}{}", told.out, told.err);
-    assert!(told.out.starts_with("my: 1 of 1 expectations met"), "{}", told.out);
+    assert!(told.out.starts_with("my: 2 of 2 expectations met"), "{}", told.out);
     let told = call(folder.path(), &["report", "my.toml", "--out", "my-report"]);
     assert_eq!(told.code, 0, "{}", told.err);
     assert!(folder.path().join("my-report/index.html").is_file());
@@ -352,24 +431,36 @@ fn a_mistake_in_the_study_file_is_told_as_shown() {
 
 #[test]
 fn the_mapping_and_the_other_files_shown_are_read() {
-    let folder = place();
     let mut read = 0;
-    for (line, lines) in blocks(&readme(), "toml") {
-        let text = lines.join("\n") + "\n";
-        let told = if text.starts_with("sample = ") {
-            let example = root().join("examples/other-solver");
-            fs::copy(example.join("column-10.csv"), folder.path().join("column-10.csv")).expect("a copy");
-            fs::write(folder.path().join("map.toml"), text).expect("a file");
-            call(folder.path(), &["score", "column-10.csv", "--scene", "terzaghi", "--mapping", "map.toml"])
-        } else {
+    for document in documents() {
+        let folder = place();
+        for (line, lines) in blocks(&text_of(&document), "toml") {
+            let text = lines.join("\n") + "\n";
+            if text.starts_with("sample = ") {
+                // Mappings of pages of their own name arrays of many programs at once.
+                continue;
+            }
             let title = if text.starts_with("title = ") { "" } else { "title = \"shown\"\n" };
             fs::write(folder.path().join("shown.toml"), format!("{title}{text}")).expect("a file");
-            call(folder.path(), &["plan", "shown.toml"])
-        };
-        assert_eq!(told.code, 0, "README.md:{line}: {}", told.err);
-        read += 1;
+            let told = call(folder.path(), &["plan", "shown.toml"]);
+            assert_eq!(told.code, 0, "{document}:{line}: {}", told.err);
+            read += 1;
+        }
     }
-    assert!(read >= 3, "{read} files");
+    assert!(read >= 7, "{read} files");
+}
+
+/// The `oedometer` commands of shell and YAML blocks: their words behind the program's name.
+fn commands_of_scripts(text: &str) -> Vec<Vec<String>> {
+    let scripts = ["sh", "yaml"].into_iter().flat_map(|language| blocks(text, language));
+    let lines = scripts.flat_map(|(_, lines)| lines);
+    let command = |line: String| {
+        let line = line.split(" #").next().unwrap_or_default().replace(" && ", "\n");
+        let of =
+            |one: &str| Some(one.split_once("oedometer ")?.1.split_whitespace().map(str::to_owned).collect());
+        line.lines().filter(|one| !one.contains("cargo install")).filter_map(of).collect::<Vec<Vec<String>>>()
+    };
+    lines.flat_map(command).collect()
 }
 
 /// Commands in backticks, as `oedometer run STUDY.toml --case HASH` or `solve terzaghi`, in one line.
@@ -388,6 +479,11 @@ fn quoted_commands(text: &str) -> Vec<Vec<String>> {
         "plan",
         "merge",
         "spread",
+        "explain",
+        "new",
+        "list",
+        "schema",
+        "completions",
     ];
     let quoted = outside.split('`').skip(1).step_by(2).map(|code| {
         let words = code.split(' ').map(str::to_owned).collect::<Vec<_>>();
@@ -402,9 +498,9 @@ fn quoted_commands(text: &str) -> Vec<Vec<String>> {
 fn every_option_and_study_that_is_named_exists() {
     let folder = place();
     let mut seen = 0;
-    for document in ["README.md", "CONTRIBUTING.md"] {
-        let text = fs::read_to_string(root().join(document)).expect(document);
-        for words in quoted_commands(&text) {
+    for document in documents().into_iter().chain(["CONTRIBUTING.md".to_owned()]) {
+        let text = text_of(&document);
+        for words in quoted_commands(&text).into_iter().chain(commands_of_scripts(&text)) {
             let help = call(folder.path(), &[&words[0], "--help"]);
             assert_eq!(help.code, 0, "{document}: {words:?}");
             for word in &words[1..] {
@@ -415,7 +511,9 @@ fn every_option_and_study_that_is_named_exists() {
                         "{document}: {words:?} has no --{option}"
                     );
                 }
-                if word.starts_with("studies/") && !word.contains("STUDY") {
+                // Studies of a reader's own repository.
+                let is_ones_own = ["my-study", "gate", "STUDY"].iter().any(|own| word.contains(own));
+                if word.starts_with("studies/") && !is_ones_own {
                     assert!(root().join(word).is_file(), "{document}: no {word}");
                 }
             }

@@ -3,6 +3,7 @@
 
 mod architecture;
 mod convergence_classes;
+mod documented_tables;
 mod judge_verdicts;
 mod mpm_invariants;
 mod mpm_two_dimensions;

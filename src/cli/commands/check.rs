@@ -177,11 +177,8 @@ fn print(checks: &[StudyCheck], arguments: &Arguments) -> anyhow::Result<()> {
     let file_of = |study: &str| file_of(study, &arguments.studies);
     let text = match arguments.format {
         TableFormat::Table => {
-            let texts: Result<Vec<String>, _> = checks
-                .iter()
-                .map(|check| verdicts::text_of(check, file_of(&check.study).as_deref()))
-                .collect();
-            coloured(&texts?.concat())
+            let text = |check: &StudyCheck| verdicts::text_of(check, file_of(&check.study).as_deref());
+            coloured(&checks.iter().map(text).collect::<String>())
         }
         TableFormat::Markdown => verdicts::markdown_of(checks, file_of)?,
         TableFormat::Csv => verdicts::all_judgements(checks).to_csv()?,

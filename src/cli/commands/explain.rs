@@ -83,13 +83,23 @@ fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a S
     let by_words = |(study, case): &&(&Study, &Case)| {
         let told = format!("{}/{} {}", study.name, case.label(), case.method);
         case.hash().starts_with(description)
-            || description.split_whitespace().all(|word| told.split([' ', '/']).any(|part| part == word))
+            || description.split_whitespace().all(|word| {
+                told.split([' ', '/']).any(|part| part == word || part.trim_matches(['(', ')', ',']) == word)
+            })
     };
     let fitting: Vec<_> = if exact.is_empty() { all.iter().filter(by_words).collect() } else { exact };
     match fitting.as_slice() {
         [] => Err(Ended::with(
             Exit::NothingSelected,
-            format!("no case is described by `{description}`; `oedometer plan` lists them all"),
+            match studies {
+                [study] => {
+                    format!(
+                        "no case of `{}` is described by `{description}`: `oedometer plan` lists them",
+                        study.name
+                    )
+                }
+                _ => format!("no case is described by `{description}`: `oedometer plan` lists them all"),
+            },
         )),
         [(study, case)] => Ok((study, case)),
         several => {

@@ -8,6 +8,7 @@ use crate::cli::study_tables::{Beside, write_machines, write_table};
 use crate::record::Record;
 use crate::record::origins::Origins;
 use crate::record::store::RecordStore;
+use crate::record::table_file::TableForm;
 use crate::study::check::Study;
 use std::path::PathBuf;
 
@@ -107,7 +108,7 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
     }
     let there = cases.len() - holes.len();
     if there > 0 {
-        let table = write_table(study, &target, &[], Beside::Tables)?;
+        let table = write_table(study, &target, &[], Beside::Tables(TableForm::Plain))?;
         if target.is_packed() {
             write_machines(study, &target)?;
         }

@@ -18,6 +18,7 @@ use crate::foreign::reading::mapping_of;
 use crate::judge::absent::Absent;
 use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;
+use crate::record::table_file::TableForm;
 use crate::study::check::Study;
 use crate::study::check::checker::Purpose;
 use crate::study::file::StudySource;
@@ -80,6 +81,9 @@ pub struct Arguments {
     /// Take up finished records of this version and these sources, whatever build of them made them
     #[arg(long)]
     resume: bool,
+    /// Write the tables compressed, as STUDY.csv.gz: pandas reads them by the same call
+    #[arg(long)]
+    compress: bool,
     /// Who runs the cases: this machine where not given
     #[arg(long, value_enum, conflicts_with_all = ["case", "shard", "jobs"])]
     engine: Option<Engine>,
@@ -124,7 +128,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
         None => &studies,
     };
-    let reports = run_and_store(&studies, selected, &options, &arguments.out, Beside::Tables)?;
+    let form = if arguments.compress { TableForm::Compressed } else { TableForm::Plain };
+    let reports = run_and_store(&studies, selected, &options, &arguments.out, Beside::Tables(form))?;
     let mut all = Tally::default();
     for report in &reports {
         all.join(report.tally);
@@ -144,7 +149,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
         _ if all.recorded == 0 => Err(Ended::with(
             Exit::NothingSelected,
-            "no case belongs to this tier and shard, or has this hash",
+            match &arguments.case {
+                Some(hash) => {
+                    format!("no case has a hash that begins with `{hash}`: `oedometer plan` lists them")
+                }
+                None => "no case belongs to this tier and shard".to_owned(),
+            },
         )),
         _ => Ok(Exit::Pass),
     }
@@ -237,9 +247,14 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     }
     if report.of_another_program > 0 {
         say!(
-            "{}: {} records of another version or of other sources were not taken up; their cases were run again",
+            "{}: {} of another version or of other sources {} run again",
             study.name,
-            report.of_another_program
+            count_of(report.of_another_program, "record", "records"),
+            if report.of_another_program == 1 {
+                "was not taken up; its case was"
+            } else {
+                "were not taken up; their cases were"
+            }
         );
     }
     if let Some(differences) = report.origins.differences_from(&Provenance::of_this_program()) {

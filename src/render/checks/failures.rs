@@ -3,39 +3,13 @@
 use crate::golden::case_changes::CaseChange;
 use crate::golden::compare::Difference;
 use crate::judge::study_check::{CaseNote, StudyCheck};
+use crate::render::checks::items::{item, wrapped};
 use crate::render::number;
 use crate::render::tables::golden_changes::{count_of, judgement_of, summary};
 use std::fmt::Write;
 
-/// Columns of a terminal.
-const WIDTH: usize = 80;
 /// Items of a list before the rest is only counted.
 const MOST: usize = 10;
-
-/// A text in lines that fit a terminal; a longer word stays whole.
-pub(crate) fn wrapped(text: &str, first: &str, others: &str) -> String {
-    let mut lines: Vec<String> = Vec::new();
-    let mut line = first.to_owned();
-    let mut is_empty = true;
-    for word in text.split_whitespace() {
-        if !is_empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            lines.push(std::mem::replace(&mut line, others.to_owned()));
-            is_empty = true;
-        }
-        if !is_empty {
-            line.push(' ');
-        }
-        line.extend(word.chars().filter(|c| !c.is_control()));
-        is_empty = false;
-    }
-    lines.push(line);
-    lines.join("\n") + "\n"
-}
-
-/// A subject, and below it what is said of it.
-fn item(subject: &str, words: &str) -> String {
-    wrapped(subject, "  ", "    ") + &wrapped(words, "    ", "    ")
-}
 
 /// Everything that failed, section by section.
 pub(crate) fn text_of(check: &StudyCheck) -> String {
@@ -124,19 +98,6 @@ fn case_change(one: &CaseChange) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn lines_fit_a_terminal_and_lose_no_word() {
-        let text = "order 1.01 outside 1.90 … 2.10, ".repeat(20);
-        let lines = wrapped(&text, "  ", "    ");
-        assert!(lines.lines().count() > 5 && lines.lines().all(|line| line.chars().count() <= WIDTH));
-        assert!(lines.starts_with("  order") && lines.lines().skip(1).all(|line| line.starts_with("    ")));
-        let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
-        assert_eq!(words(&lines), words(&text));
-        let long = "x".repeat(100);
-        assert_eq!(wrapped(&long, "", "  "), format!("{long}\n"), "a name stays whole");
-        assert_eq!(wrapped("a\u{1b}[31m", "", ""), "a[31m\n", "nothing steers the terminal");
-    }
 
     #[test]
     fn a_long_list_is_cut_and_counted() {

@@ -2,5 +2,6 @@
 
 pub mod annotations;
 pub mod failures;
+pub mod items;
 pub mod junit;
 pub mod verdicts;

@@ -5,28 +5,26 @@ use crate::judge::paths::Judgement;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::judge::verdict::VerdictOutcome;
 use crate::render::checks::failures;
+use crate::render::checks::items::{items_of, wrapped};
 use crate::render::render_error::RenderError;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::tables::{golden_changes, uncertainties};
 use std::fmt::Write;
 
 /// A study's check as text, what failed in lines of a terminal's width. `file` is the study's own.
-///
-/// # Errors
-/// If a table cannot be written.
-pub fn text_of(check: &StudyCheck, file: Option<&str>) -> Result<String, RenderError> {
-    let mut text = failures::wrapped(&format!("{}: {}", check.study, headline(check)), "", "  ");
+pub fn text_of(check: &StudyCheck, file: Option<&str>) -> String {
+    let mut text = wrapped(&format!("{}: {}", check.study, headline(check)), "", "  ");
     text += &failures::text_of(check);
     if let Some(table) = uncertainties::table_of(&check.judgements) {
-        let _ = write!(text, "\n{}\n", table.to_text()?);
+        text += &items_of(&table);
     }
     for warning in &check.warnings {
-        text += &failures::wrapped(&format!("warning: {warning}"), "  ", "    ");
+        text += &wrapped(&format!("warning: {warning}"), "  ", "    ");
     }
     if let Some(command) = next_command(check, file) {
         let _ = writeln!(text, "\nnext: {command}");
     }
-    Ok(text)
+    text
 }
 
 /// The checks of several studies as Markdown. `file_of` knows the file of a study.

@@ -192,7 +192,7 @@ impl Cell {
     }
 
     /// What the cell says; why something is missing is left to the footnotes.
-    fn show(&self) -> String {
+    pub(crate) fn show(&self) -> String {
         match self {
             Self::Text(text) | Self::Code(text) | Self::Link { words: text, .. } => text.clone(),
             Self::Error(v) => number::error(*v),

@@ -1,6 +1,6 @@
 //! Checks of what a study expects of its series: the blocks `[[expect]]`.
 
-use crate::case::keys::{Key, MOST_CELLS, MOST_POINTS};
+use crate::case::keys::{Key, MOST_CELLS, MOST_POINTS, Value};
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
@@ -15,6 +15,7 @@ use crate::study::choice_tables::Named;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE, Selection, SeriesExpectation};
 use crate::study::file::{ExpectTable, LevelTable};
 use crate::study::inputs::One;
+use std::ops::Range;
 use toml::Spanned;
 
 /// Half-width of an order's band where an expectation names none.
@@ -46,7 +47,8 @@ impl Checker<'_> {
         let is_value = own_word == Some(NO_REFERENCE);
         self.value_is_one_number(entry, scene, quantity, is_value);
         self.oscillation_is_measured(table, scene, quantity, sample);
-        let height = self.column_height?;
+        let selection = self.selection(&table.inputs, scene);
+        let height = self.height_of(&selection, entry.span())?;
         let demand = Demand {
             order: table.order.as_ref().map(|order| OrderBand {
                 value: *order.get_ref().value.get_ref(),
@@ -75,7 +77,7 @@ impl Checker<'_> {
         }
         let tier = self.choice(table.tier.as_deref(), "tier", Tier::Ci);
         let expectation = SeriesExpectation {
-            selection: self.selection(&table.inputs, scene),
+            selection,
             measure: Measure {
                 quantity,
                 sample,
@@ -92,6 +94,23 @@ impl Checker<'_> {
                 + 1,
         };
         (self.diagnostics.len() == before).then_some(expectation)
+    }
+
+    /// Height by which the levels of an expectation are sized: the one that all cases have, or that it names.
+    fn height_of(&mut self, selection: &Selection, place: Range<usize>) -> Option<f64> {
+        let named = selection.0.iter().find_map(|(key, value)| match value {
+            Value::Number(height) if key.name == "height" => Some(*height),
+            _ => None,
+        });
+        let height = named.or(self.column_height);
+        if height.is_none() && self.diagnostics.is_empty() {
+            self.complain(
+                place,
+                "the cases have several heights, and the expectation names none",
+                "add the one that it is about, like `height = 2.0`",
+            );
+        }
+        height
     }
 
     /// Whether a series may be held against its own next finer level; a complaint where not.
@@ -204,8 +223,29 @@ impl Checker<'_> {
             Quantity::Settlement => (Sample::Surface, Norm::Relative),
             _ => (Sample::Points, Norm::L2),
         };
+        let is_settlement = quantity == Quantity::Settlement;
+        let places = [sample.map(Spanned::span), norm.map(Spanned::span)];
         let sample = self.choice(sample, "sample", usual_sample)?;
-        Some((quantity, sample, self.choice(norm, "norm", usual_norm)?))
+        let norm = self.choice(norm, "norm", usual_norm)?;
+        let fits = [(sample == Sample::Surface) == is_settlement, (norm == Norm::Relative) == is_settlement];
+        let words = [format!("sample = \"{}\"", sample.name()), format!("norm = \"{norm}\"")];
+        let (subject, help) = if is_settlement {
+            (
+                "a settlement",
+                "it is measured at the \"surface\", \"relative\" to the exact one: leave the key out",
+            )
+        } else {
+            (
+                "a field",
+                "it is measured at \"points\", \"centres\" or \"nodes\", in the norm \"l1\", \"l2\" or \"linf\"",
+            )
+        };
+        for ((place, fits), word) in places.into_iter().zip(fits).zip(words) {
+            if let Some(place) = place.filter(|_| !fits) {
+                self.complain(place, format!("{subject} has no `{word}`"), help);
+            }
+        }
+        fits.iter().all(|fits| *fits).then_some((quantity, sample, norm))
     }
 
     /// The reference of an expectation, the scene's own where it names none.

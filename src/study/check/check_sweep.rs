@@ -8,6 +8,7 @@ use crate::study::check::checker::{Checker, Common};
 use crate::study::file::SweepTable;
 use crate::study::inputs::{One, TypedInput};
 use crate::study::sweep::{Sweep, SweptKey};
+use std::collections::HashMap;
 use std::ops::Range;
 use toml::Spanned;
 
@@ -42,6 +43,7 @@ impl Checker<'_> {
         let keys: Vec<_> = Key::of("sweep").map(values).zip(Key::of("sweep")).collect();
         let swept = keys.into_iter().filter_map(|(values, key)| Some(SweptKey { key, values: values? }));
         let keys = swept.collect();
+        self.geometry_is_the_scenes(table, base.scene);
         let names: Vec<&str> = Key::of("sweep").map(|key| key.name).collect();
         let path = table.path.as_deref().map(|list| {
             self.list(list, "path", |c, word| c.word(word, "axis", &names).map(|at| names[at].to_owned()))
@@ -126,13 +128,13 @@ impl Checker<'_> {
     }
 
     /// Square cells must fill the width: their number over the height decides their size.
-    pub(crate) fn cells_fill_the_width(&mut self, table: &SweepTable, column: &Column) {
+    pub(crate) fn cells_fill_the_width(&mut self, table: &SweepTable, cases: impl Iterator<Item = Case>) {
+        let gaps = cases.filter(|case| case.column.cells_across(case.cells).is_none());
+        let gaps: HashMap<usize, Column> = gaps.map(|case| (case.cells, case.column)).collect();
         for typed in table.typed("cells").into_iter().flat_map(Spanned::get_ref) {
             let TypedInput::Count(cells) = typed.get_ref() else { continue };
             let cells = usize::try_from(*cells).unwrap_or(0);
-            if cells == 0 || column.cells_across(cells).is_some() {
-                continue;
-            }
+            let Some(column) = gaps.get(&cells) else { continue };
             let size = column.height / cells as f64;
             self.complain(
                 typed.span(),

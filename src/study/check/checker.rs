@@ -20,7 +20,7 @@ pub enum Purpose {
 pub(crate) struct Checker<'a> {
     pub(crate) source: &'a StudySource,
     pub(crate) diagnostics: Vec<Diagnostic>,
-    /// Height by which the levels of expectations are sized, once it is known.
+    /// Height of all cases, by which the levels of expectations are sized; none where they have several.
     pub(crate) column_height: Option<f64>,
     /// Cases that the sweeps seen so far multiply out to.
     pub(crate) multiplied_out: usize,

@@ -11,7 +11,9 @@ impl Checker<'_> {
     pub(crate) fn given_strain(&mut self, file: &StudyFile, seed: &Case) -> Option<f64> {
         let typed = file.column.strain.as_ref()?;
         let strain = *typed.get_ref();
-        if file.column.typed("load").is_some() {
+        if file.column.typed("load").is_some()
+            || file.sweep.iter().any(|block| block.get_ref().typed("load").is_some())
+        {
             self.complain(
                 typed.span(),
                 "the column has a `load` and a `strain`",

@@ -5,10 +5,12 @@ use crate::case::keys::{Key, Value};
 use crate::elementary;
 use crate::exact::exact_error::ExactError;
 use crate::exact::xie_leo::XieLeo;
+use crate::scene::SceneKind;
 use crate::scene::column::column_parameters;
+use crate::study::check::PlannedCase;
 use crate::study::check::checker::Checker;
 use crate::study::diagnostic::Diagnostic;
-use crate::study::file::StudyFile;
+use crate::study::file::{StudyFile, SweepTable};
 use crate::study::inputs::{One, TypedInput};
 use toml::Spanned;
 
@@ -66,6 +68,21 @@ impl Checker<'_> {
         self.inputs("column", &file.column.inputs, seed)
     }
 
+    /// Complains where a sweep names an input of the other kind of body: a width of a layer, a base of a column.
+    pub(crate) fn geometry_is_the_scenes(&mut self, table: &SweepTable, scene: SceneKind) {
+        let [own, other] = if scene.is_a_layer() { ["layer", "column"] } else { ["column", "layer"] };
+        for (key, list) in &table.inputs {
+            if key.tables.contains(&other) && !key.tables.contains(&own) {
+                let names: Vec<&str> = Key::of(own).map(|key| key.name).collect();
+                self.complain(
+                    list.span(),
+                    format!("the scene `{}` has no `{}`", scene.name(), key.name),
+                    format!("its geometry and load are {}", names.join(", ")),
+                );
+            }
+        }
+    }
+
     /// A load that would press out more water than the pores hold has no end state: the exact
     /// solutions say so before anything runs.
     pub(crate) fn porosity_at_the_end(&mut self, file: &StudyFile, base: &Case) {
@@ -89,10 +106,11 @@ impl Checker<'_> {
     }
 
     /// A load under which a theory of small strain is off by more than a percent.
-    pub(crate) fn large_for_small_strain(&mut self, file: &StudyFile, base: &Case) {
-        let Case { scene, column, material: soil, .. } = base;
-        let strain = column.load / soil.oedometric_modulus();
-        if scene.is_large_strain() || strain <= LARGEST_SMALL_STRAIN {
+    pub(crate) fn large_for_small_strain(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
+        let small = planned.iter().map(|planned| &planned.case).filter(|case| !case.scene.is_large_strain());
+        let strains = small.map(|case| case.column.load / case.material.oedometric_modulus());
+        let strain = strains.fold(0.0, f64::max);
+        if strain <= LARGEST_SMALL_STRAIN {
             return;
         }
         let typed = file.column.typed("load").or(file.material.typed("youngs_modulus")).map(Spanned::span);

@@ -9,6 +9,7 @@ pub mod check_solver;
 pub mod check_sweep;
 pub mod checker;
 pub mod default_integrator;
+pub mod distinct_labels;
 pub mod end_state;
 pub mod geometry;
 pub mod layers;
@@ -143,6 +144,12 @@ fn put(case: Case, tier: Tier, planned: &mut Vec<PlannedCase>, places: &mut Hash
     }
 }
 
+/// The height that all cases have, or that of the study where there are none; none where they have several.
+fn common_height(planned: &[PlannedCase], of_the_study: f64) -> Option<f64> {
+    let height = planned.first().map_or(of_the_study, |planned| planned.case.column.height);
+    planned.iter().all(|planned| planned.case.column.height == height).then_some(height)
+}
+
 impl Checker<'_> {
     fn study(&mut self, file: &StudyFile) -> Option<Study> {
         let scene = self.named(&file.scene, "scene")?;
@@ -156,9 +163,7 @@ impl Checker<'_> {
         if let Some(strain) = strain {
             base.column.load = load_of(strain, &base);
         }
-        self.column_height = Some(base.column.height);
         self.porosity_at_the_end(file, &base);
-        self.large_for_small_strain(file, &base);
         let time_factors = match &file.output.time_factors {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
@@ -176,7 +181,7 @@ impl Checker<'_> {
             };
             let Some(mut sweep) = self.sweep(table, block.span(), &common, &base) else { continue };
             if self.purpose == Purpose::Solving {
-                self.cells_fill_the_width(table, &base.column);
+                self.cells_fill_the_width(table, sweep.cases(&base).filter(|case| !case.is_attached()));
                 self.memory_fits(table, sweep.cases(&base).filter(|case| !case.is_attached()));
                 self.default_integrator(table, block.span().start, &common, &base, &mut sweep);
             }
@@ -204,9 +209,10 @@ impl Checker<'_> {
                 put(case, meshes.tier, &mut planned, &mut places);
             }
         }
+        Self::tell_apart(&mut planned);
+        self.large_for_small_strain(file, &planned);
+        self.column_height = common_height(&planned, base.column.height);
         let (expectations, case_expectations) = self.expectations(file, scene, &references, &planned);
-        let timing_repeats =
-            self.count(file.timing.repeats.as_deref(), "timing.repeats", 0..=1000).unwrap_or(0);
         Some(Study {
             name: name_of(&self.source.name).to_owned(),
             title: file.title.get_ref().clone(),
@@ -218,7 +224,9 @@ impl Checker<'_> {
             case_expectations,
             case_seconds,
             solvers: std::mem::take(&mut self.solvers),
-            timing_repeats,
+            timing_repeats: self
+                .count(file.timing.repeats.as_deref(), "timing.repeats", 0..=1000)
+                .unwrap_or(0),
             warnings: std::mem::take(&mut self.warnings),
         })
     }

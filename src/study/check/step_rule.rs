@@ -39,6 +39,9 @@ impl Checker<'_> {
         let number = *value.get_ref();
         let (message, help) = if number > 0.0 && number < *least {
             (format!("a time step by `{name} = {number:e}`"), format!("{why}: at least {least:e}"))
+        } else if *name == "growth" && number.is_finite() && number > 1.0 {
+            let message = format!("a step of {number} times the time that has passed");
+            (message, "a growth is a share: 0.05 is five percent, and 1 the most".to_owned())
         } else if number.is_finite() && number > 0.0 {
             return Some(rule(number));
         } else {
