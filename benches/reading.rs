@@ -29,7 +29,7 @@ fn main() {
     if let Some(path) = std::env::var_os(ONE) {
         return read_one(&PathBuf::from(path));
     }
-    let points = std::env::args().filter_map(|word| word.parse().ok()).next().unwrap_or(1_000_000);
+    let points = std::env::args().find_map(|word| word.parse().ok()).unwrap_or(1_000_000);
     let folder = tempfile::TempDir::new().expect("a folder");
     println!("{:8} {:>9} {:>8} {:>10} {:>9} {:>9}", "way", "points", "MB", "seconds", "peak MB", "peak/file");
     for (name, way) in [("raw", Way::Raw), ("base64", Way::Base64), ("zlib", Way::Packed)] {

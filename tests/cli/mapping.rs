@@ -195,7 +195,7 @@ fn units_and_signs_that_nobody_declared_are_warned_of_and_fail_a_gate() {
     }
     fs::write(at.join("a.csv"), table).expect("a file");
     let bare = "[columns]\nt = \"t\"\np = \"p\"\nu_y = \"\"\n";
-    let told = score(at, &bare, &["a.csv"]);
+    let told = score(at, bare, &["a.csv"]);
     assert!(
         told.code == 0 && told.err.contains("warning: undeclared: the mapping says nothing of"),
         "{}",
@@ -205,7 +205,7 @@ fn units_and_signs_that_nobody_declared_are_warned_of_and_fail_a_gate() {
         assert!(told.err.contains(asked), "{}", told.err);
     }
     for gate in [&["a.csv", "--strict"][..], &["a.csv", "--below", "0.1"]] {
-        let told = score(at, &bare, gate);
+        let told = score(at, bare, gate);
         assert!(told.code == 1 && told.err.contains("fail: undeclared"), "{}", told.err);
     }
     let whole = format!("{bare}[units]\nstress = \"Pa\"\n[sign]\np = \"compression-positive\"\n");

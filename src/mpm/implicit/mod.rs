@@ -6,6 +6,7 @@
 //!   factorisation per step size,
 //! - `trial`: a moving or inertial body at a trial state; `residual`: what its balances leave there;
 //!   `tangent`: the residual's differences; `newton`: SDIRK2 with Newton's iteration on it,
+//!
 //! The systems are solved by `direct_solver`.
 
 pub mod linear;

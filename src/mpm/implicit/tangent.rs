@@ -62,7 +62,9 @@ impl Pattern {
         }
         let zeros = Bordered::spanning(&unknowns.positions, unknowns.border, |visitor| {
             for (row, columns) in columns_of_row.iter().enumerate() {
-                columns.iter().for_each(|column| visitor(row, *column));
+                for column in columns {
+                    visitor(row, *column);
+                }
             }
         });
         let groups = groups_of(&columns_of_row, &rows_of_column);

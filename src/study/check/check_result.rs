@@ -143,13 +143,13 @@ fn digest_of(table: &ResultTable, files: &[String], cells: &[usize], folder: &Pa
             }
         }
     }
-    for typed in &table.mapping {
+    if let Some(typed) = &table.mapping {
         take("mapping", &digest_of_file(&folder.join(typed.get_ref())));
     }
-    for typed in &table.preset {
+    if let Some(typed) = &table.preset {
         take("preset", typed.get_ref());
     }
-    for typed in &table.time_step {
+    if let Some(typed) = &table.time_step {
         take("time step", &format!("{:e}", typed.get_ref()));
     }
     hasher.finalize().to_hex()[..DIGEST_DIGITS].to_owned()
