@@ -74,7 +74,9 @@ mod tests {
         records[1].wall[0].machine = Some(other);
         records[2].provenance.compiler = "rustc 0.0.0".to_owned();
         let mut table = MachinesTable::default();
-        records.iter().for_each(|record| table.add(record));
+        for record in &records {
+            table.add(record);
+        }
         let text = table.to_csv().expect("a table");
         let rows: Vec<csv::StringRecord> =
             csv::Reader::from_reader(text.as_bytes()).records().map(|row| row.expect("a row")).collect();
@@ -82,6 +84,6 @@ mod tests {
         assert_eq!((rows.len(), cases.iter().filter(|count| **count == "2").count()), (3, 1), "{text}");
         let node = rows.iter().find(|row| &row[0] == "node-7").expect("a row");
         assert_eq!((&node[1], &node[9]), ("Another, 3 GHz", "1"));
-        assert!(rows.iter().any(|row| &row[6] == "rustc 0.0.0" && &row[0] == Machine::this().node));
+        assert!(rows.iter().any(|row| &row[6] == "rustc 0.0.0" && row[0] == Machine::this().node));
     }
 }

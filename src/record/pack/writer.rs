@@ -94,10 +94,11 @@ mod tests {
     }
 
     /// A pack of some members, as bytes, with the places where they end.
-    fn pack_of(count: u64) -> (Vec<u8>, Vec<usize>) {
+    fn pack_of(count: u8) -> (Vec<u8>, Vec<usize>) {
         let (mut bytes, mut ends) = (Vec::new(), vec![0]);
         for case in 0..count {
-            bytes.extend(member(case, 1, &format!("record {case} {}", "0.125 ".repeat(10 * case as usize))));
+            let words = "0.125 ".repeat(10 * usize::from(case));
+            bytes.extend(member(case.into(), 1, &format!("record {case} {words}")));
             ends.push(bytes.len());
         }
         (bytes, ends)
@@ -118,9 +119,9 @@ mod tests {
             fs::write(&pack, &bytes[..cut]).expect("a pack");
             let index = read(study.path());
             let whole = ends.iter().filter(|end| **end <= cut).count() - 1;
-            for case in 0..5 {
-                let place = index.record(case);
-                assert_eq!(place.is_some(), (case as usize) < whole, "case {case} of a pack cut at {cut}");
+            for case in 0..5_u8 {
+                let place = index.record(case.into());
+                assert_eq!(place.is_some(), usize::from(case) < whole, "case {case} of a pack cut at {cut}");
                 let text = place.map(|place| unpacked(&index.bytes(place).expect("bytes")).expect("whole"));
                 assert!(text.is_none_or(|text| text.starts_with(&format!("record {case} "))));
             }
