@@ -1,6 +1,7 @@
 //! A case: everything that decides a run, as plain data with an identity.
 
 pub mod keys;
+pub mod label;
 pub mod norm;
 pub mod quantity;
 pub mod step_cost;
@@ -8,7 +9,6 @@ pub mod tier;
 pub mod two_layers;
 pub mod work_estimate;
 
-use crate::case::keys::{Key, Value};
 use crate::elementary;
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery, StrainGradient};
@@ -16,12 +16,9 @@ use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::Formulation;
 pub use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::SceneKind;
-use crate::scene::arrangement::Arrangement;
 use crate::scene::column::Column;
-use crate::soil::conductivity_mean::ConductivityMean;
-use crate::soil::continuity::Continuity;
 use crate::soil::material::Material;
-use crate::wording::{typed, words};
+use crate::wording::words;
 use serde::{Deserialize, Serialize};
 
 /// State and operators of a point, bytes.
@@ -197,121 +194,6 @@ impl Case {
         let solves = !self.is_explicit() || self.scene.start_is_solved();
         let solver = if solves { 16.0 * long * row * band } else { 0.0 };
         solver + BYTES_A_POINT * short * long * points_a_cell
-    }
-
-    /// What is special about integration and equations: empty for the paper's integration of the
-    /// scene's own equations.
-    pub fn variant(&self) -> String {
-        let (settings, usual) = (&self.settings, ExplicitSettings::default());
-        let named = [
-            (self.formulation != self.integrator.default_formulation(), self.formulation.name().to_owned()),
-            (settings.scheme != usual.scheme, settings.scheme.name().to_owned()),
-            (settings.drag != usual.drag, format!("{} drag", settings.drag.name())),
-            (settings.flip != usual.flip, format!("FLIP {}", settings.flip)),
-            (settings.mapping_back != usual.mapping_back, "no mapping back".to_owned()),
-            (self.column.dimensions == 2 && !self.scene.needs_two_dimensions(), "two dimensions".to_owned()),
-            (self.column.self_weight && !self.scene.is_at_rest(), "own weight".to_owned()),
-            (self.material.law != self.scene.default_law(), format!("{} law", self.material.law.name())),
-            (self.material.continuity != Continuity::Conservative, "porosity gradient dropped".to_owned()),
-            (self.material.conductivity_mean == ConductivityMean::Chord, "chord mean".to_owned()),
-        ];
-        let mut parts: Vec<String> =
-            named.into_iter().filter(|(is_special, _)| *is_special).map(|(_, name)| name).collect();
-        parts.extend(self.arrangement());
-        let seed = Material::default();
-        if self.scene.shows_locking() && self.material.water_bulk_modulus != seed.water_bulk_modulus {
-            parts
-                .push(format!("K_w/E {:e}", self.material.water_bulk_modulus / self.material.youngs_modulus));
-        }
-        if self.scene.shows_locking() && self.material.poissons_ratio != seed.poissons_ratio {
-            parts.push(format!("ν {}", self.material.poissons_ratio));
-        }
-        if self.task == Task::Stability {
-            parts.extend(self.departure_from_the_seed());
-        }
-        parts.extend(self.swept_inputs());
-        parts.join(", ")
-    }
-
-    /// The inputs that tell it from other cases of its study, as `key=value`.
-    fn swept_inputs(&self) -> impl Iterator<Item = String> {
-        self.swept.iter().filter_map(|name| {
-            let value = match Key::named(name, "sweep")?.get(self) {
-                // A digit of round-off is no other case.
-                Value::Number(number) => typed(format!("{number:.7e}").parse().unwrap_or(number)),
-                other => other.to_string(),
-            };
-            Some(format!("{name}={value}"))
-        })
-    }
-
-    /// Where the points lie, where that is not the regular lattice in one layer.
-    fn arrangement(&self) -> Vec<String> {
-        let (points, regular) = (&self.column.points, Arrangement::default());
-        let layers = match points.water_per_cell {
-            0 => None,
-            of_water if of_water == self.points_per_cell => Some("two layers".to_owned()),
-            of_water => Some(format!("two layers, {of_water} of the water")),
-        };
-        let places = [
-            (points.offset, regular.offset, "points shifted by"),
-            (points.jitter, regular.jitter, "points jittered by"),
-            (points.filling, regular.filling, "top cell filled to"),
-        ]
-        .into_iter()
-        .filter(|(value, usual, _)| value != usual)
-        .map(|(value, _, what)| format!("{what} {value}"));
-        layers.into_iter().chain(places).collect()
-    }
-
-    /// Parameters that maps of the critical step sweep, where they are not the seed's.
-    fn departure_from_the_seed(&self) -> Vec<String> {
-        let (soil, seed) = (&self.material, Material::default());
-        [
-            (soil.hydraulic_conductivity, seed.hydraulic_conductivity, "k ="),
-            (soil.water_bulk_modulus, seed.water_bulk_modulus, "K_w ="),
-            (soil.porosity, seed.porosity, "n ="),
-            (soil.youngs_modulus, seed.youngs_modulus, "E ="),
-            (soil.poissons_ratio, seed.poissons_ratio, "ν ="),
-            (soil.grain_density, seed.grain_density, "ρ_s ="),
-            (soil.water_density, seed.water_density, "ρ_w ="),
-            (soil.gravity, seed.gravity, "g ="),
-        ]
-        .into_iter()
-        .filter(|(value, usual, _)| value != usual)
-        .map(|(value, _, what)| format!("{what} {value:e}"))
-        .collect()
-    }
-
-    /// Words by which a person knows the case within its study.
-    pub fn label(&self) -> String {
-        self.label_with(&step_label(&self.time_step))
-    }
-
-    /// The same for a case whose step is the question.
-    pub fn label_without_step(&self) -> String {
-        self.label_with("")
-    }
-
-    fn label_with(&self, step: &str) -> String {
-        let mut label = if self.is_attached() {
-            let is_step_given = matches!(self.time_step, TimeStepRule::Seconds(_));
-            let points = match self.points_per_cell {
-                USUAL_POINTS => String::new(),
-                points => format!(" points={points}"),
-            };
-            format!("{} cells={}{points} {}", self.method, self.cells, if is_step_given { step } else { "" })
-        } else {
-            let Self { method, cells, points_per_cell, .. } = self;
-            format!("{method} {} cells={cells} points={points_per_cell} {step}", self.integrator.name())
-        };
-        let variant = self.variant();
-        if !variant.is_empty() {
-            label = format!("{} ({variant})", label.trim_end());
-        } else if self.is_attached() {
-            label.truncate(label.trim_end().len());
-        }
-        label
     }
 }
 

@@ -44,6 +44,14 @@ pub fn written(result: Result<()>) -> anyhow::Result<()> {
     }
 }
 
+/// An error of writing CSV as that of the device under it, which tells whether the reader has gone.
+pub fn of_device(error: csv::Error) -> std::io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => std::io::Error::other(format!("{other:?}")),
+    }
+}
+
 /// Writes and flushes: what is left in a buffer at the end of a program is lost without a word.
 fn write_out(mut out: impl Write, text: &str) -> Result<()> {
     out.write_all(text.as_bytes())?;

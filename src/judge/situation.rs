@@ -301,9 +301,14 @@ mod tests {
 
     #[test]
     fn of_runs_alike_but_for_their_step_the_best_counts_and_of_others_the_worst() {
-        let steps = "time_step = [{ growth = 0.01 }, { growth = 0.5 }]";
-        let fine = situations("scene = 'terzaghi'", "time_step = [{ growth = 0.01 }]");
-        assert_eq!(situations("scene = 'terzaghi'", steps), fine);
+        let of_step = |rule: &str| situations("scene = 'terzaghi'", &format!("time_step = [{rule}]"));
+        let error = |rule: &str| match of_step(rule)[..] {
+            [(Situation::Usual, End::Error(error))] => error,
+            ref other => panic!("{other:?}"),
+        };
+        let (fine, coarse) = ("{ growth = 0.01 }", "{ growth = 0.5 }");
+        assert_ne!(error(fine), error(coarse));
+        assert_eq!(error(&format!("{fine}, {coarse}")), error(fine).min(error(coarse)));
         let points = situations("scene = 'terzaghi'", "points_per_cell = [2, 3]");
         assert_eq!(points.len(), 1, "one method, one situation");
     }

@@ -6,7 +6,7 @@
 
 use crate::mpm::assembled::stiffness::{NodeBlocks, pressure_stiffness};
 use crate::mpm::body::Body;
-use crate::mpm::direct_solver::Singular;
+use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::direct_solver::bordered::{Bordered, BorderedLu};
 use crate::mpm::method::Configuration;
 use crate::mpm::operators::rigid_plate::NORMAL;

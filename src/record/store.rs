@@ -221,10 +221,10 @@ impl RecordStore {
 
     /// The record of a case, whichever program of this layout made it.
     pub fn kept(&self, case: &Case) -> Option<Record> {
-        let mut record = self.of_hash(&case.hash()).filter(|record| record.case == *case)?;
+        let mut record = self.of_hash(&case.hash())?;
         // What a label names is the present study's business.
         record.case.swept.clone_from(&case.swept);
-        Some(record)
+        (record.case == *case).then_some(record)
     }
 
     /// The record of the case with a hash, whichever program of this layout made it.

@@ -366,6 +366,13 @@ fn explained(error: &toml::de::Error, text: &str) -> Diagnostic {
             };
             (format!("unknown key `{word}`"), help)
         }
+        Some((word, choices)) if message.starts_with("unknown variant") => {
+            let help = match nearest(word, choices.iter().copied()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("the words here are {}", choices.join(", ")),
+            };
+            (format!("`{word}` is none of the words that stand here"), help)
+        }
         _ => grammar::in_short(&message),
     };
     Diagnostic { message, span, help: Some(help) }

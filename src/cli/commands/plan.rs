@@ -13,7 +13,7 @@ use crate::cli::cost_files::{costs_of, learned_from};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, missing_of};
 use crate::cli::output::json_of;
-use crate::cli::stream::{print_data, print_with, say};
+use crate::cli::stream::{of_device, print_data, print_with, say};
 use crate::cli::time_notes::{note_on_longest, side_by_side};
 use crate::foreign::case_file::CaseFile;
 use crate::record::whole_file::write_whole;
@@ -135,16 +135,13 @@ fn write_plan(
     costs: &CostTable,
 ) -> std::io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record(COLUMNS)?;
+    writer.write_record(COLUMNS).map_err(of_device)?;
     for (study, cases) in studies {
         for case in cases {
-            writer.write_record([
-                &study.name,
-                &case.hash(),
-                &estimated_updates(case).to_string(),
-                &case.label(),
-                &format!("{:.1e}", costs.seconds(case)),
-            ])?;
+            let seconds = format!("{:.1e}", costs.seconds(case));
+            let updates = estimated_updates(case).to_string();
+            let row = [&study.name, &case.hash(), &updates, &case.label(), &seconds];
+            writer.write_record(row).map_err(of_device)?;
         }
     }
     writer.flush()

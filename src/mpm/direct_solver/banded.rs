@@ -3,7 +3,7 @@
 //! Unknowns ordered along the column keep every operator within a narrow band, so that factoring
 //! and solving are linear in the number of cells (Golub & Van Loan 2013, algorithm 4.3.1).
 
-use crate::mpm::direct_solver::Singular;
+use crate::mpm::direct_solver::singular::Singular;
 
 /// A square matrix whose entries lie within `lower` diagonals below and `upper` above the main
 /// one, row by row.

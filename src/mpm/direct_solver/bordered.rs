@@ -5,7 +5,8 @@
 //! right-hand side: with `A w = c` the last unknown is `(g − rᵀ A⁻¹ f)/(d − rᵀ w)` (block elimination; Golub &
 //! Van Loan 2013, section 3.2).
 
-use crate::mpm::direct_solver::{Factors, Singular, SystemMatrix};
+use crate::mpm::direct_solver::singular::Singular;
+use crate::mpm::direct_solver::system::{Factors, SystemMatrix};
 
 /// A matrix, with a border or without.
 #[derive(Clone, Debug, PartialEq)]

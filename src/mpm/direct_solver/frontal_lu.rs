@@ -4,7 +4,7 @@
 //! eliminates them with pivots among themselves, and leaves its remainder to its parent. All arithmetic is
 //! dense, in one order, without fused operations: the same bits on every machine.
 
-use crate::mpm::direct_solver::Singular;
+use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::direct_solver::banded::less_products;
 use crate::mpm::direct_solver::elimination::{Elimination, FrontShape};
 use crate::mpm::direct_solver::front::{Front, Panel};
@@ -73,6 +73,9 @@ impl FrontalLu {
         for (number, start) in self.starts.iter().enumerate() {
             let shape_of_front = &self.elimination.fronts[number];
             let (first, count, size) = (shape_of_front.first, shape_of_front.count, shape_of_front.size());
+            if size == 0 {
+                continue; // A cut that parted what was apart already.
+            }
             let entries = &mut self.front[..size * size];
             entries.fill(0.0);
             let places = (first..first + count).chain(shape_of_front.boundary.iter().copied());

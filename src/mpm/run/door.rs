@@ -1,7 +1,7 @@
 //! The door of the solver: where an integrator and a kernel become a stepper.
 
 use crate::mpm::body::{Body, Problem};
-use crate::mpm::direct_solver::Singular;
+use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::implicit::linear::LinearStepper;
 use crate::mpm::implicit::newton::NewtonStepper;
 use crate::mpm::layers::two_layer_stepper::TwoLayerStepper;

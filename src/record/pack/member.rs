@@ -154,11 +154,17 @@ mod tests {
         let length = u32::try_from(member.len()).expect("short");
         assert_eq!(header, Header { length, ..HEADER_OF_ONE });
         assert_eq!(unpacked(&member).as_deref(), Some(text.as_str()));
+        let mut unseen = 0;
         for place in HEADER..member.len() {
             let mut damaged = member.clone();
             damaged[place] ^= 0x10;
-            assert_ne!(unpacked(&damaged).as_deref(), Some(text.as_str()), "byte {place}");
+            // The last byte of the packed text is filled up with bits that mean nothing.
+            if let Some(read) = unpacked(&damaged) {
+                assert_eq!(read, text, "byte {place}");
+                unseen += 1;
+            }
         }
+        assert!(unseen <= 1, "{unseen} damages unseen");
         assert_eq!(Header::read(&member[..HEADER - 1]), None);
         assert_eq!(next_start(&[b"rest".as_slice(), &member].concat()), Some(4));
     }

@@ -1,0 +1,124 @@
+//! A matrix and its factors, each in the form that suits its band.
+
+use crate::mpm::direct_solver::banded::{Banded, BandedLu};
+use crate::mpm::direct_solver::frontal_lu::FrontalLu;
+use crate::mpm::direct_solver::singular::Singular;
+use crate::mpm::direct_solver::sparse_matrix::SparseMatrix;
+
+/// Diagonals of a band beyond which fronts are the faster: measured by the bench `sweeps` over layers of 4 to
+/// 64 cells a side.
+const WIDEST_BAND: usize = 200;
+
+/// A square matrix over a fixed set of places.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SystemMatrix {
+    /// By its diagonals.
+    Banded(Banded),
+    /// By its entries.
+    Sparse(SparseMatrix),
+}
+
+impl SystemMatrix {
+    /// A matrix of zeros with the places `(row, column)` that `visit` tells; `positions` are those of the
+    /// unknowns in space, `[unknown][component]`, m.
+    pub fn spanning<const D: usize>(
+        positions: &[[f64; D]],
+        visit: impl Fn(&mut dyn FnMut(usize, usize)),
+    ) -> Self {
+        let (mut lower, mut upper) = (0, 0);
+        visit(&mut |row, column| {
+            lower = lower.max(row.saturating_sub(column));
+            upper = upper.max(column.saturating_sub(row));
+        });
+        if lower + upper <= WIDEST_BAND {
+            return Self::Banded(Banded::zeros(positions.len(), lower, upper));
+        }
+        Self::Sparse(SparseMatrix::spanning(positions, visit))
+    }
+
+    /// Adds to an entry, which must be one of the places.
+    #[inline]
+    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+        match self {
+            Self::Banded(matrix) => matrix.add(row, column, value),
+            Self::Sparse(matrix) => matrix.add(row, column, value),
+        }
+    }
+
+    /// Sets every entry to zero.
+    pub fn clear(&mut self) {
+        match self {
+            Self::Banded(matrix) => matrix.clear(),
+            Self::Sparse(matrix) => matrix.clear(),
+        }
+    }
+}
+
+/// The factors of a matrix.
+#[derive(Clone, Debug)]
+pub enum Factors {
+    /// Of a band.
+    Banded(BandedLu),
+    /// Of a sparse matrix.
+    Frontal(Box<FrontalLu>),
+}
+
+impl Factors {
+    /// Room for the factors of matrices of a shape.
+    pub fn of_shape(shape: &SystemMatrix) -> Self {
+        match shape {
+            SystemMatrix::Banded(matrix) => Self::Banded(BandedLu::of_shape(matrix)),
+            SystemMatrix::Sparse(matrix) => Self::Frontal(Box::new(FrontalLu::of_shape(matrix))),
+        }
+    }
+
+    /// Factors a matrix of the shape; nothing is allocated.
+    ///
+    /// # Errors
+    /// [`Singular`] when a column has no pivot.
+    ///
+    /// # Panics
+    /// Never for a matrix of the shape that these factors were made for.
+    pub fn factor(&mut self, matrix: &SystemMatrix) -> Result<(), Singular> {
+        match (self, matrix) {
+            (Self::Banded(factors), SystemMatrix::Banded(matrix)) => factors.factor(matrix),
+            (Self::Frontal(factors), SystemMatrix::Sparse(matrix)) => {
+                factors.factor(matrix, |entry| matrix.entries()[entry])
+            }
+            _ => unreachable!("factors of another shape"),
+        }
+    }
+
+    /// Factors `fixed + factor · scaled`, both of the shape; nothing is allocated.
+    ///
+    /// # Errors
+    /// [`Singular`] when a column has no pivot.
+    ///
+    /// # Panics
+    /// Never for matrices of the shape that these factors were made for.
+    pub fn factor_combination(
+        &mut self,
+        fixed: &SystemMatrix,
+        factor: f64,
+        scaled: &SystemMatrix,
+    ) -> Result<(), Singular> {
+        match (self, fixed, scaled) {
+            (Self::Banded(factors), SystemMatrix::Banded(fixed), SystemMatrix::Banded(scaled)) => {
+                factors.factor_combination(fixed, factor, scaled)
+            }
+            (Self::Frontal(factors), SystemMatrix::Sparse(fixed), SystemMatrix::Sparse(scaled)) => {
+                let (constant, rate) = (fixed.entries(), scaled.entries());
+                factors.factor(fixed, |entry| constant[entry] + factor * rate[entry])
+            }
+            _ => unreachable!("factors of another shape"),
+        }
+    }
+
+    /// Replaces a right-hand side by the solution; nothing is allocated.
+    pub fn solve(&mut self, values: &mut [f64]) {
+        match self {
+            Self::Banded(factors) => factors.solve(values),
+            Self::Frontal(factors) => factors.solve(values),
+        }
+    }
+}
