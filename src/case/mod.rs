@@ -215,6 +215,8 @@ mod tests {
     use crate::mpm::attached::Attached;
     use crate::mpm::explicit::Drag;
     use crate::mpm::explicit::scheme::Scheme;
+    use crate::soil::conductivity_mean::ConductivityMean;
+    use crate::soil::continuity::Continuity;
     use crate::soil::law::Law;
 
     fn seed() -> Case {

@@ -6,8 +6,8 @@
 
 use crate::mpm::assembled::stiffness::{NodeBlocks, pressure_stiffness};
 use crate::mpm::body::Body;
-use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::direct_solver::bordered::{Bordered, BorderedLu};
+use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::method::Configuration;
 use crate::mpm::operators::rigid_plate::NORMAL;
 use crate::mpm::operators::volumetric::VolumetricRows;

@@ -230,7 +230,7 @@ fn every_command_shown_prints_what_is_shown() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(run >= 15, "{run} commands");
+    assert!(run >= 13, "{run} commands");
 }
 
 /// Does what `echo 'TEXT' >> FILE` does.
@@ -436,8 +436,8 @@ fn the_mapping_and_the_other_files_shown_are_read() {
         let folder = place();
         for (line, lines) in blocks(&text_of(&document), "toml") {
             let text = lines.join("\n") + "\n";
-            if text.starts_with("sample = ") {
-                // Mappings of pages of their own name arrays of many programs at once.
+            if text.starts_with("sample = ") || text.starts_with("[[solver]]") {
+                // Mappings of pages of their own name arrays of many programs at once; a solver needs its files.
                 continue;
             }
             let title = if text.starts_with("title = ") { "" } else { "title = \"shown\"\n" };

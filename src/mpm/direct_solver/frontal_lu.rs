@@ -4,10 +4,10 @@
 //! eliminates them with pivots among themselves, and leaves its remainder to its parent. All arithmetic is
 //! dense, in one order, without fused operations: the same bits on every machine.
 
-use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::direct_solver::banded::less_products;
 use crate::mpm::direct_solver::elimination::{Elimination, FrontShape};
 use crate::mpm::direct_solver::front::{Front, Panel};
+use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::direct_solver::sparse_matrix::SparseMatrix;
 
 /// The factors of a sparse matrix.
