@@ -76,6 +76,8 @@ impl FreeComponents {
 #[derive(Clone, Debug)]
 pub struct UndrainedSystem<const D: usize> {
     unknowns: FreeComponents,
+    /// The stiffness, where its factors need it for a second look.
+    stiffness: Option<Bordered>,
     factors: BorderedLu,
     rows: VolumetricRows<D>,
 }
@@ -93,7 +95,7 @@ impl<const D: usize> UndrainedSystem<D> {
         let matrix = unknowns.matrix(&stiffness, &body.grid);
         let mut factors = BorderedLu::of_shape(&matrix);
         factors.factor(&matrix)?;
-        Ok(Self { unknowns, factors, rows })
+        Ok(Self { unknowns, stiffness: (!matrix.is_banded()).then_some(matrix), factors, rows })
     }
 
     /// Displacements of the nodes under forces on them.
@@ -103,7 +105,17 @@ impl<const D: usize> UndrainedSystem<D> {
         for (node, d, unknown) in places {
             values[*unknown] += forces[*node][*d];
         }
+        let mut rest = values.clone();
         self.factors.solve(&mut values);
+        // Water that is nearly incompressible costs fronts, whose pivots are few to choose from, some digits; what
+        // the solution leaves of the forces brings them back.
+        if let Some(stiffness) = &self.stiffness {
+            stiffness.take_product(&values, &mut rest);
+            self.factors.solve(&mut rest);
+            for (value, correction) in values.iter_mut().zip(&rest) {
+                *value += correction;
+            }
+        }
         let mut displacements = vec![[0.0; D]; forces.len()];
         for (node, d, unknown) in places {
             displacements[*node][*d] = values[*unknown];

@@ -39,6 +39,15 @@ impl Banded {
         }
     }
 
+    /// `rest ← rest − A values`.
+    pub fn take_product(&self, values: &[f64], rest: &mut [f64]) {
+        for row in 0..self.size {
+            let (first, end) = (row.saturating_sub(self.lower), (row + self.upper + 1).min(self.size));
+            let entries = &self.entries[row * self.width + first + self.lower - row..];
+            rest[row] = less_products(rest[row], entries, &values[first..end]);
+        }
+    }
+
     /// Sets every entry to zero.
     pub fn clear(&mut self) {
         self.entries.fill(0.0);

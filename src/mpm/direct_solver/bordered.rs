@@ -55,6 +55,23 @@ impl Bordered {
         }
     }
 
+    /// Whether it is narrow enough to be kept by its diagonals.
+    pub fn is_banded(&self) -> bool {
+        matches!(self.core, SystemMatrix::Banded(_))
+    }
+
+    /// `rest ← rest − A values`.
+    pub fn take_product(&self, values: &[f64], rest: &mut [f64]) {
+        self.core.take_product(values, rest);
+        if let Some(border) = &self.border {
+            let size = border.row.len();
+            for (rest, column) in rest.iter_mut().zip(&border.column) {
+                *rest -= column * values[size];
+            }
+            rest[size] -= products(&border.row, &values[..size]) + border.corner * values[size];
+        }
+    }
+
     /// Sets every entry to zero.
     pub fn clear(&mut self) {
         self.core.clear();
@@ -195,6 +212,10 @@ mod tests {
             lu.solve(&mut solution);
             let residual = &dense * DVector::from_vec(solution) - &right;
             assert!(residual.amax() < 1e-11, "{}", residual.amax());
+            let (values, mut rest) = ([0.5; 10], [0.0; 10]);
+            matrix.take_product(&values, &mut rest);
+            let product = &dense * DVector::from_row_slice(&values) + DVector::from_row_slice(&rest);
+            assert!(product.amax() < 1e-12, "{}", product.amax());
         }
         let core_only = Bordered::spanning(&[[0.0]], 1, |visitor| visitor(0, 0));
         assert!(BorderedLu::of_shape(&core_only).factor(&core_only).is_err());

@@ -220,7 +220,10 @@ mod tests {
             prop_assert_eq!(lu.factor(&sparse, |entry| sparse.entries()[entry]), Ok(()));
             let mut solution = right.as_slice().to_vec();
             lu.solve(&mut solution);
+            let mut rest = right.as_slice().to_vec();
+            sparse.take_product(&solution, &mut rest);
             let residual = &dense * DVector::from_vec(solution) - right;
+            prop_assert!(residual.iter().zip(&rest).all(|(a, b)| (a + b).abs() < 1e-9));
             prop_assert!(residual.amax() < 1e-7, "{}", residual.amax());
         }
     }

@@ -81,6 +81,18 @@ impl SparseMatrix {
         self.entries[start + place] += value;
     }
 
+    /// `rest ← rest − A values`.
+    pub fn take_product(&self, values: &[f64], rest: &mut [f64]) {
+        for (row, rest) in rest.iter_mut().enumerate().take(self.positions.len()) {
+            let (start, columns) = self.row(row);
+            let entries = &self.entries[start..start + columns.len()];
+            *rest = entries
+                .iter()
+                .zip(columns)
+                .fold(*rest, |rest, (a, column)| rest - a * values[*column as usize]);
+        }
+    }
+
     /// Sets every entry to zero.
     pub fn clear(&mut self) {
         self.entries.fill(0.0);

@@ -5,8 +5,7 @@ use crate::mpm::direct_solver::frontal_lu::FrontalLu;
 use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::direct_solver::sparse_matrix::SparseMatrix;
 
-/// Diagonals of a band beyond which fronts are the faster: measured by the bench `sweeps` over layers of 4 to
-/// 64 cells a side.
+/// Diagonals of a band beyond which fronts are the faster.
 const WIDEST_BAND: usize = 200;
 
 /// A square matrix over a fixed set of places.
@@ -42,6 +41,14 @@ impl SystemMatrix {
         match self {
             Self::Banded(matrix) => matrix.add(row, column, value),
             Self::Sparse(matrix) => matrix.add(row, column, value),
+        }
+    }
+
+    /// `rest ← rest − A values`.
+    pub fn take_product(&self, values: &[f64], rest: &mut [f64]) {
+        match self {
+            Self::Banded(matrix) => matrix.take_product(values, rest),
+            Self::Sparse(matrix) => matrix.take_product(values, rest),
         }
     }
 

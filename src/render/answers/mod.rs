@@ -75,15 +75,28 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
     Ok(Page {
         title: "Convergence report".to_owned(),
         lead: format!(
-            "**{MADE}** {}\n\n[All studies, with every table and figure]({})",
+            "**{MADE}** {}\n\n[All studies, with every table and figure]({}){}",
             answers.making.words(results),
-            answers.index
+            answers.index,
+            names_of_few(results, links)
         ),
         callout: Some(verdict(results)),
         sections,
         is_wide: true,
         ..Page::default()
     })
+}
+
+/// Studies up to which the head of the page names each.
+const FEW_STUDIES: usize = 6;
+
+/// The studies of a small report by name, as no question may lead to them.
+fn names_of_few(results: &[StudyResults<'_>], links: &dyn Fn(&str) -> String) -> String {
+    let link = |one: &StudyResults<'_>| format!("[`{}`]({})", one.study.name, links(&one.study.name));
+    match results.len() {
+        1..=FEW_STUDIES => format!(": {}", results.iter().map(link).collect::<Vec<_>>().join(", ")),
+        _ => String::new(),
+    }
 }
 
 /// The question that the first lines of the page answer.
