@@ -1,62 +1,97 @@
 //! Sparse operators between points and nodes: one small tensor-product block of nodes a point.
 
 use crate::mpm::operators::row::Row;
-use crate::mpm::state::grid::{Grid, power};
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid, index_of, power};
 use crate::soil::tensor::{Tensor, Vector};
+
+/// Points whose rows are worked out side by side, and lie so: enough for a loop that the compiler turns into one
+/// over the lanes of whatever registers there are.
+pub const LANES: usize = 16;
+
+/// One number of each of some points.
+pub type Lanes = [f64; LANES];
 
 /// Weights and gradients of every point over a block of `W` nodes in each direction.
 ///
 /// The block of a point is the tensor product of one row a direction, which is what is stored:
-/// `2 D W` numbers a point whatever the dimension.
+/// `2 D W` numbers a point whatever the dimension, those of neighbouring points side by side.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stencils<const D: usize, const W: usize> {
     /// Flat index of the lowest node of each point's block.
     pub first: Vec<usize>,
-    /// Weights a direction.
-    pub weights: Vec<[[f64; W]; D]>,
-    /// Gradients a direction, 1/m.
-    pub gradients: Vec<[[f64; W]; D]>,
+    rows: Vec<RowBlock<D, W>>,
+}
+
+/// Rows of some neighbouring points, `[direction]`.
+type RowBlock<const D: usize, const W: usize> = [LaneRows<W>; D];
+
+/// Rows of some neighbouring points along one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaneRows<const W: usize> {
+    /// Weights, `[node][point]`.
+    pub weights: [Lanes; W],
+    /// Gradients, 1/m, `[node][point]`.
+    pub gradients: [Lanes; W],
 }
 
 impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Room for `points` points, all rows zero.
     pub fn with_points(points: usize) -> Self {
-        Self {
-            first: vec![0; points],
-            weights: vec![[[0.0; W]; D]; points],
-            gradients: vec![[[0.0; W]; D]; points],
-        }
+        let empty = LaneRows { weights: [[0.0; LANES]; W], gradients: [[0.0; LANES]; W] };
+        Self { first: vec![0; points], rows: vec![[empty; D]; points.div_ceil(LANES)] }
     }
 
     /// Sets the block of a point from one row a direction.
     #[inline]
     pub fn set(&mut self, grid: &Grid<D>, point: usize, rows: &[Row<W>; D]) {
-        let per_metre = grid.inverse_cell_size();
         let mut first = 0;
         for direction in 0..D {
             first += rows[direction].first * grid.node_stride()[direction];
-            self.weights[point][direction] = rows[direction].weights;
-            self.gradients[point][direction] = rows[direction].gradients.map(|g| g * per_metre);
+            self.set_row(grid, point, direction, &rows[direction]);
         }
         self.first[point] = first;
     }
 
-    /// Sets the block of a point of which only gradients are asked: one direction has no use for the
-    /// weights.
+    /// Sets the row of a point along a direction where the lowest node is known already.
     #[inline]
-    pub fn set_gradients(&mut self, grid: &Grid<D>, point: usize, rows: &[Row<W>; D]) {
-        if D > 1 {
-            self.set(grid, point, rows);
-            return;
+    pub fn set_row(&mut self, grid: &Grid<D>, point: usize, direction: usize, row: &Row<W>) {
+        let (rows, lane) = (&mut self.rows[point / LANES][direction], point % LANES);
+        for k in 0..W {
+            rows.weights[k][lane] = row.weights[k];
+            rows.gradients[k][lane] = row.gradients[k] * grid.inverse_cell_size();
         }
-        self.gradients[point][0] = rows[0].gradients.map(|g| g * grid.inverse_cell_size());
-        self.first[point] = rows[0].first;
+    }
+
+    /// Sets the rows of all points block by block: `fill` is given some neighbouring points' places (in cells) along
+    /// a direction, and the number of the first of them, and says which node each row begins with.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn set_lanes(
+        &mut self,
+        grid: &Grid<D>,
+        places: &[Vector<D>],
+        mut fill: impl FnMut(usize, usize, &Lanes, &mut LaneRows<W>) -> Lanes,
+    ) {
+        let firsts = self.first.chunks_mut(LANES);
+        for (block, (rows, (firsts, places))) in
+            self.rows.iter_mut().zip(firsts.zip(places.chunks(LANES))).enumerate()
+        {
+            firsts.fill(0);
+            for direction in 0..D {
+                let place = lanes_of(places, direction, GHOST_LAYERS as f64);
+                let lowest = fill(block * LANES, direction, &place, &mut rows[direction]);
+                let stride = grid.node_stride()[direction];
+                for (first, lowest) in firsts.iter_mut().zip(&lowest) {
+                    *first += stride * index_of(*lowest);
+                }
+            }
+        }
     }
 
     /// The blocks of all points, borrowed once for a loop over them.
     #[inline]
     pub fn blocks(&self) -> Blocks<'_, D, W> {
-        Blocks { first: &self.first, weights: &self.weights, gradients: &self.gradients }
+        Blocks { first: &self.first, rows: &self.rows }
     }
 
     /// Visits the nodes of a point's block with weight and gradient (1/m).
@@ -167,8 +202,18 @@ impl<const D: usize> PointStencils<D> {
 #[derive(Clone, Copy, Debug)]
 pub struct Blocks<'a, const D: usize, const W: usize> {
     first: &'a [usize],
-    weights: &'a [[[f64; W]; D]],
-    gradients: &'a [[[f64; W]; D]],
+    rows: &'a [RowBlock<D, W>],
+}
+
+/// One component of up to [`LANES`] vectors side by side; a place without a vector has a number in its stead.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn lanes_of<const D: usize>(vectors: &[Vector<D>], component: usize, instead: f64) -> Lanes {
+    let mut lanes = [instead; LANES];
+    for (lane, vector) in lanes.iter_mut().zip(vectors) {
+        *lane = vector[component];
+    }
+    lanes
 }
 
 impl<const D: usize, const W: usize> Blocks<'_, D, W> {
@@ -184,8 +229,14 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
         point: usize,
         mut run_visitor: impl FnMut(usize, &[f64; W], &[Vector<D>; W]),
     ) {
-        let weights = &self.weights[point];
-        let gradients = &self.gradients[point];
+        let (rows, lane) = (&self.rows[point / LANES], point % LANES);
+        let (mut weights, mut gradients) = ([[0.0; W]; D], [[0.0; W]; D]);
+        for direction in 0..D {
+            for k in 0..W {
+                weights[direction][k] = rows[direction].weights[k][lane];
+                gradients[direction][k] = rows[direction].gradients[k][lane];
+            }
+        }
         for run in 0..power(W, D - 1) {
             let mut rest = run;
             let mut node = self.first[point];
@@ -202,12 +253,14 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
                         if component == direction { gradients[direction][k] } else { weights[direction][k] };
                 }
             }
-            let run_weights = weights[0].map(|weight| across * weight);
-            let run_gradients: [Vector<D>; W] = std::array::from_fn(|k| {
-                std::array::from_fn(|component| {
-                    across_gradient[component] * if component == 0 { gradients[0][k] } else { weights[0][k] }
-                })
-            });
+            let (mut run_weights, mut run_gradients) = ([0.0; W], [[0.0; D]; W]);
+            for k in 0..W {
+                run_weights[k] = across * weights[0][k];
+                for component in 0..D {
+                    let along = if component == 0 { gradients[0][k] } else { weights[0][k] };
+                    run_gradients[k][component] = across_gradient[component] * along;
+                }
+            }
             run_visitor(node, &run_weights, &run_gradients);
         }
     }
