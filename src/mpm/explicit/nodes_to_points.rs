@@ -8,7 +8,6 @@ use crate::mpm::explicit::points_to_nodes::{add_momenta, momenta_of, volumes_of}
 use crate::mpm::operators::stencil::{Blocks, with_stencils};
 use crate::mpm::run::profile::{Phase, enter};
 use crate::mpm::state::nodes::Nodes;
-use crate::soil::tensor::Vector;
 
 /// Durations and shares of a step, for the points.
 #[derive(Clone, Copy)]
@@ -69,13 +68,12 @@ impl<const D: usize> Body<D> {
         let (initial_volume, volume_ratio) = (&points.initial_volume[..count], &points.volume_ratio[..count]);
         for point in 0..count {
             let ([mut solid, mut solid_rate], [mut water, mut water_rate]) = ([[0.0; D]; 2], [[0.0; D]; 2]);
-            basis.visit_runs(&stride, point, |first, weights, _| {
-                let run = first..first + W;
-                add_weighted(&mut solid, &solid_field[run.clone()], weights);
-                add_weighted(&mut solid_rate, &solid_rates[run.clone()], weights);
-                add_weighted(&mut water_rate, &water_rates[run.clone()], weights);
+            basis.visit_runs(&stride, point, |run| {
+                run.add_value(&mut solid, solid_field);
+                run.add_value(&mut solid_rate, solid_rates);
+                run.add_value(&mut water_rate, water_rates);
                 if PIC {
-                    add_weighted(&mut water, &water_field[run], weights);
+                    run.add_value(&mut water, water_field);
                 }
             });
             let carrying = carrier.map_or(solid, |ends| ends.value(&stride, point, solid_field));
@@ -95,21 +93,8 @@ impl<const D: usize> Body<D> {
             if BACK {
                 let volumes = volumes_of(initial_volume[point], volume_ratio[point], solid_fraction);
                 let given = momenta_of(volumes, solid_velocity, water_velocity);
-                basis.visit_runs(&stride, point, |first, weights, _| {
-                    add_momenta(&mut momenta[first..first + W], weights, &given);
-                });
+                basis.visit_runs(&stride, point, |run| add_momenta(momenta, run, &given));
             }
-        }
-    }
-}
-
-/// Adds a run of nodal vectors with their weights.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn add_weighted<const D: usize>(value: &mut Vector<D>, nodes: &[Vector<D>], weights: &[f64]) {
-    for (node, weight) in nodes.iter().zip(weights) {
-        for d in 0..D {
-            value[d] += weight * node[d];
         }
     }
 }

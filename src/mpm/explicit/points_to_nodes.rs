@@ -1,11 +1,12 @@
 //! From points to nodes: masses, velocities and forces, each one pass over the points.
 //!
 //! Where points move, these passes are most of a step: the step takes masses, velocities and forces in one, right
-//! after the weights were made. It takes a point's run of nodes as one slice, so that its bounds are checked once, and
-//! sums side by side what belongs to one node.
+//! after the weights were made. It takes a point's run of nodes as one slice, so that its bounds are checked once,
+//! takes what belongs across the run into what the point gives, and sums side by side what belongs to one node.
 
 use crate::mpm::body::Body;
-use crate::mpm::operators::stencil::{Blocks, with_stencils};
+use crate::mpm::operators::pairs::add_weighted;
+use crate::mpm::operators::stencil::{Blocks, Run, with_stencils};
 use crate::mpm::state::points::Points;
 use crate::soil::conductivity_mean::ConductivityMean;
 use crate::soil::tensor::{Tensor, Vector, product_with_transpose};
@@ -96,35 +97,18 @@ impl<const D: usize> Body<D> {
             let given_momenta =
                 momenta_of(volumes, &points.solid_velocity[point], &points.water_velocity[point]);
             let given_stresses = if FORCES { points.stresses(point, is_total) } else { [[[0.0; D]; D]; 2] };
-            basis.visit_runs(&stride, point, |first, weights, gradients| {
-                let run = first..first + W;
+            basis.visit_runs(&stride, point, |run| {
                 if MASSES {
-                    for (node, weight) in masses[run.clone()].iter_mut().zip(weights) {
-                        for (sum, mass) in node.iter_mut().zip(&given_masses) {
-                            *sum += weight * mass;
-                        }
+                    let given = given_masses.map(|mass| run.across[0] * mass);
+                    for (node, weight) in masses[run.first..run.first + W].iter_mut().zip(&run.weights) {
+                        add_weighted(node, *weight, &given);
                     }
                 }
                 if VELOCITIES {
-                    add_momenta(&mut momenta[run.clone()], weights, &given_momenta);
+                    add_momenta(momenta, run, &given_momenta);
                 }
                 if FORCES {
-                    for (node, gradient) in forces[run].iter_mut().zip(gradients) {
-                        let ([mixture, water], [to_mixture, to_water]) = (node, &given_stresses);
-                        for d in 0..D {
-                            for e in 0..D {
-                                mixture[d] += to_mixture[d][e] * gradient[e];
-                            }
-                        }
-                        for d in 0..D {
-                            for e in 0..D {
-                                // A pressure has no other terms, unless it was pulled back.
-                                if e == d || is_total {
-                                    water[d] += to_water[d][e] * gradient[e];
-                                }
-                            }
-                        }
-                    }
+                    add_forces(forces, run, &given_stresses);
                 }
             });
         }
@@ -155,12 +139,37 @@ pub(crate) fn momenta_of<const D: usize>(
 /// Adds a point's momenta to a run of nodes.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub(crate) fn add_momenta<const D: usize>(run: &mut [[Vector<D>; 2]], weights: &[f64], given: &[Vector<D>; 2]) {
-    for (node, weight) in run.iter_mut().zip(weights) {
-        for (sum, momentum) in node.iter_mut().zip(given) {
-            for d in 0..D {
-                sum[d] += weight * momentum[d];
-            }
+pub(crate) fn add_momenta<const D: usize, const W: usize>(
+    momenta: &mut [[Vector<D>; 2]],
+    run: &Run<D, W>,
+    given: &[Vector<D>; 2],
+) {
+    let given = given.map(|phase| phase.map(|momentum| run.across[0] * momentum));
+    for (node, weight) in momenta[run.first..run.first + W].iter_mut().zip(&run.weights) {
+        add_weighted(node.as_flattened_mut(), *weight, given.as_flattened());
+    }
+}
+
+/// Adds the forces of what each unit of gradient gives to the mixture and to the water to a run of nodes.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn add_forces<const D: usize, const W: usize>(
+    forces: &mut [[Vector<D>; 2]],
+    run: &Run<D, W>,
+    [to_mixture, to_water]: &[Tensor<D>; 2],
+) {
+    // `[direction][component]` of the gradient and of the force on mixture and water, side by side.
+    let mut given = [[[0.0; D]; 2]; D];
+    for e in 0..D {
+        for d in 0..D {
+            given[e][0][d] = to_mixture[d][e] * run.across[e];
+            given[e][1][d] = to_water[d][e] * run.across[e];
+        }
+    }
+    for (k, node) in forces[run.first..run.first + W].iter_mut().enumerate() {
+        for e in 0..D {
+            let along = if e == 0 { run.gradients[k] } else { run.weights[k] };
+            add_weighted(node.as_flattened_mut(), along, given[e].as_flattened());
         }
     }
 }

@@ -4,8 +4,9 @@
 
 use crate::mpm::method::Basis;
 use crate::mpm::operators::row::Row;
-use crate::mpm::operators::stencil::{LANES, LaneRows, Lanes, PointStencils, Stencils, lanes_of, visit_block};
-use crate::mpm::state::grid::{GHOST_LAYERS, Grid, index_of, whole, whole_part};
+use crate::mpm::operators::stencil::{LaneRows, PointStencils, Stencils, visit_block};
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid, Line, index_of, whole, whole_part};
+use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
 use crate::mpm::state::nodes::Support;
 use crate::soil::tensor::Vector;
 
@@ -128,29 +129,28 @@ fn build<const D: usize, const W: usize, S: ShapeFunction<W>>(
     }
     stencils.set_lanes(grid, places, |first, direction, place, rows| {
         let half_length = lanes_of(&half_lengths[first..], direction, 0.5 * grid.cell_size);
-        fill_rows::<D, W, S>(grid, direction, place, &half_length, rows)
+        fill_rows::<W, S>(grid.line(direction), place, &half_length, rows)
     });
 }
 
 /// Rows of some points along a direction, at places in cells, of domains of half-lengths in m; returns the lowest
 /// node of each. Not inlined: what is written is known to be nothing that is read.
 #[inline(never)]
-fn fill_rows<const D: usize, const W: usize, S: ShapeFunction<W>>(
-    grid: &Grid<D>,
-    direction: usize,
+fn fill_rows<const W: usize, S: ShapeFunction<W>>(
+    line: Line,
     place: &Lanes,
     half_length: &Lanes,
     rows: &mut LaneRows<W>,
 ) -> Lanes {
-    let (mut lowest, per_cell) = ([0.0; LANES], grid.inverse_cell_size());
+    let mut lowest = [0.0; LANES];
     for lane in 0..LANES {
-        let (place, half_length) = (place[lane], half_length[lane] * per_cell);
-        let first = S::lowest_node(place, grid.whole_cell_at(direction, place), half_length);
+        let (place, half_length) = (place[lane], half_length[lane] * line.per_cell);
+        let first = S::lowest_node(place, line.cell_at(place), half_length);
         let [weights, gradients] = S::values(place, first, half_length);
         lowest[lane] = first;
         for k in 0..W {
             rows.weights[k][lane] = weights[k];
-            rows.gradients[k][lane] = gradients[k] * per_cell;
+            rows.gradients[k][lane] = gradients[k] * line.per_cell;
         }
     }
     lowest

@@ -1,15 +1,10 @@
 //! Sparse operators between points and nodes: one small tensor-product block of nodes a point.
 
+use crate::mpm::operators::pairs::add_weighted;
 use crate::mpm::operators::row::Row;
 use crate::mpm::state::grid::{GHOST_LAYERS, Grid, index_of, power};
+use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
 use crate::soil::tensor::{Tensor, Vector};
-
-/// Points whose rows are worked out side by side, and lie so: enough for a loop that the compiler turns into one
-/// over the lanes of whatever registers there are.
-pub const LANES: usize = 16;
-
-/// One number of each of some points.
-pub type Lanes = [f64; LANES];
 
 /// Weights and gradients of every point over a block of `W` nodes in each direction.
 ///
@@ -103,9 +98,13 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         point: usize,
         mut node_visitor: impl FnMut(usize, f64, &Vector<D>),
     ) {
-        self.blocks().visit_runs(stride, point, |first, weights, gradients| {
+        self.blocks().visit_runs(stride, point, |run| {
             for k in 0..W {
-                node_visitor(first + k, weights[k], &gradients[k]);
+                let mut gradient = [0.0; D];
+                for d in 0..D {
+                    gradient[d] = run.across[d] * if d == 0 { run.gradients[k] } else { run.weights[k] };
+                }
+                node_visitor(run.first + k, run.across[0] * run.weights[k], &gradient);
             }
         });
     }
@@ -113,15 +112,8 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Divergence of a nodal vector field at the point.
     #[inline]
     pub fn divergence(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> f64 {
-        let mut divergence = 0.0;
-        self.blocks().visit_runs(stride, point, |first, _, gradients| {
-            for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
-                for direction in 0..D {
-                    divergence += node[direction] * node_gradient[direction];
-                }
-            }
-        });
-        divergence
+        let gradient = self.blocks().gradient(stride, point, field);
+        (0..D).map(|d| gradient[d][d]).sum()
     }
 }
 
@@ -205,63 +197,32 @@ pub struct Blocks<'a, const D: usize, const W: usize> {
     rows: &'a [RowBlock<D, W>],
 }
 
-/// One component of up to [`LANES`] vectors side by side; a place without a vector has a number in its stead.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub(crate) fn lanes_of<const D: usize>(vectors: &[Vector<D>], component: usize, instead: f64) -> Lanes {
-    let mut lanes = [instead; LANES];
-    for (lane, vector) in lanes.iter_mut().zip(vectors) {
-        *lane = vector[component];
-    }
-    lanes
-}
-
 impl<const D: usize, const W: usize> Blocks<'_, D, W> {
-    /// Visits a point's block run by run: `W` neighbouring nodes along the first direction, with
-    /// the first of them, their weights and their gradients (1/m).
-    ///
-    /// A run is one slice of a nodal field, so that its bounds are checked once.
+    /// Visits a point's block run by run. A run is one slice of a nodal field, so that its bounds are checked once.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn visit_runs(
-        &self,
-        stride: &[usize; D],
-        point: usize,
-        mut run_visitor: impl FnMut(usize, &[f64; W], &[Vector<D>; W]),
-    ) {
+    pub fn visit_runs(&self, stride: &[usize; D], point: usize, mut run_visitor: impl FnMut(&Run<D, W>)) {
         let (rows, lane) = (&self.rows[point / LANES], point % LANES);
-        let (mut weights, mut gradients) = ([[0.0; W]; D], [[0.0; W]; D]);
-        for direction in 0..D {
-            for k in 0..W {
-                weights[direction][k] = rows[direction].weights[k][lane];
-                gradients[direction][k] = rows[direction].gradients[k][lane];
-            }
+        let mut run = Run { first: 0, weights: [0.0; W], gradients: [0.0; W], across: [1.0; D] };
+        for k in 0..W {
+            run.weights[k] = rows[0].weights[k][lane];
+            run.gradients[k] = rows[0].gradients[k][lane];
         }
-        for run in 0..power(W, D - 1) {
-            let mut rest = run;
-            let mut node = self.first[point];
-            // Shares of the other directions in the weight and in each component of the gradient.
-            let mut across = 1.0;
-            let mut across_gradient = [1.0; D];
+        for number in 0..power(W, D - 1) {
+            let mut rest = number;
+            run.first = self.first[point];
+            run.across = [1.0; D];
             for direction in 1..D {
                 let k = rest % W;
                 rest /= W;
-                node += k * stride[direction];
-                across *= weights[direction][k];
+                run.first += k * stride[direction];
+                let (weight, gradient) =
+                    (rows[direction].weights[k][lane], rows[direction].gradients[k][lane]);
                 for component in 0..D {
-                    across_gradient[component] *=
-                        if component == direction { gradients[direction][k] } else { weights[direction][k] };
+                    run.across[component] *= if component == direction { gradient } else { weight };
                 }
             }
-            let (mut run_weights, mut run_gradients) = ([0.0; W], [[0.0; D]; W]);
-            for k in 0..W {
-                run_weights[k] = across * weights[0][k];
-                for component in 0..D {
-                    let along = if component == 0 { gradients[0][k] } else { weights[0][k] };
-                    run_gradients[k][component] = across_gradient[component] * along;
-                }
-            }
-            run_visitor(node, &run_weights, &run_gradients);
+            run_visitor(&run);
         }
     }
 
@@ -270,13 +231,7 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
         let mut value = [0.0; D];
-        self.visit_runs(stride, point, |first, weights, _| {
-            for (node, weight) in field[first..first + W].iter().zip(weights) {
-                for component in 0..D {
-                    value[component] += weight * node[component];
-                }
-            }
-        });
+        self.visit_runs(stride, point, |run| run.add_value(&mut value, field));
         value
     }
 
@@ -285,16 +240,52 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
         let mut gradient = [[0.0; D]; D];
-        self.visit_runs(stride, point, |first, _, gradients| {
-            for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
+        self.visit_runs(stride, point, |run| {
+            // All directions but the first have the same sum along the run.
+            let (mut slope, mut value) = ([0.0; D], [0.0; D]);
+            let nodes = field[run.first..run.first + W].iter();
+            for (node, (along, weight)) in nodes.zip(run.gradients.iter().zip(&run.weights)) {
                 for component in 0..D {
-                    for direction in 0..D {
-                        gradient[component][direction] += node[component] * node_gradient[direction];
-                    }
+                    slope[component] += along * node[component];
+                    value[component] += weight * node[component];
+                }
+            }
+            for component in 0..D {
+                for direction in 0..D {
+                    let sum = if direction == 0 { slope[component] } else { value[component] };
+                    gradient[component][direction] += run.across[direction] * sum;
                 }
             }
         });
         gradient
+    }
+}
+
+/// `W` neighbouring nodes along the first direction in the block of a point, whose weights and gradients are products
+/// of what is along the run and what is across it: sums over the nodes are taken along first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run<const D: usize, const W: usize> {
+    /// The first of the nodes.
+    pub first: usize,
+    /// Weights along the run.
+    pub weights: [f64; W],
+    /// Gradients along the run, 1/m.
+    pub gradients: [f64; W],
+    /// What the other directions give: to the weights and to the first component of the gradients, and to each of the
+    /// others, 1/m.
+    pub across: Vector<D>,
+}
+
+impl<const D: usize, const W: usize> Run<D, W> {
+    /// Adds the run's share of the value of a nodal field.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn add_value(&self, value: &mut Vector<D>, field: &[Vector<D>]) {
+        let mut sum = [0.0; D];
+        for (node, weight) in field[self.first..self.first + W].iter().zip(&self.weights) {
+            add_weighted(&mut sum, *weight, node);
+        }
+        add_weighted(value, self.across[0], &sum);
     }
 }
 

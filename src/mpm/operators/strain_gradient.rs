@@ -7,9 +7,10 @@
 
 use crate::mpm::method::StrainGradient;
 use crate::mpm::operators::row::Row;
-use crate::mpm::operators::stencil::{Blocks, LANES, LaneRows, Lanes, PointStencils, Stencils};
+use crate::mpm::operators::stencil::{Blocks, LaneRows, PointStencils, Stencils};
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{Grid, SIXTH, cell_below};
+use crate::mpm::state::grid::{Grid, Line, SIXTH, cell_below};
+use crate::mpm::state::lanes::{LANES, Lanes};
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Nodes per direction between the ends of a domain: four at either end, at most one cell apart.
@@ -47,24 +48,25 @@ impl<const D: usize> StrainOperator<D> {
             Self::Basis => {}
             Self::Composite(stencils) => {
                 stencils.set_lanes(grid, &cells.place, |_, direction, place, rows| {
-                    fill_composite_rows::<D>(grid, direction, place, rows)
+                    fill_composite_rows::<D>(grid.line(direction), place, rows)
                 });
                 // Where a neighbour is missing, the polynomial is of a lower degree.
-                for (point, place) in places {
-                    let home = cells.of_point[point];
+                cells.for_each_run(|home, points| {
                     if cells.is_reached_around(home) {
-                        continue;
+                        return;
                     }
-                    let cell = grid.cell_at(place);
+                    let cell = grid.cell_index(home);
                     for d in 0..D {
                         let stride = grid.cell_stride()[d];
                         let sides = (cells.is_reached(home - stride), cells.is_reached(home + stride));
                         if sides != (true, true) {
-                            let row = composite(place[d], cell[d], sides.0, sides.1);
-                            stencils.set_row(grid, point, d, &row);
+                            for point in points.clone() {
+                                let row = composite(cells.place[point][d], cell[d], sides.0, sides.1);
+                                stencils.set_row(grid, point, d, &row);
+                            }
                         }
                     }
-                }
+                });
             }
             Self::BetweenEnds(stencils) => {
                 for (point, place) in places {
@@ -159,15 +161,10 @@ fn composite_row<const D: usize>(
 /// Rows of some points along a direction, at places in cells both of whose neighbours are there; returns the lowest
 /// node of each. Not inlined: what is written is known to be nothing that is read.
 #[inline(never)]
-fn fill_composite_rows<const D: usize>(
-    grid: &Grid<D>,
-    direction: usize,
-    place: &Lanes,
-    rows: &mut LaneRows<4>,
-) -> Lanes {
-    let (mut lowest, per_cell) = ([0.0; LANES], grid.inverse_cell_size());
+fn fill_composite_rows<const D: usize>(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
+    let mut lowest = [0.0; LANES];
     for lane in 0..LANES {
-        let cell = grid.whole_cell_at(direction, place[lane]);
+        let cell = line.cell_at(place[lane]);
         let [weights, gradients] = cubic(place[lane] - cell);
         lowest[lane] = cell - 1.0;
         for k in 0..4 {
@@ -175,7 +172,7 @@ fn fill_composite_rows<const D: usize>(
             if D > 1 {
                 rows.weights[k][lane] = weights[k];
             }
-            rows.gradients[k][lane] = gradients[k] * per_cell;
+            rows.gradients[k][lane] = gradients[k] * line.per_cell;
         }
     }
     lowest

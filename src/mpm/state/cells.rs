@@ -21,7 +21,7 @@ pub struct Cells<const D: usize> {
     /// splines at a free surface, where the field goes on as a line.
     divergence_node: Vec<usize>,
     /// Points in each cell.
-    point_count: Vec<usize>,
+    point_count: Vec<u32>,
     /// Whether a point's domain reaches into each cell.
     reached: Vec<bool>,
     /// Whether a domain reaches into both neighbours of each cell in every direction.
@@ -69,13 +69,13 @@ impl<const D: usize> Cells<D> {
 
     /// Finds the cell of every point and sums volumes over each cell's points.
     pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, initial_porosity: f64) {
+        self.point_count.fill(0);
         let found = self.of_point.iter_mut().zip(&mut self.place);
         for (position, (of_point, place)) in points.position.iter().zip(found) {
             *place = grid.held_in_cells(position);
             *of_point = grid.flat_cell(&grid.cell_at(place));
+            self.point_count[*of_point] += 1;
         }
-        self.point_count.fill(0);
-        for_each_run(&self.of_point, |cell, run| self.point_count[cell] += run.len());
         self.list_occupied();
         self.sum_volumes(points, initial_porosity);
     }
@@ -136,18 +136,12 @@ impl<const D: usize> Cells<D> {
     pub fn sum_volumes(&mut self, points: &Points<D>, initial_porosity: f64) {
         self.volume.fill(0.0);
         self.porosity.fill(0.0);
-        let (initial_volume, volume_ratio) = (&points.initial_volume[..], &points.volume_ratio[..]);
-        let (volumes, porosities) = (&mut self.volume, &mut self.porosity);
-        for_each_run(&self.of_point, |cell, run| {
-            // Sums that wait for registers and not for memory.
-            let (mut volume, mut pores) = (volumes[cell], porosities[cell]);
-            for (initial, ratio) in initial_volume[run.clone()].iter().zip(&volume_ratio[run]) {
-                volume += initial * ratio;
-                // n V = (J − (1 − n_0)) V_0
-                pores += initial * (ratio - (1.0 - initial_porosity));
-            }
-            (volumes[cell], porosities[cell]) = (volume, pores);
-        });
+        let state = points.initial_volume.iter().zip(&points.volume_ratio);
+        for (cell, (initial, ratio)) in self.of_point.iter().zip(state) {
+            self.volume[*cell] += initial * ratio;
+            // n V = (J − (1 − n_0)) V_0
+            self.porosity[*cell] += initial * (ratio - (1.0 - initial_porosity));
+        }
         for cell in &self.occupied {
             self.porosity[*cell] /= self.volume[*cell];
         }
@@ -189,6 +183,12 @@ impl<const D: usize> Cells<D> {
             let is_between = |stride: &usize| self.reached[cell - stride] && self.reached[cell + stride];
             self.reached_around[*cell] = grid.cell_stride().iter().all(is_between);
         }
+    }
+
+    /// Visits the runs of neighbouring points that share a cell, with it.
+    #[inline]
+    pub fn for_each_run(&self, visitor: impl FnMut(usize, Range<usize>)) {
+        for_each_run(&self.of_point, visitor);
     }
 
     /// Whether domains reach into all neighbours of an occupied cell.

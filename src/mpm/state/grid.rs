@@ -149,13 +149,10 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// The same along one direction as a whole number, for loops over lanes.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub(crate) fn whole_cell_at(&self, direction: usize, held_in_cells: f64) -> f64 {
-        let last = (self.cells[direction] + GHOST_LAYERS - 1) as f64;
-        let cell = whole_part(held_in_cells + FACE_TOLERANCE);
-        if cell > last { last } else { cell }
+    /// Its lines of cells along a direction, for loops over lanes.
+    #[inline]
+    pub(crate) fn line(&self, direction: usize) -> Line {
+        Line { per_cell: self.inverse_cell_size, cells: self.cells[direction] as f64 }
     }
 
     /// Index, a direction, of the cell that holds a point.
@@ -219,6 +216,27 @@ impl<const D: usize> Grid<D> {
             centre[direction] = (index as f64 + 0.5 - GHOST_LAYERS as f64) * self.cell_size;
         }
         centre
+    }
+}
+
+/// A line of cells along one direction of a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Line {
+    /// `1 / cell_size`, 1/m.
+    pub(crate) per_cell: f64,
+    /// Its cells, ghosts not counted.
+    cells: f64,
+}
+
+impl Line {
+    /// Index, as a whole number, of the cell that holds a place in cells inside the grid: that of
+    /// [`cell_at`](Grid::cell_at).
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub(crate) fn cell_at(&self, held_in_cells: f64) -> f64 {
+        let last = self.cells + (GHOST_LAYERS - 1) as f64;
+        let cell = whole_part(held_in_cells + FACE_TOLERANCE);
+        if cell > last { last } else { cell }
     }
 }
 

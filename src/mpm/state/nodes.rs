@@ -231,7 +231,9 @@ impl<const D: usize> Nodes<D> {
                 self.per_water_mass[node] = 1.0 / self.water_mass[node];
                 self.free[node] = self.supports[node];
                 self.water_free[node] = self.water_supports[node];
-            } else if self.porosity[node] != 0.0 || self.free[node] != [0.0; D] || self.water_free[node] != [0.0; D]
+            } else if self.porosity[node] != 0.0
+                || self.free[node] != [0.0; D]
+                || self.water_free[node] != [0.0; D]
             {
                 self.silence(node);
             }

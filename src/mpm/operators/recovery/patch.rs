@@ -5,9 +5,9 @@
 //! distance: with equal weights the recovery's Fourier symbol `(1 + 2 cos θ)/3` turns negative
 //! beyond `2π/3`, a negative stiffness that no step survives.
 
-use crate::mpm::operators::stencil::{LANES, Lanes, lanes_of};
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::{GHOST_LAYERS, Grid, SIXTH, index_of, power};
+use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
 use crate::soil::tensor::{Vector, solve_symmetric};
 
 /// Cells along one direction of a patch.
@@ -76,10 +76,10 @@ impl<const D: usize> PatchRows<D> {
                     }
                 } else {
                     for lane in 0..LANES {
-                        lines[d].cells[lane] = grid.whole_cell_at(d, place[lane]);
+                        lines[d].cells[lane] = grid.line(d).cell_at(place[lane]);
                     }
                 }
-                lines[d].fill(&place, D > 1);
+                fill::<D>(&mut lines[d], &place);
             }
             let rows = weights.chunks_exact_mut(Self::width());
             for (lane, (first, row)) in firsts.iter_mut().zip(rows).take(homes.len()).enumerate() {
@@ -199,56 +199,6 @@ impl Default for LineRows {
 }
 
 impl LineRows {
-    /// The rows of points at places (in cells) where all cells are occupied, and where they are asked for, the
-    /// shares: the same fit as [`Patch`] in closed form. Moving points pay for it at every step.
-    ///
-    /// The spline is the cubic B-spline, whose four values around a point have the moments 1, 0 and 1/3.
-    /// The patch lacks the outermost, `u³/6` at the distance `2 − u` on the near side, `u = |offset|`,
-    /// which gives its own moments, and the fit's weights from them.
-    #[inline(never)]
-    fn fill(&mut self, place: &Lanes, has_shares: bool) {
-        for lane in 0..LANES {
-            let offset = self.cells[lane] + 0.5 - place[lane];
-            let u = offset.abs();
-            let rest = 1.0 - u;
-            let square = u * u;
-            let far = SIXTH * rest * rest * rest;
-            let home = 2.0 / 3.0 - square + 0.5 * square * u;
-            let lacking = SIXTH * square * u;
-            let near = 1.0 - home - far - lacking;
-            let (lever, tilt) = (2.0 - u, 3.0 * lacking * (2.0 - u));
-            let scale = 1.0 / (1.0 - lacking - tilt * lever);
-            let line_near = near * (1.0 - tilt) * scale;
-            let line_far = far * (1.0 - 3.0 * tilt) * scale;
-            let is_above = offset > 0.0;
-            self.offsets[lane] = offset;
-            self.line[0][lane] = if is_above { line_near } else { line_far };
-            self.line[1][lane] = 1.0 - line_near - line_far;
-            self.line[2][lane] = if is_above { line_far } else { line_near };
-        }
-        if has_shares {
-            self.fill_shares();
-        }
-    }
-
-    /// Shares of the cells in the sum of the weights, from the same values of the spline.
-    #[inline(never)]
-    fn fill_shares(&mut self) {
-        for lane in 0..LANES {
-            let u = self.offsets[lane].abs();
-            let rest = 1.0 - u;
-            let square = u * u;
-            let per_sum = 1.0 / (1.0 - SIXTH * square * u);
-            let far = SIXTH * rest * rest * rest * per_sum;
-            let home = (2.0 / 3.0 - square + 0.5 * square * u) * per_sum;
-            let near = 1.0 - home - far;
-            let is_above = self.offsets[lane] > 0.0;
-            self.shares[0][lane] = if is_above { near } else { far };
-            self.shares[1][lane] = home;
-            self.shares[2][lane] = if is_above { far } else { near };
-        }
-    }
-
     /// The row of a point some of whose cells are empty: the line through two, or the value of the only one.
     #[inline]
     fn cut(&mut self, lane: usize, sides: (bool, bool)) {
@@ -269,6 +219,51 @@ impl LineRows {
         }
         for k in 0..BLOCK {
             (self.line[k][lane], self.shares[k][lane]) = (line[k], shares[k]);
+        }
+    }
+}
+
+/// The rows of points at places (in cells) where all cells are occupied, and in a plane the shares: the same fit as
+/// [`Patch`] in closed form. Moving points pay for it at every step.
+///
+/// The spline is the cubic B-spline, whose four values around a point have the moments 1, 0 and 1/3.
+/// The patch lacks the outermost, `u³/6` at the distance `2 − u` on the near side, `u = |offset|`,
+/// which gives its own moments, and the fit's weights from them.
+#[inline(never)]
+fn fill<const D: usize>(rows: &mut LineRows, place: &Lanes) {
+    for lane in 0..LANES {
+        let offset = rows.cells[lane] + 0.5 - place[lane];
+        let u = offset.abs();
+        let rest = 1.0 - u;
+        let square = u * u;
+        let far = SIXTH * rest * rest * rest;
+        let home = 2.0 / 3.0 - square + 0.5 * square * u;
+        let lacking = SIXTH * square * u;
+        let near = 1.0 - home - far - lacking;
+        let (lever, tilt) = (2.0 - u, 3.0 * lacking * (2.0 - u));
+        let scale = 1.0 / (1.0 - lacking - tilt * lever);
+        let line_near = near * (1.0 - tilt) * scale;
+        let line_far = far * (1.0 - 3.0 * tilt) * scale;
+        let is_above = offset > 0.0;
+        rows.offsets[lane] = offset;
+        rows.line[0][lane] = if is_above { line_near } else { line_far };
+        rows.line[1][lane] = 1.0 - line_near - line_far;
+        rows.line[2][lane] = if is_above { line_far } else { line_near };
+    }
+    // A column has no use for the shares.
+    if D > 1 {
+        for lane in 0..LANES {
+            let u = rows.offsets[lane].abs();
+            let rest = 1.0 - u;
+            let square = u * u;
+            let per_sum = 1.0 / (1.0 - SIXTH * square * u);
+            let far = SIXTH * rest * rest * rest * per_sum;
+            let home = (2.0 / 3.0 - square + 0.5 * square * u) * per_sum;
+            let near = 1.0 - home - far;
+            let is_above = rows.offsets[lane] > 0.0;
+            rows.shares[0][lane] = if is_above { near } else { far };
+            rows.shares[1][lane] = home;
+            rows.shares[2][lane] = if is_above { far } else { near };
         }
     }
 }
@@ -424,7 +419,10 @@ mod tests {
     }
 
     /// The row of a point in a cell of which only some of the neighbours are occupied, and that of its fit.
-    fn both_rows<const D: usize>(place: Vector<D>, is_occupied: impl Fn(&[usize; D]) -> bool) -> [Vec<f64>; 2] {
+    fn both_rows<const D: usize>(
+        place: Vector<D>,
+        is_occupied: impl Fn(&[usize; D]) -> bool,
+    ) -> [Vec<f64>; 2] {
         let grid = Grid::new(1.0, [3; D]);
         let mut points = Points::lattice(1.0, [3; D], 1);
         let centre = points.len() / 2;
