@@ -88,8 +88,9 @@ impl<const D: usize> PatchRows<D> {
                     home += grid.cell_stride()[d] * index_of(lines[d].cells[lane]);
                 }
                 *first = home - lowest;
-                let is_occupied = cells.is_occupied(home);
-                match if is_occupied { self.neighbours[home] } else { Neighbours::Some } {
+                let neighbours =
+                    if cells.is_occupied(home) { self.neighbours[home] } else { Neighbours::Some };
+                match neighbours {
                     Neighbours::Some => fit(grid, cells, home, &places[lane], row),
                     Neighbours::All => combine(&lines, lane, row),
                     Neighbours::Rectangle(sides) => {
