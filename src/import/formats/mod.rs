@@ -8,11 +8,14 @@ pub mod hdf5;
 #[cfg(not(feature = "hdf5"))]
 #[path = "without_hdf5.rs"]
 pub mod hdf5;
+pub mod hints;
 pub mod legacy_vtk;
 pub mod numpy;
 pub mod steps;
 pub mod vtk_data;
 pub mod vtu;
+#[cfg(all(test, feature = "hdf5"))]
+mod without_hdf5;
 pub mod xdmf;
 pub mod xml;
 

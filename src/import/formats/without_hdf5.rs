@@ -42,3 +42,27 @@ impl Store {
         Err(ABSENT.to_owned())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn whoever_asks_for_hdf5_is_told_what_is_missing_and_what_to_do() {
+        let mut store = Store;
+        let wanted = BTreeSet::new();
+        let told = [
+            Store::open(Path::new("a.h5")).map(|_| ()),
+            store.numbers("p", None).map(|_| ()),
+            store.times().map(|_| ()),
+            store.frame(0, Wanted(&wanted)).map(|_| ()),
+        ];
+        for told in told.map(Result::unwrap_err) {
+            assert!(
+                told.contains("feature `hdf5`") && told.contains("build it with its default features"),
+                "{told}"
+            );
+        }
+    }
+}
