@@ -31,8 +31,9 @@ pub fn program_of(frame: &Frame) -> Option<&'static str> {
 /// A sentence on a folder that was named in the place of its files.
 pub fn of_folder(folder: &Path) -> String {
     let files = files_of(folder);
-    let first = |endings: &[&str]| {
-        endings.iter().find_map(|ending| Some((*ending, files.iter().find(|file| ends_with(file, ending))?)))
+    let first = |endings: &[&'static str]| {
+        let of = |ending: &&'static str| Some((*ending, files.iter().find(|file| ends_with(file, ending))?));
+        endings.iter().find_map(of)
     };
     if let Some((_, collection)) = first(&COLLECTIONS) {
         return format!("it is a folder: name the collection in it, {}", collection.display());
