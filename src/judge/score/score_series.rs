@@ -96,14 +96,14 @@ fn one_series(
 /// The errors of a field with the signs by which they lean, where they lean clearly on every mesh and not all one way;
 /// none elsewhere.
 fn signed_by_leaning(rows: &[Option<&ErrorRow>], levels: &[(usize, &Score)]) -> Vec<f64> {
-    let signed = |(row, (_, score)): (&Option<&ErrorRow>, &(usize, &Score))| {
-        let row = (*row)?;
+    let signed = |(row, (_, score)): (Option<&ErrorRow>, &(usize, &Score))| {
+        let row = row?;
         let is_own = score.errors.first().is_some_and(|own| own.reference == row.reference);
         let like = |one: &&Leaning| (one.time_factor, one.quantity) == (row.time_factor, row.quantity);
         let leaning = score.leanings.iter().find(like).filter(|_| is_own)?;
         (leaning.cosine.abs() >= CLEAR).then_some(row.value.abs() * leaning.cosine.signum())
     };
-    let signed: Vec<f64> = rows.iter().zip(levels).map_while(signed).collect();
+    let signed: Vec<f64> = rows.iter().copied().zip(levels).map_while(signed).collect();
     let is_mixed = signed.iter().any(|error| *error > 0.0) && signed.iter().any(|error| *error < 0.0);
     if is_mixed && signed.len() == rows.len() { signed } else { Vec::new() }
 }
