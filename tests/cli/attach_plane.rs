@@ -28,7 +28,8 @@ fn write(at: &Path, scene: &str, command: &str, columns: &str, adapter: &str) {
          command = [\"sh\", \"adapter.sh\", \"{{out}}\", {command}]\nresult = \"{{out}}/result.csv\"\n\
          mapping = \"map.toml\"\n[[sweep]]\nmethod = [\"own\"]\ncells = [10]\n"
     );
-    let names = columns.split_whitespace().map(|name| format!("{name} = \"{name}\"\n")).collect::<String>();
+    let names: Vec<String> = columns.split_whitespace().map(|name| format!("{name} = \"{name}\"")).collect();
+    let names = names.join("\n") + "\n";
     let signs =
         "[sign]\ny = \"up\"\np = \"compression-positive\"\nu_y = \"up\"\nx = \"right\"\nu_x = \"right\"\n";
     let mapping = format!("sample = \"nodes\"\n[columns]\n{names}{signs}");
