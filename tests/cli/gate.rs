@@ -136,12 +136,7 @@ fn a_permeability_that_is_off_by_one_per_cent_is_caught_with_quantity_time_and_p
     let told = check(slight.path(), &[]);
     assert!(told.code == 1 && told.words().contains("values moved"), "{}", told.out);
     let shown = printed("a tenth of a per cent");
-    // The last digits of values near round-off are the library's.
-    let [head, tail] =
-        ["kratos cells=10 | pressure nodes l2 terzaghi T_v=1", "9.89e-1, 2.353e10 times its tolerance"];
-    for part in [head, tail] {
-        assert!(shown.contains(part) && told.words().contains(part), "{part}: {}", told.out);
-    }
+    assert!(told.words().contains(shown.trim_end_matches('…')), "{shown}: {}", told.out);
 }
 
 #[test]

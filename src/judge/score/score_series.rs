@@ -13,8 +13,9 @@ use std::collections::HashMap;
 /// Errors up to this are round-off of a written number.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Cosine between error and field from which on the error has the sign of one number.
-const CLEAR: f64 = 0.9;
+/// Cosine between error and field from which on the error has the sign of one number: half of its square lies along the
+/// field.
+const CLEAR: f64 = 0.7;
 
 /// A series of one error over results on finer and finer meshes, with its class.
 #[derive(Clone, Debug)]
