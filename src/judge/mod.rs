@@ -10,6 +10,7 @@ pub mod cheapest_method;
 pub mod error_place;
 pub mod explanation;
 pub mod floor_causes;
+pub mod judgement;
 pub mod locking;
 pub mod paths;
 pub mod peers;
