@@ -36,7 +36,7 @@ fn place(soil: &MappedSoil) -> (f64, f64) {
 }
 
 /// Soils by names as a figure: a colour a name.
-fn map_of<'a>(title: String, names: BTreeMap<&'a str, Vec<(f64, f64)>>) -> Chart {
+fn map_of(title: String, names: BTreeMap<&str, Vec<(f64, f64)>>) -> Chart {
     let x = ChartAxis::log10("hydraulic conductivity k (m/s)");
     let mut chart = Chart::new(title, x, ChartAxis::log10("Young's modulus E (Pa)"));
     chart.size = Size::PANEL;
