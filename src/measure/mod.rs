@@ -9,6 +9,7 @@ pub mod exact_fields;
 pub mod field_errors;
 pub mod norms;
 pub mod oscillation;
+pub mod other_measures;
 pub mod plane_field;
 pub mod pressure_peak;
 pub mod record_checks;
