@@ -225,6 +225,7 @@ fn drift_found(what: &str, found: Option<f64>, below: f64) -> Check {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use crate::measure::record_checks;
     use crate::study::expectation::Measure;
 
     const STUDY: &str = r#"title = "One case"
@@ -312,6 +313,18 @@ time_step = [{ growth = 0.05 }]
             records[0].balance[0].layers = Some(layers);
             let found: Vec<bool> = demand.checks(&records[0]).iter().map(|check| check.pass).collect();
             assert_eq!(found, passes, "{pore_water}");
+        }
+        // A burst between outputs is a failed check of the run by that name, and may be asked for.
+        let demand =
+            CaseDemand { largest_pressure: Some(Bounds { above: 1.5, below: 9.0 }), ..CaseDemand::default() };
+        for (largest_pressure, is_burst) in [(1.01, false), (1.6, true), (f64::NAN, true)] {
+            let layers = records[0].balance[0].layers.as_mut().expect("layers");
+            (layers.pore_water, layers.water_left_error) = (0.0, 0.0);
+            layers.largest_pressure = Some(largest_pressure);
+            let said = record_checks::complaints(&records[0]);
+            assert_eq!(said.iter().any(|one| one.contains("burst")), is_burst, "{said:?}");
+            let asked = demand.checks(&records[0])[0].pass;
+            assert_eq!(asked, largest_pressure == 1.6);
         }
     }
 

@@ -309,7 +309,7 @@ impl<const D: usize> Stepper for NewtonStepper<D> {
     }
 
     fn lost_point(&self) -> Option<StepFailure> {
-        lost_point(&self.trial.body)
+        lost_point(&self.trial.body).map(|failure| self.with_remedy(failure))
     }
 
     fn snapshot(&self, time: f64) -> Snapshot {
