@@ -27,10 +27,10 @@ const WATER_MOVING: f64 = 5e-2;
 /// Water in the soil over its pores, less one, where both are counted apart, times the square of the number of cells:
 /// twice what the cut at the surface leaves of it (0.2 on ten cells with two points).
 const WATER_IN_PORES: f64 = 0.5;
-/// Pressure over the load that consolidation cannot reach: it begins at most at the load, and what is beyond half of that
-/// again is a burst, where forces of the water and of the skeleton end in domains that are cut differently.
+/// Pressure over the load that consolidation cannot reach: it begins at most at the load, the first front overshoots that by
+/// a quarter on coarse meshes, and what is beyond half of it is a burst, where forces of the water and of the skeleton end in domains that are cut differently.
 const NO_BURST: f64 = 1.5;
-/// What WATER_IN_PORES is on meshes so fine that other errors rule; a wrong continuity makes fifty times as much.
+/// What `WATER_IN_PORES` is on meshes so fine that other errors rule; a wrong continuity makes fifty times as much.
 const LEAST_WATER_IN_PORES: f64 = 1e-3;
 
 /// A value of a record, and what it is held to.
@@ -131,10 +131,10 @@ pub fn has_burst(record: &Record) -> bool {
     if !(is_sound && case.column.points.has_two_layers() && deforms(record)) {
         return false;
     }
-    let seen = record.balance.iter().filter_map(|balance| balance.layers.as_ref()?.largest_pressure);
+    let mut seen = record.balance.iter().filter_map(|balance| balance.layers.as_ref()?.largest_pressure);
     let has_left = matches!(&record.status, Status::Failed(failure)
         if matches!(failure.kind, FailureKind::Unstable | FailureKind::PoresClosed));
-    has_left || seen.into_iter().any(|largest| !(largest <= NO_BURST))
+    has_left || seen.any(|largest| largest > NO_BURST || largest.is_nan())
 }
 
 /// Where volumes follow the deformation, the undrained start has compressed the column by
