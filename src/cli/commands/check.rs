@@ -16,7 +16,7 @@ use crate::golden::compare::Difference;
 use crate::golden::difference_groups::DifferenceGroup;
 use crate::golden::references::REFERENCES;
 use crate::golden::{GoldenError, GoldenFile};
-use crate::judge::paths::Judgement;
+use crate::judge::judgement::Judgement;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::record::Record;
 use crate::render::checks::annotations::annotations_of;

@@ -1,7 +1,7 @@
 //! Checks of where the soil is and what loads it: the tables `[column]` and `[layer]`.
 
-use crate::case::Case;
 use crate::case::keys::{Key, Value};
+use crate::case::{Case, Task};
 use crate::elementary;
 use crate::exact::exact_error::ExactError;
 use crate::exact::xie_leo::XieLeo;
@@ -52,7 +52,16 @@ impl Checker<'_> {
             self.complain(
                 typed.span(),
                 format!("the soil of `{name}` has no weight"),
-                "own weight belongs to the scenes of a column, like \"terzaghi\", \"xie-leo\" and \"at-rest\"",
+                "own weight belongs to the scenes \"terzaghi\", \"xie-leo\", \"dynamic-column\" and \"at-rest\"",
+            );
+        }
+        let has_weight = |typed: &&One| matches!(typed.get_ref(), TypedInput::Flag(true));
+        let of_stability = seed.task == Task::Stability && scene.takes_self_weight();
+        if let Some(typed) = file.column.typed("self_weight").filter(has_weight).filter(|_| of_stability) {
+            self.complain(
+                typed.span(),
+                "a weight is a force that does not change: the critical step is that of the weightless column",
+                "leave `self_weight` out of a study of stability",
             );
         }
         let in_a_line = |typed: &&One| !matches!(typed.get_ref(), TypedInput::Count(2));
