@@ -176,7 +176,7 @@ fn of_waves(results: &[StudyResults<'_>]) -> Option<Advice> {
                 .as_ref()
                 .is_none_or(|(known, smallest, _, _)| (order.round(), -error) > (known.round(), -smallest))
             {
-                best = Some((order, error, path.label(), &one.study.name));
+                best = Some((order, error, scheme_of(path), &one.study.name));
             }
         }
     }
@@ -191,6 +191,13 @@ fn of_waves(results: &[StudyResults<'_>]) -> Option<Advice> {
         ),
         study: study.to_owned(),
     })
+}
+
+/// The method of a path and how it steps: what one takes over, and not the mesh that it was tried on.
+fn scheme_of(path: &Path<'_>) -> String {
+    let case = &path.records[0].case;
+    let parts = [case.method.to_string(), case.integrator.name().to_owned(), case.variant()];
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
 /// The settled order of the pressure in the step, and the error of the coarsest step.
