@@ -110,6 +110,15 @@ impl<const D: usize> Support<D> {
         self
     }
 
+    /// Whether a node lies beyond a held face, by more than a tolerance, m.
+    fn is_beyond(&self, grid: &Grid<D>, node: usize, tolerance: f64) -> bool {
+        let position = grid.node_position(node);
+        (0..D).any(|d| {
+            let top = grid.cells[d] as f64 * grid.cell_size;
+            self.lower[d] && position[d] < -tolerance || self.upper[d] && position[d] > top + tolerance
+        })
+    }
+
     /// The same faces on a base that the skeleton sticks to.
     #[must_use]
     pub fn on_rough_base(self) -> Self {
@@ -135,6 +144,10 @@ impl<const D: usize> Nodes<D> {
             })
             .collect();
         let mut supports = water_supports.clone();
+        // A domain that a face has let through by a round-off finds no stiffness behind it, in no direction.
+        for node in (0..count).filter(|node| support.is_beyond(grid, *node, tolerance)) {
+            supports[node] = [0.0; D];
+        }
         for node in (0..count).filter(|_| support.rough_base) {
             if grid.node_position(node)[D - 1] < tolerance {
                 supports[node] = [0.0; D];

@@ -5,7 +5,7 @@ use crate::convergence::class::Class;
 use crate::exact::exact_error::ExactError;
 use crate::judge::comparison::locking::{Standing, standings};
 use crate::judge::comparison::work_precision::WorkPrecision;
-use crate::judge::paths::{Path, paths};
+use crate::judge::paths::Path;
 use crate::render::answers::question::{Answer, Links, Question, link_cell, short};
 use crate::render::answers::regime::{MethodPath, Regime};
 use crate::render::number;
@@ -169,14 +169,14 @@ fn of_waves(results: &[StudyResults<'_>]) -> Option<Advice> {
     let mut best: Option<(f64, f64, String, &str)> = None;
     let mut tried = 0;
     for one in results.iter().filter(|one| one.study.scene.has_waves() && one.asks_for(NEXT_FINER)) {
-        for path in paths(one.records, Axis::TimeStep) {
-            let Some((order, error)) = step_order(&path) else { continue };
+        for path in one.paths.along(Axis::TimeStep) {
+            let Some((order, error)) = step_order(path) else { continue };
             tried += 1;
             if best
                 .as_ref()
                 .is_none_or(|(known, smallest, _, _)| (order.round(), -error) > (known.round(), -smallest))
             {
-                best = Some((order, error, path.label(), &one.study.name));
+                best = Some((order, error, scheme_of(path), &one.study.name));
             }
         }
     }
@@ -191,6 +191,13 @@ fn of_waves(results: &[StudyResults<'_>]) -> Option<Advice> {
         ),
         study: study.to_owned(),
     })
+}
+
+/// The method of a path and how it steps: what one takes over, and not the mesh that it was tried on.
+fn scheme_of(path: &Path<'_>) -> String {
+    let case = &path.records[0].case;
+    let parts = [case.method.to_string(), case.integrator.name().to_owned(), case.variant()];
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
 /// The settled order of the pressure in the step, and the error of the coarsest step.
