@@ -200,6 +200,23 @@ impl Reference {
         Ok(Self { kind, solution, initial_stress: parameters.initial_stress(1.0) })
     }
 
+    /// The same as good as a line in a figure needs it: where that costs much less, to a millionth of the load.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn for_lines(
+        kind: ReferenceKind,
+        parameters: &ColumnParameters,
+        time_factors: &[f64],
+    ) -> Result<Self, ExactError> {
+        let ReferenceKind::LargeStrain(model) = kind else {
+            return Self::new(kind, parameters, time_factors);
+        };
+        let solution = LargeStrain::for_lines(parameters, model, time_factors)?;
+        let initial_stress = parameters.initial_stress(1.0);
+        Ok(Self { kind, solution: Solution::LargeStrain(Box::new(solution)), initial_stress })
+    }
+
     /// Which solution this is.
     pub fn kind(&self) -> ReferenceKind {
         self.kind

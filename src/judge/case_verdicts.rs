@@ -3,7 +3,7 @@
 use crate::convergence::class::Class;
 use crate::convergence::class::evaluable_series::plain;
 use crate::judge::error_place::place_of_attached;
-use crate::judge::paths::Judgement;
+use crate::judge::judgement::Judgement;
 use crate::judge::verdict::{Check, Verdict, VerdictOutcome, check};
 use crate::measure::pressure_peak::pressure_peak;
 use crate::record::{Balance, LayerBalance, Record};

@@ -7,6 +7,7 @@ pub mod dimensionless_groups;
 pub mod error_contributions;
 pub mod exact_fields;
 pub mod field_errors;
+pub mod known_references;
 pub mod norms;
 pub mod oscillation;
 pub mod other_measures;

@@ -1,7 +1,7 @@
 //! The page of one study: what it asks, what was expected, figures, tables, checks.
 
 use crate::exact::exact_error::ExactError;
-use crate::judge::paths::Judgement;
+use crate::judge::judgement::Judgement;
 use crate::render::checks::verdicts::judgements_table;
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::{

@@ -101,9 +101,17 @@ impl Checker<'_> {
         }
         let parameters = column_parameters(column, soil);
         if let Err(error @ ExactError::LoadClosesPores { limit, .. }) = XieLeo::new(&parameters) {
+            if let Some(strain) = &file.column.strain {
+                let (value, porosity) = (strain.get_ref(), soil.porosity);
+                self.complain(
+                    strain.span(),
+                    format!("a strain of {value} leaves no pores: the porosity is {porosity}"),
+                    format!("write `strain` below {porosity}, or in [material] a `porosity` above {value}"),
+                );
+                return;
+            }
             let typed = file.column.typed("load").or(file.material.typed("porosity"));
             let typed = typed.or(file.material.typed("youngs_modulus")).map(Spanned::span);
-            let typed = typed.or(file.column.strain.as_ref().map(|strain| strain.span()));
             let most = limit * soil.oedometric_modulus();
             let least = -elementary::exp_m1(-column.load / soil.oedometric_modulus());
             self.complain(
