@@ -284,6 +284,21 @@ impl Reference {
         ask!(self, solution => solution.degree_of_consolidation(time_factor))
     }
 
+    /// Time factor and height, over the load, of the highest pressure at the impermeable end, where it rises before it
+    /// falls.
+    pub fn pressure_peak(&self) -> Option<(f64, f64)> {
+        match &self.solution {
+            Solution::Mandel(slab) => slab.middle_peak(),
+            Solution::Terzaghi(_)
+            | Solution::SingleMode(_)
+            | Solution::XieLeo(_)
+            | Solution::Dynamic(_)
+            | Solution::LargeStrain(_)
+            | Solution::CosineLayer(_)
+            | Solution::AtRest(_) => None,
+        }
+    }
+
     /// Terms used at a time factor and the bound on what they leave out.
     ///
     /// # Errors

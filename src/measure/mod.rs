@@ -10,6 +10,7 @@ pub mod field_errors;
 pub mod known_references;
 pub mod norms;
 pub mod oscillation;
+pub mod other_measures;
 pub mod plane_field;
 pub mod pressure_peak;
 pub mod record_checks;

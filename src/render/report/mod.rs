@@ -8,6 +8,7 @@ pub mod error_over_time;
 pub mod error_over_work;
 pub mod findings;
 pub mod labels;
+pub mod other_measures;
 pub mod pages;
 pub mod plane_fields;
 pub mod refinement;
