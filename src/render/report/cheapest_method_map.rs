@@ -31,6 +31,9 @@ const CAPTION: &str = "Error of the pore pressure at the points; time by the ste
 const CAPTION_OF_BROKEN: &str = "Soils on which some run of an integrator failed, whatever its method: with the steps that the \
                                  study tried.";
 
+/// What stands for soils on which every run came to its end.
+const NONE_FAILED: &str = "no run failed";
+
 fn place(soil: &MappedSoil) -> (f64, f64) {
     (soil.conductivity, soil.stiffness)
 }
@@ -56,10 +59,16 @@ fn winners(soils: &[MappedSoil]) -> Chart {
     map_of(format!("The cheapest way to {} %", 100.0 * TOLERANCE), names)
 }
 
-/// Where runs of an integrator failed; none where none did.
+/// Where runs of an integrator failed, beside the soils on which none did; none where no run failed at all.
 fn broken(soils: &[MappedSoil]) -> Option<Chart> {
+    if soils.iter().all(|soil| soil.broken.is_empty()) {
+        return None;
+    }
     let mut names: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
     for soil in soils {
+        if soil.broken.is_empty() {
+            names.entry(NONE_FAILED).or_default().push(place(soil));
+        }
         for name in &soil.broken {
             let integrator = name.rsplit_once(' ').map_or(name.as_str(), |(_, integrator)| integrator);
             let places = names.entry(integrator).or_default();
@@ -68,7 +77,7 @@ fn broken(soils: &[MappedSoil]) -> Option<Chart> {
             }
         }
     }
-    (!names.is_empty()).then(|| map_of("Where runs break".to_owned(), names))
+    Some(map_of("Where runs break".to_owned(), names))
 }
 
 /// Every method and integrator over the soils: where it was tried, comes to the tolerance, wins, what it costs over
