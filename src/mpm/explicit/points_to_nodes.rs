@@ -101,6 +101,9 @@ impl<const D: usize> Body<D> {
         let basis = std::mem::take(&mut self.basis);
         with_stencils!(&basis, stencils => self.map_forces_by(stencils.blocks()));
         self.basis = basis;
+        if self.forcing.is_some() {
+            self.add_body_forces();
+        }
     }
 
     fn map_forces_by<const W: usize>(&mut self, basis: Blocks<'_, D, W>) {
