@@ -6,8 +6,8 @@ use crate::exact::manufactured::motion::Motion;
 use crate::exact::parameters::MotionParameters;
 use crate::soil::law::Law;
 
-/// Step of the differences, m and s: of the eighth order, truncation and round-off are both below 1e-12.
-const STEP: f64 = 4e-3;
+/// Step of the differences, m and s: of the eighth order, truncation and round-off are both below 1e-11.
+const STEP: f64 = 2.5e-3;
 /// Weights of the central difference of eighth order.
 const WEIGHTS: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 /// Residual that is let go, over sizes of some ones.

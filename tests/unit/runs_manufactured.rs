@@ -36,7 +36,7 @@ fn a_box_has_the_errors_of_the_oracle() {
         let record = run("box", method, 8, "0.375, 0.75", 0.4);
         for (factor, oracle) in [0.375, 0.75].into_iter().zip(oracle) {
             for (got, known) in two(&record, factor).into_iter().zip(oracle) {
-                assert!((got / known - 1.0).abs() < 0.1, "{method} at {factor}: {got:.3e} for {known:.3e}");
+                assert!((got / known - 1.0).abs() < 0.15, "{method} at {factor}: {got:.3e} for {known:.3e}");
             }
         }
     }
