@@ -32,7 +32,7 @@ ROOT = HERE.parent.parent
 OUTCOMES = HERE / "outcomes.csv"
 REPORT = HERE / "OUTCOME.md"
 # What is copied: folders and files that the program, the benches and the tests are made of.
-PARTS = ["src", "studies", "golden", "benches", "tests", "examples"]
+PARTS = ["src", "studies", "golden", "benches", "tests", "examples", "docs", "python"]
 FILES = ["Cargo.toml", "Cargo.lock", "build.rs", "rust-toolchain.toml", "README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
 # Seconds after which a study, or a test, that hangs counts as objecting.
 LONGEST = 900
@@ -148,11 +148,12 @@ class Studies:
         self.program, self.tree, self.jobs = program, tree, jobs
         self.lock = threading.Lock()
         self.sound = {}
-        golden = {path.stem: path for path in (tree / "golden").glob("*.json")}
+        golden = {path.stem: path for path in (tree / "golden").glob("*.csv")}
         cost = {}
         for path in (tree / "studies").glob("*.toml"):
             known = golden.get(path.stem)
-            cost[path.stem] = json.loads(known.read_text()).get("seconds", UNKNOWN_COST) if known else UNKNOWN_COST
+            seconds = re.search(r"^# seconds = (.*)$", known.read_text(), re.M) if known else None
+            cost[path.stem] = float(seconds.group(1)) if seconds else UNKNOWN_COST
         # The exact solutions cost nothing.
         self.by_cost = ["references", *sorted(cost, key=cost.get)]
 

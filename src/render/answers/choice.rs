@@ -3,9 +3,9 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::Class;
 use crate::exact::exact_error::ExactError;
-use crate::judge::locking::{Standing, standings};
+use crate::judge::comparison::locking::{Standing, standings};
+use crate::judge::comparison::work_precision::WorkPrecision;
 use crate::judge::paths::{Path, paths};
-use crate::judge::work_precision::WorkPrecision;
 use crate::render::answers::question::{Answer, Links, Question, link_cell, short};
 use crate::render::answers::regime::{MethodPath, Regime};
 use crate::render::number;

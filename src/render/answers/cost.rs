@@ -2,8 +2,8 @@
 //! measured points on it, and the same cells held against each other.
 
 use crate::case::IntegratorKind;
-use crate::judge::peers::{self, Peer};
-use crate::judge::work_precision::{TimedRun, WorkPrecision};
+use crate::judge::comparison::peers::{self, Peer};
+use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
 use crate::render::answers::question::{Answer, Links, Question, link, short};
 use crate::render::answers::regime::PAPERS;
 use crate::render::chart::describe::{Chart, ChartAxis, PointName, Series, Size, Style};

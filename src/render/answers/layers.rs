@@ -1,7 +1,7 @@
 //! One layer of material points or two? Runs that differ in that alone, by their situation.
 
 use crate::case::keys::{Key, Value};
-use crate::judge::twins::{Twins, TwinsOfSituation, by_situation, twins};
+use crate::judge::comparison::twins::{Twins, TwinsOfSituation, by_situation, twins};
 use crate::render::answers::question::{Answer, Links, Question, links_to, short};
 use crate::render::number;
 use crate::render::page::Block;

@@ -1,7 +1,7 @@
 //! Where does it lock, where does it break? One row a situation, one column a method, the worst of all studies
 //! in each, in words and colour.
 
-use crate::judge::situation::{End, Ended, Situation, situations_of};
+use crate::judge::comparison::situation::{End, Ended, Situation, situations_of};
 use crate::render::answers::question::{Answer, Links, Question, link, short};
 use crate::render::answers::regime::{PAPERS, distinct};
 use crate::render::number;

@@ -17,7 +17,7 @@ pub mod regime;
 
 use crate::exact::exact_error::ExactError;
 use crate::golden::compare::Difference;
-use crate::judge::situation::Ended;
+use crate::judge::comparison::situation::Ended;
 use crate::render::answers::making::Making;
 use crate::render::answers::question::{Answer, Links};
 use crate::render::page::{Block, Callout, Page, Section};

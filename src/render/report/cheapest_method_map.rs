@@ -1,6 +1,6 @@
 //! A map of soils: the colour of each is the method that is the cheapest for one percent there.
 
-use crate::judge::cheapest_method::{MappedSoil, TOLERANCE, mapped_soils};
+use crate::judge::comparison::cheapest_method::{MappedSoil, TOLERANCE, mapped_soils};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::Block;
 use crate::render::report::StudyResults;

@@ -1,6 +1,6 @@
 //! Maps of the critical step: the predicted line with the observed marks, a method a colour.
 
-use crate::judge::stability_map::{MapAxis, maps_of};
+use crate::judge::comparison::stability_map::{MapAxis, maps_of};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::Block;
 use crate::render::report::StudyResults;

@@ -2,9 +2,9 @@
 //! level, and other programs.
 
 use crate::case::IntegratorKind;
-use crate::judge::peers;
-use crate::judge::peers::{Comparison, Peer};
-use crate::judge::work_precision::{NextLevel, TimedRun, WorkPrecision};
+use crate::judge::comparison::peers;
+use crate::judge::comparison::peers::{Comparison, Peer};
+use crate::judge::comparison::work_precision::{NextLevel, TimedRun, WorkPrecision};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Style};
 use crate::render::page::Block;
 use crate::render::report::{StudyResults, labels};

@@ -1,6 +1,6 @@
 //! The page of all situations: every study and every method of each, behind the short matrix of the answers.
 
-use crate::judge::situation::{End, Ended, situations_of};
+use crate::judge::comparison::situation::{End, Ended, situations_of};
 use crate::render::number;
 use crate::render::page::{Block, Page, Section, slug};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};

@@ -2,7 +2,7 @@
 //! consolidation.
 
 use crate::exact::exact_error::ExactError;
-use crate::judge::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
+use crate::judge::comparison::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
 use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size};
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;

@@ -4,7 +4,7 @@
 use crate::cli::side_by_side::side_by_side;
 use crate::exact::exact_error::ExactError;
 use crate::golden::compare::Difference;
-use crate::judge::situation::{Ended, ends_of};
+use crate::judge::comparison::situation::{Ended, ends_of};
 use crate::record::whole_file::write_rebuildable;
 use crate::render::answers::making::Making;
 use crate::render::answers::{Answers, answer_page};

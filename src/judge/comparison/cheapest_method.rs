@@ -1,7 +1,7 @@
 //! Over conductivity and stiffness: which method is the cheapest within a tolerance, and which ones break.
 
 use crate::case::step_cost::seconds_per_step;
-use crate::judge::work_precision::worst_error;
+use crate::judge::comparison::work_precision::worst_error;
 use crate::record::{Record, Status};
 use std::collections::BTreeMap;
 

@@ -2,8 +2,8 @@
 
 use crate::case::keys::{Key, Value};
 use crate::case::quantity::{Quantity, Sample};
+use crate::judge::comparison::situation::Situation;
 use crate::judge::paths::first_norm;
-use crate::judge::situation::Situation;
 use crate::measure::wall_times::median;
 use crate::record::{Record, Status};
 use std::collections::HashMap;

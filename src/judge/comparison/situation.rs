@@ -5,7 +5,7 @@ use crate::case::{Case, Task};
 use crate::convergence::class::Class;
 use crate::elementary;
 use crate::exact::exact_error::ExactError;
-use crate::judge::locking::{Standing, standings};
+use crate::judge::comparison::locking::{Standing, standings};
 use crate::judge::paths::first_norm;
 use crate::mpm::method::Method;
 use crate::mpm::run::TimeStepRule;

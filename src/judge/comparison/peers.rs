@@ -3,7 +3,7 @@
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::reference::ReferenceKind;
-use crate::judge::work_precision::TimedRun;
+use crate::judge::comparison::work_precision::TimedRun;
 use std::sync::LazyLock;
 
 /// Time factors of the comparison.
@@ -102,7 +102,7 @@ pub fn compare<'a, 'b>(runs: &'b [TimedRun<'a>]) -> Vec<Comparison<'a, 'b>> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::judge::work_precision::WorkPrecision;
+    use crate::judge::comparison::work_precision::WorkPrecision;
     use crate::record::{Record, WallSample};
 
     /// Runs of a scene on two meshes, with a cost that is the same on every machine.

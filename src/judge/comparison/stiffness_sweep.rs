@@ -5,7 +5,7 @@ use crate::case::Case;
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::exact_error::ExactError;
-use crate::judge::locking::methods_of;
+use crate::judge::comparison::locking::methods_of;
 use crate::measure::plane_field::PlaneField;
 use crate::mpm::method::Method;
 use crate::record::{Record, Status};
