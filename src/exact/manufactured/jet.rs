@@ -13,6 +13,7 @@ pub const TIME: usize = 2;
 
 /// A value with its first derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Slope {
     /// The value.
     pub value: f64,
@@ -22,6 +23,7 @@ pub struct Slope {
 
 /// A value with its first and second derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Jet {
     /// The value.
     pub value: f64,
@@ -45,6 +47,12 @@ impl Slope {
     /// A function of it, given its value and derivative there.
     fn chain(self, [value, derivative]: [f64; 2]) -> Self {
         Self { value, slope: self.slope.map(|slope| derivative * slope) }
+    }
+
+    /// The product, by its rule.
+    fn times(self, other: Self) -> Self {
+        let slope = each(|i| self.value * other.slope[i] + other.value * self.slope[i]);
+        Self { value: self.value * other.value, slope }
     }
 
     /// The natural logarithm.
@@ -72,6 +80,23 @@ impl Jet {
             value,
             slope: self.slope.map(|slope| first * slope),
             bend: each(|i| each(|j| first * self.bend[i][j] + second * self.slope[i] * self.slope[j])),
+        }
+    }
+
+    /// The product, by its rule.
+    fn times(self, other: Self) -> Self {
+        let (a, b) = (self, other);
+        Self {
+            value: a.value * b.value,
+            slope: each(|i| a.value * b.slope[i] + b.value * a.slope[i]),
+            bend: each(|i| {
+                each(|j| {
+                    a.value * b.bend[i][j]
+                        + b.value * a.bend[i][j]
+                        + a.slope[i] * b.slope[j]
+                        + a.slope[j] * b.slope[i]
+                })
+            }),
         }
     }
 
@@ -115,8 +140,7 @@ impl Sub for Slope {
 impl Mul for Slope {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        let slope = each(|i| self.value * other.slope[i] + other.value * self.slope[i]);
-        Self { value: self.value * other.value, slope }
+        self.times(other)
     }
 }
 
@@ -156,19 +180,7 @@ impl Sub for Jet {
 impl Mul for Jet {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        let (a, b) = (self, other);
-        Self {
-            value: a.value * b.value,
-            slope: each(|i| a.value * b.slope[i] + b.value * a.slope[i]),
-            bend: each(|i| {
-                each(|j| {
-                    a.value * b.bend[i][j]
-                        + b.value * a.bend[i][j]
-                        + a.slope[i] * b.slope[j]
-                        + a.slope[j] * b.slope[i]
-                })
-            }),
-        }
+        self.times(other)
     }
 }
 
