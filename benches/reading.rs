@@ -20,6 +20,7 @@ const ONE: &str = "OEDOMETER_READS_ONE";
 /// How the arrays of a file are written.
 #[derive(Clone, Copy)]
 enum Way {
+    Text,
     Raw,
     Base64,
     Packed,
@@ -31,8 +32,13 @@ fn main() {
     }
     let points = std::env::args().find_map(|word| word.parse().ok()).unwrap_or(1_000_000);
     let folder = tempfile::TempDir::new().expect("a folder");
-    println!("{:8} {:>9} {:>8} {:>10} {:>9} {:>9}", "way", "points", "MB", "seconds", "peak MB", "peak/file");
-    for (name, way) in [("raw", Way::Raw), ("base64", Way::Base64), ("zlib", Way::Packed)] {
+    println!(
+        "{:8} {:>9} {:>8} {:>10} {:>9} {:>9} {:>9}",
+        "way", "points", "MB", "seconds", "peak MB", "peak/file", "peak/data"
+    );
+    let ways = [("text", Way::Text), ("raw", Way::Raw), ("base64", Way::Base64), ("zlib", Way::Packed)];
+    let mut of_data = 1.0;
+    for (name, way) in ways.into_iter().skip(1).chain(ways.into_iter().take(1)) {
         let path = folder.path().join(format!("{name}.vtu"));
         write(&path, points, way).expect("a file");
         let told = Command::new(std::env::current_exe().expect("this program")).env(ONE, &path).output();
@@ -40,7 +46,14 @@ fn main() {
         let numbers: Vec<f64> = told.split_whitespace().filter_map(|word| word.parse().ok()).collect();
         let [rows, seconds, peak] = numbers[..] else { panic!("no numbers: {told}") };
         let megabytes = fs::metadata(&path).expect("a file").len() as f64 / 1e6;
-        println!("{name:8} {rows:>9} {megabytes:>8.1} {seconds:>10.3} {peak:>9.1} {:>9.2}", peak / megabytes);
+        if matches!(way, Way::Raw) {
+            of_data = megabytes;
+        }
+        println!(
+            "{name:8} {rows:>9} {megabytes:>8.1} {seconds:>10.3} {peak:>9.1} {:>9.2} {:>9.2}",
+            peak / megabytes,
+            peak / of_data
+        );
     }
 }
 
@@ -93,6 +106,16 @@ fn write(path: &Path, points: usize, way: Way) -> std::io::Result<()> {
     let mut appended = Vec::new();
     let mut text = String::new();
     for (section, name, kind, components, bytes) in arrays {
+        if matches!(way, Way::Text) {
+            writeln!(
+                text,
+                "<{section}><DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
+                 format=\"ascii\">{}</DataArray></{section}>",
+                written(kind, &bytes)
+            )
+            .expect("in memory");
+            continue;
+        }
         writeln!(
             text,
             "<{section}><DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
@@ -109,17 +132,42 @@ fn write(path: &Path, points: usize, way: Way) -> std::io::Result<()> {
         file,
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
          header_type=\"UInt64\"{packer}>\n<UnstructuredGrid><Piece NumberOfPoints=\"{all}\" \
-         NumberOfCells=\"{cells}\">\n{text}</Piece></UnstructuredGrid>\n<AppendedData encoding=\"{encoding}\">\n_"
+         NumberOfCells=\"{cells}\">\n{text}</Piece></UnstructuredGrid>\n"
     )?;
+    if matches!(way, Way::Text) {
+        return file.write_all(b"</VTKFile>\n");
+    }
+    write!(file, "<AppendedData encoding=\"{encoding}\">\n_")?;
     file.write_all(&appended)?;
     file.write_all(b"\n</AppendedData></VTKFile>\n")
+}
+
+/// Numbers of an array as a text, ten a line.
+fn written(kind: &str, bytes: &[u8]) -> String {
+    let mut text = String::new();
+    let mut add = |place: usize, number: &dyn std::fmt::Display| {
+        let space = if place % 10 == 9 { '\n' } else { ' ' };
+        write!(text, "{number}{space}").expect("in memory");
+    };
+    match kind {
+        "UInt8" => bytes.iter().enumerate().for_each(|(place, number)| add(place, number)),
+        "Int64" => {
+            let numbers = bytes.as_chunks::<8>().0.iter().map(|bytes| i64::from_le_bytes(*bytes));
+            numbers.enumerate().for_each(|(place, number)| add(place, &number));
+        }
+        _ => {
+            let numbers = bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes));
+            numbers.enumerate().for_each(|(place, number)| add(place, &number));
+        }
+    }
+    text
 }
 
 /// Bytes of an array with their header.
 fn payload(bytes: &[u8], way: Way) -> Vec<u8> {
     let number = |number: usize| (number as u64).to_le_bytes();
     match way {
-        Way::Raw => [&number(bytes.len())[..], bytes].concat(),
+        Way::Text | Way::Raw => [&number(bytes.len())[..], bytes].concat(),
         Way::Base64 => base64(&[&number(bytes.len())[..], bytes].concat()),
         Way::Packed => {
             let block = 1 << 15;

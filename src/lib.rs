@@ -58,11 +58,11 @@
 //!
 //! | step | place |
 //! | :-- | :-- |
-//! | 1, grid | `src/mpm/explicit/mod.rs:reset_grid`, `src/mpm/explicit/points_to_nodes.rs:map_masses_and_velocities` |
+//! | 1, grid | `src/mpm/explicit/mod.rs:reset_grid`, `src/mpm/explicit/points_to_nodes.rs:map_masses_velocities_and_forces` |
 //! | 2, accelerations | `src/mpm/explicit/points_to_nodes.rs:map_forces`, `src/mpm/explicit/mod.rs:nodal_accelerations` |
 //! | 3, nodal velocities | `src/mpm/explicit/mod.rs:nodal_velocities` |
-//! | 4, points | `src/mpm/explicit/mod.rs:advance_points` |
-//! | 5, mapping back | `src/mpm/explicit/points_to_nodes.rs:map_velocities` |
+//! | 4, points | `src/mpm/explicit/nodes_to_points.rs:advance_points` |
+//! | 5, mapping back | `src/mpm/explicit/nodes_to_points.rs:advance_points_and_map_back`, `src/mpm/explicit/points_to_nodes.rs:map_velocities` |
 //! | 6, effective stress | `src/mpm/explicit/mod.rs:update_effective_stress` |
 //! | 7, pressure | `src/mpm/explicit/mod.rs:update_pressure`, `src/mpm/operators/recovery/mod.rs:recover` |
 //! | 8, next step | `src/mpm/run/driver.rs:solve` |

@@ -1,6 +1,7 @@
 //! Runs the cases of a study, each by whom it is given to: this program, or an attached solver.
 
 use crate::campaign::case_run::{run_case, run_case_within};
+use crate::campaign::stop;
 use crate::case::Case;
 use crate::exact::exact_error::ExactError;
 use crate::foreign::attachment::{Attachment, Wish};
@@ -66,8 +67,11 @@ impl<'a> CaseRunner<'a> {
         observe: &dyn Fn(u64, u64) -> bool,
     ) -> Result<Record, ExactError> {
         let place = store.map(|store| store.folder_of(&case.hash()));
+        // It has a process group of its own, which no signal to this program reaches: from now on they are taken, and
+        // end it with all that it has started. Where the system refuses, they do what they did.
+        let _ = stop::heed_signals();
         // How far it is nobody knows before its end.
-        let is_wanted = || observe(0, 1);
+        let is_wanted = || observe(0, 1) && !stop::is_over();
         let wish = Wish {
             references: &self.study.references,
             place: place.as_deref(),

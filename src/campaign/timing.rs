@@ -1,7 +1,8 @@
 //! Times the cases of a study alone.
 
-use crate::campaign::case_runner::CaseRunner;
+use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::run_report::{Progress, RunError};
+use crate::campaign::stop;
 use crate::case::work_estimate::estimated_work;
 use crate::record::store::RecordStore;
 use crate::record::{Record, Status};
@@ -36,12 +37,15 @@ pub fn time_study(
     let mut is_timed = false;
     for _ in 0..study.timing_repeats {
         for record in &mut *records {
-            if !wants_timing(record, study.timing_repeats) {
+            if stop::is_asked() || !wants_timing(record, study.timing_repeats) {
                 continue;
             }
             let timed = runner
                 .run_alone(&record.case, store)
                 .map_err(|source| RunError::Case { label: record.case.label(), source })?;
+            if is_stopped(&timed) {
+                continue;
+            }
             record.wall.extend(timed.wall);
             is_timed = true;
             tell(Progress::Advanced(estimated_work(&record.case)));

@@ -129,6 +129,14 @@ impl Case {
         hash.as_bytes().iter().take(HASH_DIGITS / 2).fold(0, |number, byte| (number << 8) | u64::from(*byte))
     }
 
+    /// The number that the case would have with some inputs made the same: equal for cases that differ in these
+    /// alone.
+    pub fn number_with(&self, make_same: impl FnOnce(&mut Self)) -> u64 {
+        let mut case = self.clone();
+        make_same(&mut case);
+        case.number()
+    }
+
     /// Whether somebody else's solver is asked, and not this program's.
     pub fn is_attached(&self) -> bool {
         self.method.attached.is_some()

@@ -29,23 +29,26 @@ impl CostPoint {
     pub fn is_usable(&self) -> bool {
         self.cost.is_finite() && self.cost > 0.0 && self.error.is_finite() && self.error >= 0.0
     }
-
-    /// Whether this point is nowhere worse than another and somewhere better; a point that is not
-    /// usable neither dominates nor is dominated.
-    pub fn dominates(&self, other: &Self) -> bool {
-        self.is_usable()
-            && other.is_usable()
-            && self.cost <= other.cost
-            && self.error <= other.error
-            && (self.cost < other.cost || self.error < other.error)
-    }
 }
 
-/// Which points lie on the Pareto front: usable, and dominated by none.
+/// Which points lie on the Pareto front: usable, and dominated by none, which is nowhere worse and somewhere better.
 pub fn front(points: &[CostPoint]) -> Vec<bool> {
-    let on_front =
-        |point: &CostPoint| point.is_usable() && !points.iter().any(|other| other.dominates(point));
-    points.iter().map(on_front).collect()
+    let mut order: Vec<usize> = (0..points.len()).filter(|place| points[*place].is_usable()).collect();
+    order.sort_by(|a, b| {
+        let (a, b) = (&points[*a], &points[*b]);
+        a.cost.total_cmp(&b.cost).then(a.error.total_cmp(&b.error))
+    });
+    let mut on_front = vec![false; points.len()];
+    let mut least = f64::INFINITY;
+    // Of equal cost only the least error can be on the front, and all that have it are.
+    for alike in order.chunk_by(|a, b| points[*a].cost == points[*b].cost) {
+        let best = points[alike[0]].error;
+        for place in alike.iter().take_while(|place| points[**place].error == best && best < least) {
+            on_front[*place] = true;
+        }
+        least = least.min(best);
+    }
+    on_front
 }
 
 /// A point held against its golden value, in accuracy and cost together.

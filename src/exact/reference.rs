@@ -220,6 +220,23 @@ impl Reference {
         Ok(Self { kind, solution, initial_stress: parameters.initial_stress(1.0) })
     }
 
+    /// The same as good as a line in a figure needs it: where that costs much less, to a millionth of the load.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn for_lines(
+        kind: ReferenceKind,
+        parameters: &ColumnParameters,
+        time_factors: &[f64],
+    ) -> Result<Self, ExactError> {
+        let ReferenceKind::LargeStrain(model) = kind else {
+            return Self::new(kind, parameters, time_factors);
+        };
+        let solution = LargeStrain::for_lines(parameters, model, time_factors)?;
+        let initial_stress = parameters.initial_stress(1.0);
+        Ok(Self { kind, solution: Solution::LargeStrain(Box::new(solution)), initial_stress })
+    }
+
     /// Which solution this is.
     pub fn kind(&self) -> ReferenceKind {
         self.kind
@@ -302,6 +319,22 @@ impl Reference {
     /// When `time_factor` is negative or not finite.
     pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
         ask!(self, solution => solution.degree_of_consolidation(time_factor))
+    }
+
+    /// Time factor and height, over the load, of the highest pressure at the impermeable end, where it rises before it
+    /// falls.
+    pub fn pressure_peak(&self) -> Option<(f64, f64)> {
+        match &self.solution {
+            Solution::Mandel(slab) => slab.middle_peak(),
+            Solution::Terzaghi(_)
+            | Solution::SingleMode(_)
+            | Solution::XieLeo(_)
+            | Solution::Dynamic(_)
+            | Solution::LargeStrain(_)
+            | Solution::CosineLayer(_)
+            | Solution::AtRest(_)
+            | Solution::Manufactured(_) => None,
+        }
     }
 
     /// Terms used at a time factor and the bound on what they leave out.

@@ -6,7 +6,7 @@ use crate::exact::exact_error::ExactError;
 use crate::exact::reference::ReferenceKind;
 use crate::foreign::case_file::{CaseFile, suggested_step};
 use crate::foreign::command::{Filling, words_of};
-use crate::foreign::process::{Finished, Order};
+use crate::foreign::process::{Ending, Finished, Order};
 use crate::foreign::reading::{ReadResult, mapping_of, read};
 use crate::foreign::repeats::difference;
 use crate::foreign::staging::Staged;
@@ -88,7 +88,7 @@ impl<'a> Attachment<'a> {
         let _passed = self.gate.pass();
         let mut about = AttachedRun {
             command: self.solver.command.clone(),
-            version: self.version().map(str::to_owned),
+            version: self.version(wish).map(str::to_owned),
             warmed_up: self.solver.warm_up,
             ..AttachedRun::default()
         };
@@ -96,6 +96,9 @@ impl<'a> Attachment<'a> {
         let mut known: Option<(Vec<SampledState>, ReadResult)> = None;
         let runs = self.solver.repeats + usize::from(self.solver.warm_up);
         for number in 0..runs {
+            if !(wish.is_wanted)() {
+                return Self::record(case, wish, Err(ending::of_stopped()), about, wall);
+            }
             let left = self.run_once(case, wish, &mut about, &mut wall);
             let (states, result) = match left {
                 Ok(left) => left,
@@ -170,8 +173,11 @@ impl<'a> Attachment<'a> {
                 (states, ReadResult { notes, ..result })
             },
         );
-        let kept = staged.keep_words(&finished.output, &finished.errors).and_then(|()| staged.keep(!failed));
-        if let Err(error) = kept {
+        // Of a run that nobody wants any more nothing is kept, and what an earlier one left stays.
+        let is_stopped = matches!(finished.ending, Ending::Stopped);
+        let keep =
+            || staged.keep_words(&finished.output, &finished.errors).and_then(|()| staged.keep(!failed));
+        if !is_stopped && let Err(error) = keep() {
             note(about, format!("its files could not be kept: {error}"));
         }
         left
@@ -218,7 +224,7 @@ impl<'a> Attachment<'a> {
     }
 
     /// What the solver says of its version, asked once.
-    fn version(&self) -> Option<&str> {
+    fn version(&self, wish: &Wish<'_>) -> Option<&str> {
         let ask = || {
             if self.solver.version.is_empty() {
                 return None;
@@ -226,7 +232,8 @@ impl<'a> Attachment<'a> {
             let words = words_of(self.solver, &self.solver.version, str::to_owned);
             let timeout = Duration::from_secs_f64(VERSION_SECONDS);
             let folder = &self.solver.folder;
-            let found = process::run(&Order { words: &words, environment: &[], folder, timeout }, &|| true);
+            let order = Order { words: &words, environment: &[], folder, timeout };
+            let found = process::run(&order, wish.is_wanted);
             let line =
                 found.output.lines().chain(found.errors.lines()).find(|line| !line.trim().is_empty())?;
             Some(line.trim().chars().take(LONGEST_VERSION).collect())
@@ -291,7 +298,8 @@ fn snapshot_of(case: &Case, sample: Sample, state: SampledState) -> Snapshot {
         let place = (0..state.initial_height.len()).find(is_at_surface)?;
         state.displacement.get(place).copied()
     };
-    let surface = state.surface_displacement.or_else(at_surface);
+    // The settlement of a slab is its plate's, which presses across.
+    let surface = state.surface_displacement.or_else(|| at_surface().filter(|_| !case.scene.has_plates()));
     let plane = case.scene.has_plane_fields().then(|| PlaneSamples {
         initial_distance: state.initial_distance.clone(),
         displacement_distance: None,

@@ -31,6 +31,10 @@ pub struct CaseFile {
     pub solver: String,
     /// Physical problem.
     pub scene: SceneKind,
+    /// The problem in a sentence.
+    pub problem: String,
+    /// Where `y` and `x` of a result count from, and what happens at the sides.
+    pub axes: String,
     /// Geometry and load.
     pub column: CaseColumn,
     /// The soil.
@@ -55,9 +59,10 @@ pub struct CaseFile {
 /// Geometry and load.
 #[derive(Clone, Debug, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct CaseColumn {
-    /// Initial height, m. The base is held and impermeable, the surface is drained.
+    /// Initial height, m; of a slab half its width, from the middle to the drained side.
     pub height: f64,
-    /// Width of a column, or length of a layer, m; in one dimension it has no say.
+    /// Width of a column, or length of a layer, m; in one dimension it has no say. Of a slab half the distance of its
+    /// plates.
     pub width: f64,
     /// Load on the surface, Pa, compression positive; the amplitude of the initial pressure where there is no load.
     pub load: f64,
@@ -100,6 +105,8 @@ impl CaseFile {
             label: case.label(),
             solver: case.method.to_string(),
             scene: case.scene,
+            problem: case.scene.summary().to_owned(),
+            axes: axes_of(case).to_owned(),
             column: CaseColumn {
                 height: column.height,
                 width: column.horizontal_extent,
@@ -133,6 +140,21 @@ impl CaseFile {
     /// Never for plain numbers and words; the writer's own otherwise.
     pub fn text(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string_pretty(self).map(|text| text + "\n")
+    }
+}
+
+/// What a solver has to know of the sides of a body, and whoever writes its result of the axes.
+fn axes_of(case: &Case) -> &'static str {
+    if case.scene.has_plates() {
+        "y counts from the middle of the slab, where nothing flows or moves along y, to its drained side, which is free; x \
+         from the middle between the plates to the plate, which is rigid, smooth and impermeable and presses across with \
+         the mean stress `load`; cells count along y; the settlement is the plate's"
+    } else if case.scene.is_a_layer() {
+        "y counts upward from the base, impermeable, held along y and where it is rough along x, to the drained surface; x \
+         from under the crest of the load, load · cos(π x/width), to its trough; at both ends nothing flows or moves along x"
+    } else {
+        "y counts upward from the base, held and impermeable, to the drained surface, on which a load presses evenly; \
+         nothing flows or moves along x"
     }
 }
 

@@ -41,7 +41,7 @@ pub fn of_process(run: &Finished, solver: &Solver) -> Option<Failure> {
                 typed(solver.timeout)
             ),
         ),
-        Ending::Stopped => (FailureKind::Stopped, "stopped from outside".to_owned()),
+        Ending::Stopped => return Some(of_stopped()),
         Ending::NotStarted(error) => (
             FailureKind::NotStartable,
             format!(
@@ -52,6 +52,11 @@ pub fn of_process(run: &Finished, solver: &Solver) -> Option<Failure> {
         Ending::Ended(status) => of_status(*status)?,
     };
     Some(Failure::of_attached(kind, what + &last_words(run)))
+}
+
+/// The end of a run that nobody wanted any more: Ctrl-C, or another result that could not be kept.
+pub fn of_stopped() -> Failure {
+    Failure::of_attached(FailureKind::Stopped, "stopped from outside".to_owned())
 }
 
 /// The end of a program by its status; none where it ended well.

@@ -106,6 +106,10 @@ impl Staged {
 impl Drop for Staged {
     fn drop(&mut self) {
         remove(&self.folder);
+        if let Some(place) = &self.place {
+            // Only where nothing is in it: a case of which nothing is kept leaves no trace.
+            let _ = fs::remove_dir(place);
+        }
     }
 }
 

@@ -57,29 +57,40 @@ fn lack(case: &Case, time_factor: f64, state: &SampledState) -> Option<String> {
     if state.repeated > 0 {
         return Some(format!("{when}, {} samples stand twice", state.repeated));
     }
-    let mut heights = state.initial_height.clone();
-    heights.sort_by(f64::total_cmp);
-    let (Some(lowest), Some(highest)) = (heights.first(), heights.last()) else {
+    if state.initial_height.is_empty() {
         return Some(format!("{when}, there is no sample"));
-    };
+    }
+    let column = &case.column;
     let size = case.cell_size();
-    let bare = |from: f64, to: f64| {
-        let (from, to) = (short(from), short(to));
-        Some(format!(
-            "{when}, no sample lies between the heights {from} m and {to} m, with cells of {} m",
-            short(size)
-        ))
-    };
-    let beyond = |distance: f64, share: f64| distance > share * size * (1.0 + ROUND_OFF);
-    if beyond(*lowest, END) {
-        return bare(0.0, *lowest);
-    }
     // A top cell that is partly filled has its surface where the case puts it.
-    if case.column.points.is_regular() && beyond(case.column.height - highest, END) {
-        return bare(*highest, case.column.height);
+    let is_held = column.points.is_regular();
+    let stretch = bare(&state.initial_height, column.height, size, is_held);
+    let of_height = stretch.map(|stretch| ("heights", stretch));
+    let is_plane = case.scene.has_plane_fields();
+    let along = || bare(&state.initial_distance, column.horizontal_extent, size, true);
+    let of_length = || along().filter(|_| is_plane).map(|stretch| ("distances", stretch));
+    let (places, [from, to]) = of_height.or_else(of_length)?;
+    Some(format!(
+        "{when}, no sample lies between the {places} {} m and {} m, with cells of {} m",
+        short(from),
+        short(to),
+        short(size)
+    ))
+}
+
+/// The first stretch between 0 and `extent` in which a cell of a size has no sample; the end counts where it is held.
+fn bare(places: &[f64], extent: f64, size: f64, is_end_held: bool) -> Option<[f64; 2]> {
+    let mut places = places.to_vec();
+    places.sort_by(f64::total_cmp);
+    let (lowest, highest) = (*places.first()?, *places.last()?);
+    let beyond = |distance: f64, share: f64| distance > share * size * (1.0 + ROUND_OFF);
+    if beyond(lowest, END) {
+        return Some([0.0, lowest]);
     }
-    let gap = heights.windows(2).find(|pair| beyond(pair[1] - pair[0], GAP));
-    gap.and_then(|pair| bare(pair[0], pair[1]))
+    if is_end_held && beyond(extent - highest, END) {
+        return Some([highest, extent]);
+    }
+    places.windows(2).find(|pair| beyond(pair[1] - pair[0], GAP)).map(|pair| [pair[0], pair[1]])
 }
 
 /// What to say of states with different numbers of samples.
@@ -140,6 +151,31 @@ mod tests {
         let every_other: Vec<f64> = nodes.iter().copied().step_by(2).collect();
         assert!(said(&states(&every_other)).contains("between the heights 0 m and 0.2 m"));
         assert!(said(&states(&[])).contains("no sample"));
+    }
+
+    #[test]
+    fn a_stretch_of_a_layers_length_that_is_missing_is_told_with_its_distances() {
+        let case = Case {
+            cells: 10,
+            time_factors: vec![0.05, 0.1],
+            ..Case::seed(Task::Solve, SceneKind::CosineLayer)
+        };
+        let nodes = lattice(11, 0.0, 0.1);
+        let of = |distances: &[f64]| {
+            let places = distances.iter().flat_map(|x| nodes.iter().map(move |y| (*x, *y)));
+            let (x, y): (Vec<f64>, Vec<f64>) = places.unzip();
+            let state = |factor: f64| SampledState {
+                time: factor * case.seconds_per_time_factor(),
+                initial_distance: x.clone(),
+                initial_height: y.clone(),
+                ..SampledState::default()
+            };
+            states_at_outputs(&case, &[state(0.05), state(0.1)])
+        };
+        assert!(of(&nodes).is_ok());
+        let told = of(&nodes[..2]).expect_err("nine tenths are missing");
+        assert!(told.contains("between the distances 0.1 m and 1 m"), "{told}");
+        assert!(of(&[&nodes[..4], &nodes[6..]].concat()).is_err_and(|told| told.contains("0.3 m and 0.6 m")));
     }
 
     #[test]

@@ -172,7 +172,8 @@ impl GoldenFile {
 
 /// Wall time of the first run of every record together, s.
 pub fn seconds_of(records: &[Record]) -> f64 {
-    records.iter().filter_map(|record| record.wall.first()).map(|sample| sample.seconds).sum()
+    // A sum of nothing is −0: of results that were there already none took any time.
+    records.iter().filter_map(|record| record.wall.first()).map(|sample| sample.seconds).sum::<f64>() + 0.0
 }
 
 /// Name of a measured error within its case.

@@ -1,6 +1,7 @@
 //! Rows of a state in arrays: columns found among arrays and coordinates, rows chosen, displacements formed.
 
 use crate::import::formats::frame::{Array, Association, Frame};
+use crate::import::formats::hints::program_of;
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
@@ -162,6 +163,16 @@ impl<'a> FrameReader<'a> {
             .refused(format!("there is no array `{typed}` for `{key}`; the file has {}", self.frame.names())))
     }
 
+    /// The preset to take where another one is laid over files that look like a program's own; empty elsewhere.
+    pub fn hint_of_program(&self) -> String {
+        match program_of(self.frame) {
+            Some(preset) if self.mapping.is_of_preset && self.mapping.preset != preset => {
+                format!(": it looks like a file for `--preset {preset}`, which knows what its arrays mean")
+            }
+            _ => String::new(),
+        }
+    }
+
     /// All columns.
     ///
     /// # Errors
@@ -184,8 +195,9 @@ impl<'a> FrameReader<'a> {
         if [pressure, displacement, stress].iter().all(Option::is_none) && self.mapping.displacement.is_none()
         {
             return Err(self.refused(format!(
-                "there is nothing to score: no array of the mapping is there; the file has {}; name one with --mapping",
-                self.frame.names()
+                "there is nothing to score: no array of the mapping is there; the file has {}; name one with --mapping{}",
+                self.frame.names(),
+                self.hint_of_program()
             )));
         }
         let on = on.unwrap_or(Association::Points);

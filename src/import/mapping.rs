@@ -65,6 +65,9 @@ pub struct Mapping {
     /// Whether a preset says what it does not.
     #[serde(skip)]
     pub is_of_preset: bool,
+    /// Name of that preset; empty where there is none.
+    #[serde(skip)]
+    pub preset: &'static str,
     /// Columns of a preset that a file may lack, by their keys.
     #[serde(skip)]
     pub optional: Vec<String>,

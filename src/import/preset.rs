@@ -140,7 +140,8 @@ impl Preset {
         let is_sample_open = !merged.contains_key("sample");
         let text = merged.to_string();
         let mapping: Mapping = StudySource { name: source.name.clone(), text }.read()?;
-        Mapping { optional, is_sample_open, is_of_preset: true, ..mapping }.checked(source)
+        Mapping { optional, is_sample_open, is_of_preset: true, preset: self.name(), ..mapping }
+            .checked(source)
     }
 }
 

@@ -118,14 +118,17 @@ impl Rows {
     /// Rows by time, height, distance and what tells them apart.
     fn order(&self) -> Vec<usize> {
         let distance = |row: usize| self.initial_distance.get(row).unwrap_or_default();
-        let mut order: Vec<usize> = (0..self.len()).collect();
-        order.sort_by(|a, b| {
-            let (a, b) = (*a, *b);
+        let by_place = |a: usize, b: usize| {
             (self.time[a].total_cmp(&self.time[b]))
                 .then(self.initial_height[a].total_cmp(&self.initial_height[b]))
                 .then(distance(a).total_cmp(&distance(b)))
-                .then(self.others[a].cmp(&self.others[b]))
-        });
+        };
+        let mut order: Vec<usize> = (0..self.len()).collect();
+        // Meshes are written row by row: what is in order already costs next to nothing, and the rest is short.
+        order.sort_by(|a, b| by_place(*a, *b));
+        for same in order.chunk_by_mut(|a, b| by_place(*a, *b).is_eq()) {
+            same.sort_by_key(|row| self.others[*row]);
+        }
         order
     }
 

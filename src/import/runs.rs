@@ -2,6 +2,7 @@
 
 use crate::case::quantity::Sample;
 use crate::import::formats::frame::{Association, Frame, Wanted};
+use crate::import::formats::hints::collection_of;
 use crate::import::formats::steps::{Kind, Step, frame_of, steps_of};
 use crate::import::frame_rows::{FrameReader, Start, cells_over_height, wanted_names};
 use crate::import::import_error::ImportError;
@@ -212,6 +213,10 @@ impl Reading {
                 (_, Some(cells)) if cells.dimension() > 0 => Sample::Nodes,
                 _ => Sample::Points,
             });
+            let hint = reader.hint_of_program();
+            if !hint.is_empty() {
+                self.run.notes.push(format!("{}{hint}", step.file.display()));
+            }
             if mapping.displacement.is_some() {
                 self.start = Some(reader.start()?);
             }
@@ -237,11 +242,15 @@ impl Reading {
         let of_step = || step.time.map(|time| (time, step.named.display().to_string()));
         let of_file = || reader.frame.time.map(|time| (time, "the file".to_owned()));
         let (time, from) = of_array.or_else(of_step).or_else(of_file).ok_or_else(|| {
-            refused(
-                "its time is told nowhere: score the .pvd or .series that lists it, give --set-time-step SECONDS where \
-                 its name has the number of a step, or write [time] into a mapping"
-                    .to_owned(),
-            )
+            let listed = collection_of(&step.file).map_or_else(
+                || "the .pvd or .series that lists it".to_owned(),
+                |collection| format!("{}, which lists it", collection.display()),
+            );
+            refused(format!(
+                "its time is told nowhere: score {listed}, give --set-time-step SECONDS where its name has the number \
+                 of a step, or write [time] into a mapping{}",
+                reader.hint_of_program()
+            ))
         })?;
         if !time.is_finite() {
             return Err(refused(format!("its time is {time}")));

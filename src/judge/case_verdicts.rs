@@ -3,7 +3,7 @@
 use crate::convergence::class::Class;
 use crate::convergence::class::evaluable_series::plain;
 use crate::judge::error_place::place_of_attached;
-use crate::judge::paths::Judgement;
+use crate::judge::judgement::Judgement;
 use crate::judge::verdict::{Check, Verdict, VerdictOutcome, check};
 use crate::measure::pressure_peak::pressure_peak;
 use crate::record::{Balance, LayerBalance, Record};
@@ -48,8 +48,10 @@ impl CaseDemand {
         checks.extend(self.status.as_ref().map(|wanted| status_found(wanted, record)));
         checks.extend(self.critical_step_within.map(|within| critical_step_found(within, record)));
         checks.extend(self.error.as_ref().map(|range| error_found(range, record)));
+        // What is no number stays.
+        let larger = |worst: f64, next: f64| if worst > next || worst.is_nan() { worst } else { next };
         let worst =
-            |of: fn(&Balance) -> f64| record.balance.iter().map(|balance| of(balance).abs()).reduce(f64::max);
+            |of: fn(&Balance) -> f64| record.balance.iter().map(|balance| of(balance).abs()).reduce(larger);
         let drifts = [
             ("mass of solids", worst(|balance| balance.solid_mass_drift), self.solid_drift_below),
             ("water", worst(|balance| balance.water_imbalance), self.water_drift_below),
@@ -59,8 +61,6 @@ impl CaseDemand {
         let worst_layer = |of: fn(&LayerBalance) -> f64| {
             let layers =
                 record.balance.iter().map(|balance| balance.layers.as_ref().map(|one| of(one).abs()));
-            // What is no number stays.
-            let larger = |worst: f64, next: f64| if worst > next || worst.is_nan() { worst } else { next };
             layers.reduce(|worst, next| Some(larger(worst?, next?))).flatten()
         };
         checks.extend(self.pore_water.map(|[above, below]| {
@@ -73,11 +73,17 @@ impl CaseDemand {
                 [0.0, within],
             )
         }));
-        let spurious = record.balance.iter().filter_map(|balance| balance.spurious_velocity).reduce(f64::max);
-        let peak = pressure_peak(record);
+        let spurious = record.balance.iter().filter_map(|balance| balance.spurious_velocity).reduce(larger);
+        let largest_pressure = record
+            .balance
+            .iter()
+            .filter_map(|balance| balance.layers.as_ref()?.largest_pressure)
+            .reduce(larger);
+        let peak = pressure_peak(&record.case, &record.snapshots);
         let ranges = [
             ("spurious velocity over the conductivity", spurious, self.spurious_velocity),
             ("time factor of the highest pressure", peak.map(|peak| peak.time_factor), self.peak_time_factor),
+            ("largest pressure of the water over the load", largest_pressure, self.largest_pressure),
             ("highest pressure over the load", peak.map(|peak| peak.height), self.peak_pressure),
         ];
         let asked = ranges.into_iter().filter_map(|(what, found, bounds)| Some((what, found, bounds?)));
@@ -219,6 +225,7 @@ fn drift_found(what: &str, found: Option<f64>, below: f64) -> Check {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use crate::measure::record_checks;
     use crate::study::expectation::Measure;
 
     const STUDY: &str = r#"title = "One case"
@@ -296,10 +303,28 @@ time_step = [{ growth = 0.05 }]
         for (pore_water, water_left_error, passes) in
             [(-1.5e-3, -5e-4, [true, true]), (5e-4, 2e-3, [false, false]), (f64::NAN, f64::NAN, [false; 2])]
         {
-            let layers = LayerBalance { pore_water, water_left: 0.1, water_left_error, water_points: 3 };
+            let layers = LayerBalance {
+                pore_water,
+                water_left: 0.1,
+                water_left_error,
+                water_points: 3,
+                largest_pressure: Some(1.0),
+            };
             records[0].balance[0].layers = Some(layers);
             let found: Vec<bool> = demand.checks(&records[0]).iter().map(|check| check.pass).collect();
             assert_eq!(found, passes, "{pore_water}");
+        }
+        // A burst between outputs is a failed check of the run by that name, and may be asked for.
+        let demand =
+            CaseDemand { largest_pressure: Some(Bounds { above: 1.5, below: 9.0 }), ..CaseDemand::default() };
+        for (largest_pressure, is_burst) in [(1.01, false), (1.6, true), (f64::NAN, true)] {
+            let layers = records[0].balance[0].layers.as_mut().expect("layers");
+            (layers.pore_water, layers.water_left_error) = (0.0, 0.0);
+            layers.largest_pressure = Some(largest_pressure);
+            let said = record_checks::complaints(&records[0]);
+            assert_eq!(said.iter().any(|one| one.contains("burst")), is_burst, "{said:?}");
+            let asked = demand.checks(&records[0])[0].pass;
+            assert_eq!(asked, largest_pressure == 1.6);
         }
     }
 

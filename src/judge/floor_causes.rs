@@ -5,7 +5,8 @@ use crate::case::quantity::Quantity;
 use crate::convergence::limiter::{Limiter, LimiterKind};
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::judge::paths::Path;
-use crate::measure::exact_fields::{exact_samples, reference_of};
+use crate::measure::exact_fields::exact_samples;
+use crate::measure::known_references::known_reference;
 use crate::measure::norms::relative_error;
 use crate::mpm::run::TimeStepRule;
 use crate::record::Record;
@@ -74,7 +75,7 @@ fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
     let case = &finest.case;
     let kind: ReferenceKind = measure.reference.parse().ok()?;
     let difference = case.scene.model_difference(kind, &case.material)?;
-    let of = |kind: ReferenceKind| reference_of(case, kind, &[measure.time_factor]).ok();
+    let of = |kind: ReferenceKind| known_reference(case, kind, &[measure.time_factor]).ok();
     let (own, other) = (of(case.scene.references()[0].of_soil(&case.material))?, of(kind)?);
     let magnitude = if measure.quantity == Quantity::Settlement {
         let settlement = |reference: &Reference| reference.settlement(measure.time_factor).ok();

@@ -9,6 +9,7 @@ pub mod comparison;
 pub mod error_place;
 pub mod explanation;
 pub mod floor_causes;
+pub mod judgement;
 pub mod paths;
 pub mod profile_checks;
 pub mod scatter;

@@ -1,24 +1,19 @@
-//! From the records of a study to its series of errors, and to verdicts on them.
+//! From the records of a study to its paths and their series of errors.
 
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::case::tier::Tier;
 use crate::case::{Case, step_label};
 use crate::convergence::class::classify::classify;
 use crate::convergence::class::{Classification, Context};
 use crate::convergence::orders::{SlopeFit, finest_order, pair_orders, slope};
 use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
 use crate::convergence::series_demand::SeriesDemand as Demand;
-use crate::convergence::uncertainty::NumericalUncertainty;
-use crate::judge::absent::Absent;
 use crate::judge::error_place::place_of_attached;
-use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::measure::norms::relative_error;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::record::Record;
 use crate::soil::material::Material;
-use crate::study::check::Study;
-use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE, SeriesExpectation};
+use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
 use std::collections::HashMap;
 
 /// Errors up to this are round-off of a long run.
@@ -52,33 +47,34 @@ pub struct SeriesSummary<'a> {
     pub classification: Classification,
 }
 
-/// The judgement of one expectation of a study.
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct Judgement {
-    /// Line of the expectation in its file.
-    pub line: usize,
-    /// What was judged, in words.
-    pub subject: String,
-    /// The verdict.
-    pub verdict: Verdict,
-    /// What refinement tells of the value, where that was asked for and could be had.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub uncertainty: Option<NumericalUncertainty>,
+/// The paths of some records along every axis, made once.
+#[derive(Clone, Debug)]
+pub struct StudyPaths<'a> {
+    along: [Vec<Path<'a>>; Axis::ALL.len()],
+}
+
+impl<'a> StudyPaths<'a> {
+    /// Those of records.
+    pub fn of(records: &'a [Record]) -> Self {
+        Self { along: Axis::ALL.map(|axis| paths(records, axis)) }
+    }
+
+    /// Those along an axis.
+    pub fn along(&self, axis: Axis) -> &[Path<'a>] {
+        Axis::ALL.iter().position(|one| *one == axis).map_or(&[], |place| &self.along[place])
+    }
 }
 
 /// Paths of the records along an axis: every group of at least two levels.
-pub fn paths(records: &[Record], axis: Axis) -> Vec<Path<'_>> {
+pub fn paths<'a>(records: impl IntoIterator<Item = &'a Record>, axis: Axis) -> Vec<Path<'a>> {
     let mut groups: Vec<Path<'_>> = Vec::new();
-    // Groups by what all of their cases share, so that a sweep of thousands is not held case against case.
-    let mut places: HashMap<String, Vec<usize>> = HashMap::new();
+    // A group by what its cases share, so that no case of thousands is held against the others.
+    let mut places: HashMap<u64, usize> = HashMap::new();
     for record in records {
-        let near = places.entry(without_axes(&record.case)).or_default();
-        let place = near.iter().find(|place| alike(&groups[**place].records[0].case, &record.case, axis));
-        if let Some(place) = place {
-            groups[*place].records.push(record);
-        } else {
-            near.push(groups.len());
-            groups.push(Path { axis, records: vec![record] });
+        let place = *places.entry(what_is_shared(&record.case, axis)).or_insert(groups.len());
+        match groups.get_mut(place) {
+            Some(group) => group.records.push(record),
+            None => groups.push(Path { axis, records: vec![record] }),
         }
     }
     groups.retain(|group| group.records.len() > 1);
@@ -88,29 +84,19 @@ pub fn paths(records: &[Record], axis: Axis) -> Vec<Path<'_>> {
     groups
 }
 
-/// What cases that differ along axes alone have in common.
-fn without_axes(case: &Case) -> String {
-    format!(
-        "{:?} {:?} {:?} {:?} {:?} {:?}",
-        case.task, case.scene, case.column, case.method, case.integrator, case.settings
-    ) + &format!("{:?} {:?}", case.formulation, Material { water_bulk_modulus: 0.0, ..case.material })
-}
-
-/// Whether two cases differ along the axis at most. What is only asked for at the output, time
-/// factors, makes no difference.
-fn alike(a: &Case, b: &Case, axis: Axis) -> bool {
-    let mut b = Case { time_factors: a.time_factors.clone(), ..b.clone() };
-    match axis {
-        Axis::Cells => b.cells = a.cells,
-        // Rules of one kind are steps of one path; of different kinds they are different schemes.
-        Axis::TimeStep if std::mem::discriminant(&a.time_step) == std::mem::discriminant(&b.time_step) => {
-            b.time_step = a.time_step;
+/// A number for everything but the axis: the same for cases that differ along it at most. What is only asked for at
+/// the output, time factors, makes no difference.
+fn what_is_shared(case: &Case, axis: Axis) -> u64 {
+    case.number_with(|case| {
+        case.time_factors.clear();
+        match axis {
+            Axis::Cells => case.cells = 0,
+            // Rules of one kind are steps of one path; of different kinds they are different schemes.
+            Axis::TimeStep => case.time_step = case.time_step.with_number(0.0),
+            Axis::PointsPerCell => case.points_per_cell = 0,
+            Axis::WaterBulkModulus => case.material.water_bulk_modulus = 0.0,
         }
-        Axis::TimeStep => {}
-        Axis::PointsPerCell => b.points_per_cell = a.points_per_cell,
-        Axis::WaterBulkModulus => b.material.water_bulk_modulus = a.material.water_bulk_modulus,
-    }
-    *a == b
+    })
 }
 
 /// Size of a record's level: cell size (m), time step (s), spacing of points in cells, or
@@ -160,7 +146,7 @@ impl<'a> Path<'a> {
 
     /// What is known beside the errors: formal order, accuracy of the reference, and the model's
     /// difference where the reference is not of the scene's own equations.
-    fn context(&self, measure: &Measure) -> Context {
+    pub(crate) fn context(&self, measure: &Measure) -> Context {
         let case = &self.records[0].case;
         let finest = self.records[self.records.len() - 1];
         let used = finest.references.iter().find(|used| used.name == measure.reference);
@@ -208,7 +194,7 @@ impl<'a> Path<'a> {
     }
 
     /// Where most of the error of somebody else's result is: at the level that is bounded, or the finest.
-    fn place(&self, demand: &Demand, measure: &Measure) -> Option<String> {
+    pub(crate) fn place(&self, demand: &Demand, measure: &Measure) -> Option<String> {
         let is_bounded =
             |record: &&&Record| demand.at.is_some_and(|at| at.size == level_size(record, self.axis));
         let record = self.records.iter().find(is_bounded).or(self.records.last())?;
@@ -280,62 +266,58 @@ fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
     }
 }
 
-/// Judges every expectation of a study that its tier can answer.
-pub fn judge_study(study: &Study, records: &[Record], tier: Tier) -> Vec<Judgement> {
-    let absent = Absent::among(records);
-    let series = study.expectations.iter().filter(|expectation| expectation.tier <= tier);
-    let cases = study.case_expectations.iter().filter(|expectation| expectation.tier <= tier);
-    // What was not run, because its solver is not here, is not judged; the check says so.
-    let series =
-        series.filter(|one| !absent.holds_all(|case| one.selection.fits_along(one.axis.name(), case)));
-    let cases =
-        cases.filter(|one| one.asks_for_a_skip() || !absent.holds_all(|case| one.selection.fits(case)));
-    series
-        .flat_map(|expectation| judge_expectation(expectation, records))
-        .chain(cases.flat_map(|expectation| expectation.judge(records)))
-        .collect()
-}
-
-/// One judgement a path that the expectation selects; where it selects none, one that fails.
-fn judge_expectation(expectation: &SeriesExpectation, records: &[Record]) -> Vec<Judgement> {
-    let measure = &expectation.measure;
-    let what = measure.to_string();
-    let all = paths(records, expectation.axis);
-    let selected: Vec<_> = all
-        .iter()
-        .filter(|path| expectation.selection.fits_along(expectation.axis.name(), &path.records[0].case))
-        .filter(|path| !path.series(measure).levels().is_empty())
-        .collect();
-    if selected.is_empty() {
-        let method =
-            expectation.selection.method().map_or("any method".to_owned(), |method| method.to_string());
-        let nothing = ErrorSeries::new(Vec::new());
-        // Without its pardon: nothing was measured, and that is no known failure.
-        let strict = Demand { xfail: None, ..expectation.demand.clone() };
-        let verdict = judge(&strict, &nothing, &Context::default(), &Beside::default());
-        let subject = format!("{method}: {what}");
-        return vec![Judgement { line: expectation.line, subject, verdict, uncertainty: None }];
-    }
-    selected
-        .into_iter()
-        .map(|path| {
-            let context = path.context(measure);
-            let beside = path.beside(&expectation.demand, measure, context.formal_order);
-            let mut verdict = judge(&expectation.demand, &path.series(measure), &context, &beside);
-            if let Some(place) = path.place(&expectation.demand, measure).filter(|_| !verdict.pass) {
-                verdict.reason = format!("{}; {place}", verdict.reason);
-            }
-            Judgement {
-                line: expectation.line,
-                subject: format!("{}: {what}", path.label()),
-                verdict,
-                uncertainty: beside.uncertainty.and_then(Result::ok),
-            }
-        })
-        .collect()
-}
-
 /// The norm in which a quantity is reported first.
 pub fn first_norm(quantity: Quantity) -> Norm {
     if quantity == Quantity::Settlement { Norm::Relative } else { Norm::L2 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+
+    /// Whether two cases differ along an axis at most, held against each other input by input.
+    fn alike(a: &Case, b: &Case, axis: Axis) -> bool {
+        let mut b = Case { time_factors: a.time_factors.clone(), swept: a.swept.clone(), ..b.clone() };
+        match axis {
+            Axis::Cells => b.cells = a.cells,
+            Axis::TimeStep
+                if std::mem::discriminant(&a.time_step) == std::mem::discriminant(&b.time_step) =>
+            {
+                b.time_step = a.time_step;
+            }
+            Axis::TimeStep => {}
+            Axis::PointsPerCell => b.points_per_cell = a.points_per_cell,
+            Axis::WaterBulkModulus => b.material.water_bulk_modulus = a.material.water_bulk_modulus,
+        }
+        *a == b
+    }
+
+    #[test]
+    fn paths_are_the_groups_of_cases_that_differ_along_their_axis_alone() {
+        let records = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05]\n[[sweep]]\nmethod = ['MPM', 'GC-SRI-patch']\n\
+             integrator = ['implicit']\ncells = [2, 4]\npoints_per_cell = [2, 3]\nporosity = [0.3, 0.4]\n\
+             time_step = [{ growth = 0.5 }, { growth = 0.3 }, { seconds = 10.0 }]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [2]\nwater_bulk_modulus = [1e8, 1e9]\ntime_step = [{ growth = 0.5 }]\n",
+        );
+        let all = StudyPaths::of(&records);
+        for axis in Axis::ALL {
+            let paths = all.along(axis);
+            let places: usize = paths.iter().map(|path| path.records.len()).sum();
+            let lonely = |one: &&Record| {
+                records.iter().filter(|other| alike(&one.case, &other.case, axis)).count() == 1
+            };
+            assert_eq!(places + records.iter().filter(lonely).count(), records.len(), "{axis:?}");
+            for (number, path) in paths.iter().enumerate() {
+                let first = &path.records[0].case;
+                assert!(path.records.iter().all(|record| alike(first, &record.case, axis)), "{axis:?}");
+                let others = paths.iter().skip(number + 1);
+                assert!(others.clone().all(|other| !alike(first, &other.records[0].case, axis)), "{axis:?}");
+                let sizes: Vec<f64> = path.records.iter().map(|record| level_size(record, axis)).collect();
+                assert!(sizes.is_sorted_by(|a, b| a >= b), "{axis:?}: {sizes:?}");
+            }
+        }
+        assert_eq!(Axis::ALL.map(|axis| all.along(axis).len()), [24, 16, 24, 1]);
+    }
 }

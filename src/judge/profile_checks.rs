@@ -7,7 +7,8 @@ use crate::convergence::uncertainty::ValueSeries;
 use crate::exact::reference::ReferenceKind;
 use crate::judge::paths::{Path, level_size};
 use crate::judge::verdict::Beside;
-use crate::measure::exact_fields::{exact_samples, reference_of};
+use crate::measure::exact_fields::exact_samples;
+use crate::measure::known_references::known_reference;
 use crate::measure::oscillation::reversal;
 use crate::measure::plane_field::PlaneField;
 use crate::record::Record;
@@ -55,7 +56,7 @@ impl Path<'_> {
         let case = &record.case;
         let samples = measure.sample.of(record.snapshot(measure.time_factor)?)?;
         let kind = measure.reference.parse::<ReferenceKind>().ok()?.of_soil(&case.material);
-        let reference = reference_of(case, kind, &[measure.time_factor]).ok()?;
+        let reference = known_reference(case, kind, &[measure.time_factor]).ok()?;
         let exact = exact_samples(case, &reference, measure.time_factor, samples).ok()?;
         reversal(measure.quantity.field(samples)?, measure.quantity.field(&exact)?)
     }

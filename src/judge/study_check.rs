@@ -10,7 +10,7 @@ use crate::golden::references::{REFERENCES, reference_values};
 use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, values_of};
 use crate::judge::absent::{Absent, differing_repeats};
 use crate::judge::error_place::place_of_attached;
-use crate::judge::paths::{Judgement, judge_study};
+use crate::judge::judgement::{Judgement, judge_study};
 use crate::judge::soundness;
 use crate::record::{Record, Status};
 use crate::study::check::Study;

@@ -6,6 +6,7 @@ use crate::exact::reference::{Reference, ReferenceKind};
 use crate::measure::case_record::reference_use;
 use crate::measure::dimensionless_groups::groups;
 use crate::measure::field_errors::{LONG_AFTER, snapshot_errors};
+use crate::measure::other_measures::measures_of;
 use crate::mpm::run::outcome::{Counters, StepSizes};
 use crate::mpm::run::snapshot::Snapshot;
 use crate::record::attached_run::AttachedRun;
@@ -63,6 +64,7 @@ pub fn record_of_attached(
         start: None,
         balance: Vec::new(),
         errors,
+        measures: measures_of(case, references.first(), &[], &snapshots),
         history: degrees.filter(|row| row.degree_of_consolidation.is_finite()).collect(),
         references: references.iter().map(|one| reference_use(case, one)).collect::<Result<_, _>>()?,
         snapshots,

@@ -71,6 +71,7 @@ pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) 
                 water_left: layers.water_left,
                 water_left_error: layers.water_left - pressed_out,
                 water_points: layers.water_points,
+                largest_pressure: Some(layers.largest_pressure / load),
             }
         }),
         spurious_velocity: case

@@ -6,6 +6,7 @@ use crate::exact::reference::{Reference, ReferenceKind};
 use crate::measure::balances::{balance, curve_gap, start_checks};
 use crate::measure::dimensionless_groups::{groups, inertia_rules};
 use crate::measure::field_errors::{LONG_AFTER, snapshot_errors};
+use crate::measure::other_measures::measures_of;
 use crate::mpm::critical_step::observed::CriticalStep;
 use crate::mpm::run::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
 use crate::record::provenance::Provenance;
@@ -47,7 +48,7 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
             degree_of_consolidation: point.settlement / final_settlement,
         })
         .collect();
-    let balance = case
+    let balance: Vec<Balance> = case
         .time_factors
         .iter()
         .zip(&outcome.snapshots)
@@ -70,6 +71,7 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
         stability: None,
         groups: groups(case, outcome.step_sizes.largest / outcome.step_sizes.predicted_critical),
         start: Some(start_checks(case, &references, &outcome.start)?),
+        measures: measures_of(case, references.first(), &balance, &outcome.snapshots),
         balance,
         errors,
         history,
@@ -104,6 +106,7 @@ pub fn record_of_critical_step(case: &Case, found: CriticalStep) -> Record {
         start: None,
         balance: Vec::new(),
         errors: Vec::new(),
+        measures: Vec::new(),
         history: Vec::new(),
         references: Vec::new(),
         snapshots: Vec::new(),

@@ -1,15 +1,12 @@
 //! The pressure of a plane run on the lattice of its points, beside the exact one.
 
 use crate::exact::exact_error::ExactError;
-use crate::measure::exact_fields::{exact_samples, reference_of};
+use crate::measure::exact_fields::exact_samples;
+use crate::measure::known_references::{Known, key_of, known_or, known_reference};
 use crate::measure::oscillation::total_variation;
 use crate::mpm::run::snapshot::Samples;
 use crate::record::Record;
-use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
-
-/// Fields that are kept.
-const MOST_KNOWN: usize = 256;
 
 /// Pressures over the load at the points, row after row from the base, each from `x = 0` on.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,26 +72,15 @@ impl PlaneField {
 /// A study of many methods asks for the same field again and again, and it is the dearest thing in a report: it is kept
 /// by all that it depends on, geometry, soil, lattice of the points and time.
 fn exact_pressure(record: &Record, time_factor: f64, points: &Samples) -> Result<Arc<Vec<f64>>, ExactError> {
-    static KNOWN: LazyLock<Mutex<HashMap<String, Arc<Vec<f64>>>>> = LazyLock::new(Mutex::default);
+    static KNOWN: Known<Arc<Vec<f64>>> = LazyLock::new(Mutex::default);
     let case = &record.case;
-    let key = format!(
-        "{:?} {:?} {:?} {} {} {time_factor:?}",
-        case.scene, case.column, case.material, case.cells, case.points_per_cell
-    );
-    let known = KNOWN.lock().ok().and_then(|known| known.get(&key).cloned());
-    if let Some(known) = known.filter(|known| known.len() == points.pressure.len()) {
-        return Ok(known);
-    }
     let own = case.scene.references()[0].of_soil(&case.material);
-    let reference = reference_of(case, own, &[time_factor])?;
-    let exact = Arc::new(exact_samples(case, &reference, time_factor, points)?.pressure);
-    if let Ok(mut known) = KNOWN.lock() {
-        if known.len() >= MOST_KNOWN {
-            known.clear();
-        }
-        known.insert(key, Arc::clone(&exact));
-    }
-    Ok(exact)
+    let lattice = format!("{} {} {}", case.cells, case.points_per_cell, points.pressure.len());
+    let key = key_of(case, own, &[time_factor]) + &lattice;
+    known_or(&KNOWN, key, || {
+        let reference = known_reference(case, own, &[time_factor])?;
+        Ok(Arc::new(exact_samples(case, &reference, time_factor, points)?.pressure))
+    })
 }
 
 #[cfg(test)]

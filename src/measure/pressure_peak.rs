@@ -1,7 +1,15 @@
 //! The peak of the pressure at an impermeable end over time: of Mandel and of Cryer, where it rises before it falls.
 
+use crate::case::Case;
 use crate::elementary;
-use crate::record::Record;
+use crate::exact::reference::Reference;
+use crate::mpm::run::snapshot::Snapshot;
+use crate::record::MeasureRow;
+
+/// Name of the measure of its time factor.
+pub const PEAK_TIME_FACTOR: &str = "peak_time_factor";
+/// Name of the measure of its height over the load.
+pub const PEAK_PRESSURE: &str = "peak_pressure";
 
 /// When and how high.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,14 +22,14 @@ pub struct PressurePeak {
 
 /// The peak at the base of a column, or in the middle of a slab: the parabola in `ln T_v` through the highest of the
 /// outputs and its neighbours. None where the highest is the first or the last, or the start.
-pub fn pressure_peak(record: &Record) -> Option<PressurePeak> {
-    let outputs = record.case.time_factors.iter().zip(&record.snapshots);
+pub fn pressure_peak(case: &Case, snapshots: &[Snapshot]) -> Option<PressurePeak> {
+    let outputs = case.time_factors.iter().zip(snapshots);
     let rows: Vec<(f64, f64)> = outputs
         .filter(|(time_factor, _)| **time_factor > 0.0)
         .map(|(time_factor, snapshot)| {
             let centres = &snapshot.centres;
             let end = pressure_at_the_end(&centres.initial_height, &centres.pressure);
-            (elementary::ln(*time_factor), end / record.case.column.load)
+            (elementary::ln(*time_factor), end / case.column.load)
         })
         .collect();
     let highest = (0..rows.len()).max_by(|a, b| rows[*a].1.total_cmp(&rows[*b].1))?;
@@ -37,6 +45,24 @@ pub fn pressure_peak(record: &Record) -> Option<PressurePeak> {
         time_factor: elementary::exp(time + shift),
         height: height + 0.5 * slope * shift,
     })
+}
+
+/// Time and height of the peak against those of a reference that has one; nothing where either has none.
+pub fn peak_measures(case: &Case, reference: &Reference, snapshots: &[Snapshot]) -> Vec<MeasureRow> {
+    let (Some(found), Some((time_factor, height))) =
+        (pressure_peak(case, snapshots), reference.pressure_peak())
+    else {
+        return Vec::new();
+    };
+    [(PEAK_TIME_FACTOR, found.time_factor, time_factor), (PEAK_PRESSURE, found.height, height)]
+        .map(|(name, found, exact)| MeasureRow {
+            name: name.to_owned(),
+            time_factor: None,
+            reference: reference.name().to_owned(),
+            found,
+            exact,
+        })
+        .into()
 }
 
 /// Pressure at the height 0 from the means of the lowest two rows of cells: nothing flows there, so that the
@@ -59,6 +85,7 @@ fn pressure_at_the_end(heights: &[f64], pressures: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use crate::record::Record;
 
     #[test]
     fn the_middle_is_found_from_two_rows_of_an_even_field() {
@@ -81,11 +108,11 @@ mod tests {
         // A parabola in ln T_v about 0.062.
         let of = |time: f64| 0.55 - 0.3 * (time / 0.062_f64).ln().powi(2);
         set(&mut record, [0.05, 0.06, 0.07].map(of));
-        let peak = pressure_peak(&record).expect("a peak");
+        let peak = pressure_peak(&record.case, &record.snapshots).expect("a peak");
         assert!((peak.time_factor - 0.062).abs() < 1e-12 && (peak.height - 0.55).abs() < 1e-12, "{peak:?}");
         for monotone in [[0.1, 0.2, 0.3], [0.3, 0.2, 0.1], [0.2; 3]] {
             set(&mut record, monotone);
-            assert_eq!(pressure_peak(&record), None);
+            assert_eq!(pressure_peak(&record.case, &record.snapshots), None);
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Start checks and balances of a record, each with the bound that it is held to: what shows a mark
 //! in a table is judged here, and nowhere else.
 
-use crate::record::{Balance, Record};
+use crate::mpm::run::outcome::FailureKind;
+use crate::record::{Balance, Record, Status};
 use crate::scene::arrangement::Arrangement;
 use crate::soil::continuity::Continuity;
 use crate::wording::typed;
@@ -26,7 +27,10 @@ const WATER_MOVING: f64 = 5e-2;
 /// Water in the soil over its pores, less one, where both are counted apart, times the square of the number of cells:
 /// twice what the cut at the surface leaves of it (0.2 on ten cells with two points).
 const WATER_IN_PORES: f64 = 0.5;
-/// The same on meshes so fine that other errors rule; a wrong continuity makes fifty times as much.
+/// Pressure over the load that consolidation cannot reach: it begins at most at the load, the first front overshoots that by
+/// a quarter on coarse meshes, and what is beyond half of it is a burst, where forces of the water and of the skeleton end in domains that are cut differently.
+const NO_BURST: f64 = 1.5;
+/// What `WATER_IN_PORES` is on meshes so fine that other errors rule; a wrong continuity makes fifty times as much.
 const LEAST_WATER_IN_PORES: f64 = 1e-3;
 
 /// A value of a record, and what it is held to.
@@ -110,9 +114,27 @@ pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
                 bound,
             ),
         ]);
+        let burst = is_exact.then_some(NO_BURST);
+        checks.extend(layers.largest_pressure.map(|largest| {
+            RecordCheck::of("burst: largest pressure of the water so far, over the load", largest, burst)
+        }));
     }
     checks.extend(spurious);
     checks
+}
+
+/// Whether a pressure burst in a run of two layers of points that move, whose continuity holds: between outputs, or at the
+/// end of a run that left what its scene can reach.
+pub fn has_burst(record: &Record) -> bool {
+    let case = &record.case;
+    let is_sound = case.material.continuity == Continuity::Conservative;
+    if !(is_sound && case.column.points.has_two_layers() && deforms(record)) {
+        return false;
+    }
+    let mut seen = record.balance.iter().filter_map(|balance| balance.layers.as_ref()?.largest_pressure);
+    let has_left = matches!(&record.status, Status::Failed(failure)
+        if matches!(failure.kind, FailureKind::Unstable | FailureKind::PoresClosed));
+    has_left || seen.any(|largest| largest > NO_BURST || largest.is_nan())
 }
 
 /// Where volumes follow the deformation, the undrained start has compressed the column by

@@ -3,10 +3,10 @@
 use crate::case::Case;
 use crate::elementary;
 use crate::exact::exact_error::ExactError;
-use crate::exact::reference::ReferenceKind;
-use crate::measure::exact_fields::reference_of;
+use crate::exact::reference::{Reference, ReferenceKind};
+use crate::measure::known_references::{Known, key_of, known_or};
 use crate::record::Record;
-use std::collections::HashMap;
+use crate::scene::column::column_parameters;
 use std::sync::{LazyLock, Mutex};
 
 /// Points of a theory line.
@@ -30,42 +30,17 @@ pub struct TheoryIsochrone {
 /// # Errors
 /// When the reference refuses the case.
 pub fn theory_isochrones(case: &Case, kind: ReferenceKind) -> Result<Vec<TheoryIsochrone>, ExactError> {
-    static KNOWN: KnownLines<TheoryIsochrone> = LazyLock::new(Mutex::default);
+    static KNOWN: Known<Vec<TheoryIsochrone>> = LazyLock::new(Mutex::default);
     known_or(&KNOWN, key_of(case, kind, &case.time_factors), || new_isochrones(case, kind))
 }
 
-/// Lines by what they depend on: the columns of many methods and studies are the same, and a reference at large strain
-/// is the dearest thing in a report.
-type KnownLines<T> = LazyLock<Mutex<HashMap<String, Vec<T>>>>;
-
-/// Lines that are kept of each kind.
-const MOST_KNOWN: usize = 256;
-
-fn key_of(case: &Case, kind: ReferenceKind, times: &[f64]) -> String {
-    format!("{:?} {:?} {kind:?} {times:?}", case.column, case.material)
-}
-
-/// What is known by a key, or else is made and kept.
-fn known_or<T: Clone>(
-    known: &KnownLines<T>,
-    key: String,
-    make: impl FnOnce() -> Result<Vec<T>, ExactError>,
-) -> Result<Vec<T>, ExactError> {
-    if let Some(found) = known.lock().ok().and_then(|known| known.get(&key).cloned()) {
-        return Ok(found);
-    }
-    let made = make()?;
-    if let Ok(mut known) = known.lock() {
-        if known.len() >= MOST_KNOWN {
-            known.clear();
-        }
-        known.insert(key, made.clone());
-    }
-    Ok(made)
+/// A reference as good as a line of a figure needs it.
+fn drawn(case: &Case, kind: ReferenceKind, times: &[f64]) -> Result<Reference, ExactError> {
+    Reference::for_lines(kind, &column_parameters(&case.column, &case.material), times)
 }
 
 fn new_isochrones(case: &Case, kind: ReferenceKind) -> Result<Vec<TheoryIsochrone>, ExactError> {
-    let reference = reference_of(case, kind, &case.time_factors)?;
+    let reference = drawn(case, kind, &case.time_factors)?;
     let at = |time_factor: f64| {
         let point = |i: u32| {
             let zeta = f64::from(i) / f64::from(LINE_POINTS);
@@ -86,12 +61,12 @@ pub fn theory_consolidation(
     kind: ReferenceKind,
     end: f64,
 ) -> Result<Vec<(f64, f64)>, ExactError> {
-    static KNOWN: KnownLines<(f64, f64)> = LazyLock::new(Mutex::default);
+    static KNOWN: Known<Vec<(f64, f64)>> = LazyLock::new(Mutex::default);
     let growth = elementary::ln(end / CURVE_START) / f64::from(LINE_POINTS);
     let times: Vec<f64> =
         (0..=LINE_POINTS).map(|i| CURVE_START * elementary::exp(growth * f64::from(i))).collect();
     known_or(&KNOWN, key_of(case, kind, &times), || {
-        let reference = reference_of(case, kind, &times)?;
+        let reference = drawn(case, kind, &times)?;
         times.iter().map(|time| Ok((*time, reference.degree_of_consolidation(*time)?))).collect()
     })
 }

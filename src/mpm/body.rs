@@ -330,7 +330,8 @@ impl<const D: usize> Body<D> {
     /// takes the divergence of.
     pub fn nodal_flux(&mut self) {
         let nodes = &mut self.nodes;
-        for node in 0..nodes.len() {
+        for active in 0..nodes.active().len() {
+            let node = nodes.active()[active];
             let porosity = nodes.porosity[node];
             for d in 0..D {
                 let solid = nodes.solid_velocity[node][d];

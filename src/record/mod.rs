@@ -165,6 +165,33 @@ pub struct LayerBalance {
     pub water_left_error: f64,
     /// Water points that are in the soil still.
     pub water_points: usize,
+    /// Largest size of the pressure of any water point since the start, between outputs too, over the load: what has
+    /// burst and rung down again by an output is seen here.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_pressure: Option<f64>,
+}
+
+/// What is measured beside errors of fields, against what it must be.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct MeasureRow {
+    /// Name, a word of the field.
+    pub name: String,
+    /// Time factor of the output; none where it is of the whole run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_factor: Option<f64>,
+    /// Reference that it is held against.
+    pub reference: ReferenceName,
+    /// What the run has.
+    pub found: f64,
+    /// What is exact.
+    pub exact: f64,
+}
+
+impl MeasureRow {
+    /// Error, relative where the exact value is not zero.
+    pub fn error(&self) -> f64 {
+        if self.exact == 0.0 { self.found } else { self.found / self.exact - 1.0 }
+    }
 }
 
 /// One measured error.
@@ -259,6 +286,9 @@ pub struct Record {
     pub balance: Vec<Balance>,
     /// Errors against every reference of the scene.
     pub errors: Vec<ErrorRow>,
+    /// What is measured beside errors of fields: peaks, and what moves where nothing may.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub measures: Vec<MeasureRow>,
     /// Settlement over time.
     pub history: Vec<HistoryRow>,
     /// References used.

@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::case::keys::{KEYS, Key};
-use crate::record::{ERROR_COLUMNS, ErrorRow, Record, WallSample};
+use crate::record::{ERROR_COLUMNS, ErrorRow, MeasureRow, Record, WallSample};
 use std::io::Write;
 
 /// First columns of the tidy CSV, before those of a measure; one with the name of a key has the value of that input.
@@ -61,7 +61,10 @@ pub fn write_rows(out: impl Write, study: &str, record: &Record) -> Result<(), c
     for row in &record.errors {
         write(&measure_fields(row), format!("{:e}", row.absolute))?;
     }
-    if record.errors.is_empty() {
+    for row in &record.measures {
+        write(&fields_beside(row), format!("{:e}", (row.found - row.exact).abs()))?;
+    }
+    if record.errors.is_empty() && record.measures.is_empty() {
         write(&[const { String::new() }; ERROR_COLUMNS.len()], String::new())?;
     }
     Ok(writer.flush()?)
@@ -126,6 +129,15 @@ fn quickest(samples: &[WallSample]) -> Option<&WallSample> {
         fit.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     };
     least(true).or_else(|| least(false))
+}
+
+/// The row of what is measured beside errors of fields: its name in the place of the quantity, and no place.
+fn fields_beside(row: &MeasureRow) -> [String; ERROR_COLUMNS.len()] {
+    let time_factor = row.time_factor.map_or(String::new(), |factor| factor.to_string());
+    let norm = if row.exact == 0.0 { "absolute" } else { "relative" };
+    let words = [row.name.as_str(), "", norm, &row.reference].map(str::to_owned);
+    let [quantity, sample, norm, reference] = words;
+    [time_factor, quantity, sample, norm, reference, format!("{:e}", row.error())]
 }
 
 /// What a measure's row ends with.

@@ -282,9 +282,9 @@ impl SceneKind {
         }
     }
 
-    /// Whether its soil may have a weight.
+    /// Whether its soil may have a weight: columns that are loaded or at rest, and no modes or waves of their own.
     pub fn takes_self_weight(self) -> bool {
-        self.definition().body == SceneBody::Column
+        matches!(self, Self::Terzaghi | Self::XieLeo | Self::DynamicColumn | Self::AtRest)
     }
 
     /// Whether the mean of its load is zero: what one half of the body takes in, the other gives.

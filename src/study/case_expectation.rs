@@ -43,6 +43,8 @@ pub struct CaseDemand {
     pub pore_water: Option<[f64; 2]>,
     /// Largest difference, at any output, of the share of the water that left from the settlement over `n_0 H`.
     pub water_left_within: Option<f64>,
+    /// Bounds on the largest pressure of any water point of two layers, between outputs too, over the load.
+    pub largest_pressure: Option<Bounds>,
     /// Largest difference of any error from that of the same case in one layer.
     pub one_layer_within: Option<f64>,
     /// Bounds on the largest velocity at any output of a column at rest, over the hydraulic conductivity.

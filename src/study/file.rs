@@ -216,6 +216,8 @@ pub struct ExpectCaseKeys {
     pub pore_water: Typed<RangeTable>,
     /// Largest difference, at any output, of the share of the water that left from the settlement over `n_0 H`.
     pub water_left_within: Typed<f64>,
+    /// Bounds on the largest pressure of any water point of two layers, between outputs too, over the load.
+    pub largest_pressure: Typed<RangeTable>,
     /// Largest difference of any error from that of the same case in one layer.
     pub one_layer_within: Typed<f64>,
     /// Bounds on the largest velocity at any output of a column at rest, over the hydraulic conductivity.

@@ -107,6 +107,10 @@ fn each_end_has_its_status_and_the_rest_of_the_sweep_goes_on() {
         assert_eq!(status_of(&all, "GC-SRI-patch", cells), "ok");
     }
     assert!(told.err.contains("skip: 1 cases were skipped"), "{}", told.err);
+    // A study that is called as its solver: the words of a case are its own before its study's.
+    fs::copy(folder.path().join("ends.toml"), folder.path().join("soft.toml")).expect("copied");
+    let told = call(folder.path(), &["explain", "soft cells=10", "soft.toml", "--records", "none"]);
+    assert!(told.code == 0 && told.out.contains("soft cells=10"), "{}", told.err);
     // What only this program's integrators take stands in no row of another solver.
     let foreign = all.iter().find(|row| field(row, "method") == "soft").expect("a row");
     assert_eq!((field(foreign, "integrator"), field(foreign, "time_step")), ("", ""));

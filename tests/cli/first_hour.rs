@@ -26,6 +26,16 @@ fn a_starter_runs_and_meets_what_it_expects() {
     assert_eq!(call(at, &["new", "my-study"]).code, 0);
     let told = call(at, &["check", "my-study.toml"]);
     assert!(told.out.contains("1 of 1 expectations met"), "{}{}", told.out, told.err);
+    // At large strain, and in the plane.
+    for (name, scene, met) in [("large", "xie-leo", "2 of 2"), ("plane", "cosine-layer", "4 of 4")] {
+        assert_eq!(call(at, &["new", name, "--scene", scene]).code, 0);
+        let told = call(at, &["check", &format!("{name}.toml")]);
+        assert!(told.out.contains(&format!("{met} expectations met")), "{scene}: {}{}", told.out, told.err);
+    }
+    let told = call(at, &["new", "slab", "--scene", "mandel"]);
+    assert!(told.code == 2 && told.err.contains("list --show mandel"), "{}", told.err);
+    let told = call(at, &["new", "slab", "--scene", "mandle"]);
+    assert!(told.code == 2 && told.err.contains("no scene with a study is called `mandle`"), "{}", told.err);
     let again = call(at, &["new", "my-study"]);
     assert!(again.code == 2 && again.err.contains("is there already"), "{}", again.err);
     assert_eq!(call(at, &["new", "My Study"]).code, 2);

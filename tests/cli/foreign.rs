@@ -77,8 +77,19 @@ fn two_meshes_of_one_program_make_a_series_without_telling_their_cells() {
         "{}",
         told.out
     );
+    assert!(told.out.contains("2 levels with the order 0.40 between them"), "{}", told.out);
     let twenty = values(&score(&["ogs-20/col.pvd", "--preset", "ogs"]), PRESSURE);
     assert!(are(&twenty[4..], &["2.29e-3"]), "{twenty:?}");
+    // From an error above the exact field to one below it: three meshes tell no growth from a limit.
+    let three = ["ogs/col.pvd", "ogs-20/col.pvd", "ogs-40/col.pvd", "--preset", "ogs", "--scene", "terzaghi"];
+    let told = call(&files(), &[&["score"], &three[..], &["--reference", "terzaghi"]].concat());
+    assert!(told.out.contains("towards a limit") && !told.out.contains("divergent"), "{}", told.out);
+    // Forty elements, as the same elements in scikit-fem.
+    let told = score(&["ogs-40/col.pvd", "--preset", "ogs"]);
+    let forty = values(&told, PRESSURE);
+    assert!(are(&forty, &["1.76e-3", "1.14e-3", "7.28e-4", "1.49e-3", "2.85e-3"]), "{forty:?}");
+    let settled = values(&told, ",settlement,");
+    assert!(are(&settled[..2], &["-2.2e-3", "-1.1e-3"]) && are(&settled[4..], &["-2.0e-4"]), "{settled:?}");
 }
 
 #[test]
@@ -207,6 +218,46 @@ fn an_array_that_is_not_there_is_told_with_those_that_are() {
     assert!(told.contains("no array `cells:pressure`"), "{told}");
     let told = score(&["porepy/col.pvd", "--preset", "kratos"]);
     assert!(told.code == 2 && told.err.contains("nothing to score"), "{}", told.err);
+}
+
+#[test]
+fn what_cannot_be_scored_is_answered_with_what_can() {
+    for (arguments, told) in [
+        (&["ogs"][..], "it is a folder: name the collection in it, ogs/col.pvd"),
+        (&["kratos-vtk"], "name its files, 'kratos-vtk/*.vtk' with the quotes"),
+        (&["ogs/col_ts_50_t_4.087500.vtu"], "score ogs/col.pvd, which lists it"),
+        (&["porepy/col_2_000001.vtu", "--preset", "porepy"], "score porepy/col.pvd, which lists it"),
+        (&["geotaichi/particles/*.npz"], "it looks like a file for `--preset geotaichi`"),
+        (&["ogs/col.pvd", "--preset", "kratos"], "it looks like a file for `--preset ogs`"),
+        (&["kratos-vtk/*.vtk", "--set-time-step", "0.08175"], "it looks like a file for `--preset kratos`"),
+    ] {
+        let found = score(arguments);
+        assert!(found.code == 2 && found.err.contains(told), "{arguments:?}: {}", found.err);
+    }
+    // Where it can be read all the same, a note tells.
+    let told = score(&["ogs/col.pvd"]);
+    assert!(told.code == 0 && told.err.contains("it looks like a file for `--preset ogs`"), "{}", told.err);
+    assert!(!score(&["ogs/col.pvd", "--preset", "ogs"]).err.contains("it looks like"));
+}
+
+#[test]
+fn a_slab_and_a_column_in_the_plane_are_scored_without_a_grid_that_fits_them() {
+    let folder = TempDir::new().expect("a folder");
+    let exact = call(folder.path(), &["exact", "mandel", "--time-factor", "0.1", "--x", "0,0.5,1"]);
+    let mut text = "t,y,p,u_y\n".to_owned();
+    for row in exact.out.lines().skip(1) {
+        let entries: Vec<&str> = row.split(',').collect();
+        // From the middle of the slab to its drained side.
+        writeln!(text, "8.175,{},{},0", entries[1], entries[2]).expect("a line");
+    }
+    fs::write(folder.path().join("slab.csv"), text).expect("a file");
+    let told = call(folder.path(), &["score", "slab.csv", "--scene", "mandel", "--format", "csv"]);
+    let found = values(&told, ",pressure,points,l2,");
+    assert!(found.len() == 1 && found[0] < 1e-12, "{found:?}: {}", told.err);
+    let settled = values(&told, ",settlement,");
+    assert!(settled.is_empty() && told.err.contains("it is the plate's"), "{settled:?}: {}", told.err);
+    let plane = ["ogs/col.pvd", "--preset", "ogs", "--set", "column.dimensions=2"];
+    assert!(are(&values(&score(&plane), PRESSURE), &TEN));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Whole runs through the program, as its users call it.
 
 mod attach;
+mod attach_plane;
 mod bad_input;
 mod check;
 mod critical_step;
@@ -19,6 +20,7 @@ mod report_rules;
 mod report_tables;
 mod run;
 mod score;
+mod signals;
 mod solve;
 mod store;
 mod streams;

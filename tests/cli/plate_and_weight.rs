@@ -1,6 +1,7 @@
 //! Mandel's slab, own weight and rest, as a user asks for them.
 
 use crate::program::call;
+use oedometer::{Record, RunOptions, Study, StudySource, Tier, run_study};
 use std::path::Path;
 
 /// Exit code, standard output and standard error.
@@ -37,6 +38,7 @@ fn mandels_slab_is_solved_to_what_is_known_of_ten_cells() {
 fn what_a_slab_or_a_weight_cannot_have_is_refused_in_sentences() {
     for (arguments, sentence) in [
         (&["mandel", "--set", "column.self_weight=true"][..], "the soil of `mandel` has no weight"),
+        (&["single-mode", "--set", "column.self_weight=true"], "own weight belongs to the scenes"),
         (&["mandel", "--set", "column.dimensions=1"], "`mandel` has two dimensions"),
         (&["mandel", "--method", "TL-GIMP-SRI"], "a rigid plate holds the nodes of a face"),
         (&["mandel", "--set", "layer.length=1.0"], "the scene `mandel` has no [layer]"),
@@ -63,6 +65,55 @@ fn a_weight_changes_the_stress_and_neither_excess_pressure_nor_settlement() {
     // The same absolute error over a stress of the weight.
     let row = "0.1,effective_stress,points,l2,terzaghi,";
     assert!(value(&heavy, row) < 0.2 * value(&light, row));
+}
+
+/// A label without what it says of a weight.
+fn weightless(label: &str) -> String {
+    [", own weight", "own weight, ", " (own weight)"]
+        .iter()
+        .fold(label.to_owned(), |rest, word| rest.replace(word, ""))
+}
+
+/// Errors of the pressure at the points of the cases of a shipped study, by their labels without the weight.
+fn errors_of(study: &str) -> Vec<(String, f64)> {
+    let source = StudySource { name: "weight.toml".to_owned(), text: study.to_owned() };
+    let study = Study::check(&source).expect("a sound study");
+    let records = run_study(&study, &RunOptions::whole(Tier::Ci, 2), None, &|_| {}).records;
+    assert!(!records.is_empty());
+    let of_pressure = |record: &Record| {
+        let json = serde_json::to_value(record).expect("JSON");
+        let rows: Vec<serde_json::Value> = json["errors"].as_array().expect("errors").clone();
+        let is = |row: &serde_json::Value, key: &str, word: &str| row[key] == word;
+        let found = rows.iter().rfind(|row| {
+            is(row, "quantity", "pressure") && is(row, "sample", "points") && is(row, "norm", "l2")
+        });
+        found.and_then(|row| row["value"].as_f64()).unwrap_or(f64::NAN)
+    };
+    records.iter().map(|record| (weightless(&record.case.label()), of_pressure(record))).collect()
+}
+
+#[test]
+fn with_every_other_option_a_weight_leaves_the_excess_pressure_as_it_is() {
+    let mut compared = 0;
+    for (heavy, within) in [
+        (include_str!("../../studies/self-weight-options.toml"), 0.02),
+        (include_str!("../../studies/self-weight-plane.toml"), 0.01),
+    ] {
+        // Steps of waves are too many without optimisation; the study has them.
+        let heavy = heavy.split("[[sweep]]                    # with steps of waves").next().unwrap_or(heavy);
+        let light = errors_of(&heavy.replace("self_weight = true", "self_weight = false"));
+        for ((label, heavy), (same, light)) in errors_of(heavy).into_iter().zip(light) {
+            assert_eq!(label, same);
+            // Points off their lattice, and those of splines, integrate no weight exactly.
+            if ["shifted", "jittered", "bspline"].iter().any(|inexact| label.contains(inexact)) {
+                assert!(heavy > light, "{label}: {heavy} for {light}");
+                continue;
+            }
+            assert!((heavy / light - 1.0).abs() < within, "{label}: {heavy} for {light}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 24, "{compared}");
 }
 
 #[test]

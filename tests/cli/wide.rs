@@ -318,3 +318,48 @@ fn the_scripts_of_a_cluster_are_shown_without_a_cluster() {
     assert!(!at.join("out").exists(), "nothing is written");
     assert_eq!(run(at, &["--tasks", "6"]).code, 2, "shares of an engine that is not named");
 }
+
+/// The share 2/2 of a whole run in packs of its own, each record changed on its way.
+fn changed_share(folder: &Path, out: &str, change: &dyn Fn(&mut Record)) {
+    let whole = RecordStore::for_cases(&folder.join("out"), "short", CASES);
+    let share = RecordStore::for_cases(&folder.join(out), "short", CASES);
+    for case in study().cases(Tier::Full).into_iter().skip(CASES / 2) {
+        let mut record = whole.kept(case).expect("a record");
+        change(&mut record);
+        share.write(&record).expect("written");
+    }
+}
+
+#[test]
+fn records_of_another_machine_are_merged_and_counted_and_those_of_other_sources_are_not() {
+    let (folder, expected) = whole();
+    let at = folder.path();
+    let first: RecordStore = RecordStore::for_cases(&at.join("first"), "short", CASES);
+    let all = RecordStore::for_cases(&at.join("out"), "short", CASES);
+    for case in study().cases(Tier::Full).into_iter().take(CASES / 2) {
+        first.write(&all.kept(case).expect("a record")).expect("written");
+    }
+    let elsewhere = serde_json::json!({
+        "seconds": 1.0, "alone": true, "machine": { "node": "another", "processor": "Another CPU" }
+    });
+    changed_share(at, "machine", &|record| {
+        record.wall = vec![serde_json::from_value(elsewhere.clone()).expect("a time")];
+        record.provenance.compiler = "rustc 0.0.0".to_owned();
+    });
+    let told = call(at, &["merge", "short.toml", "first", "machine", "--out", "both"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    assert!(told.err.contains("records of several builds of one program"), "{}", told.err);
+    assert_eq!(table(at, "both"), expected, "values do not depend on the machine");
+    let machines = fs::read_to_string(at.join("both/short/machines.csv")).expect("a table");
+    let rows: Vec<&str> = machines.lines().skip(1).collect();
+    assert!(rows.len() == 2 && rows.iter().all(|row| row.ends_with(",36")), "{machines}");
+    assert!(rows.iter().any(|row| row.starts_with("another,Another CPU,")), "{machines}");
+    // Other sources may give other values.
+    changed_share(at, "sources", &|record| record.provenance.sources = "0123456789abcdef".to_owned());
+    let told = call(at, &["merge", "short.toml", "first", "sources", "--out", "none"]);
+    assert_eq!(told.code, 6, "{}", told.err);
+    assert!(told.err.contains("were not made by one program: 36 of version"), "{}", told.err);
+    assert!(!at.join("none").exists(), "nothing is written");
+    let told = call(at, &["plan", "short.toml", "--missing", "sources"]);
+    assert_eq!(told.out.lines().count() - 1, CASES, "none of them counts as done");
+}

@@ -66,6 +66,9 @@ def load_faults():
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         sys.exit(f"two faults have one name: {', '.join(twice)}")
+    always = [fault["name"] for fault in faults if fault.get("raw") and "FAULT" not in fault["to"]]
+    if always:
+        sys.exit(f"a raw text without FAULT is always on: {', '.join(always)}")
     return faults
 
 

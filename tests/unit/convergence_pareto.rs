@@ -25,8 +25,6 @@ fn the_front_has_what_nothing_beats() {
         point(4.0, 0.1),
     ];
     assert_eq!(front(&points), [true, true, false, false, false, true, true]);
-    assert!(!point(1.0, 1.0).dominates(&point(1.0, 1.0)));
-    assert!(!point(f64::NAN, 0.0).dominates(&point(1.0, 1.0)));
 }
 
 #[test]
@@ -59,8 +57,35 @@ proptest! {
         prop_assert!(marks.contains(&true));
         for (candidate, mark) in points.iter().zip(&marks) {
             let beaten = points.iter().zip(&marks)
-                .any(|(other, on_front)| *on_front && other.dominates(candidate));
+                .any(|(other, on_front)| *on_front && dominates(other, candidate));
             prop_assert_eq!(beaten, !mark);
         }
+    }
+}
+
+/// Whether a point is nowhere worse than another and somewhere better.
+fn dominates(one: &CostPoint, other: &CostPoint) -> bool {
+    one.is_usable()
+        && other.is_usable()
+        && one.cost <= other.cost
+        && one.error <= other.error
+        && (one.cost < other.cost || one.error < other.error)
+}
+
+proptest! {
+    #[test]
+    fn the_front_is_what_no_point_dominates(
+        numbers in proptest::collection::vec((0..6_u8, 0..6_u8), 0..40),
+    ) {
+        // Few values, so that many points share a cost, an error or both.
+        let points: Vec<CostPoint> = numbers
+            .iter()
+            .map(|(cost, error)| point(f64::from(*cost), if *error == 5 { f64::NAN } else { f64::from(*error) }))
+            .collect();
+        let by_pairs: Vec<bool> = points
+            .iter()
+            .map(|one| one.is_usable() && !points.iter().any(|other| dominates(other, one)))
+            .collect();
+        prop_assert_eq!(front(&points), by_pairs);
     }
 }

@@ -49,6 +49,26 @@ fn the_fields_agree_with_forty_digits() {
 }
 
 #[test]
+fn the_peak_in_the_middle_is_the_known_one_and_none_where_nothing_rises() {
+    // tests/reference/make_mandel.py: `T`, `p a/F`; the time factor has the drained c_v, T/B_1.
+    for (case, time, height, share) in [
+        ("seed", 0.068_017_581_9, 0.546_059_661_7, 0.999_836_39),
+        ("soft", 0.059_887_797_8, 0.379_067_506_0, 0.625),
+    ] {
+        let (found_time, found) = slab(case).middle_peak().expect("a peak");
+        assert!((found - height).abs() < 1e-10, "{case}: {found}");
+        assert!((found_time * share / time - 1.0).abs() < 1e-6, "{case}: {found_time}");
+        // Lower on both sides, by no second formula.
+        for aside in [0.99, 1.01] {
+            assert!(slab(case).ratios(aside * found_time, 0.0).expect("inside").pressure < found);
+        }
+    }
+    let seed = ColumnParameters::default();
+    let keeps_its_volume = ColumnParameters { water_bulk_modulus: 1e-3, ..seed };
+    assert_eq!(Mandel::new(&keeps_its_volume).expect("possible").middle_peak(), None);
+}
+
+#[test]
 fn the_published_case_of_porepy_is_one_of_ours() {
     // examples/mandel_biot.py of PorePy (Keilegavlen et al. 2021), after Mikelić, Wang & Wheeler (2014): a slab of
     // half width 100 m under 6e8 N/m with λ = 1.65e9 Pa, μ = 2.475e9 Pa, a storage of 6.0606e-11 1/Pa, α = 1, a

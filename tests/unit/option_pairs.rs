@@ -35,6 +35,7 @@ fn options() -> Vec<(&'static str, Vec<&'static str>)> {
         ("load", vec!["at once", "while it grows", "after it has grown"]),
         ("points", vec!["regular", "shifted", "jittered", "top cell part filled"]),
         ("layers", vec!["one", "two"]),
+        ("weight", vec!["none", "own"]),
         ("water", vec!["seed", "softer", "stiffer"]),
         words("law"),
         words("continuity"),
@@ -145,6 +146,7 @@ fn choices_of(case: &Case) -> BTreeSet<Choice> {
         choices.insert(("points", "regular"));
     }
     choices.insert(("layers", if points.has_two_layers() { "two" } else { "one" }));
+    choices.insert(("weight", if column.self_weight { "own" } else { "none" }));
     if case.integrator == IntegratorKind::Explicit {
         let settings = &case.settings;
         choices.extend(["scheme", "drag"].map(|name| word_of(case, name)));
@@ -187,6 +189,9 @@ fn study_with(pair: [Choice; 2], scene: &str, integrator: &str, pressure: &str) 
     };
     if asked("layers") == Some("two") {
         text += "points.layers = 2\n";
+    }
+    if asked("weight") == Some("own") {
+        text += "column.self_weight = true\n";
     }
     text += match asked("water") {
         Some("softer") => "material.water_bulk_modulus = 1e8\n",

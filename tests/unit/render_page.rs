@@ -155,3 +155,34 @@ fn slugs_are_usable_names() {
     assert_eq!(slug("../Été!"), "t");
     assert_eq!(slug("—"), "");
 }
+
+#[test]
+fn a_page_shows_the_first_rows_of_a_long_table_and_leads_to_the_rest() {
+    let rows = (0..250).map(|row| vec![Cell::Count(row)]);
+    let table = Table::of("Long", vec![TableColumn::number("n")], rows);
+    let section = Section {
+        heading: "A".into(),
+        id: "a".into(),
+        blocks: vec![Block::Table(table)],
+        ..Section::default()
+    };
+    let page = Page { sections: vec![section], files: Some("s".to_owned()), ..Page::default() };
+    let (html, markdown) = (written(render_html(&page)), written(render_markdown(&page)));
+    assert_eq!(html.matches("<td ").count(), 200);
+    assert!(html.contains("of 250 rows: <a href=\"tables/s-table-1.csv\">"), "{html}");
+    assert_eq!(markdown.matches("\n| ").count(), 200 + 2);
+    assert!(markdown.contains("of 250 rows: [the whole table](tables/s-table-1.csv)"));
+    // The file has them all, and a page without files too.
+    assert_eq!(tables(&page)[0].1.to_csv().expect("a table").lines().count(), 251);
+    let alone = Page { files: None, ..page };
+    assert_eq!(written(render_html(&alone)).matches("<td ").count(), 250);
+}
+
+#[test]
+fn a_figure_is_drawn_once_and_anew_where_its_chart_changes() {
+    let figure = Figure::new("f", chart(), "");
+    let drawn = written(figure.svg());
+    assert_eq!(drawn.as_ptr(), written(figure.svg()).as_ptr());
+    let other = figure.clone().with_chart(|chart| "Another".clone_into(&mut chart.title));
+    assert!(written(other.svg()).contains("Another") && !drawn.contains("Another"));
+}

@@ -16,12 +16,13 @@ use crate::golden::compare::Difference;
 use crate::golden::difference_groups::DifferenceGroup;
 use crate::golden::references::REFERENCES;
 use crate::golden::{GoldenError, GoldenFile};
-use crate::judge::paths::Judgement;
+use crate::judge::judgement::Judgement;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::record::Record;
 use crate::render::checks::annotations::annotations_of;
 use crate::render::checks::{junit, verdicts};
 use crate::study::check::Study;
+use crate::wording::count_of;
 use std::path::{Path, PathBuf};
 
 /// Folder of the golden values.
@@ -94,7 +95,7 @@ fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<Vec<Stu
     if arguments.references || arguments.studies.is_empty() {
         checks.push(StudyCheck::of_references(read(REFERENCES))?);
     }
-    for (study, report) in studies.iter().zip(&run_all(studies, jobs_of(arguments.jobs))) {
+    for (study, report) in studies.iter().zip(&run_all(studies, jobs_of(arguments.jobs))?) {
         if !(report.records.is_empty() && report.errors.is_empty()) {
             let check = StudyCheck::new(study, &report.records, Tier::Ci, read(&study.name));
             checks.push(check.with_errors(&report.errors));
@@ -118,17 +119,17 @@ pub fn golden_of(folder: Option<&Path>, study: &str, named: &[PathBuf]) -> Resul
 /// Runs the CI tier of studies and keeps nothing; the records of each study.
 ///
 /// # Errors
-/// When a case has no record.
+/// When a case has no record, or the run was told to end.
 pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Record>>> {
     let of_study = |(study, report): (&Study, RunReport)| match report.errors.into_iter().next() {
         Some(error) => Err(anyhow::Error::from(error).context(study.name.clone())),
         None => Ok(report.records),
     };
-    studies.iter().zip(run_all(studies, jobs)).map(of_study).collect()
+    studies.iter().zip(run_all(studies, jobs)?).map(of_study).collect()
 }
 
 /// The same with what went wrong in each study.
-fn run_all(studies: &[Study], jobs: usize) -> Vec<RunReport> {
+fn run_all(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<RunReport>> {
     let name = match studies {
         [study] => study.name.as_str(),
         _ => "check",
@@ -138,7 +139,22 @@ fn run_all(studies: &[Study], jobs: usize) -> Vec<RunReport> {
     let options = RunOptions::whole(Tier::Ci, jobs);
     let reports = run_studies(&selected, &options, &|progress| bar.tell(progress));
     bar.finish();
-    reports
+    refuse_unfinished(&reports)?;
+    Ok(reports)
+}
+
+/// Refuses to go on with the results of a run that was told to end: what was not run is not judged.
+///
+/// # Errors
+/// A sentence with the number of cases that are missing.
+pub fn refuse_unfinished(reports: &[RunReport]) -> anyhow::Result<()> {
+    let left: usize = reports.iter().map(|report| report.tally.left).sum();
+    if left == 0 {
+        return Ok(());
+    }
+    let cases = count_of(left, "case was", "cases were");
+    let sentence = format!("{cases} not run, for this run was told to end: nothing is judged");
+    Err(Ended::with(Exit::IncompleteMerge, sentence))
 }
 
 fn exit_of(end: CheckEnd) -> Exit {

@@ -1,7 +1,8 @@
 //! `oedometer explain`: which norm and place carries the error of a case, how it stands among the
 //! other levels, what changed against the golden values, and the command that runs it again.
 
-use crate::campaign::case_runner::CaseRunner;
+use crate::campaign::case_runner::{CaseRunner, is_stopped};
+use crate::campaign::stop;
 use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::cli::commands::check::golden_of;
@@ -80,14 +81,24 @@ fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a S
             label == description || format!("{}/{label}", study.name) == description
         })
         .collect();
-    let by_words = |(study, case): &&(&Study, &Case)| {
-        let told = format!("{}/{} {}", study.name, case.label(), case.method);
-        case.hash().starts_with(description)
-            || description.split_whitespace().all(|word| {
-                told.split([' ', '/']).any(|part| part == word || part.trim_matches(['(', ')', ',']) == word)
-            })
+    let has_words = |told: &str| {
+        description.split_whitespace().all(|word| {
+            told.split([' ', '/']).any(|part| part == word || part.trim_matches(['(', ')', ',']) == word)
+        })
     };
-    let fitting: Vec<_> = if exact.is_empty() { all.iter().filter(by_words).collect() } else { exact };
+    let by_label = |(_, case): &&(&Study, &Case)| has_words(&format!("{} {}", case.label(), case.method));
+    let by_words = |(study, case): &&(&Study, &Case)| {
+        case.hash().starts_with(description)
+            || has_words(&format!("{}/{} {}", study.name, case.label(), case.method))
+    };
+    let mut fitting = exact;
+    // A study may be called as one of its methods: the case's own words go first.
+    if fitting.is_empty() {
+        fitting = all.iter().filter(by_label).collect();
+    }
+    if fitting.is_empty() {
+        fitting = all.iter().filter(by_words).collect();
+    }
     match fitting.as_slice() {
         [] => Err(Ended::with(
             Exit::NothingSelected,
@@ -125,5 +136,12 @@ fn record_of(study: &Study, case: &Case, results: &Path) -> anyhow::Result<Recor
     if let Some(record) = RecordStore::new(results, &study.name).finished(case) {
         return Ok(record);
     }
-    Ok(CaseRunner::of(study).run_alone(case, None)?)
+    let record = CaseRunner::of(study).run_alone(case, None)?;
+    if stop::is_asked() && is_stopped(&record) {
+        return Err(Ended::with(
+            Exit::IncompleteMerge,
+            "the case was not run to its end, for it was told to end",
+        ));
+    }
+    Ok(record)
 }

@@ -19,7 +19,7 @@ use crate::convergence::class::{Class, Classification, Context};
 use crate::convergence::fit::approach_to_limit::{Limit, limit_of};
 use crate::convergence::fit::cancelling_terms::fit_cancelling;
 use crate::convergence::limiter::LimiterKind;
-use crate::convergence::orders::WINDOW;
+use crate::convergence::orders::{WINDOW, pair_orders};
 use crate::convergence::series::{ErrorSeries, Undefined};
 use crate::wording::{orders, short};
 
@@ -114,7 +114,11 @@ fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
         }
         Some(other) => other.to_string(),
         None if levels.len() < WINDOW => {
-            format!("{} levels: a class needs {WINDOW}, two orders to compare", levels.len())
+            let between = match pair_orders(series).as_slice() {
+                [Ok(order)] => format!(" with the order {order:.2} between them"),
+                _ => String::new(),
+            };
+            format!("{} levels{between}: a class needs {WINDOW}, two orders to compare", levels.len())
         }
         None => {
             let close = levels.windows(2).find(|pair| pair[0].size < LEAST_RATIO * pair[1].size)?;

@@ -22,6 +22,8 @@ use crate::exact::parameters::ColumnParameters;
 const RESOLUTIONS: [(usize, f64); 5] = [(14, 0.45), (20, 0.3), (30, 0.22), (44, 0.15), (64, 0.1)];
 /// Two resolutions that differ by less than this in `p/q` are enough.
 const ENOUGH: f64 = 1e-9;
+/// The same where a line is drawn: a hundredth of what is seen of a figure.
+const ENOUGH_TO_DRAW: f64 = 1e-6;
 /// A last difference above this is no reference.
 const TOO_MUCH: f64 = 1e-6;
 /// Round-off of the collocation, below which no difference is believed.
@@ -78,6 +80,28 @@ impl LargeStrain {
         model: LargeStrainModel,
         time_factors: &[f64],
     ) -> Result<Self, ExactError> {
+        Self::within(ENOUGH, parameters, model, time_factors)
+    }
+
+    /// The same with fewer points and steps, for lines in figures: its own accuracy says how good it is.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn for_lines(
+        parameters: &ColumnParameters,
+        model: LargeStrainModel,
+        time_factors: &[f64],
+    ) -> Result<Self, ExactError> {
+        Self::within(ENOUGH_TO_DRAW, parameters, model, time_factors)
+    }
+
+    /// The first resolution that differs by less than `enough` from the one before.
+    fn within(
+        enough: f64,
+        parameters: &ColumnParameters,
+        model: LargeStrainModel,
+        time_factors: &[f64],
+    ) -> Result<Self, ExactError> {
         let mut times = time_factors
             .iter()
             .map(|&time_factor| checked_time_factor(time_factor))
@@ -99,7 +123,7 @@ impl LargeStrain {
             }
             resolution = order;
             before = Some(attempt);
-            if difference < ENOUGH {
+            if difference < enough {
                 break;
             }
         }

@@ -11,6 +11,7 @@ mod early;
 mod ratios;
 mod series;
 
+use crate::elementary;
 use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor};
 use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::mandel::ratios::{Groups, MandelRatios};
@@ -19,6 +20,14 @@ use crate::exact::parameters::ColumnParameters;
 /// `T = B_1 T_v` from which on a handful of terms of the series is exact to round-off; the closed form
 /// leaves out `e^{−1/T}`, 2e-22 there.
 const SERIES_FROM: f64 = 0.02;
+
+/// `T` between which the peak in the middle lies, whatever the material.
+const PEAK_BETWEEN: [f64; 2] = [1e-3, 1.0];
+/// Width in `ln T` to which a flat top can be told: the square root of the round-off, and a little.
+const PEAK_WITHIN: f64 = 1e-7;
+
+/// Relative rise above the start that is more than round-off.
+const LEAST_RISE: f64 = 1e-9;
 
 /// Mandel's slab. A column's height is the half width `a`, so that the time factor is
 /// `T_v = c_v t/a²` with the drained `c_v`; its length is half the distance of the plates, its load the mean
@@ -99,6 +108,29 @@ impl Mandel {
     pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
         let end = 0.5 * (1.0 - self.groups.poissons_ratio);
         Ok(self.ratios(time_factor, 0.0)?.strain / end)
+    }
+
+    /// Time factor `T_v` and height `p a/F` of the highest pressure in the middle (Mandel 1953; Cryer 1963); none where
+    /// it never rises: a skeleton that keeps its volume, or water that carries nothing.
+    pub fn middle_peak(&self) -> Option<(f64, f64)> {
+        let height = |time: f64| {
+            let ratios = if time < SERIES_FROM { early::ratios } else { series::ratios };
+            ratios(&self.groups, time, 0.0).pressure
+        };
+        // One peak between the diffusion's first touch of the middle and its end: the golden section of ln T.
+        let [mut low, mut high] = PEAK_BETWEEN.map(elementary::ln);
+        let share = 0.5 * (5.0_f64.sqrt() - 1.0);
+        while high - low > PEAK_WITHIN {
+            let step = share * (high - low);
+            if height(elementary::exp(high - step)) < height(elementary::exp(low + step)) {
+                low = high - step;
+            } else {
+                high = low + step;
+            }
+        }
+        let time = elementary::exp(0.5 * (low + high));
+        (height(time) > self.groups.start * (1.0 + LEAST_RISE))
+            .then(|| (time / self.groups.storage_ratio, height(time)))
     }
 
     /// Terms of the series, or 0 of the closed form, and a bound on what they leave out of any of the

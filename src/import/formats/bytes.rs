@@ -10,6 +10,9 @@ const ANY_FILE: u64 = 256 << 20;
 /// What a byte of a file may become in memory beyond that.
 const PER_BYTE: u64 = 64;
 
+/// Digits of a whole number that is exact in double precision, whatever they are.
+const EXACT_DIGITS: usize = 15;
+
 /// How much a file may still become in memory: a small file that claims much is refused, not tried.
 #[derive(Clone, Debug)]
 pub struct Budget {
@@ -200,6 +203,11 @@ pub fn decode_text_as<T>(
 /// # Errors
 /// When it is none.
 pub fn number_of_word(word: &[u8]) -> Result<f64, String> {
+    // Half of the numbers of a mesh are counts, and these are exact.
+    if word.len() <= EXACT_DIGITS && word.iter().all(u8::is_ascii_digit) && !word.is_empty() {
+        let number = word.iter().fold(0_u64, |number, digit| 10 * number + u64::from(digit - b'0'));
+        return Ok(number as f64);
+    }
     let typed = String::from_utf8_lossy(word);
     typed.parse().map_err(|_| format!("`{}` is no number", short(&typed)))
 }
@@ -316,6 +324,18 @@ mod tests {
         assert!(refused.is_err_and(|why| why.contains("cannot hold")));
         assert!(into.capacity() < 100);
         assert!(Budget::of_file(1000).take(10_000_000_000).is_err());
+    }
+
+    #[test]
+    fn words_are_the_numbers_that_the_standard_reads() {
+        for word in ["0", "7", "0042", "999999999999999", "9999999999999999", "-3", "1e3", "0.1", "inf", "+5"]
+        {
+            let expected: f64 = word.parse().expect("a number");
+            assert_eq!(number_of_word(word.as_bytes()), Ok(expected), "{word}");
+        }
+        for word in ["", "-", "1x", "0x10", "1_000"] {
+            assert!(number_of_word(word.as_bytes()).is_err(), "{word}");
+        }
     }
 
     #[test]

@@ -8,11 +8,15 @@ pub mod hdf5;
 #[cfg(not(feature = "hdf5"))]
 #[path = "without_hdf5.rs"]
 pub mod hdf5;
+pub mod hints;
 pub mod legacy_vtk;
 pub mod numpy;
 pub mod steps;
 pub mod vtk_data;
 pub mod vtu;
+#[cfg(all(test, feature = "hdf5"))]
+#[expect(dead_code, reason = "only what refuses is tried here; a build without the feature uses all of it")]
+mod without_hdf5;
 pub mod xdmf;
 pub mod xml;
 

@@ -4,6 +4,7 @@ use crate::import::formats::bytes::Budget;
 use crate::import::formats::collections::{Member, of_blocks, of_pvd, of_series};
 use crate::import::formats::frame::{Frame, Wanted};
 use crate::import::formats::hdf5::Store;
+use crate::import::formats::hints::of_folder;
 use crate::import::formats::{legacy_vtk, numpy, vtu, xdmf};
 use crate::import::import_error::ImportError;
 use std::collections::{HashMap, HashSet};
@@ -50,8 +51,11 @@ impl Kind {
     pub fn of(path: &Path) -> Result<Self, ImportError> {
         let io = |source| ImportError::Io { path: path.to_owned(), source };
         let mut head = Vec::new();
-        let is_file = std::fs::metadata(path).map_err(io)?.is_file();
-        if !is_file {
+        let about = std::fs::metadata(path).map_err(io)?;
+        if about.is_dir() {
+            return Err(ImportError::table(path, of_folder(path)));
+        }
+        if !about.is_file() {
             return Err(ImportError::table(path, "it is no file: a device or a pipe may never end"));
         }
         std::fs::File::open(path).map_err(io)?.take(LOOK).read_to_end(&mut head).map_err(io)?;

@@ -3,7 +3,7 @@
 use crate::case::step_cost::seconds_per_step;
 use crate::judge::comparison::work_precision::worst_error;
 use crate::record::{Record, Status};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Error of the pore pressure at the points that is asked for.
 pub const TOLERANCE: f64 = 1e-2;
@@ -18,10 +18,24 @@ pub struct MappedSoil {
     pub conductivity: f64,
     /// Young's modulus of the skeleton, Pa.
     pub stiffness: f64,
-    /// The method and integrator that come within the tolerance for the least time, where any do.
-    pub cheapest: Option<Way>,
+    /// Methods and integrators that were tried, each once.
+    pub tried: Vec<String>,
+    /// Of each that comes within the tolerance the way that takes least time; the cheapest of all first.
+    pub ways: Vec<Way>,
     /// Methods and integrators of which some case failed, each once.
     pub broken: Vec<String>,
+}
+
+impl MappedSoil {
+    /// The method and integrator that come within the tolerance for the least time, where any do.
+    pub fn cheapest(&self) -> Option<&Way> {
+        self.ways.first()
+    }
+
+    /// The way of a method and integrator to the tolerance.
+    pub fn way_of(&self, name: &str) -> Option<&Way> {
+        self.ways.iter().find(|way| way.name == name)
+    }
 }
 
 /// How a tolerance is reached.
@@ -61,28 +75,41 @@ pub fn mapped_soils(records: &[Record], reference: &str) -> Vec<MappedSoil> {
         .map(|((conductivity, stiffness), records)| MappedSoil {
             conductivity: f64::from_bits(conductivity),
             stiffness: f64::from_bits(stiffness),
-            cheapest: cheapest(&records, reference),
-            broken: broken(&records),
+            tried: names_of(records.iter().copied()),
+            ways: ways(&records, reference),
+            broken: names_of(records.iter().copied().filter(|record| record.status != Status::Ok)),
         })
         .collect()
 }
 
-fn cheapest(records: &[&Record], reference: &str) -> Option<Way> {
-    let ways = records.iter().filter(|record| record.status == Status::Ok).filter_map(|record| {
-        let error = worst_error(record, reference).filter(|error| *error <= TOLERANCE)?;
+/// Of every method and integrator its cheapest way to the tolerance, the cheapest of all first; of two that cost alike
+/// the better one.
+fn ways(records: &[&Record], reference: &str) -> Vec<Way> {
+    let mut best: BTreeMap<String, Way> = BTreeMap::new();
+    let is_better = |one: &Way, other: &Way| {
+        one.seconds.total_cmp(&other.seconds).then(one.error.total_cmp(&other.error)).is_lt()
+    };
+    for record in records.iter().filter(|record| record.status == Status::Ok) {
+        let Some(error) = worst_error(record, reference).filter(|error| *error <= TOLERANCE) else {
+            continue;
+        };
         let seconds = record.counters.steps as f64 * seconds_per_step(&record.case);
-        Some(Way { name: name_of(record), cells: record.case.cells, seconds, error })
-    });
-    // Of two that cost alike the better one.
-    ways.min_by(|a, b| a.seconds.total_cmp(&b.seconds).then(a.error.total_cmp(&b.error)))
+        let way = Way { name: name_of(record), cells: record.case.cells, seconds, error };
+        match best.get_mut(&way.name) {
+            Some(known) if is_better(&way, known) => *known = way,
+            Some(_) => {}
+            None => drop(best.insert(way.name.clone(), way)),
+        }
+    }
+    let mut ways: Vec<Way> = best.into_values().collect();
+    ways.sort_by(|a, b| a.seconds.total_cmp(&b.seconds).then(a.error.total_cmp(&b.error)));
+    ways
 }
 
-fn broken(records: &[&Record]) -> Vec<String> {
-    let failed = records.iter().filter(|record| record.status != Status::Ok);
-    let mut names: Vec<String> = failed.map(|record| name_of(record)).collect();
-    names.sort_unstable();
-    names.dedup();
-    names
+/// Methods and integrators of records, each once.
+fn names_of<'a>(records: impl Iterator<Item = &'a Record>) -> Vec<String> {
+    let names: BTreeSet<String> = records.map(name_of).collect();
+    names.into_iter().collect()
 }
 
 #[cfg(test)]
@@ -101,7 +128,7 @@ mod tests {
         let soils = mapped_soils(&records, "terzaghi");
         assert_eq!(soils.len(), 4);
         for soil in &soils {
-            let way = soil.cheapest.as_ref().expect("ten cells are enough");
+            let way = soil.cheapest().expect("ten cells are enough");
             // Three cells are cheaper and not within a percent; twenty are, and cost more.
             assert_eq!((way.cells, way.name.as_str()), (10, "GC-SRI-patch implicit"), "{way:?}");
             assert!(way.error <= TOLERANCE && soil.broken.is_empty());
@@ -112,7 +139,7 @@ mod tests {
             record.status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
         }
         let soils = mapped_soils(&records, "terzaghi");
-        let broken: Vec<bool> = soils.iter().map(|soil| soil.cheapest.is_none()).collect();
+        let broken: Vec<bool> = soils.iter().map(|soil| soil.cheapest().is_none()).collect();
         assert_eq!(broken, [false, true, false, true]);
         assert_eq!(soils[1].broken, ["GC-SRI-patch implicit"]);
         assert!(mapped_soils(&records[..1], "terzaghi").is_empty(), "one soil is no map");

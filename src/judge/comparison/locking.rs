@@ -14,6 +14,7 @@ use crate::record::{Record, Status};
 use crate::soil::material::Material;
 use crate::study::check::Study;
 use crate::study::expectation::{Axis, Measure};
+use std::collections::BTreeSet;
 
 /// Water so much stiffer than the skeleton that a further stiffening should change nothing.
 const STIFF_WATER: f64 = 1e3;
@@ -96,8 +97,9 @@ fn common_cells(records: &[Record], methods: &[Method]) -> usize {
                 && record.case.time_factors.contains(&last)
         })
     };
-    let all = records.iter().map(|record| record.case.cells);
-    all.filter(|cells| methods.iter().all(|method| has_run(method, *cells))).max().unwrap_or(0)
+    let all: BTreeSet<usize> = records.iter().map(|record| record.case.cells).collect();
+    let of_all = |cells: &usize| methods.iter().all(|method| has_run(method, *cells));
+    all.into_iter().rev().find(of_all).unwrap_or(0)
 }
 
 fn standing(
@@ -168,8 +170,7 @@ fn series_order(
     sample: Sample,
     reference: &str,
 ) -> (Option<Class>, Option<f64>) {
-    let plain: Vec<Record> =
-        records.iter().filter(|record| record.case.method == method && is_plain(record)).cloned().collect();
+    let plain = records.iter().filter(|record| record.case.method == method && is_plain(record));
     let measure = Measure {
         quantity,
         sample,
@@ -178,7 +179,7 @@ fn series_order(
         time_factor: 0.0,
         probe: None,
     };
-    let found = paths(&plain, Axis::Cells);
+    let found = paths(plain, Axis::Cells);
     let Some(path) = found.first() else { return (None, None) };
     let summary = path.summary(&measure);
     let order = summary.finest.ok();

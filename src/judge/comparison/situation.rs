@@ -1,7 +1,7 @@
 //! Situations: what a run has to stand, read off its inputs, and how each method of a study came out of it.
 
+use crate::case::Task;
 use crate::case::quantity::{Quantity, Sample};
-use crate::case::{Case, Task};
 use crate::convergence::class::Class;
 use crate::elementary;
 use crate::exact::exact_error::ExactError;
@@ -224,10 +224,13 @@ pub fn situations_of(ends: &[Ended<'_>]) -> Vec<Situation> {
 /// and some beyond the limit.
 fn end_of(records: &[&Record], reference: &str) -> Option<End> {
     let without_step =
-        |record: &Record| Case { time_step: TimeStepRule::Stable(1.0), ..record.case.clone() }.hash();
-    let sound = records.iter().filter(|record| record.status == Status::Ok);
-    let answered: HashSet<String> = sound.map(|record| without_step(record)).collect();
-    let mut failures = records
+        |record: &Record| record.case.number_with(|case| case.time_step = TimeStepRule::Stable(1.0));
+    let (sound, failed): (Vec<&Record>, Vec<&Record>) =
+        records.iter().copied().partition(|record| record.status == Status::Ok);
+    // Where nothing failed nobody asks what was answered.
+    let asked = if failed.is_empty() { &[][..] } else { &sound };
+    let answered: HashSet<u64> = asked.iter().map(|record| without_step(record)).collect();
+    let mut failures = failed
         .iter()
         .filter_map(|record| record.status.failure().filter(|_| !answered.contains(&without_step(record))));
     if let Some(first) = failures.next() {
@@ -238,8 +241,8 @@ fn end_of(records: &[&Record], reference: &str) -> Option<End> {
         });
     }
     let finest = records.iter().map(|record| record.case.cells).max()?;
-    let mut best: HashMap<String, f64> = HashMap::new();
-    for record in records.iter().filter(|record| record.case.cells == finest && record.status == Status::Ok) {
+    let mut best: HashMap<u64, f64> = HashMap::new();
+    for record in sound.into_iter().filter(|record| record.case.cells == finest) {
         let Some(error) = last_error(record, reference) else { continue };
         let known = best.entry(without_step(record)).or_insert(error);
         if error.total_cmp(known).is_lt() {

@@ -5,6 +5,7 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::judge::comparison::situation::Situation;
 use crate::judge::paths::first_norm;
 use crate::measure::wall_times::median;
+use crate::mpm::method::Method;
 use crate::record::{Record, Status};
 use std::collections::HashMap;
 
@@ -36,15 +37,18 @@ pub fn twins<'a>(records: &'a [Record], key: &Key, (first, second): (Value, Valu
     seconds.filter_map(pair).collect()
 }
 
-/// Twins of one situation, in numbers.
+/// Twins of one situation and method, in numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TwinsOfSituation {
     /// The situation.
     pub situation: Situation,
+    /// The method; none where every method has the same errors on both sides.
+    pub method: Option<Method>,
     /// Pairs there are.
     pub pairs: usize,
-    /// Largest errors of the pressure at the points, of the pairs in which both have one.
-    pub errors: Option<[f64; 2]>,
+    /// Error of the pressure at the points of the second over that of the first: least, median and largest of the pairs
+    /// and outputs in which both have one.
+    pub ratios: Option<[f64; 3]>,
     /// Runs that ended before their last output, of each side.
     pub failed: [usize; 2],
     /// Time of the second over that of the first: median over the pairs that were timed.
@@ -56,30 +60,65 @@ pub fn by_situation(all: &[Twins<'_>]) -> Vec<TwinsOfSituation> {
     let mut situations: Vec<Situation> = all.iter().map(|pair| Situation::of(pair.one)).collect();
     situations.sort_unstable();
     situations.dedup();
-    let of_situation = |situation: Situation| {
-        let own: Vec<&Twins<'_>> = all.iter().filter(|pair| Situation::of(pair.one) == situation).collect();
-        let errors = own.iter().filter_map(|pair| Some([last_error(pair.one)?, last_error(pair.other)?]));
-        let failed = |side: fn(&Twins<'_>) -> bool| own.iter().filter(|pair| side(pair)).count();
-        let costs: Vec<f64> =
-            own.iter().filter_map(|pair| Some(seconds(pair.other)? / seconds(pair.one)?)).collect();
-        TwinsOfSituation {
-            situation,
-            pairs: own.len(),
-            errors: errors.reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])]),
-            failed: [
-                failed(|pair| pair.one.status != Status::Ok),
-                failed(|pair| pair.other.status != Status::Ok),
-            ],
-            cost: median(&costs),
-        }
-    };
-    situations.into_iter().map(of_situation).collect()
+    situations.into_iter().flat_map(|situation| by_method(situation, all)).collect()
 }
 
-/// Error of the pressure at the points at the last output, against the first reference that it was held against.
-fn last_error(record: &Record) -> Option<f64> {
+/// Errors that differ by less than this share are the same, but for round-off.
+const SAME: f64 = 1e-6;
+
+/// The pairs of a situation by their method, in one where the methods do not differ in what the input does.
+fn by_method(situation: Situation, all: &[Twins<'_>]) -> Vec<TwinsOfSituation> {
+    let own: Vec<&Twins<'_>> = all.iter().filter(|pair| Situation::of(pair.one) == situation).collect();
+    let whole = in_numbers(situation, None, &own);
+    let is_same = |ratio: f64| (ratio - 1.0).abs() <= SAME;
+    if whole.ratios.is_none_or(|[least, _, largest]| is_same(least) && is_same(largest)) {
+        return vec![whole];
+    }
+    let mut methods: Vec<Method> = Vec::new();
+    for pair in &own {
+        if !methods.contains(&pair.one.case.method) {
+            methods.push(pair.one.case.method);
+        }
+    }
+    methods
+        .into_iter()
+        .map(|method| {
+            let own: Vec<&Twins<'_>> =
+                own.iter().copied().filter(|pair| pair.one.case.method == method).collect();
+            in_numbers(situation, Some(method), &own)
+        })
+        .collect()
+}
+
+fn in_numbers(situation: Situation, method: Option<Method>, own: &[&Twins<'_>]) -> TwinsOfSituation {
+    let mut ratios: Vec<f64> = own.iter().flat_map(|pair| ratios_of(pair)).collect();
+    ratios.sort_by(f64::total_cmp);
+    let failed = |side: fn(&Twins<'_>) -> bool| own.iter().filter(|pair| side(pair)).count();
+    let costs: Vec<f64> =
+        own.iter().filter_map(|pair| Some(seconds(pair.other)? / seconds(pair.one)?)).collect();
+    TwinsOfSituation {
+        situation,
+        method,
+        pairs: own.len(),
+        ratios: median(&ratios).and_then(|middle| Some([*ratios.first()?, middle, *ratios.last()?])),
+        failed: [
+            failed(|pair| pair.one.status != Status::Ok),
+            failed(|pair| pair.other.status != Status::Ok),
+        ],
+        cost: median(&costs),
+    }
+}
+
+/// Error of the pressure at the points of the second over that of the first at every output that both have.
+fn ratios_of(pair: &Twins<'_>) -> Vec<f64> {
+    let times = pair.one.case.time_factors.iter();
+    let both = times.filter_map(|time| Some((error_at(pair.one, *time)?, error_at(pair.other, *time)?)));
+    both.filter(|(one, _)| *one > 0.0).map(|(one, other)| other / one).collect()
+}
+
+/// Error of the pressure at the points at an output, against the first reference that it was held against.
+fn error_at(record: &Record, time: f64) -> Option<f64> {
     let reference = &record.references.first()?.name;
-    let time = *record.case.time_factors.last()?;
     let quantity = Quantity::Pressure;
     Some(record.error(quantity, Sample::Points, first_norm(quantity), reference, time)?.value.abs())
 }
@@ -113,13 +152,22 @@ mod tests {
             );
         }
         let told = by_situation(&pairs);
-        assert_eq!(told.len(), 1);
-        assert_eq!((told[0].pairs, told[0].failed), (4, [0, 0]));
-        let worst = |points| {
-            let own = records.iter().filter(|record| record.case.points_per_cell == points);
-            own.filter_map(last_error).fold(0.0, f64::max)
+        assert_eq!(told.len(), 2, "a row of each method");
+        assert!(told.iter().all(|one| (one.pairs, one.failed) == (2, [0, 0])));
+        let errors = |points: usize| -> Vec<f64> {
+            let own = |record: &&Record| {
+                record.case.points_per_cell == points && Some(record.case.method) == told[0].method
+            };
+            records.iter().filter(own).filter_map(|record| error_at(record, 0.1)).collect()
         };
-        assert_eq!(told[0].errors, Some([worst(2), worst(4)]));
+        let mut ratios: Vec<f64> = errors(4).iter().zip(errors(2)).map(|(four, two)| four / two).collect();
+        ratios.sort_by(f64::total_cmp);
+        assert_eq!(told[0].ratios, Some([ratios[0], 0.5 * (ratios[0] + ratios[1]), ratios[1]]));
+        // A record beside itself: no method differs from another, and one row says so.
+        let same: Vec<Twins<'_>> =
+            records.iter().map(|record| Twins { one: record, other: record }).collect();
+        let told = by_situation(&same);
+        assert_eq!((told.len(), told[0].method, told[0].ratios), (1, None, Some([1.0; 3])));
         assert!(twins(&records, key, (Value::Count(2), Value::Count(3))).is_empty());
     }
 }

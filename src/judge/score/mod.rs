@@ -60,6 +60,21 @@ pub struct Score {
     pub diagnosis: Vec<String>,
     /// What has no relative error, for the exact value is zero or below round-off.
     pub unresolved: Vec<Unresolved>,
+    /// Which way fields are off the first reference.
+    #[serde(skip)]
+    pub leanings: Vec<Leaning>,
+}
+
+/// Which way a field is off: a norm has no sign, and an error that changes its sign between two meshes falls to
+/// next to nothing there and grows again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leaning {
+    /// Time factor.
+    pub time_factor: f64,
+    /// What.
+    pub quantity: Quantity,
+    /// Cosine between error and exact field, from −1, smaller everywhere, to 1, larger everywhere.
+    pub cosine: f64,
 }
 
 /// A quantity that cannot be held against a reference at a time.
@@ -192,6 +207,8 @@ impl Score {
                 self.unresolved.push(compared.unresolved(quantity, sample));
             }
             if is_first {
+                let cosine = cosine_of_error(computed, exact, volumes);
+                self.leanings.push(Leaning { time_factor, quantity, cosine });
                 self.worst.extend(compared.worst_place(quantity, computed, exact, volumes));
             }
         }
@@ -208,6 +225,19 @@ impl Score {
     pub fn index(&self) -> ErrorIndex<'_> {
         ErrorIndex { rows: self.errors.iter().map(|row| (key(row), row)).collect() }
     }
+}
+
+/// Cosine between the error of a field and the exact field, weighted by volumes; 0 where one of them is.
+fn cosine_of_error(computed: &[f64], exact: &[f64], volumes: &[f64]) -> f64 {
+    let (mut product, mut of_error, mut of_exact) = (0.0, 0.0, 0.0);
+    for ((computed, exact), volume) in computed.iter().zip(exact).zip(volumes) {
+        let error = computed - exact;
+        product += volume * error * exact;
+        of_error += volume * error * error;
+        of_exact += volume * exact * exact;
+    }
+    let lengths = (of_error * of_exact).sqrt();
+    if lengths > 0.0 { product / lengths } else { 0.0 }
 }
 
 impl ScoredState<'_> {
@@ -239,10 +269,10 @@ impl ScoredState<'_> {
     }
 
     /// Vertical displacement of the surface, of a layer under the crest of its load: that of a curve of its own, or
-    /// where a sample lies there.
+    /// where a sample lies there. The settlement of a slab is its plate's, which presses across: no sample has it.
     fn displacement_of_surface(&self) -> Option<f64> {
         let (state, parameters) = (self.state, self.parameters);
-        if state.surface_displacement.is_some() {
+        if state.surface_displacement.is_some() || self.reference.kind() == ReferenceKind::Mandel {
             return state.surface_displacement;
         }
         let is_at_surface = |place: &usize| {

@@ -5,13 +5,17 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::classify::classify;
 use crate::convergence::class::{Classification, Context};
 use crate::convergence::series::{ErrorSeries, SeriesLevel};
-use crate::judge::score::Score;
 use crate::judge::score::times::TimeGroups;
+use crate::judge::score::{Leaning, Score};
 use crate::record::ErrorRow;
 use std::collections::HashMap;
 
 /// Errors up to this are round-off of a written number.
 const ROUND_OFF: f64 = 1e-12;
+
+/// Cosine between error and field from which on the error has the sign of one number: half of its square lies along the
+/// field.
+const CLEAR: f64 = 0.7;
 
 /// A series of one error over results on finer and finer meshes, with its class.
 #[derive(Clone, Debug)]
@@ -56,8 +60,7 @@ pub fn series_of(levels: &[(usize, &Score)], times: &TimeGroups, height: f64) ->
         .filter_map(|key| {
             let rows = found.get(key)?;
             let time_factor = times.time_factors[key.0];
-            let cells: Vec<usize> = levels.iter().map(|(cells, _)| *cells).collect();
-            one_series(rows, &cells, time_factor, height)
+            one_series(rows, levels, time_factor, height)
         })
         .collect()
 }
@@ -65,20 +68,20 @@ pub fn series_of(levels: &[(usize, &Score)], times: &TimeGroups, height: f64) ->
 /// The series of the rows of one measure, one a level.
 fn one_series(
     rows: &[Option<&ErrorRow>],
-    cells: &[usize],
+    levels: &[(usize, &Score)],
     time_factor: f64,
     height: f64,
 ) -> Option<ScoredSeries> {
     let first = rows.iter().flatten().next()?;
-    let level = |(row, cells): (Option<&ErrorRow>, &usize)| SeriesLevel {
+    let level = |(row, (cells, _)): (Option<&ErrorRow>, &(usize, &Score))| SeriesLevel {
         size: height / *cells as f64,
         error: row.map(|row| row.value.abs()),
     };
-    let series = ErrorSeries::new(rows.iter().copied().zip(cells).map(level).collect());
+    let series = ErrorSeries::new(rows.iter().copied().zip(levels).map(level).collect());
     // A settlement's error has a sign, which tells a limit from a growing error.
     let signed = match first.norm {
         Norm::Relative => rows.iter().flatten().map(|row| row.value).collect(),
-        _ => Vec::new(),
+        _ => signed_by_leaning(rows, levels),
     };
     let context = Context { round_off: Some(ROUND_OFF), signed, ..Context::default() };
     let differences =
@@ -89,6 +92,21 @@ fn one_series(
         classification: classify(&series, &context),
         series,
     })
+}
+
+/// The errors of a field with the signs by which they lean, where they lean clearly on every mesh and not all one way;
+/// none elsewhere.
+fn signed_by_leaning(rows: &[Option<&ErrorRow>], levels: &[(usize, &Score)]) -> Vec<f64> {
+    let signed = |(row, (_, score)): (Option<&ErrorRow>, &(usize, &Score))| {
+        let row = row?;
+        let is_own = score.errors.first().is_some_and(|own| own.reference == row.reference);
+        let like = |one: &&Leaning| (one.time_factor, one.quantity) == (row.time_factor, row.quantity);
+        let leaning = score.leanings.iter().find(like).filter(|_| is_own)?;
+        (leaning.cosine.abs() >= CLEAR).then_some(row.value.abs() * leaning.cosine.signum())
+    };
+    let signed: Vec<f64> = rows.iter().copied().zip(levels).map_while(signed).collect();
+    let is_mixed = signed.iter().any(|error| *error > 0.0) && signed.iter().any(|error| *error < 0.0);
+    if is_mixed && signed.len() == rows.len() { signed } else { Vec::new() }
 }
 
 #[cfg(test)]
@@ -119,6 +137,25 @@ mod tests {
         let with_holes = series(&holes);
         assert_eq!(with_holes.len(), 2 * all.len(), "the time that the finest alone has is there too");
         assert!(with_holes.iter().all(|one| one.classification.class == Class::NotEvaluable));
+    }
+
+    #[test]
+    fn a_field_whose_error_changes_its_sign_goes_to_a_limit_and_does_not_diverge() {
+        // Errors of −3e-3 + 5.15e-3 (10/cells)²: +2.15e-3, −1.7e-3, −2.7e-3, −2.9e-3.
+        let level = |cells: usize| {
+            let error = 5.15e-3 * (10.0 / cells as f64).powi(2) - 3e-3;
+            (cells, scored(&[state(4 * cells, 0.1, |_| error)]))
+        };
+        let class = |meshes: &[usize]| {
+            let levels: Vec<_> = meshes.iter().copied().map(level).collect();
+            series(&levels)[0].classification.class
+        };
+        assert_eq!(
+            class(&[10, 20, 40]),
+            Class::PreAsymptotic,
+            "three levels cannot tell a limit from growth"
+        );
+        assert_eq!(class(&[10, 20, 40, 80]), Class::FloorLimited);
     }
 
     #[test]

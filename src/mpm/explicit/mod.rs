@@ -3,6 +3,7 @@
 //! A body's step reads as the paper's list: [`kick_and_drift`](Body::kick_and_drift). Drag is part of step 2.
 
 pub mod deformation;
+pub mod nodes_to_points;
 pub mod points_to_nodes;
 pub mod scheme;
 
@@ -15,7 +16,7 @@ use crate::mpm::operators::stencil::{Blocks, with_stencils};
 use crate::mpm::operators::strain_gradient::StrainOperator;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::mpm::state::nodes::Nodes;
-use crate::soil::tensor::{Tensor, Vector, inverse, product};
+use crate::soil::tensor::{Tensor, inverse, product};
 
 pub use crate::mpm::explicit::scheme::{Drag, ExplicitSettings};
 
@@ -35,10 +36,10 @@ impl<const D: usize> Body<D> {
         }
         enter(Phase::Motion);
         self.nodal_velocities(kick, dt); // step 3
-        self.advance_points(kick, dt, settings.flip); // step 4
         if settings.mapping_back {
-            enter(Phase::MapVelocities);
-            self.map_velocities(); // step 5
+            self.advance_points_and_map_back(kick, dt, settings.flip); // steps 4 and 5
+        } else {
+            self.advance_points(kick, dt, settings.flip); // step 4
         }
         enter(Phase::Stresses);
         self.update_effective_stress(dt); // step 6
@@ -50,13 +51,14 @@ impl<const D: usize> Body<D> {
     }
 
     /// Step 1: operators, masses and velocities on the points' places. Where nothing moves, the
-    /// operators stand, and velocities mapped back by the last step are already there.
+    /// operators stand, and velocities mapped back by the last step are already there; where something does, one pass
+    /// takes the forces of step 2 along.
     fn reset_grid(&mut self, settings: &ExplicitSettings) {
         enter(Phase::BuildWeights);
         self.follow_places();
         if self.configuration.deforms() {
             enter(Phase::MapVelocities);
-            self.map_masses_and_velocities();
+            self.map_masses_velocities_and_forces();
         } else if !settings.mapping_back {
             enter(Phase::MapVelocities);
             self.map_velocities();
@@ -65,7 +67,9 @@ impl<const D: usize> Body<D> {
 
     /// Step 2: accelerations of water and skeleton at the nodes.
     fn nodal_accelerations(&mut self, kick: f64, drag_level: Drag) {
-        self.map_forces();
+        if !self.configuration.deforms() {
+            self.map_forces();
+        }
         let water_density = self.material.water_density;
         self.accelerate_nodes(kick, drag_level, |nodes, node| water_density * nodes.volume[node]);
     }
@@ -80,12 +84,8 @@ impl<const D: usize> Body<D> {
         water_inertia: impl Fn(&Nodes<D>, usize) -> f64,
     ) {
         let nodes = &mut self.nodes;
-        for node in 0..nodes.len() {
-            if !nodes.is_active(node) {
-                nodes.solid_acceleration[node] = [0.0; D];
-                nodes.water_acceleration[node] = [0.0; D];
-                continue;
-            }
+        for active in 0..nodes.active().len() {
+            let node = nodes.active()[active];
             let (water_inertia, drag) = (water_inertia(nodes, node), nodes.drag[node]);
             let whole_share = nodes.water_mass[node] * nodes.per_solid_mass[node];
             let implicit_drag = implicit_drag(drag_level, kick, drag, whole_share, water_inertia);
@@ -115,71 +115,12 @@ impl<const D: usize> Body<D> {
     /// Step 3: nodal velocities by forward Euler.
     pub(crate) fn nodal_velocities(&mut self, kick: f64, dt: f64) {
         let nodes = &mut self.nodes;
-        for node in 0..nodes.len() {
+        for active in 0..nodes.active().len() {
+            let node = nodes.active()[active];
             for d in 0..D {
                 nodes.solid_velocity[node][d] += kick * nodes.solid_acceleration[node][d];
                 nodes.water_velocity[node][d] += kick * nodes.water_acceleration[node][d];
                 nodes.displacement[node][d] += dt * nodes.solid_velocity[node][d];
-            }
-        }
-    }
-
-    /// Step 4: velocities and places of the points.
-    pub(crate) fn advance_points(&mut self, kick: f64, dt: f64, flip: f64) {
-        let basis = std::mem::take(&mut self.basis);
-        with_stencils!(&basis, stencils => if flip < 1.0 {
-            self.advance_points_by::<true, _>(stencils.blocks(), kick, dt, flip);
-        } else {
-            self.advance_points_by::<false, _>(stencils.blocks(), kick, dt, flip);
-        });
-        self.basis = basis;
-    }
-
-    /// The same; where nothing is interpolated from the nodes, the water's velocities are not asked for.
-    fn advance_points_by<const PIC: bool, const W: usize>(
-        &mut self,
-        basis: Blocks<'_, D, W>,
-        kick: f64,
-        dt: f64,
-        flip: f64,
-    ) {
-        let moving = self.configuration.moves_points();
-        let pic = 1.0 - flip;
-        let carrier = self.strain.carrier();
-        let stride = *self.grid.node_stride();
-        let nodes = &self.nodes;
-        let (solid_field, solid_rates) = (&nodes.solid_velocity[..], &nodes.solid_acceleration[..]);
-        let (water_field, water_rates) = (&nodes.water_velocity[..], &nodes.water_acceleration[..]);
-        let points = &mut self.points;
-        let count = points.len();
-        let (solid_velocity, water_velocity) =
-            (&mut points.solid_velocity[..count], &mut points.water_velocity[..count]);
-        let (displacement, position) = (&mut points.displacement[..count], &mut points.position[..count]);
-        for point in 0..count {
-            let ([mut solid, mut solid_rate], [mut water, mut water_rate]) = ([[0.0; D]; 2], [[0.0; D]; 2]);
-            basis.visit_runs(&stride, point, |first, weights, _| {
-                let run = first..first + W;
-                add_weighted(&mut solid, &solid_field[run.clone()], weights);
-                add_weighted(&mut solid_rate, &solid_rates[run.clone()], weights);
-                add_weighted(&mut water_rate, &water_rates[run.clone()], weights);
-                if PIC {
-                    add_weighted(&mut water, &water_field[run], weights);
-                }
-            });
-            let carrying = carrier.map_or(solid, |ends| ends.value(&stride, point, solid_field));
-            for d in 0..D {
-                let (solid_velocity, water_velocity) =
-                    (&mut solid_velocity[point][d], &mut water_velocity[point][d]);
-                *solid_velocity += kick * solid_rate[d];
-                *water_velocity += kick * water_rate[d];
-                if PIC {
-                    *solid_velocity = flip * *solid_velocity + pic * solid[d];
-                    *water_velocity = flip * *water_velocity + pic * water[d];
-                }
-                displacement[point][d] += dt * carrying[d];
-                if moving {
-                    position[point][d] += dt * carrying[d];
-                }
             }
         }
     }
@@ -308,16 +249,5 @@ impl<const D: usize> Body<D> {
         let pressures = &mut self.points.pressure;
         self.recovery
             .recover(&at, &self.site_values, pressures, |pressure, increment| *pressure += increment);
-    }
-}
-
-/// Adds a run of nodal vectors with their weights.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn add_weighted<const D: usize>(value: &mut Vector<D>, nodes: &[Vector<D>], weights: &[f64]) {
-    for (node, weight) in nodes.iter().zip(weights) {
-        for d in 0..D {
-            value[d] += weight * node[d];
-        }
     }
 }

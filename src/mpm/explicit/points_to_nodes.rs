@@ -1,156 +1,227 @@
 //! From points to nodes: masses, velocities and forces, each one pass over the points.
 //!
-//! Where points move, these passes are most of a step. Each takes a point's run of nodes as one
-//! slice, so that its bounds are checked once, and sums side by side what belongs to one node.
+//! Where points move, these passes are most of a step: the step takes masses, velocities and forces in one, right
+//! after the weights were made. It takes a point's run of nodes as one slice, so that its bounds are checked once,
+//! takes what belongs across the run into what the point gives, and sums side by side what belongs to one node.
 
 use crate::mpm::body::Body;
-use crate::mpm::operators::stencil::{Blocks, with_stencils};
+use crate::mpm::operators::pairs::add_weighted;
+use crate::mpm::operators::stencil::{Blocks, Run, with_stencils};
+use crate::mpm::state::points::Points;
 use crate::soil::conductivity_mean::ConductivityMean;
-use crate::soil::tensor::product_with_transpose;
+use crate::soil::tensor::{Tensor, Vector, product_with_transpose};
 
 impl<const D: usize> Body<D> {
     /// Sums masses, volumes and drag of the points to the nodes.
     pub fn map_masses(&mut self) {
-        self.map_points::<true, false>();
+        self.map_points::<true, false, false>();
     }
 
     /// Maps the velocities of both phases from the points to the nodes, weighted with mass.
     pub fn map_velocities(&mut self) {
-        self.map_points::<false, true>();
-    }
-
-    /// Both in one pass.
-    pub fn map_masses_and_velocities(&mut self) {
-        self.map_points::<true, true>();
-    }
-
-    fn map_points<const MASSES: bool, const VELOCITIES: bool>(&mut self) {
-        let basis = std::mem::take(&mut self.basis);
-        with_stencils!(&basis, stencils => self.map_points_by::<MASSES, VELOCITIES, _>(stencils.blocks()));
-        self.basis = basis;
-        if MASSES && self.material.conductivity_mean == ConductivityMean::Chord {
-            self.take_chord_drag();
-        }
-        if let Some(plate) = self.plate.as_ref().filter(|_| VELOCITIES) {
-            plate.tie_velocities(&mut self.nodes);
-        }
-    }
-
-    fn map_points_by<const MASSES: bool, const VELOCITIES: bool, const W: usize>(
-        &mut self,
-        basis: Blocks<'_, D, W>,
-    ) {
-        let (soil, nodes) = (&self.material, &mut self.nodes);
-        let (solid_fraction, unit_weight) = (1.0 - soil.porosity, soil.unit_weight_of_water());
-        // Slices of one length: the bounds of all are checked here and not at every point.
-        let count = self.points.len();
-        let (initial_volume, volume_ratio) =
-            (&self.points.initial_volume[..count], &self.points.volume_ratio[..count]);
-        let (solid_velocity, water_velocity) =
-            (&self.points.solid_velocity[..count], &self.points.water_velocity[..count]);
-        let stride = *self.grid.node_stride();
-        if MASSES {
-            nodes.sums.masses.fill([0.0; 4]);
-        }
-        if VELOCITIES {
-            nodes.sums.momenta.fill([[0.0; D]; 2]);
-        }
-        let (nodal_masses, nodal_momenta) = (&mut nodes.sums.masses[..], &mut nodes.sums.momenta[..]);
-        for point in 0..count {
-            // Grains fill (1 − n) V = (1 − n_0) V_0, water n V.
-            let (initial, ratio) = (initial_volume[point], volume_ratio[point]);
-            let grain_volume = initial * solid_fraction;
-            let pore_volume = initial * (ratio - solid_fraction);
-            let drag =
-                if MASSES { pore_volume * unit_weight / soil.hydraulic_conductivity_at(ratio) } else { 0.0 };
-            let masses = [grain_volume, pore_volume, drag, 0.0];
-            let momenta = [
-                solid_velocity[point].map(|velocity| grain_volume * velocity),
-                water_velocity[point].map(|velocity| pore_volume * velocity),
-            ];
-            basis.visit_runs(&stride, point, |first, weights, _| {
-                if MASSES {
-                    for (node, weight) in nodal_masses[first..first + W].iter_mut().zip(weights) {
-                        for (sum, mass) in node.iter_mut().zip(&masses) {
-                            *sum += weight * mass;
-                        }
-                    }
-                }
-                if VELOCITIES {
-                    for (node, weight) in nodal_momenta[first..first + W].iter_mut().zip(weights) {
-                        for (sum, momentum) in node.iter_mut().zip(&momenta) {
-                            for d in 0..D {
-                                sum[d] += weight * momentum[d];
-                            }
-                        }
-                    }
-                }
-            });
-        }
-        if MASSES {
-            nodes.take_masses(soil);
-        }
-        if VELOCITIES {
-            nodes.take_velocities(soil);
-        }
+        self.map_points::<false, true, false>();
     }
 
     /// Forces on the mixture and on the water from the points' stresses (weak form, drained
     /// surface natural).
     pub fn map_forces(&mut self) {
+        self.map_points::<false, false, true>();
+    }
+
+    /// All of them in one pass.
+    pub fn map_masses_velocities_and_forces(&mut self) {
+        self.map_points::<true, true, true>();
+    }
+
+    fn map_points<const MASSES: bool, const VELOCITIES: bool, const FORCES: bool>(&mut self) {
         let basis = std::mem::take(&mut self.basis);
-        with_stencils!(&basis, stencils => self.map_forces_by(stencils.blocks()));
+        with_stencils!(&basis, stencils => {
+            self.sum_points::<MASSES, VELOCITIES, FORCES, _>(stencils.blocks());
+        });
         self.basis = basis;
-        if self.forcing.is_some() {
-            self.add_body_forces();
+        if MASSES {
+            self.nodes.take_masses(&self.material);
+            if self.material.conductivity_mean == ConductivityMean::Chord {
+                self.take_chord_drag();
+            }
+        }
+        if VELOCITIES {
+            self.take_velocities();
+        }
+        if FORCES {
+            self.nodes.take_forces();
+            if self.weight.is_some() {
+                self.add_weight();
+            }
+            if self.forcing.is_some() {
+                self.add_body_forces();
+            }
         }
     }
 
-    fn map_forces_by<const W: usize>(&mut self, basis: Blocks<'_, D, W>) {
-        let (nodes, points) = (&mut self.nodes, &self.points);
-        for (forces, external) in nodes.sums.forces.iter_mut().zip(&nodes.external_force) {
-            *forces = [*external, [0.0; D]];
+    /// Velocities of the nodes from the momenta that the points gave them.
+    pub(crate) fn take_velocities(&mut self) {
+        self.nodes.take_velocities(&self.material);
+        if let Some(plate) = &self.plate {
+            plate.tie_velocities(&mut self.nodes);
         }
-        let nodal_forces = &mut nodes.sums.forces[..];
-        let count = points.len();
-        let (initial_volume, volume_ratio, stressed_share) =
-            (&points.initial_volume[..count], &points.volume_ratio[..count], &points.stressed_share[..count]);
-        let (effective_stress, pressure) = (&points.effective_stress[..count], &points.pressure[..count]);
-        let inverse_deformation = &points.inverse_deformation[..count];
+    }
+
+    fn sum_points<const MASSES: bool, const VELOCITIES: bool, const FORCES: bool, const W: usize>(
+        &mut self,
+        basis: Blocks<'_, D, W>,
+    ) {
+        let (soil, sums) = (&self.material, &mut self.nodes.sums);
+        let (solid_fraction, unit_weight) = (1.0 - soil.porosity, soil.unit_weight_of_water());
+        // Slices of one length: the bounds of all are checked here and not at every point.
+        let count = self.points.len();
+        let points = PointSlices::of(&self.points, count);
         let is_total = self.is_pushed_forward;
         let stride = *self.grid.node_stride();
+        if MASSES {
+            sums.masses.fill([0.0; 4]);
+        }
+        if VELOCITIES {
+            sums.momenta.fill([[0.0; D]; 2]);
+        }
+        if FORCES {
+            for (forces, external) in sums.forces.iter_mut().zip(&self.nodes.external_force) {
+                *forces = [*external, [0.0; D]];
+            }
+        }
+        let (masses, momenta, forces) = (&mut sums.masses[..], &mut sums.momenta[..], &mut sums.forces[..]);
         for point in 0..count {
-            let volume = initial_volume[point] * volume_ratio[point] * stressed_share[point];
-            let pressure = volume * pressure[point];
-            // What each unit of gradient gives to the mixture, −σ V, and to the water, p V.
-            let mut mixture = effective_stress[point].map(|row| row.map(|stress| -(volume * stress)));
-            let mut water = [[0.0; D]; D];
-            for d in 0..D {
-                mixture[d][d] += pressure;
-                water[d][d] = pressure;
-            }
-            let mut given = [mixture, water];
-            if is_total {
-                // Gradients on the initial configuration meet `σ F⁻ᵀ`.
-                given = given.map(|stress| product_with_transpose(&stress, &inverse_deformation[point]));
-            }
-            basis.visit_runs(&stride, point, |first, _, gradients| {
-                for (node, gradient) in nodal_forces[first..first + W].iter_mut().zip(gradients) {
-                    for (force, given) in node.iter_mut().zip(&given) {
-                        for d in 0..D {
-                            for e in 0..D {
-                                force[d] += given[d][e] * gradient[e];
-                            }
-                        }
+            let (initial, ratio) = (points.initial_volume[point], points.volume_ratio[point]);
+            let volumes = volumes_of(initial, ratio, solid_fraction);
+            let [grain_volume, pore_volume] = volumes;
+            let drag =
+                if MASSES { pore_volume * unit_weight / soil.hydraulic_conductivity_at(ratio) } else { 0.0 };
+            let given_masses = [grain_volume, pore_volume, drag, 0.0];
+            let given_momenta =
+                momenta_of(volumes, &points.solid_velocity[point], &points.water_velocity[point]);
+            let given_stresses = if FORCES { points.stresses(point, is_total) } else { [[[0.0; D]; D]; 2] };
+            basis.visit_runs(&stride, point, |run| {
+                if MASSES {
+                    let given = given_masses.map(|mass| run.across[0] * mass);
+                    for (node, weight) in masses[run.first..run.first + W].iter_mut().zip(&run.weights) {
+                        add_weighted(node, *weight, &given);
                     }
+                }
+                if VELOCITIES {
+                    add_momenta(momenta, run, &given_momenta);
+                }
+                if FORCES {
+                    add_forces(forces, run, &given_stresses);
                 }
             });
         }
-        for (node, forces) in nodes.sums.forces.iter().enumerate() {
-            [nodes.mixture_force[node], nodes.water_force[node]] = *forces;
+    }
+}
+
+/// Volumes of the grains and of the pores of a point, m^D: grains fill `(1 − n) V = (1 − n_0) V_0`, water `n V`.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn volumes_of(initial: f64, ratio: f64, solid_fraction: f64) -> [f64; 2] {
+    [initial * solid_fraction, initial * (ratio - solid_fraction)]
+}
+
+/// Volume times velocity of both phases.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn momenta_of<const D: usize>(
+    [grain_volume, pore_volume]: [f64; 2],
+    solid_velocity: &Vector<D>,
+    water_velocity: &Vector<D>,
+) -> [Vector<D>; 2] {
+    [
+        solid_velocity.map(|velocity| grain_volume * velocity),
+        water_velocity.map(|velocity| pore_volume * velocity),
+    ]
+}
+
+/// Adds a point's momenta to a run of nodes.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn add_momenta<const D: usize, const W: usize>(
+    momenta: &mut [[Vector<D>; 2]],
+    run: &Run<D, W>,
+    given: &[Vector<D>; 2],
+) {
+    let given = given.map(|phase| phase.map(|momentum| run.across[0] * momentum));
+    for (node, weight) in momenta[run.first..run.first + W].iter_mut().zip(&run.weights) {
+        add_weighted(node.as_flattened_mut(), *weight, given.as_flattened());
+    }
+}
+
+/// Adds the forces of what each unit of gradient gives to the mixture and to the water to a run of nodes.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn add_forces<const D: usize, const W: usize>(
+    forces: &mut [[Vector<D>; 2]],
+    run: &Run<D, W>,
+    [to_mixture, to_water]: &[Tensor<D>; 2],
+) {
+    // `[direction][component]` of the gradient and of the force on mixture and water, side by side.
+    let mut given = [[[0.0; D]; 2]; D];
+    for e in 0..D {
+        for d in 0..D {
+            given[e][0][d] = to_mixture[d][e] * run.across[e];
+            given[e][1][d] = to_water[d][e] * run.across[e];
         }
-        if self.weight.is_some() {
-            self.add_weight();
+    }
+    for (k, node) in forces[run.first..run.first + W].iter_mut().enumerate() {
+        for e in 0..D {
+            let along = if e == 0 { run.gradients[k] } else { run.weights[k] };
+            add_weighted(node.as_flattened_mut(), along, given[e].as_flattened());
         }
+    }
+}
+
+/// What the points give to the nodes, slices of one length.
+struct PointSlices<'a, const D: usize> {
+    initial_volume: &'a [f64],
+    volume_ratio: &'a [f64],
+    stressed_share: &'a [f64],
+    inverse_deformation: &'a [Tensor<D>],
+    solid_velocity: &'a [Vector<D>],
+    water_velocity: &'a [Vector<D>],
+    effective_stress: &'a [Tensor<D>],
+    pressure: &'a [f64],
+}
+
+impl<'a, const D: usize> PointSlices<'a, D> {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn of(points: &'a Points<D>, count: usize) -> Self {
+        Self {
+            initial_volume: &points.initial_volume[..count],
+            volume_ratio: &points.volume_ratio[..count],
+            stressed_share: &points.stressed_share[..count],
+            inverse_deformation: &points.inverse_deformation[..count],
+            solid_velocity: &points.solid_velocity[..count],
+            water_velocity: &points.water_velocity[..count],
+            effective_stress: &points.effective_stress[..count],
+            pressure: &points.pressure[..count],
+        }
+    }
+
+    /// What each unit of gradient gives to the mixture, `(p I − σ') V`, and to the water, `p V I`.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn stresses(&self, point: usize, is_total: bool) -> [Tensor<D>; 2] {
+        let volume = self.initial_volume[point] * self.volume_ratio[point] * self.stressed_share[point];
+        let pressure = volume * self.pressure[point];
+        let mut mixture = self.effective_stress[point].map(|row| row.map(|stress| -(volume * stress)));
+        let mut water = [[0.0; D]; D];
+        for d in 0..D {
+            mixture[d][d] += pressure;
+            water[d][d] = pressure;
+        }
+        let given = [mixture, water];
+        if is_total {
+            // Gradients on the initial configuration meet `σ F⁻ᵀ`.
+            return given.map(|stress| product_with_transpose(&stress, &self.inverse_deformation[point]));
+        }
+        given
     }
 }

@@ -6,6 +6,7 @@ use crate::mpm::implicit::residual::StageStart;
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::implicit::tangent::Pattern;
 use crate::mpm::implicit::trial::{Skeleton, Trial};
+use crate::mpm::method::{PressureIntegration, Recovery};
 use crate::mpm::run::integrator::StepBound;
 use crate::mpm::run::outcome::FailureKind;
 use crate::mpm::run::profile::{Phase, enter};
@@ -205,7 +206,9 @@ impl<const D: usize> NewtonStepper<D> {
             let mut size: f64 = 0.0;
             for (state, correction) in self.state.iter_mut().zip(&self.scratch) {
                 *state -= correction;
-                size = size.max(correction.abs());
+                // What is no number stays, and ends no iteration.
+                let next = correction.abs();
+                size = if size > next || size.is_nan() { size } else { next };
             }
             self.work.iterations += 1;
             if last.is_finite() && last > 0.0 {
@@ -251,6 +254,24 @@ impl<const D: usize> NewtonStepper<D> {
         })
     }
 
+    /// A failure with what would be right, where the method is known to end so: in the plane, pressures that every
+    /// point has for itself leave modes that nothing holds once points have moved.
+    fn with_remedy(&self, failure: StepFailure) -> StepFailure {
+        let body = &self.trial.body;
+        let is_known = D > 1
+            && body.configuration.moves_points()
+            && body.method.pressure == PressureIntegration::Points
+            && body.method.recovery != Recovery::Nodal;
+        if !is_known {
+            return failure;
+        }
+        let StepFailure { kind, reason } = failure;
+        let remedy = "in the plane a pressure of every point's own leaves its cell modes that nothing holds once points \
+                      have moved: take it by cells (GIMP-SRI, GIMP-SRI-patch), or weights on the initial \
+                      configuration (TL-GIMP)";
+        StepFailure { kind, reason: format!("{reason}; {remedy}") }
+    }
+
     /// Points that went on to other cells change which balances feel which unknowns.
     fn follow_structure(&mut self) {
         if self.pattern.is_of(&self.trial.body, &self.trial.unknowns) {
@@ -274,7 +295,9 @@ impl<const D: usize> Stepper for NewtonStepper<D> {
     fn advance(&mut self, steps: &EqualSteps, most_error: f64) -> Result<f64, StepFailure> {
         // Smaller steps would hide that an explicit skeleton is beyond its limit.
         let halvings = if self.stages.len() == 1 { 0 } else { MOST_HALVINGS };
-        (0..steps.count).try_fold(0.0, |_, _| self.step_within(steps.dt, halvings, most_error))
+        (0..steps.count)
+            .try_fold(0.0, |_, _| self.step_within(steps.dt, halvings, most_error))
+            .map_err(|failure| self.with_remedy(failure))
     }
 
     fn settlement(&self) -> f64 {
@@ -286,7 +309,7 @@ impl<const D: usize> Stepper for NewtonStepper<D> {
     }
 
     fn lost_point(&self) -> Option<StepFailure> {
-        lost_point(&self.trial.body)
+        lost_point(&self.trial.body).map(|failure| self.with_remedy(failure))
     }
 
     fn snapshot(&self, time: f64) -> Snapshot {

@@ -108,6 +108,7 @@ impl<const D: usize> TwoLayers<D> {
             water_volume: (0..water.len()).map(filled).sum(),
             water_left: 1.0 - inside / self.initial_mass,
             water_points: water.len(),
+            largest_pressure: 0.0,
         }
     }
 

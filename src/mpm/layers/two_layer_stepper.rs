@@ -24,6 +24,8 @@ pub struct TwoLayerStepper<const D: usize> {
     step_follows: bool,
     rhythm: Rhythm,
     load: GrowingLoad,
+    /// Largest size of the pressure of any water point so far, Pa.
+    largest_pressure: f64,
 }
 
 impl<const D: usize> TwoLayerStepper<D> {
@@ -49,6 +51,7 @@ impl<const D: usize> TwoLayerStepper<D> {
             step_follows: !matches!(plan.schedule.rule, TimeStepRule::Seconds(_)),
             rhythm: Rhythm::default(),
             load,
+            largest_pressure: 0.0,
         };
         stepper.load.act_at(&mut stepper.layers.body, 0.0);
         stepper
@@ -64,6 +67,11 @@ impl<const D: usize> Stepper for TwoLayerStepper<D> {
             let kick = self.rhythm.kick(steps.dt, &self.settings);
             self.layers.kick_and_drift(kick, steps.dt, &self.settings);
         }
+        // A burst may ring down again before the next output.
+        self.largest_pressure =
+            self.layers.water.pressure.iter().fold(self.largest_pressure, |largest, pressure| {
+                if largest > pressure.abs() || largest.is_nan() { largest } else { pressure.abs() }
+            });
         Ok(0.0)
     }
 
@@ -89,6 +97,10 @@ impl<const D: usize> Stepper for TwoLayerStepper<D> {
     }
 
     fn snapshot(&self, time: f64) -> Snapshot {
-        self.layers.snapshot(time, self.settlement(), &self.start)
+        let mut snapshot = self.layers.snapshot(time, self.settlement(), &self.start);
+        if let Some(layers) = &mut snapshot.totals.layers {
+            layers.largest_pressure = self.largest_pressure;
+        }
+        snapshot
     }
 }

@@ -4,8 +4,9 @@
 
 use crate::mpm::method::Basis;
 use crate::mpm::operators::row::Row;
-use crate::mpm::operators::stencil::{PointStencils, Stencils, visit_block};
-use crate::mpm::state::grid::{GHOST_LAYERS, Grid, whole};
+use crate::mpm::operators::stencil::{LaneRows, PointStencils, Stencils, visit_block};
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid, Line, index_of, whole, whole_part};
+use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
 use crate::mpm::state::nodes::Support;
 use crate::soil::tensor::Vector;
 
@@ -14,8 +15,20 @@ pub trait ShapeFunction<const W: usize> {
     /// Whether nodes beyond a wall would have a share in what is inside it.
     const PASSES_WALLS: bool = false;
 
-    /// The row at a place in a cell, of a point with a domain of half-length `half_length`, all in cells.
-    fn row(place: f64, cell: usize, half_length: f64) -> Row<W>;
+    /// Lowest node, as a whole number, of the row of a place in a cell, of a point with a domain of half-length
+    /// `half_length`, all in cells.
+    fn lowest_node(place: f64, cell: f64, half_length: f64) -> f64;
+
+    /// Weights and gradients at such a place from such a node, without a branch: loops over lanes ask for them.
+    fn values(place: f64, lowest: f64, half_length: f64) -> [[f64; W]; 2];
+
+    /// Both as one row.
+    #[inline]
+    fn row(place: f64, cell: usize, half_length: f64) -> Row<W> {
+        let lowest = Self::lowest_node(place, cell as f64, half_length);
+        let [weights, gradients] = Self::values(place, lowest, half_length);
+        Row { first: index_of(lowest), weights, gradients }
+    }
 }
 
 impl Basis {
@@ -108,9 +121,39 @@ fn build<const D: usize, const W: usize, S: ShapeFunction<W>>(
     support: &Support<D>,
     [places, half_lengths]: [&[Vector<D>]; 2],
 ) {
-    for (point, (place, half_length)) in places.iter().zip(half_lengths).enumerate() {
-        stencils.set(grid, point, &rows_at::<D, W, S>(grid, support, place, half_length));
+    if S::PASSES_WALLS {
+        for (point, (place, half_length)) in places.iter().zip(half_lengths).enumerate() {
+            stencils.set(grid, point, &rows_at::<D, W, S>(grid, support, place, half_length));
+        }
+        return;
     }
+    stencils.set_lanes(grid, places, |first, direction, place, rows| {
+        let half_length = lanes_of(&half_lengths[first..], direction, 0.5 * grid.cell_size);
+        fill_rows::<W, S>(grid.line(direction), place, &half_length, rows)
+    });
+}
+
+/// Rows of some points along a direction, at places in cells, of domains of half-lengths in m; returns the lowest
+/// node of each. Not inlined: what is written is known to be nothing that is read.
+#[inline(never)]
+fn fill_rows<const W: usize, S: ShapeFunction<W>>(
+    line: Line,
+    place: &Lanes,
+    half_length: &Lanes,
+    rows: &mut LaneRows<W>,
+) -> Lanes {
+    let mut lowest = [0.0; LANES];
+    for lane in 0..LANES {
+        let (place, half_length) = (place[lane], half_length[lane] * line.per_cell);
+        let first = S::lowest_node(place, line.cell_at(place), half_length);
+        let [weights, gradients] = S::values(place, first, half_length);
+        lowest[lane] = first;
+        for k in 0..W {
+            rows.weights[k][lane] = weights[k];
+            rows.gradients[k][lane] = gradients[k] * line.per_cell;
+        }
+    }
+    lowest
 }
 
 /// Rows of a basis at a place (in cells), for a domain of half-lengths (m), without nodes beyond held faces:
@@ -157,15 +200,26 @@ fn positive_part(x: f64) -> f64 {
     if x > 0.0 { x } else { 0.0 }
 }
 
+/// The weights and gradients of three nodes from those of the outer two: the middle one has what is left.
+#[inline]
+fn about_middle([left, right]: [f64; 2], [left_gradient, right_gradient]: [f64; 2]) -> [[f64; 3]; 2] {
+    [[left, 1.0 - left - right, right], [left_gradient, -left_gradient - right_gradient, right_gradient]]
+}
+
 /// Piecewise linear hat functions (Sulsky, Chen & Schreyer 1994).
 #[derive(Clone, Copy, Debug)]
 pub struct Hat;
 
 impl ShapeFunction<2> for Hat {
     #[inline]
-    fn row(place: f64, cell: usize, _half_length: f64) -> Row<2> {
-        let upper = place - cell as f64;
-        Row { first: cell, weights: [1.0 - upper, upper], gradients: [-1.0, 1.0] }
+    fn lowest_node(_place: f64, cell: f64, _half_length: f64) -> f64 {
+        cell
+    }
+
+    #[inline]
+    fn values(place: f64, lowest: f64, _half_length: f64) -> [[f64; 2]; 2] {
+        let upper = place - lowest;
+        [[1.0 - upper, upper], [-1.0, 1.0]]
     }
 }
 
@@ -179,10 +233,14 @@ pub struct Gimp;
 
 impl ShapeFunction<3> for Gimp {
     #[inline]
-    fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
+    fn lowest_node(place: f64, _cell: f64, _half_length: f64) -> f64 {
+        whole_part(place + 0.5) - 1.0
+    }
+
+    #[inline]
+    fn values(place: f64, lowest: f64, half_length: f64) -> [[f64; 3]; 2] {
         let half_length = half_length.min(0.5);
-        let nearest = whole(place + 0.5);
-        let offset = place - nearest as f64;
+        let offset = place - (lowest + 1.0);
         let (low, high) = (offset - half_length, offset + half_length);
         let per_length = 0.5 / half_length;
         let (left_near, left_far) = (positive_part(-high), positive_part(-low));
@@ -191,7 +249,7 @@ impl ShapeFunction<3> for Gimp {
         let right = 0.5 * per_length * (right_far * right_far - right_near * right_near);
         let left_gradient = -per_length * (left_far - left_near);
         let right_gradient = per_length * (right_far - right_near);
-        Row::about(nearest, [left, right], [left_gradient, right_gradient])
+        about_middle([left, right], [left_gradient, right_gradient])
     }
 }
 
@@ -205,11 +263,15 @@ pub struct DomainEnds;
 
 impl ShapeFunction<3> for DomainEnds {
     #[inline]
-    fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
+    fn lowest_node(place: f64, _cell: f64, half_length: f64) -> f64 {
+        whole_part(place - half_length.min(0.5))
+    }
+
+    #[inline]
+    fn values(place: f64, lowest: f64, half_length: f64) -> [[f64; 3]; 2] {
         let half_length = half_length.min(0.5);
         let (low, high) = (place - half_length, place + half_length);
-        let first = whole(low);
-        let middle = first as f64 + 1.0;
+        let middle = lowest + 1.0;
         // The end below the middle node weighs in on its left, the one above on its right.
         let at = |end: f64| [positive_part(middle - end), positive_part(end - middle)];
         let ([low_left, low_right], [high_left, high_right]) = (at(low), at(high));
@@ -217,7 +279,7 @@ impl ShapeFunction<3> for DomainEnds {
         let (left, right) = (0.5 * (low_left + high_left), 0.5 * (low_right + high_right));
         let (left_gradient, right_gradient) =
             (per_length * (high_left - low_left), per_length * (high_right - low_right));
-        Row::about(first + 1, [left, right], [left_gradient, right_gradient])
+        about_middle([left, right], [left_gradient, right_gradient])
     }
 }
 
@@ -229,11 +291,15 @@ impl ShapeFunction<3> for QuadraticSpline {
     const PASSES_WALLS: bool = true;
 
     #[inline]
-    fn row(place: f64, _cell: usize, _half_length: f64) -> Row<3> {
-        let nearest = whole(place + 0.5);
-        let x = place - nearest as f64;
+    fn lowest_node(place: f64, _cell: f64, _half_length: f64) -> f64 {
+        whole_part(place + 0.5) - 1.0
+    }
+
+    #[inline]
+    fn values(place: f64, lowest: f64, _half_length: f64) -> [[f64; 3]; 2] {
+        let x = place - (lowest + 1.0);
         let (left, right) = (0.5 * (0.5 - x) * (0.5 - x), 0.5 * (0.5 + x) * (0.5 + x));
-        Row::about(nearest, [left, right], [x - 0.5, x + 0.5])
+        about_middle([left, right], [x - 0.5, x + 0.5])
     }
 }
 
@@ -245,17 +311,21 @@ impl ShapeFunction<4> for CubicSpline {
     const PASSES_WALLS: bool = true;
 
     #[inline]
-    fn row(place: f64, cell: usize, _half_length: f64) -> Row<4> {
-        let x = place - cell as f64;
+    fn lowest_node(_place: f64, cell: f64, _half_length: f64) -> f64 {
+        cell - 1.0
+    }
+
+    #[inline]
+    fn values(place: f64, lowest: f64, _half_length: f64) -> [[f64; 4]; 2] {
+        let x = place - (lowest + 1.0);
         let y = 1.0 - x;
         let (outer_left, outer_right) = (y * y * y / 6.0, x * x * x / 6.0);
         let left = 2.0 / 3.0 - x * x * (1.0 - 0.5 * x);
         let (left_gradient, right_gradient) = (-2.0 * x + 1.5 * x * x, 2.0 * y - 1.5 * y * y);
-        Row {
-            first: cell - 1,
-            weights: [outer_left, left, 1.0 - outer_left - left - outer_right, outer_right],
-            gradients: [-0.5 * y * y, left_gradient, right_gradient, 0.5 * x * x],
-        }
+        [
+            [outer_left, left, 1.0 - outer_left - left - outer_right, outer_right],
+            [-0.5 * y * y, left_gradient, right_gradient, 0.5 * x * x],
+        ]
     }
 }
 

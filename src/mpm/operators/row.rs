@@ -13,22 +13,6 @@ pub struct Row<const W: usize> {
     pub gradients: [f64; W],
 }
 
-impl Row<3> {
-    /// The row about a node from the weights and gradients of its neighbours: the node has what is left.
-    #[inline]
-    pub(crate) fn about(
-        node: usize,
-        [left, right]: [f64; 2],
-        [left_gradient, right_gradient]: [f64; 2],
-    ) -> Self {
-        Self {
-            first: node - 1,
-            weights: [left, 1.0 - left - right, right],
-            gradients: [left_gradient, -left_gradient - right_gradient, right_gradient],
-        }
-    }
-}
-
 impl<const W: usize> Row<W> {
     /// Takes the nodes beyond a wall out of the row: a field goes on there as a line through its value
     /// at the wall and that at the mirrored node, which for a velocity that the wall holds is its odd

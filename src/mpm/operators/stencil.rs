@@ -1,62 +1,92 @@
 //! Sparse operators between points and nodes: one small tensor-product block of nodes a point.
 
+use crate::mpm::operators::pairs::add_weighted;
 use crate::mpm::operators::row::Row;
-use crate::mpm::state::grid::{Grid, power};
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid, index_of, power};
+use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Weights and gradients of every point over a block of `W` nodes in each direction.
 ///
 /// The block of a point is the tensor product of one row a direction, which is what is stored:
-/// `2 D W` numbers a point whatever the dimension.
+/// `2 D W` numbers a point whatever the dimension, those of neighbouring points side by side.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stencils<const D: usize, const W: usize> {
     /// Flat index of the lowest node of each point's block.
     pub first: Vec<usize>,
-    /// Weights a direction.
-    pub weights: Vec<[[f64; W]; D]>,
-    /// Gradients a direction, 1/m.
-    pub gradients: Vec<[[f64; W]; D]>,
+    rows: Vec<RowBlock<D, W>>,
+}
+
+/// Rows of some neighbouring points, `[direction]`.
+type RowBlock<const D: usize, const W: usize> = [LaneRows<W>; D];
+
+/// Rows of some neighbouring points along one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaneRows<const W: usize> {
+    /// Weights, `[node][point]`.
+    pub weights: [Lanes; W],
+    /// Gradients, 1/m, `[node][point]`.
+    pub gradients: [Lanes; W],
 }
 
 impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Room for `points` points, all rows zero.
     pub fn with_points(points: usize) -> Self {
-        Self {
-            first: vec![0; points],
-            weights: vec![[[0.0; W]; D]; points],
-            gradients: vec![[[0.0; W]; D]; points],
-        }
+        let empty = LaneRows { weights: [[0.0; LANES]; W], gradients: [[0.0; LANES]; W] };
+        Self { first: vec![0; points], rows: vec![[empty; D]; points.div_ceil(LANES)] }
     }
 
     /// Sets the block of a point from one row a direction.
     #[inline]
     pub fn set(&mut self, grid: &Grid<D>, point: usize, rows: &[Row<W>; D]) {
-        let per_metre = grid.inverse_cell_size();
         let mut first = 0;
         for direction in 0..D {
             first += rows[direction].first * grid.node_stride()[direction];
-            self.weights[point][direction] = rows[direction].weights;
-            self.gradients[point][direction] = rows[direction].gradients.map(|g| g * per_metre);
+            self.set_row(grid, point, direction, &rows[direction]);
         }
         self.first[point] = first;
     }
 
-    /// Sets the block of a point of which only gradients are asked: one direction has no use for the
-    /// weights.
+    /// Sets the row of a point along a direction where the lowest node is known already.
     #[inline]
-    pub fn set_gradients(&mut self, grid: &Grid<D>, point: usize, rows: &[Row<W>; D]) {
-        if D > 1 {
-            self.set(grid, point, rows);
-            return;
+    pub fn set_row(&mut self, grid: &Grid<D>, point: usize, direction: usize, row: &Row<W>) {
+        let (rows, lane) = (&mut self.rows[point / LANES][direction], point % LANES);
+        for k in 0..W {
+            rows.weights[k][lane] = row.weights[k];
+            rows.gradients[k][lane] = row.gradients[k] * grid.inverse_cell_size();
         }
-        self.gradients[point][0] = rows[0].gradients.map(|g| g * grid.inverse_cell_size());
-        self.first[point] = rows[0].first;
+    }
+
+    /// Sets the rows of all points block by block: `fill` is given some neighbouring points' places (in cells) along
+    /// a direction, and the number of the first of them, and says which node each row begins with.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn set_lanes(
+        &mut self,
+        grid: &Grid<D>,
+        places: &[Vector<D>],
+        mut fill: impl FnMut(usize, usize, &Lanes, &mut LaneRows<W>) -> Lanes,
+    ) {
+        let firsts = self.first.chunks_mut(LANES);
+        for (block, (rows, (firsts, places))) in
+            self.rows.iter_mut().zip(firsts.zip(places.chunks(LANES))).enumerate()
+        {
+            firsts.fill(0);
+            for direction in 0..D {
+                let place = lanes_of(places, direction, GHOST_LAYERS as f64);
+                let lowest = fill(block * LANES, direction, &place, &mut rows[direction]);
+                let stride = grid.node_stride()[direction];
+                for (first, lowest) in firsts.iter_mut().zip(&lowest) {
+                    *first += stride * index_of(*lowest);
+                }
+            }
+        }
     }
 
     /// The blocks of all points, borrowed once for a loop over them.
     #[inline]
     pub fn blocks(&self) -> Blocks<'_, D, W> {
-        Blocks { first: &self.first, weights: &self.weights, gradients: &self.gradients }
+        Blocks { first: &self.first, rows: &self.rows }
     }
 
     /// Visits the nodes of a point's block with weight and gradient (1/m).
@@ -68,9 +98,13 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         point: usize,
         mut node_visitor: impl FnMut(usize, f64, &Vector<D>),
     ) {
-        self.blocks().visit_runs(stride, point, |first, weights, gradients| {
+        self.blocks().visit_runs(stride, point, |run| {
             for k in 0..W {
-                node_visitor(first + k, weights[k], &gradients[k]);
+                let mut gradient = [0.0; D];
+                for d in 0..D {
+                    gradient[d] = run.across[d] * if d == 0 { run.gradients[k] } else { run.weights[k] };
+                }
+                node_visitor(run.first + k, run.across[0] * run.weights[k], &gradient);
             }
         });
     }
@@ -78,15 +112,8 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Divergence of a nodal vector field at the point.
     #[inline]
     pub fn divergence(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> f64 {
-        let mut divergence = 0.0;
-        self.blocks().visit_runs(stride, point, |first, _, gradients| {
-            for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
-                for direction in 0..D {
-                    divergence += node[direction] * node_gradient[direction];
-                }
-            }
-        });
-        divergence
+        let gradient = self.blocks().gradient(stride, point, field);
+        (0..D).map(|d| gradient[d][d]).sum()
     }
 }
 
@@ -167,48 +194,35 @@ impl<const D: usize> PointStencils<D> {
 #[derive(Clone, Copy, Debug)]
 pub struct Blocks<'a, const D: usize, const W: usize> {
     first: &'a [usize],
-    weights: &'a [[[f64; W]; D]],
-    gradients: &'a [[[f64; W]; D]],
+    rows: &'a [RowBlock<D, W>],
 }
 
 impl<const D: usize, const W: usize> Blocks<'_, D, W> {
-    /// Visits a point's block run by run: `W` neighbouring nodes along the first direction, with
-    /// the first of them, their weights and their gradients (1/m).
-    ///
-    /// A run is one slice of a nodal field, so that its bounds are checked once.
+    /// Visits a point's block run by run. A run is one slice of a nodal field, so that its bounds are checked once.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn visit_runs(
-        &self,
-        stride: &[usize; D],
-        point: usize,
-        mut run_visitor: impl FnMut(usize, &[f64; W], &[Vector<D>; W]),
-    ) {
-        let weights = &self.weights[point];
-        let gradients = &self.gradients[point];
-        for run in 0..power(W, D - 1) {
-            let mut rest = run;
-            let mut node = self.first[point];
-            // Shares of the other directions in the weight and in each component of the gradient.
-            let mut across = 1.0;
-            let mut across_gradient = [1.0; D];
+    pub fn visit_runs(&self, stride: &[usize; D], point: usize, mut run_visitor: impl FnMut(&Run<D, W>)) {
+        let (rows, lane) = (&self.rows[point / LANES], point % LANES);
+        let mut run = Run { first: 0, weights: [0.0; W], gradients: [0.0; W], across: [1.0; D] };
+        for k in 0..W {
+            run.weights[k] = rows[0].weights[k][lane];
+            run.gradients[k] = rows[0].gradients[k][lane];
+        }
+        for number in 0..power(W, D - 1) {
+            let mut rest = number;
+            run.first = self.first[point];
+            run.across = [1.0; D];
             for direction in 1..D {
                 let k = rest % W;
                 rest /= W;
-                node += k * stride[direction];
-                across *= weights[direction][k];
+                run.first += k * stride[direction];
+                let (weight, gradient) =
+                    (rows[direction].weights[k][lane], rows[direction].gradients[k][lane]);
                 for component in 0..D {
-                    across_gradient[component] *=
-                        if component == direction { gradients[direction][k] } else { weights[direction][k] };
+                    run.across[component] *= if component == direction { gradient } else { weight };
                 }
             }
-            let run_weights = weights[0].map(|weight| across * weight);
-            let run_gradients: [Vector<D>; W] = std::array::from_fn(|k| {
-                std::array::from_fn(|component| {
-                    across_gradient[component] * if component == 0 { gradients[0][k] } else { weights[0][k] }
-                })
-            });
-            run_visitor(node, &run_weights, &run_gradients);
+            run_visitor(&run);
         }
     }
 
@@ -217,13 +231,7 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
         let mut value = [0.0; D];
-        self.visit_runs(stride, point, |first, weights, _| {
-            for (node, weight) in field[first..first + W].iter().zip(weights) {
-                for component in 0..D {
-                    value[component] += weight * node[component];
-                }
-            }
-        });
+        self.visit_runs(stride, point, |run| run.add_value(&mut value, field));
         value
     }
 
@@ -232,16 +240,52 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
         let mut gradient = [[0.0; D]; D];
-        self.visit_runs(stride, point, |first, _, gradients| {
-            for (node, node_gradient) in field[first..first + W].iter().zip(gradients) {
+        self.visit_runs(stride, point, |run| {
+            // All directions but the first have the same sum along the run.
+            let (mut slope, mut value) = ([0.0; D], [0.0; D]);
+            let nodes = field[run.first..run.first + W].iter();
+            for (node, (along, weight)) in nodes.zip(run.gradients.iter().zip(&run.weights)) {
                 for component in 0..D {
-                    for direction in 0..D {
-                        gradient[component][direction] += node[component] * node_gradient[direction];
-                    }
+                    slope[component] += along * node[component];
+                    value[component] += weight * node[component];
+                }
+            }
+            for component in 0..D {
+                for direction in 0..D {
+                    let sum = if direction == 0 { slope[component] } else { value[component] };
+                    gradient[component][direction] += run.across[direction] * sum;
                 }
             }
         });
         gradient
+    }
+}
+
+/// `W` neighbouring nodes along the first direction in the block of a point, whose weights and gradients are products
+/// of what is along the run and what is across it: sums over the nodes are taken along first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run<const D: usize, const W: usize> {
+    /// The first of the nodes.
+    pub first: usize,
+    /// Weights along the run.
+    pub weights: [f64; W],
+    /// Gradients along the run, 1/m.
+    pub gradients: [f64; W],
+    /// What the other directions give: to the weights and to the first component of the gradients, and to each of the
+    /// others, 1/m.
+    pub across: Vector<D>,
+}
+
+impl<const D: usize, const W: usize> Run<D, W> {
+    /// Adds the run's share of the value of a nodal field.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn add_value(&self, value: &mut Vector<D>, field: &[Vector<D>]) {
+        let mut sum = [0.0; D];
+        for (node, weight) in field[self.first..self.first + W].iter().zip(&self.weights) {
+            add_weighted(&mut sum, *weight, node);
+        }
+        add_weighted(value, self.across[0], &sum);
     }
 }
 

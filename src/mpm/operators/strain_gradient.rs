@@ -7,9 +7,10 @@
 
 use crate::mpm::method::StrainGradient;
 use crate::mpm::operators::row::Row;
-use crate::mpm::operators::stencil::{Blocks, PointStencils, Stencils};
+use crate::mpm::operators::stencil::{Blocks, LaneRows, PointStencils, Stencils};
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{Grid, SIXTH, cell_below};
+use crate::mpm::state::grid::{Grid, Line, SIXTH, cell_below};
+use crate::mpm::state::lanes::{LANES, Lanes};
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Nodes per direction between the ends of a domain: four at either end, at most one cell apart.
@@ -46,12 +47,26 @@ impl<const D: usize> StrainOperator<D> {
         match self {
             Self::Basis => {}
             Self::Composite(stencils) => {
-                for (point, place) in places {
-                    let cell = grid.cell_at(place);
-                    let rows =
-                        std::array::from_fn(|d| composite_row(grid, cells, &cell, d, place[d], cell[d]));
-                    stencils.set_gradients(grid, point, &rows);
-                }
+                stencils.set_lanes(grid, &cells.place, |_, direction, place, rows| {
+                    fill_composite_rows::<D>(grid.line(direction), place, rows)
+                });
+                // Where a neighbour is missing, the polynomial is of a lower degree.
+                cells.for_each_run(|home, points| {
+                    if cells.is_reached_around(home) {
+                        return;
+                    }
+                    let cell = grid.cell_index(home);
+                    for d in 0..D {
+                        let stride = grid.cell_stride()[d];
+                        let sides = (cells.is_reached(home - stride), cells.is_reached(home + stride));
+                        if sides != (true, true) {
+                            for point in points.clone() {
+                                let row = composite(cells.place[point][d], cell[d], sides.0, sides.1);
+                                stencils.set_row(grid, point, d, &row);
+                            }
+                        }
+                    }
+                });
             }
             Self::BetweenEnds(stencils) => {
                 for (point, place) in places {
@@ -143,6 +158,46 @@ fn composite_row<const D: usize>(
     composite(at, along, lower, upper)
 }
 
+/// Rows of some points along a direction, at places in cells both of whose neighbours are there; returns the lowest
+/// node of each. Not inlined: what is written is known to be nothing that is read.
+#[inline(never)]
+fn fill_composite_rows<const D: usize>(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
+    let mut lowest = [0.0; LANES];
+    for lane in 0..LANES {
+        let cell = line.cell_at(place[lane]);
+        let [weights, gradients] = cubic(place[lane] - cell);
+        lowest[lane] = cell - 1.0;
+        for k in 0..4 {
+            // A line has no use for the weights: of the rows only gradients are asked.
+            if D > 1 {
+                rows.weights[k][lane] = weights[k];
+            }
+            rows.gradients[k][lane] = gradients[k] * line.per_cell;
+        }
+    }
+    lowest
+}
+
+/// The cubic through four nodes at −1, 0, 1 and 2: weights and gradients.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn cubic(x: f64) -> [[f64; 4]; 2] {
+    [
+        [
+            -SIXTH * x * (x - 1.0) * (x - 2.0),
+            0.5 * (x + 1.0) * (x - 1.0) * (x - 2.0),
+            -0.5 * (x + 1.0) * x * (x - 2.0),
+            SIXTH * (x + 1.0) * x * (x - 1.0),
+        ],
+        [
+            x - 0.5 * x * x - 2.0 * SIXTH,
+            0.5 * (3.0 * x * x - 4.0 * x - 1.0),
+            -0.5 * (3.0 * x * x - 2.0 * x - 2.0),
+            0.5 * x * x - SIXTH,
+        ],
+    ]
+}
+
 /// Lagrange interpolation through the nodes of a cell and of its neighbours, for the composite
 /// MPM (González Acosta, Vardon & Hicks 2017): cubic with both neighbours, quadratic with one,
 /// linear with none. Always written as four weights from the node below the cell.
@@ -151,30 +206,17 @@ fn composite_row<const D: usize>(
 fn composite(place: f64, cell: usize, has_lower: bool, has_upper: bool) -> Row<4> {
     // Local coordinate with the cell's own nodes at 0 and 1.
     let x = place - cell as f64;
-    let (weights, gradients) = match (has_lower, has_upper) {
-        (true, true) => (
-            [
-                -SIXTH * x * (x - 1.0) * (x - 2.0),
-                0.5 * (x + 1.0) * (x - 1.0) * (x - 2.0),
-                -0.5 * (x + 1.0) * x * (x - 2.0),
-                SIXTH * (x + 1.0) * x * (x - 1.0),
-            ],
-            [
-                x - 0.5 * x * x - 2.0 * SIXTH,
-                0.5 * (3.0 * x * x - 4.0 * x - 1.0),
-                -0.5 * (3.0 * x * x - 2.0 * x - 2.0),
-                0.5 * x * x - SIXTH,
-            ],
-        ),
-        (true, false) => (
+    let [weights, gradients] = match (has_lower, has_upper) {
+        (true, true) => cubic(x),
+        (true, false) => [
             [x * (x - 1.0) / 2.0, (1.0 + x) * (1.0 - x), x * (x + 1.0) / 2.0, 0.0],
             [x - 0.5, -2.0 * x, x + 0.5, 0.0],
-        ),
-        (false, true) => (
+        ],
+        (false, true) => [
             [0.0, (x - 1.0) * (x - 2.0) / 2.0, x * (2.0 - x), x * (x - 1.0) / 2.0],
             [0.0, x - 1.5, 2.0 - 2.0 * x, x - 0.5],
-        ),
-        (false, false) => ([0.0, 1.0 - x, x, 0.0], [0.0, -1.0, 1.0, 0.0]),
+        ],
+        (false, false) => [[0.0, 1.0 - x, x, 0.0], [0.0, -1.0, 1.0, 0.0]],
     };
     Row { first: cell - 1, weights, gradients }
 }

@@ -76,13 +76,9 @@ impl<const D: usize> Body<D> {
                 }
             }
             PressureIntegration::Sri => {
-                for (cell, site) in sites.iter_mut().enumerate() {
-                    let porosity = self.cells.porosity[cell];
-                    *site = if self.cells.is_occupied(cell) {
-                        value(self, Place::Centre(cell), porosity)
-                    } else {
-                        0.0
-                    };
+                sites.fill(0.0);
+                for cell in self.cells.occupied() {
+                    sites[cell] = value(self, Place::Centre(cell), self.cells.porosity[cell]);
                 }
             }
             PressureIntegration::Mean => {

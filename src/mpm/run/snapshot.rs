@@ -130,6 +130,9 @@ pub struct LayerTotals {
     pub water_left: f64,
     /// Water points that are in the soil still.
     pub water_points: usize,
+    /// Largest size of the pressure of any water point since the start, between outputs too, Pa.
+    #[serde(default)]
+    pub largest_pressure: f64,
 }
 
 impl<const D: usize> Body<D> {

@@ -23,6 +23,18 @@ pub enum TimeStepRule {
 }
 
 impl TimeStepRule {
+    /// The rule of the same kind with another number.
+    #[must_use]
+    pub fn with_number(self, number: f64) -> Self {
+        match self {
+            Self::Stable(_) => Self::Stable(number),
+            Self::Courant(_) => Self::Courant(number),
+            Self::Seconds(_) => Self::Seconds(number),
+            Self::Growth(_) => Self::Growth(number),
+            Self::Tolerance(_) => Self::Tolerance(number),
+        }
+    }
+
     /// Step, s, on a problem with a predicted critical step.
     pub fn step<const D: usize>(&self, problem: &Problem<D>, critical: f64) -> f64 {
         match self {

@@ -3,6 +3,7 @@
 use crate::mpm::state::grid::{GHOST_LAYERS, Grid};
 use crate::mpm::state::points::Points;
 use crate::soil::tensor::{Tensor, Vector};
+use std::ops::Range;
 
 /// Share of a cell that a domain must reach into it to count.
 const LEAST_REACH: f64 = 1e-6;
@@ -23,8 +24,12 @@ pub struct Cells<const D: usize> {
     point_count: Vec<u32>,
     /// Whether a point's domain reaches into each cell.
     reached: Vec<bool>,
+    /// Whether a domain reaches into both neighbours of each cell in every direction.
+    reached_around: Vec<bool>,
     /// Whether each cell is occupied and has an empty neighbour.
     at_edge: Vec<bool>,
+    /// Occupied cells in index order.
+    occupied: Vec<usize>,
     /// Current volume of each cell's points, m^D.
     volume: Vec<f64>,
     /// Volume-weighted mean porosity of each occupied cell's points.
@@ -53,7 +58,9 @@ impl<const D: usize> Cells<D> {
             first_node,
             point_count: vec![0; count],
             reached: vec![false; count],
+            reached_around: vec![false; count],
             at_edge: vec![false; count],
+            occupied: Vec::with_capacity(count),
             volume: vec![0.0; count],
             porosity: vec![0.0; count],
             inverse_deformation: vec![[[0.0; D]; D]; count],
@@ -69,7 +76,15 @@ impl<const D: usize> Cells<D> {
             *of_point = grid.flat_cell(&grid.cell_at(place));
             self.point_count[*of_point] += 1;
         }
+        self.list_occupied();
         self.sum_volumes(points, initial_porosity);
+    }
+
+    /// Lists the cells that hold points.
+    fn list_occupied(&mut self) {
+        self.occupied.clear();
+        let counts = self.point_count.iter().enumerate();
+        self.occupied.extend(counts.filter(|(_, count)| **count > 0).map(|(cell, _)| cell));
     }
 
     /// Finds the cells of other points among those that `holders` knows to hold the material, but for some that are
@@ -102,6 +117,7 @@ impl<const D: usize> Cells<D> {
             self.place[point] = place;
             self.of_point[point] = if self.is_occupied(cell) { cell } else { home };
         }
+        self.list_occupied();
     }
 
     /// Keeps of the cells those in which points were located, with the volumes of these, m^D: `volumes` times
@@ -113,6 +129,7 @@ impl<const D: usize> Cells<D> {
             self.point_count[*cell] += 1;
             self.volume[*cell] += volume * share;
         }
+        self.list_occupied();
     }
 
     /// Sums volumes over each cell's points.
@@ -125,44 +142,59 @@ impl<const D: usize> Cells<D> {
             // n V = (J − (1 − n_0)) V_0
             self.porosity[*cell] += initial * (ratio - (1.0 - initial_porosity));
         }
-        for cell in 0..self.porosity.len() {
-            if self.is_occupied(cell) {
-                self.porosity[cell] /= self.volume[cell];
-            }
+        for cell in &self.occupied {
+            self.porosity[*cell] /= self.volume[*cell];
         }
     }
 
     /// Finds the cells that the points' domains reach into: a cell may have lost its last point and
     /// still carry the edge of the material.
     pub fn find_reached(&mut self, grid: &Grid<D>, points: &Points<D>) {
-        for cell in 0..self.point_count.len() {
-            self.reached[cell] = self.is_occupied(cell);
-            self.at_edge[cell] = self.is_occupied(cell)
-                && grid
-                    .cell_stride()
-                    .iter()
-                    .any(|stride| !(self.is_occupied(cell - stride) && self.is_occupied(cell + stride)));
+        self.reached.fill(false);
+        for cell in &self.occupied {
+            self.reached[*cell] = true;
+            let is_alone =
+                |stride: &usize| self.point_count[cell - stride] == 0 || self.point_count[cell + stride] == 0;
+            self.at_edge[*cell] = grid.cell_stride().iter().any(is_alone);
         }
         let per_cell = grid.inverse_cell_size();
-        let found = self.of_point.iter().zip(&self.place);
-        for ((home, place), half_length) in found.zip(&points.half_length) {
-            if !self.at_edge[*home] {
-                continue;
+        let (reached, at_edge, places) = (&mut self.reached, &self.at_edge, &self.place);
+        for_each_run(&self.of_point, |home, run| {
+            if !at_edge[home] {
+                return;
             }
-            let cell = grid.cell_at(place);
-            for direction in 0..D {
-                // No domain is wider than a cell, so its ends are in this one or the next.
-                let reach = half_length[direction] * per_cell - LEAST_REACH;
-                let inside = place[direction] - cell[direction] as f64;
-                let stride = grid.cell_stride()[direction];
-                if inside < reach && cell[direction] > GHOST_LAYERS {
-                    self.reached[home - stride] = true;
-                }
-                if inside + reach >= 1.0 && cell[direction] + 1 < grid.cells[direction] + GHOST_LAYERS {
-                    self.reached[home + stride] = true;
+            for (place, half_length) in places[run.clone()].iter().zip(&points.half_length[run]) {
+                let cell = grid.cell_at(place);
+                for direction in 0..D {
+                    // No domain is wider than a cell, so its ends are in this one or the next.
+                    let reach = half_length[direction] * per_cell - LEAST_REACH;
+                    let inside = place[direction] - cell[direction] as f64;
+                    let stride = grid.cell_stride()[direction];
+                    if inside < reach && cell[direction] > GHOST_LAYERS {
+                        reached[home - stride] = true;
+                    }
+                    if inside + reach >= 1.0 && cell[direction] + 1 < grid.cells[direction] + GHOST_LAYERS {
+                        reached[home + stride] = true;
+                    }
                 }
             }
+        });
+        for cell in &self.occupied {
+            let is_between = |stride: &usize| self.reached[cell - stride] && self.reached[cell + stride];
+            self.reached_around[*cell] = grid.cell_stride().iter().all(is_between);
         }
+    }
+
+    /// Visits the runs of neighbouring points that share a cell, with it.
+    #[inline]
+    pub fn for_each_run(&self, visitor: impl FnMut(usize, Range<usize>)) {
+        for_each_run(&self.of_point, visitor);
+    }
+
+    /// Whether domains reach into all neighbours of an occupied cell.
+    #[inline]
+    pub fn is_reached_around(&self, cell: usize) -> bool {
+        self.reached_around[cell]
     }
 
     /// Whether a cell holds a point, or the edge of one's domain.
@@ -205,7 +237,7 @@ impl<const D: usize> Cells<D> {
 
     /// Occupied cells in index order.
     pub fn occupied(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.point_count.len()).filter(|cell| self.is_occupied(*cell))
+        self.occupied.iter().copied()
     }
 
     /// Lets cells above a last node take the divergence of the cell below it.
@@ -270,6 +302,21 @@ impl<const D: usize> Cells<D> {
     }
 }
 
+/// Visits the runs of neighbouring points that share a cell: the points of a cell follow each other, but where rows
+/// of points cross several cells.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn for_each_run(cell_of_point: &[usize], mut visitor: impl FnMut(usize, Range<usize>)) {
+    let mut start = 0;
+    while start < cell_of_point.len() {
+        let cell = cell_of_point[start];
+        let rest = cell_of_point[start..].iter();
+        let end = start + rest.take_while(|other| **other == cell).count();
+        visitor(cell, start..end);
+        start = end;
+    }
+}
+
 /// The side of a cell, in a direction, that a corner lies on: −1 or 1.
 #[inline]
 fn side(corner: usize, direction: usize) -> f64 {
@@ -307,6 +354,14 @@ mod tests {
         cells.inverse_deformation[cell] = [[0.5, 0.25], [0.125, 2.0]];
         let expected = 2.0 * 0.5 + 7.0 * 0.125 + 5.0 * 0.25 - 0.5 * 2.0;
         assert!((cells.deformed_centre_divergence(&grid, cell, &field) - expected).abs() < 1e-13);
+    }
+
+    #[test]
+    fn runs_hold_every_point_once_and_a_cell_may_have_several() {
+        let mut runs = Vec::new();
+        for_each_run(&[3, 3, 5, 3, 7, 7, 7], |cell, run| runs.push((cell, run)));
+        assert_eq!(runs, [(3, 0..2), (5, 2..3), (3, 3..4), (7, 4..7)]);
+        for_each_run(&[], |_, _| panic!("no point"));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 pub mod cell_memory;
 pub mod cells;
 pub mod grid;
+pub mod lanes;
 pub mod nodes;
 pub mod points;
 pub mod water_points;

@@ -54,6 +54,8 @@ pub struct Nodes<const D: usize> {
     supports: Vec<Vector<D>>,
     /// The water's supports alone.
     water_supports: Vec<Vector<D>>,
+    /// Nodes that carry mass, in index order: of a narrow column's many are ghosts.
+    active: Vec<usize>,
     mass_cut_off: f64,
 }
 
@@ -113,6 +115,15 @@ impl<const D: usize> Support<D> {
         self
     }
 
+    /// Whether a node lies beyond a held face, by more than a tolerance, m.
+    fn is_beyond(&self, grid: &Grid<D>, node: usize, tolerance: f64) -> bool {
+        let position = grid.node_position(node);
+        (0..D).any(|d| {
+            let top = grid.cells[d] as f64 * grid.cell_size;
+            self.lower[d] && position[d] < -tolerance || self.upper[d] && position[d] > top + tolerance
+        })
+    }
+
     /// The same faces on a base that the skeleton sticks to.
     #[must_use]
     pub fn on_rough_base(self) -> Self {
@@ -138,6 +149,10 @@ impl<const D: usize> Nodes<D> {
             })
             .collect();
         let mut supports = water_supports.clone();
+        // A domain that a face has let through by a round-off finds no stiffness behind it, in no direction.
+        for node in (0..count).filter(|node| support.is_beyond(grid, *node, tolerance)) {
+            supports[node] = [0.0; D];
+        }
         for node in (0..count).filter(|_| support.rough_base) {
             if grid.node_position(node)[D - 1] < tolerance {
                 supports[node] = [0.0; D];
@@ -171,6 +186,7 @@ impl<const D: usize> Nodes<D> {
             water_free: water_supports.clone(),
             supports,
             water_supports,
+            active: Vec::with_capacity(count),
             mass_cut_off: MASS_CUT_OFF * cell_mass,
         }
     }
@@ -188,6 +204,9 @@ impl<const D: usize> Nodes<D> {
     /// Turns the points' [`sums`](Self::sums) into masses, volumes and drag of the soil.
     pub fn take_masses(&mut self, soil: &Material) {
         for (node, [grain_volume, pore_volume, drag, _]) in self.sums.masses.iter().enumerate() {
+            if *grain_volume == 0.0 && self.solid_mass[node] == 0.0 {
+                continue;
+            }
             self.solid_mass[node] = soil.grain_density * grain_volume;
             self.water_mass[node] = soil.water_density * pore_volume;
             self.volume[node] = grain_volume + pore_volume;
@@ -199,7 +218,7 @@ impl<const D: usize> Nodes<D> {
 
     /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held or empty.
     pub fn take_velocities(&mut self, soil: &Material) {
-        for node in 0..self.len() {
+        for &node in &self.active {
             let [solid, water] = self.sums.momenta[node];
             let per_grain_volume = soil.grain_density * self.per_solid_mass[node];
             let per_pore_volume = soil.water_density * self.per_water_mass[node];
@@ -210,24 +229,58 @@ impl<const D: usize> Nodes<D> {
         }
     }
 
+    /// Forces from the points' [`sums`](Self::sums).
+    pub fn take_forces(&mut self) {
+        let forces = self.mixture_force.iter_mut().zip(&mut self.water_force);
+        for ((mixture, water), sums) in forces.zip(&self.sums.forces) {
+            [*mixture, *water] = *sums;
+        }
+    }
+
     /// Finishes what was summed: porosities, reciprocals, and which components are free. Nodes without mass
-    /// are silenced: their stale accelerations would otherwise reach the points.
+    /// are silenced: what they had would otherwise reach the points.
     pub fn finish_masses(&mut self) {
+        self.active.clear();
         for node in 0..self.len() {
             if self.is_active(node) {
+                self.active.push(node);
                 self.porosity[node] /= self.volume[node];
                 self.per_solid_mass[node] = 1.0 / self.solid_mass[node];
                 self.per_water_mass[node] = 1.0 / self.water_mass[node];
                 self.free[node] = self.supports[node];
                 self.water_free[node] = self.water_supports[node];
-            } else {
-                self.porosity[node] = 0.0;
-                self.per_solid_mass[node] = 0.0;
-                self.per_water_mass[node] = 0.0;
-                self.free[node] = [0.0; D];
-                self.water_free[node] = [0.0; D];
+            } else if self.porosity[node] != 0.0
+                || self.free[node] != [0.0; D]
+                || self.water_free[node] != [0.0; D]
+            {
+                self.silence(node);
             }
         }
+    }
+
+    /// Takes everything from a node that has lost its mass.
+    #[cold]
+    fn silence(&mut self, node: usize) {
+        for field in [&mut self.porosity, &mut self.per_solid_mass, &mut self.per_water_mass] {
+            field[node] = 0.0;
+        }
+        for field in [
+            &mut self.free,
+            &mut self.water_free,
+            &mut self.solid_velocity,
+            &mut self.water_velocity,
+            &mut self.solid_acceleration,
+            &mut self.water_acceleration,
+            &mut self.flux,
+        ] {
+            field[node] = [0.0; D];
+        }
+    }
+
+    /// Nodes that carry mass, in index order.
+    #[inline]
+    pub fn active(&self) -> &[usize] {
+        &self.active
     }
 
     /// Whether a node carries mass.

@@ -16,8 +16,9 @@ pub(crate) const HEADER: usize = START.len() + FIELD as usize;
 const TRAILER: usize = 8;
 /// Longest text of a member, bytes: more is no record but an attack.
 const MOST_TEXT: u64 = 1 << 30;
-/// Effort of the compression: more of it makes a record a tenth smaller and takes longer than a small case.
-const EFFORT: u32 = 3;
+/// Effort of the compression: more of it makes a record a hundredth smaller, most of it a twentieth, and takes longer than a
+/// small case.
+const EFFORT: u32 = 1;
 
 /// What a member holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,6 +2,7 @@
 //! was wanted: over time on one mesh, and over the mesh at one time, where a right one falls with the mesh and a
 //! wrong one does not.
 
+use crate::case::Case;
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::reference::ReferenceKind;
 use crate::judge::paths::first_norm;
@@ -11,6 +12,7 @@ use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, Slope
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
+use std::collections::HashMap;
 
 /// The question.
 pub const QUESTION: Question = Question { heading: "Are the published equations right?", id: "audit" };
@@ -93,48 +95,53 @@ fn pairings(records: &[Record]) -> Vec<Pairing<'_>> {
             && record.case.scene.is_large_strain()
             && record.references.iter().any(|used| used.name == ReferenceKind::XieLeo.name())
     };
-    let audited: Vec<&Record> = records.iter().filter(is_audited).collect();
-    let of_method = |first: &Record| {
-        let mut all: Vec<Pairing<'_>> = Vec::new();
-        for record in audited.iter().copied().filter(|record| alike(record, first)) {
-            let soil = &record.case.material;
-            let (law, continuity) = (soil.law.name(), soil.continuity.name());
-            let place = all.iter().position(|one| (one.law, one.continuity) == (law, continuity));
-            let place = place.unwrap_or_else(|| {
-                all.push(Pairing { law, continuity, levels: Vec::new() });
-                all.len() - 1
-            });
-            let levels = &mut all[place].levels;
-            match levels.iter_mut().find(|other| other.case.cells == record.case.cells) {
-                Some(other) if other.case.time_factors.len() < record.case.time_factors.len() => {
-                    *other = record;
-                }
-                Some(_) => {}
-                None => levels.push(record),
-            }
-        }
-        for one in &mut all {
-            one.levels.sort_by_key(|record| record.case.cells);
-        }
-        all
-    };
-    let mut seen: Vec<&Record> = Vec::new();
-    for record in &audited {
-        if !seen.iter().any(|first| alike(record, first)) {
-            seen.push(record);
+    let mut groups: Vec<Vec<&Record>> = Vec::new();
+    let mut places: HashMap<u64, usize> = HashMap::new();
+    for record in records.iter().filter(is_audited) {
+        let place = *places.entry(what_is_shared(&record.case)).or_insert(groups.len());
+        match groups.get_mut(place) {
+            Some(group) => group.push(record),
+            None => groups.push(vec![record]),
         }
     }
-    seen.into_iter().map(of_method).max_by_key(Vec::len).unwrap_or_default()
+    groups.into_iter().map(pairings_of).max_by_key(Vec::len).unwrap_or_default()
 }
 
-/// Whether two runs differ in mesh, law and continuity at most: only then they tell these apart.
-fn alike(one: &Record, other: &Record) -> bool {
-    let mut same = one.case.clone();
-    same.cells = other.case.cells;
-    same.time_factors.clone_from(&other.case.time_factors);
-    same.material.law = other.case.material.law;
-    same.material.continuity = other.case.material.continuity;
-    same == other.case
+/// The pairings of records that differ in mesh, law and continuity alone, each with the run of most outputs on every mesh.
+fn pairings_of(group: Vec<&Record>) -> Vec<Pairing<'_>> {
+    let mut all: Vec<Pairing<'_>> = Vec::new();
+    for record in group {
+        let soil = &record.case.material;
+        let (law, continuity) = (soil.law.name(), soil.continuity.name());
+        let place = all.iter().position(|one| (one.law, one.continuity) == (law, continuity));
+        let place = place.unwrap_or_else(|| {
+            all.push(Pairing { law, continuity, levels: Vec::new() });
+            all.len() - 1
+        });
+        let levels = &mut all[place].levels;
+        match levels.iter_mut().find(|other| other.case.cells == record.case.cells) {
+            Some(other) if other.case.time_factors.len() < record.case.time_factors.len() => {
+                *other = record;
+            }
+            Some(_) => {}
+            None => levels.push(record),
+        }
+    }
+    for one in &mut all {
+        one.levels.sort_by_key(|record| record.case.cells);
+    }
+    all
+}
+
+/// A number for everything but mesh, law and continuity: only runs that differ in these alone tell them apart.
+fn what_is_shared(case: &Case) -> u64 {
+    case.number_with(|case| {
+        let seed = Case::seed(case.task, case.scene).material;
+        case.cells = 0;
+        case.time_factors.clear();
+        case.material.law = seed.law;
+        case.material.continuity = seed.continuity;
+    })
 }
 
 /// What several pairings have in common; none of a single one.

@@ -5,7 +5,7 @@ use crate::convergence::class::Class;
 use crate::exact::exact_error::ExactError;
 use crate::judge::comparison::locking::{Standing, standings};
 use crate::judge::comparison::work_precision::WorkPrecision;
-use crate::judge::paths::{Path, paths};
+use crate::judge::paths::Path;
 use crate::render::answers::question::{Answer, Links, Question, link_cell, short};
 use crate::render::answers::regime::{MethodPath, Regime};
 use crate::render::number;
@@ -169,8 +169,8 @@ fn of_waves(results: &[StudyResults<'_>]) -> Option<Advice> {
     let mut best: Option<(f64, f64, String, &str)> = None;
     let mut tried = 0;
     for one in results.iter().filter(|one| one.study.scene.has_waves() && one.asks_for(NEXT_FINER)) {
-        for path in paths(one.records, Axis::TimeStep) {
-            let Some((order, error)) = step_order(&path) else { continue };
+        for path in one.paths.along(Axis::TimeStep) {
+            let Some((order, error)) = step_order(path) else { continue };
             tried += 1;
             if best
                 .as_ref()

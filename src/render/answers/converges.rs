@@ -153,6 +153,7 @@ fn quote(regime: &Regime<'_>, one: &MethodPath<'_>, quantity: Quantity, sample: 
 fn figure(results: &[StudyResults<'_>], regime: &Regime<'_>) -> Option<Figure> {
     let study = regime.method(PAPERS).or(regime.methods.first())?.study;
     let one = results.iter().find(|one| one.study.name == study)?;
-    let figure = refinement::mesh_figure(one, Quantity::Pressure, Sample::Points, regime.time_factor)?;
-    Some(Figure { name: "readme-mesh".to_owned(), ..figure })
+    let mut figure = refinement::mesh_figure(one, Quantity::Pressure, Sample::Points, regime.time_factor)?;
+    "readme-mesh".clone_into(&mut figure.name);
+    Some(figure)
 }

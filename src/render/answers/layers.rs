@@ -2,11 +2,13 @@
 
 use crate::case::keys::{Key, Value};
 use crate::judge::comparison::twins::{Twins, TwinsOfSituation, by_situation, twins};
+use crate::measure::record_checks::has_burst;
 use crate::render::answers::question::{Answer, Links, Question, links_to, short};
 use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, columns};
+use crate::render::tables::golden_changes::count_of;
 
 /// The question.
 pub const QUESTION: Question = Question { heading: "One layer of material points, or two?", id: "layers" };
@@ -38,43 +40,79 @@ fn compare(results: &[StudyResults<'_>], key: &Key, links: Links<'_>) -> Option<
         return None;
     }
     let rows = told.iter().map(|one| {
-        let error =
-            |side: usize| Cell::of(one.errors.map(|both| both[side]), Cell::Error, "no pair has an error");
+        let ratio =
+            |place: usize| Cell::of(one.ratios.map(|all| all[place]), Cell::Number, "no pair has an error");
         vec![
             one.situation.name().into(),
+            one.method.map_or(Cell::Text("every one".to_owned()), |method| Cell::Code(method.to_string())),
             Cell::Count(one.pairs as u64),
-            error(0),
-            error(1),
+            ratio(0),
+            ratio(1),
+            ratio(2),
             Cell::Count(one.failed[0] as u64),
             Cell::Count(one.failed[1] as u64),
             Cell::of(one.cost, Cell::Number, "not timed"),
         ]
     });
-    let header = "situation | > pairs of runs | > largest error, one layer | > two layers | > failed, one layer | > two layers \
-                  | > time of two over one";
+    let header = "situation | method | > pairs of runs | > error of two over that of one: least | > median | > largest \
+                  | > failed, one layer | > two layers | > time of two over one";
+    let bursts = bursts(results);
     let table = Table::of("", columns(header), rows)
-        .note("pairs of runs that differ in the layers alone; error of the pressure at the points at the last output");
-    let sentence = format!("{} Evidence: {}.", sentence(&told), links_to(links, studies));
+        .note("pairs of runs that differ in the layers alone; error of the pressure at the points, at every output of a pair")
+        .note(burst_note(&bursts));
+    let sentence = format!("{} Evidence: {}.", sentence(&told, bursts.len()), links_to(links, studies));
     Some(QUESTION.told(sentence, vec![Block::Table(short(table, "in the studies"))]))
 }
 
-fn sentence(told: &[TwinsOfSituation]) -> String {
+/// Runs of two layers, with a twin or without, in which a pressure burst: what ended them, or what was seen between
+/// outputs.
+fn bursts(results: &[StudyResults<'_>]) -> Vec<String> {
+    let records = results.iter().flat_map(|one| one.records);
+    records.filter(|record| has_burst(record)).map(|record| record.case.label()).collect()
+}
+
+fn burst_note(bursts: &[String]) -> String {
+    match bursts {
+        [] => "in no run of two layers did a pressure leave what the load can make".to_owned(),
+        _ => format!("a pressure burst in {}: {}", count_of(bursts.len(), "run", "runs"), bursts.join("; ")),
+    }
+}
+
+/// What the pairs say: where the layers are one, where two are better and where worse, and what they cost.
+fn sentence(told: &[TwinsOfSituation], bursts: usize) -> String {
     let pairs: usize = told.iter().map(|one| one.pairs).sum();
     let failed = [0, 1].map(|side| told.iter().map(|one| one.failed[side]).sum::<usize>());
-    let ratios: Vec<f64> = told.iter().filter_map(|one| one.errors).map(|[one, two]| two / one).collect();
-    let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = ratios.iter().copied().fold(0.0, f64::max);
-    let errors = match ratios.as_slice() {
-        [] => String::new(),
-        _ => format!(
-            "the largest error of two layers is {} to {} times that of one, by situation; ",
-            number::number(least),
-            number::number(most)
-        ),
+    let mut parts: Vec<String> = Vec::new();
+    for one in told {
+        let Some([least, median, largest]) = one.ratios else { continue };
+        let situation = one.situation.name().to_lowercase();
+        parts.push(match &one.method {
+            None => format!(
+                "{situation}: the same error to {:.0e}",
+                (largest - 1.0).abs().max((least - 1.0).abs()).max(1e-16)
+            ),
+            Some(method) => format!(
+                "{situation}, `{method}`: the error of two is {} times that of one at the median ({} to {})",
+                number::number(median),
+                number::number(least),
+                number::number(largest)
+            ),
+        });
+    }
+    let costs: Vec<f64> = told.iter().filter_map(|one| one.cost).collect();
+    let cost = match (costs.iter().copied().reduce(f64::min), costs.iter().copied().reduce(f64::max)) {
+        (Some(least), Some(most)) => {
+            format!(", and two take {} to {} times as long", number::number(least), number::number(most))
+        }
+        _ => String::new(),
     };
     format!(
-        "Over {pairs} pairs of runs {errors}{} runs with one layer and {} with two ended before their last output.",
-        failed[0], failed[1]
+        "Over {pairs} pairs of runs: {}. {} of these runs with one layer and {} with two ended before their last output{cost}; \
+         in {} of two layers a pressure burst.",
+        parts.join("; "),
+        failed[0],
+        failed[1],
+        count_of(bursts, "run", "runs"),
     )
 }
 
@@ -100,10 +138,15 @@ mod tests {
         let Some(Answer::Told(section)) = compare(&results, key, &links) else { panic!("both are there") };
         let Some(Block::Paragraph(sentence)) = section.blocks.first() else { panic!("a sentence first") };
         assert!(
-            sentence.starts_with("Over 2 pairs of runs the largest error of two layers is "),
+            sentence.starts_with(
+                "Over 2 pairs of runs: small strain, points out of place, `GC-SRI-patch`: the error of two is "
+            ),
             "{sentence}"
         );
-        assert!(sentence.ends_with("0 runs with one layer and 0 with two ended before their last output. Evidence: [`s`](s.html)."), "{sentence}");
+        assert!(
+            sentence.ends_with("in 0 runs of two layers a pressure burst. Evidence: [`s`](s.html)."),
+            "{sentence}"
+        );
         let dimensions = Key::named("dimensions", "column").expect("a key");
         assert!(compare(&results, dimensions, &links).is_none());
     }

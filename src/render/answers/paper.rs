@@ -98,12 +98,13 @@ fn beside<'a>(run: &PaperRun<'a>) -> Vec<&'a Record> {
 /// A figure of the report as one of the four.
 fn quarter(mut figure: Figure, number: &str) -> Figure {
     figure.name = format!("readme-fig-{number}");
-    figure.chart.title = format!("Fig. {number}: {}", figure.chart.title);
-    figure.chart.size = QUARTER;
-    for series in figure.chart.series.iter_mut().filter(|series| series.style == Style::Theory) {
-        "theory".clone_into(&mut series.name);
-    }
-    figure
+    figure.with_chart(|chart| {
+        chart.title = format!("Fig. {number}: {}", chart.title);
+        chart.size = QUARTER;
+        for series in chart.series.iter_mut().filter(|series| series.style == Style::Theory) {
+            "theory".clone_into(&mut series.name);
+        }
+    })
 }
 
 /// The largest error of the pressure at the points over all outputs, and its time factor.

@@ -6,7 +6,7 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::Class;
 use crate::convergence::orders::WINDOW;
 use crate::elementary;
-use crate::judge::paths::{Path, SeriesSummary, paths};
+use crate::judge::paths::{Path, SeriesSummary};
 use crate::render::report::StudyResults;
 use crate::render::report::labels::first_measure;
 use crate::study::expectation::Axis;
@@ -64,13 +64,13 @@ fn regime<'a>(results: &'a [StudyResults<'a>], fits: &dyn Fn(&Case) -> bool) -> 
             let case = &path.records[0].case;
             path.records.len() >= WINDOW && case.column.dimensions == 1 && fits(case) && is_plain(case)
         };
-        for path in paths(one.records, Axis::Cells).into_iter().filter(is_candidate) {
+        for path in one.paths.along(Axis::Cells).iter().filter(|path| is_candidate(path)) {
             let case = &path.records[0].case;
             let key =
                 format!("{:?} {:?} {:?} {}", case.scene, case.column, case.material, case.points_per_cell);
             let method = case.method.to_string();
             let group = groups.entry(key).or_insert_with(|| (reference.name(), Vec::new()));
-            group.1.push(MethodPath { method, study: &one.study.name, path });
+            group.1.push(MethodPath { method, study: &one.study.name, path: path.clone() });
         }
     }
     let (reference, all) = groups.into_values().max_by_key(|(_, all)| count_of_methods(all))?;

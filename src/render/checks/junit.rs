@@ -1,7 +1,7 @@
 //! `JUnit`, in the Jenkins dialect: one suite a study, one case a check of an expectation, named
 //! `study/method/quantity/check`, and one for its records and its golden values each.
 
-use crate::judge::paths::Judgement;
+use crate::judge::judgement::Judgement;
 use crate::judge::study_check::{CaseNote, StudyCheck};
 use crate::judge::verdict::VerdictOutcome;
 use crate::render::tables::golden_changes::sentence;

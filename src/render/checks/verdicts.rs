@@ -1,7 +1,7 @@
 //! What `check` says: verdicts and golden values of studies, as text and as Markdown.
 
 use crate::golden::compare::Change;
-use crate::judge::paths::Judgement;
+use crate::judge::judgement::Judgement;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::judge::verdict::VerdictOutcome;
 use crate::render::checks::failures;

@@ -1,7 +1,7 @@
 //! Pages as one HTML file. What stands around the sections is in `page.html` and `page.css`.
 use crate::render::escape;
 use crate::render::page::marked_text::{paragraphs, to_html};
-use crate::render::page::{Block, Figure, Page, check, table_file};
+use crate::render::page::{Block, Figure, Page, check, shown_rows, table_file};
 use crate::render::render_error::RenderError;
 use crate::render::table::{Mood, Table};
 use minijinja::syntax::SyntaxConfig;
@@ -91,9 +91,11 @@ fn callout(mood: Mood, text: &str) -> String {
 /// A table, and where it is to be had as a file.
 fn write_table(table: &Table, out: &mut String, written: &mut Written<'_>) -> Result<(), RenderError> {
     written.tables += 1;
-    out.push_str(&table.to_html()?);
-    if let Some(page) = written.files {
-        let file = table_file(page, written.tables);
+    let file = written.files.map(|page| table_file(page, written.tables));
+    let (shown, rest) = shown_rows(table, file.as_deref());
+    out.push_str(&shown.to_html()?);
+    out.push_str(&rest.map(|rest| running(&rest)).unwrap_or_default());
+    if let Some(file) = file {
         let _ = writeln!(
             out,
             "<p class=\"files\"><a href=\"tables/{file}.csv\">CSV</a> <a href=\"tables/{file}.tex\">LaTeX</a></p>"
@@ -143,9 +145,9 @@ fn write_figure(figure: &Figure, out: &mut String, written: &mut Written<'_>) ->
     let files = written.files.map_or(String::new(), |_| {
         format!(" <span class=\"files\"><a href=\"figures/{name}.svg\">SVG</a> <a href=\"figures/{name}.csv\">data</a></span>")
     });
-    let svg = figure.chart.svg()?;
+    let svg = figure.svg()?;
     // No screen makes a figure larger than it was meant to be.
-    let own = natural_width(&svg).map_or(String::new(), |w| format!(" style=\"--own: {w}px\""));
+    let own = natural_width(svg).map_or(String::new(), |w| format!(" style=\"--own: {w}px\""));
     let caption = paragraphs(&figure.caption).iter().map(|p| to_html(p)).collect::<Vec<_>>().join("<br>");
     let _ = write!(
         out,

@@ -1,9 +1,9 @@
 //! Pages in GitHub's Markdown.
 use crate::render::escape;
 use crate::render::page::marked_text::{paragraphs, to_markdown};
-use crate::render::page::{Block, Figure, Page, Section, check};
+use crate::render::page::{Block, Figure, Page, Section, check, shown_rows, table_file};
 use crate::render::render_error::RenderError;
-use crate::render::table::Mood;
+use crate::render::table::{Mood, Table};
 
 /// The page as Markdown. Its figures are at `figures/NAME.svg`, as `figures` lists them.
 ///
@@ -12,9 +12,10 @@ use crate::render::table::Mood;
 pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
     check(page)?;
     let mut out = vec![format!("# {}", escape::markdown(&page.title))];
+    let mut written = Written { files: page.files.as_deref(), tables: 0 };
     out.extend(running(&page.lead));
     if let Some((mood, text)) = &page.callout {
-        out.push(write_block(&Block::Callout(*mood, text.clone()))?);
+        out.push(callout(*mood, text));
     }
     if page.sections.len() > 2 {
         let entry = |s: &Section| format!("- [{}](#{}){}", escape::markdown(&s.heading), s.id, mark_of(s));
@@ -26,7 +27,7 @@ pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
         out.push(format!("<a id=\"{}\"></a>", section.id));
         out.push(format!("## {}{}", escape::markdown(&section.heading), mark_of(section)));
         for block in &section.blocks {
-            out.push(write_block(block)?);
+            out.push(write_block(block, &mut written)?);
         }
     }
     if !page.footer.is_empty() {
@@ -35,6 +36,12 @@ pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
     }
     out.retain(|part| !part.is_empty());
     Ok(format!("{}\n", out.join("\n\n")))
+}
+
+/// The name of the page's files, and the tables that were written so far.
+struct Written<'a> {
+    files: Option<&'a str>,
+    tables: usize,
 }
 
 /// How a section ended, as the end of its heading.
@@ -47,7 +54,25 @@ fn running(text: &str) -> Vec<String> {
     paragraphs(text).iter().map(|p| to_markdown(p)).collect()
 }
 
-fn write_block(block: &Block) -> Result<String, RenderError> {
+fn callout(mood: Mood, text: &str) -> String {
+    let kind = match mood {
+        Mood::Pass => "TIP",
+        Mood::Fail => "CAUTION",
+        Mood::Note => "NOTE",
+    };
+    let lines: Vec<String> = running(text).iter().map(|p| format!("> {p}")).collect();
+    format!("> [!{kind}]\n{}", lines.join("\n>\n"))
+}
+
+fn write_table(table: &Table, written: &mut Written<'_>) -> Result<String, RenderError> {
+    written.tables += 1;
+    let file = written.files.map(|page| table_file(page, written.tables));
+    let (shown, rest) = shown_rows(table, file.as_deref());
+    let table = shown.to_markdown()?.trim_end().to_owned();
+    Ok(std::iter::once(table).chain(rest).collect::<Vec<_>>().join("\n\n"))
+}
+
+fn write_block(block: &Block, written: &mut Written<'_>) -> Result<String, RenderError> {
     Ok(match block {
         Block::Paragraph(text) => running(text).join("\n\n"),
         Block::Heading(text) => format!("### {}", escape::markdown(text)),
@@ -55,20 +80,14 @@ fn write_block(block: &Block) -> Result<String, RenderError> {
             let point = |p: &String| format!("- {}", to_markdown(&paragraphs(p).join(" ")));
             points.iter().map(point).collect::<Vec<_>>().join("\n")
         }
-        Block::Table(table) => table.to_markdown()?.trim_end().to_owned(),
+        Block::Table(table) => write_table(table, written)?,
         Block::Figure(figure) => write_figure(figure),
         Block::Figures(figures) => figures.iter().map(write_figure).collect::<Vec<_>>().join("\n\n"),
-        Block::Callout(mood, text) => {
-            let kind = match mood {
-                Mood::Pass => "TIP",
-                Mood::Fail => "CAUTION",
-                Mood::Note => "NOTE",
-            };
-            let lines: Vec<String> = running(text).iter().map(|p| format!("> {p}")).collect();
-            format!("> [!{kind}]\n{}", lines.join("\n>\n"))
-        }
+        Block::Callout(mood, text) => callout(*mood, text),
         Block::Details { summary, blocks } => {
-            let inside = blocks.iter().map(write_block).collect::<Result<Vec<_>, _>>()?.join("\n\n");
+            let inside =
+                blocks.iter().map(|block| write_block(block, written)).collect::<Result<Vec<_>, _>>()?;
+            let inside = inside.join("\n\n");
             format!("<details>\n<summary>{}</summary>\n\n{inside}\n\n</details>", escape::html(summary))
         }
     })

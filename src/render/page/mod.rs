@@ -10,8 +10,11 @@ pub mod markdown_page;
 pub mod marked_text;
 
 use crate::render::chart::describe::Chart;
+use crate::render::number;
 use crate::render::render_error::RenderError;
 use crate::render::table::{Mood, Table};
+use std::borrow::Cow;
+use std::sync::OnceLock;
 
 /// A page.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -85,12 +88,35 @@ pub struct Figure {
     pub chart: Box<Chart>,
     /// What is said below it, lightly marked.
     pub caption: String,
+    /// The chart as drawn, once it is.
+    drawn: OnceLock<String>,
 }
 
 impl Figure {
     /// A figure of a chart.
     pub fn new(name: impl Into<String>, chart: Chart, caption: impl Into<String>) -> Self {
-        Self { name: name.into(), chart: Box::new(chart), caption: caption.into() }
+        let (name, caption) = (name.into(), caption.into());
+        Self { name, chart: Box::new(chart), caption, drawn: OnceLock::new() }
+    }
+
+    /// The chart as SVG: drawn once, for the page and for the file beside it.
+    ///
+    /// # Errors
+    /// If it cannot be drawn.
+    pub fn svg(&self) -> Result<&str, RenderError> {
+        if let Some(drawn) = self.drawn.get() {
+            return Ok(drawn);
+        }
+        let drawn = self.chart.svg()?;
+        Ok(self.drawn.get_or_init(|| drawn))
+    }
+
+    /// The same figure of another chart.
+    #[must_use]
+    pub fn with_chart(mut self, change: impl FnOnce(&mut Chart)) -> Self {
+        change(&mut self.chart);
+        self.drawn = OnceLock::new();
+        self
     }
 }
 
@@ -102,7 +128,7 @@ pub fn figures(page: &Page) -> Result<Vec<(String, String)>, RenderError> {
     check(page)?;
     all_figures(page)
         .into_iter()
-        .map(|figure| Ok((format!("{}.svg", figure.name), figure.chart.svg()?)))
+        .map(|figure| Ok((format!("{}.svg", figure.name), figure.svg()?.to_owned())))
         .collect()
 }
 
@@ -138,6 +164,20 @@ pub fn tables(page: &Page) -> Vec<(String, &Table)> {
     page.sections.iter().for_each(|section| collect(&section.blocks, &mut out));
     let name = page.files.as_deref().unwrap_or("page");
     out.into_iter().enumerate().map(|(place, table)| (table_file(name, place + 1), table)).collect()
+}
+
+/// Rows of a table that a page shows where the table is to be had as a file too: more of them nobody reads, and a study
+/// of ten thousand cases must not make a page that no browser opens.
+const MOST_ROWS: usize = 200;
+
+/// What a page shows of a table whose file has the given name, and what it says of the rest.
+pub(crate) fn shown_rows<'a>(table: &'a Table, file: Option<&str>) -> (Cow<'a, Table>, Option<String>) {
+    let Some(file) = file.filter(|_| table.rows.len() > MOST_ROWS) else {
+        return (Cow::Borrowed(table), None);
+    };
+    let all = number::count(table.rows.len() as u64);
+    let rest = format!("The first {MOST_ROWS} of {all} rows: [the whole table](tables/{file}.csv).");
+    (table.first_rows(MOST_ROWS), Some(rest))
 }
 
 /// The name of the file of a page's table, counted from one.

@@ -1,11 +1,12 @@
 //! A map of soils: the colour of each is the method that is the cheapest for one percent there.
 
-use crate::judge::comparison::cheapest_method::{MappedSoil, TOLERANCE, mapped_soils};
+use crate::judge::comparison::cheapest_method::{MappedSoil, TOLERANCE, Way, mapped_soils};
+use crate::measure::wall_times::median;
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
-use crate::render::table::{Table, TableColumn};
-use std::collections::BTreeMap;
+use crate::render::table::{Cell, Table, columns};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Soils from which on there is something to draw.
 const LEAST_SOILS: usize = 4;
@@ -17,51 +18,85 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
     if soils.len() < LEAST_SOILS {
         return Vec::new();
     }
-    let place = |soil: &MappedSoil| (soil.conductivity, soil.stiffness);
-    let mut cheapest: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
-    let mut broken: BTreeMap<&str, usize> = BTreeMap::new();
-    for soil in &soils {
-        if let Some(way) = &soil.cheapest {
-            cheapest.entry(&way.name).or_default().push(place(soil));
-        }
-        for name in &soil.broken {
-            *broken.entry(name).or_default() += 1;
-        }
-    }
+    let mut blocks = vec![Block::Heading("Which method is cheapest where".to_owned())];
+    let mut figures = vec![results.figure("cheapest method", winners(&soils), CAPTION)];
+    figures.extend(broken(&soils).map(|chart| results.figure("where runs break", chart, CAPTION_OF_BROKEN)));
+    blocks.push(Block::Figures(figures));
+    blocks.push(Block::Table(table_of(&soils)));
+    blocks
+}
+
+const CAPTION: &str = "Error of the pore pressure at the points; time by the steps that were taken and what one costs, the same on \
+                       any machine.";
+const CAPTION_OF_BROKEN: &str = "Soils on which some run of an integrator failed, whatever its method: with the steps that the \
+                                 study tried.";
+
+fn place(soil: &MappedSoil) -> (f64, f64) {
+    (soil.conductivity, soil.stiffness)
+}
+
+/// Soils by names as a figure: a colour a name.
+fn map_of(title: String, names: BTreeMap<&str, Vec<(f64, f64)>>) -> Chart {
     let x = ChartAxis::log10("hydraulic conductivity k (m/s)");
-    let mut chart = Chart::new(
-        format!("The cheapest way to {} %", 100.0 * TOLERANCE),
-        x,
-        ChartAxis::log10("Young's modulus E (Pa)"),
-    );
+    let mut chart = Chart::new(title, x, ChartAxis::log10("Young's modulus E (Pa)"));
     chart.size = Size::PANEL;
-    for (slot, (name, points)) in cheapest.iter().enumerate() {
-        chart.series.push(Series::new(*name, points.clone()).style(Style::Markers).slot(slot));
+    for (slot, (name, points)) in names.into_iter().enumerate() {
+        chart.series.push(Series::new(name, points).style(Style::Markers).slot(slot));
     }
-    let out_of_reach: Vec<(f64, f64)> =
-        soils.iter().filter(|soil| soil.cheapest.is_none()).map(place).collect();
-    if !out_of_reach.is_empty() {
-        chart
-            .series
-            .push(Series::new("none comes to it", out_of_reach).style(Style::Markers).slot(cheapest.len()));
+    chart
+}
+
+/// Who is the cheapest on every soil.
+fn winners(soils: &[MappedSoil]) -> Chart {
+    let mut names: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
+    for soil in soils {
+        let name = soil.cheapest().map_or("none comes to it", |way| way.name.as_str());
+        names.entry(name).or_default().push(place(soil));
     }
-    let caption =
-        "Error of the pore pressure at the points; time by the steps that were taken and what one costs.";
-    let names: std::collections::BTreeSet<&str> = cheapest.keys().chain(broken.keys()).copied().collect();
+    map_of(format!("The cheapest way to {} %", 100.0 * TOLERANCE), names)
+}
+
+/// Where runs of an integrator failed; none where none did.
+fn broken(soils: &[MappedSoil]) -> Option<Chart> {
+    let mut names: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
+    for soil in soils {
+        for name in &soil.broken {
+            let integrator = name.rsplit_once(' ').map_or(name.as_str(), |(_, integrator)| integrator);
+            let places = names.entry(integrator).or_default();
+            if places.last() != Some(&place(soil)) {
+                places.push(place(soil));
+            }
+        }
+    }
+    (!names.is_empty()).then(|| map_of("Where runs break".to_owned(), names))
+}
+
+/// Every method and integrator over the soils: where it was tried, comes to the tolerance, wins, what it costs over
+/// the winner, and where it breaks.
+fn table_of(soils: &[MappedSoil]) -> Table {
+    let names: BTreeSet<&str> = soils.iter().flat_map(|soil| &soil.tried).map(String::as_str).collect();
     let rows = names.into_iter().map(|name| {
-        let of = |count: usize| format!("{count} of {}", soils.len());
-        let won = cheapest.get(name).map_or(0, Vec::len);
-        let failed = broken.get(name).copied().unwrap_or(0);
-        vec![name.into(), of(won).as_str().into(), of(failed).as_str().into()]
+        let count = |is: &dyn Fn(&MappedSoil) -> bool| {
+            Cell::Count(soils.iter().filter(|soil| is(soil)).count() as u64)
+        };
+        let ways: Vec<(&Way, &Way)> =
+            soils.iter().filter_map(|soil| Some((soil.way_of(name)?, soil.cheapest()?))).collect();
+        let over: Vec<f64> = ways.iter().map(|(own, best)| own.seconds / best.seconds).collect();
+        let cells: Vec<f64> = ways.iter().map(|(own, _)| own.cells as f64).collect();
+        vec![
+            Cell::Code(name.to_owned()),
+            count(&|soil| soil.tried.iter().any(|tried| tried == name)),
+            Cell::Count(ways.len() as u64),
+            count(&|soil| soil.cheapest().is_some_and(|way| way.name == name)),
+            Cell::of(median(&over), Cell::Number, "never within the tolerance"),
+            Cell::of(median(&cells), Cell::Number, "never within the tolerance"),
+            count(&|soil| soil.broken.iter().any(|broken| broken == name)),
+        ]
     });
-    let columns = vec![
-        TableColumn::text("method and integrator"),
-        TableColumn::text("cheapest on soils"),
-        TableColumn::text("a case failed on soils"),
-    ];
-    vec![
-        Block::Heading("Which method is cheapest where".to_owned()),
-        Block::Figures(vec![results.figure("cheapest method", chart, caption.to_owned())]),
-        Block::Table(Table::of("Methods over the map", columns, rows)),
-    ]
+    let header = format!(
+        "method and integrator | > soils tried | > within {} % on | > cheapest on | > its cost over the cheapest, median | > \
+         its cells, median | > a run failed on",
+        100.0 * TOLERANCE
+    );
+    Table::of("Methods over the map", columns(&header), rows).note(format!("of {} soils", soils.len()))
 }

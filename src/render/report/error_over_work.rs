@@ -1,18 +1,18 @@
 //! Error against work, and the wall times that were measured fairly.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::judge::paths::paths;
 use crate::measure::wall_times::median;
 use crate::record::{Record, Status};
 use crate::render::chart::describe::{Chart, ChartAxis, Series};
 use crate::render::page::Block;
+use crate::render::report::drawn_paths::{DrawnPaths, drawn};
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, columns};
 use crate::study::expectation::{Axis, Measure};
 
 /// Error over point updates, and over wall time where runs had the machine to themselves.
 pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
-    let mut along_mesh = paths(results.records, Axis::Cells);
+    let mut along_mesh = results.paths.along(Axis::Cells).to_vec();
     // Nobody counts the work of an attached solver.
     along_mesh.retain(|path| path.records.iter().all(|record| !record.case.is_attached()));
     let mut blocks = Vec::new();
@@ -23,6 +23,7 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
             ChartAxis::log10("point updates (points × steps)"),
             ChartAxis::log10(labels::error_axis(&measure)),
         );
+        let DrawnPaths { paths: along_mesh, note } = drawn(&along_mesh);
         let labels = labels::path_labels(&along_mesh);
         let (words, end) = (labels::measure(&measure), labels.subtitle_end());
         chart.subtitle = Some(format!("{words}, T_v = {}{end}", measure.time_factor));
@@ -38,6 +39,7 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
                        has twice the points and twice the steps.";
         blocks.push(Block::Heading("Error against work".to_owned()));
         blocks.push(Block::Figure(results.figure("work", chart, caption)));
+        blocks.extend(note.map(Block::Paragraph));
     }
     let timed: Vec<&Record> = results
         .records

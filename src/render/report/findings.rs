@@ -3,7 +3,7 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::Class;
 use crate::convergence::orders::WINDOW;
-use crate::judge::paths::{Path, paths};
+use crate::judge::paths::Path;
 use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::labels::first_measure;
@@ -14,6 +14,9 @@ use crate::wording::typed;
 
 /// Cells at which an error is quoted.
 const QUOTED_CELLS: usize = 10;
+
+/// Floors that are told before the rest is only counted.
+const MOST_FLOORS: usize = 20;
 
 /// What is quoted of every path.
 const QUOTED: [(Quantity, Sample); 4] = [
@@ -32,7 +35,7 @@ pub fn blocks(one: &StudyResults<'_>) -> Vec<Block> {
     }));
     let mut rows = Vec::new();
     let mut floors = Vec::new();
-    let mut all = paths(one.records, Axis::Cells);
+    let mut all = one.paths.along(Axis::Cells).to_vec();
     all.retain(|path| path.records.len() >= WINDOW);
     // A layer's other soils have their place in its own section.
     all.retain(|path| !one.study.scene.shows_locking() || path.records[0].case.variant().is_empty());
@@ -65,6 +68,9 @@ pub fn blocks(one: &StudyResults<'_>) -> Vec<Block> {
     let table = table.notes(is_attached.then_some(places));
     let mut blocks = vec![Block::Heading("What converges to what".to_owned()), Block::Table(table)];
     if !floors.is_empty() {
+        let more = floors.len().saturating_sub(MOST_FLOORS);
+        floors.truncate(MOST_FLOORS);
+        floors.extend((more > 0).then(|| format!("And {more} more, of the series whose class says so.")));
         blocks.push(Block::Paragraph("Floors:".to_owned()));
         blocks.push(Block::List(floors));
     }

@@ -3,10 +3,12 @@
 pub mod appendix;
 pub mod cheapest_method_map;
 pub mod critical_step_maps;
+pub mod drawn_paths;
 pub mod error_over_time;
 pub mod error_over_work;
 pub mod findings;
 pub mod labels;
+pub mod other_measures;
 pub mod pages;
 pub mod plane_fields;
 pub mod refinement;
@@ -18,7 +20,8 @@ pub mod theory_lines;
 pub mod worst_checks;
 
 use crate::case::tier::Tier;
-use crate::judge::paths::{Judgement, judge_study};
+use crate::judge::judgement::{Judgement, judge_paths};
+use crate::judge::paths::StudyPaths;
 use crate::judge::soundness;
 use crate::record::{Record, Status};
 use crate::render::chart::describe::Chart;
@@ -31,6 +34,8 @@ pub struct StudyResults<'a> {
     pub study: &'a Study,
     /// Its records.
     pub records: &'a [Record],
+    /// Their paths along every axis.
+    pub paths: StudyPaths<'a>,
     /// Its expectations, judged.
     pub judgements: Vec<Judgement>,
     /// What no record may be, of those that are: the case and a sentence.
@@ -47,10 +52,12 @@ impl<'a> StudyResults<'a> {
             soundness::complaints(record).into_iter().map(|sentence| (record.case.label(), sentence))
         });
         let file = format!("studies/{}.toml", study.name);
+        let paths = StudyPaths::of(records);
         Self {
             study,
             records,
-            judgements: judge_study(study, records, tier),
+            judgements: judge_paths(study, records, &paths, tier),
+            paths,
             unsound: unsound.collect(),
             file,
         }

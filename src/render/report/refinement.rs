@@ -4,9 +4,10 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::case::step_label;
 use crate::convergence::orders::WINDOW;
 use crate::exact::reference::ReferenceKind;
-use crate::judge::paths::{Path, SeriesSummary, first_norm, paths};
+use crate::judge::paths::{Path, SeriesSummary, first_norm};
 use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::page::{Block, Figure};
+use crate::render::report::drawn_paths::{DrawnPaths, drawn};
 use crate::render::report::labels::first_measure;
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
@@ -27,15 +28,8 @@ fn panels(results: &StudyResults<'_>) -> [(Quantity, Sample); 4] {
     ]
 }
 
-/// More series than these are no figure.
-const MOST_SERIES: usize = 14;
-
-/// The paths that a figure shows: all of them, or, where they are too many, those of the undisturbed soil.
-fn drawn<'a, 'b>(all: &'b [Path<'a>]) -> Vec<Path<'a>> {
-    let is_plain = |path: &&Path<'_>| path.records[0].case.variant().is_empty();
-    let plain: Vec<Path<'a>> = all.iter().filter(is_plain).cloned().collect();
-    if all.len() > MOST_SERIES && !plain.is_empty() { plain } else { all.to_vec() }
-}
+/// Floors that are told below a table before the rest is only counted.
+const MOST_NOTES: usize = 20;
 
 /// Figures and tables of a study along an axis; none where nothing was refined on it.
 pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
@@ -51,7 +45,7 @@ pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
         references.insert(0, NEXT_FINER);
     }
     let own = references.first().copied().unwrap_or_default();
-    let few = drawn(&all);
+    let DrawnPaths { paths: few, note } = drawn(&all);
     let figures =
         panels(results).map(|(quantity, sample)| figure(results, &few, axis, quantity, sample, own, shown));
     blocks.push(Block::Figures(figures.into_iter().flatten().collect()));
@@ -60,11 +54,7 @@ pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
             figure(results, &few, axis, Quantity::Pressure, Sample::Points, other, shown).map(Block::Figure),
         );
     }
-    if few.len() < all.len() {
-        blocks.push(Block::Paragraph(
-            "The figures show the plain soil only; the table has every variant too.".to_owned(),
-        ));
-    }
+    blocks.extend(note.map(Block::Paragraph));
     blocks.push(Block::Table(orders_table(results, &all, axis, own, shown)));
     let mut more: Vec<Block> = times
         .iter()
@@ -89,13 +79,13 @@ pub fn mesh_figure(
 ) -> Option<Figure> {
     let all = longest_paths(results, Axis::Cells);
     let own = results.study.references.first()?.name();
-    let few = drawn(&all);
+    let few = drawn(&all).paths;
     if few.is_empty() { None } else { figure(results, &few, Axis::Cells, quantity, sample, own, time_factor) }
 }
 
 /// Paths of at least three levels; in a study of variants with two levels there is no order.
 fn longest_paths<'a>(results: &StudyResults<'a>, axis: Axis) -> Vec<Path<'a>> {
-    let mut all = paths(results.records, axis);
+    let mut all = results.paths.along(axis).to_vec();
     all.retain(|path| path.records.len() >= WINDOW);
     all
 }
@@ -292,6 +282,11 @@ fn orders_table(
             }
             rows.push(orders_row(&summary, label, &measure, levels.len(), axis));
         }
+    }
+    if notes.len() > MOST_NOTES {
+        let more = notes.len() - MOST_NOTES;
+        notes.truncate(MOST_NOTES);
+        notes.push(format!("and {more} floors more, of the series whose class says so"));
     }
     notes.push(format!(
         "{} over the volume; settlement |s/s_exact − 1|",

@@ -1,12 +1,12 @@
 //! The page of one study: what it asks, what was expected, figures, tables, checks.
 
 use crate::exact::exact_error::ExactError;
-use crate::judge::paths::Judgement;
+use crate::judge::judgement::Judgement;
 use crate::render::checks::verdicts::judgements_table;
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::{
     StudyResults, cheapest_method_map, critical_step_maps, error_over_time, error_over_work, findings,
-    plane_fields, refinement, survival, theory_lines, worst_checks,
+    other_measures, plane_fields, refinement, survival, theory_lines, worst_checks,
 };
 use crate::render::table::Mood;
 use crate::render::tables::{attached_runs, uncertainties};
@@ -33,6 +33,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     }
     blocks.extend(uncertainties::table_of(&results.judgements).map(Block::Table));
     let is_solved = results.records.iter().any(|record| record.stability.is_none());
+    blocks.extend(other_measures::blocks(results));
     blocks.extend(critical_step_maps::blocks(results));
     if let Some(table) = attached_runs::table_of(results.records) {
         blocks.push(Block::Heading("Attached solvers".to_owned()));

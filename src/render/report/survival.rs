@@ -7,6 +7,10 @@ use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
+use std::collections::HashMap;
+
+/// Why a cell is empty.
+const NOT_TRIED: &str = "not tried";
 
 /// An error as large as the answer: the run went on, and its result is none.
 const MEANINGLESS: f64 = 1.0;
@@ -19,14 +23,25 @@ pub fn block(one: &StudyResults<'_>) -> Option<Block> {
     let methods = distinct(one.records.iter().map(runner_of));
     let mut columns = columns("case");
     columns.extend(methods.iter().map(|method| TableColumn::text(method.clone())));
-    let rows = distinct(one.records.iter().map(setup_of)).into_iter().map(|setup| {
-        let mut row: Vec<Cell> = vec![setup.as_str().into()];
-        row.extend(methods.iter().map(|method| {
-            let of_setup = |record: &&Record| setup_of(record) == setup && runner_of(record) == *method;
-            one.records.iter().find(of_setup).map_or(Cell::missing("not tried"), end_of)
-        }));
-        row
-    });
+    // A row a setup, found by its name: there may be thousands.
+    let mut rows: Vec<Vec<Cell>> = Vec::new();
+    let mut places: HashMap<String, usize> = HashMap::new();
+    for record in one.records {
+        let setup = setup_of(record);
+        let place = *places.entry(setup).or_insert_with_key(|setup| {
+            let not_tried = methods.iter().map(|_| Cell::missing(NOT_TRIED));
+            rows.push(std::iter::once(setup.as_str().into()).chain(not_tried).collect());
+            rows.len() - 1
+        });
+        let runner = runner_of(record);
+        let column = methods.iter().position(|method| *method == runner).map(|column| column + 1);
+        // Of several runs of a setup the first is shown.
+        if let Some(cell) = column.and_then(|column| rows[place].get_mut(column))
+            && matches!(cell, Cell::Missing(_))
+        {
+            *cell = end_of(record);
+        }
+    }
     let table = Table::of("How each case ended", columns, rows).note(
         "a number is the relative L_2 error of the pressure at the points at the last output, ✗ where it is as large \
          as the answer; ✗ with the name of a failure and its step",
@@ -81,5 +96,42 @@ fn end_of(record: &Record) -> Cell {
                 Some(value) => Cell::Verdict(Mood::Fail, format!("ran, error {}", number::error(value))),
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::case::tier::Tier;
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    const STUDY: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05]\n[[sweep]]\n\
+        method = ['MPM', 'GIMP']\nintegrator = ['implicit']\ncells = [4, 8]\n\
+        time_step = [{ growth = 0.3 }, { growth = 0.6 }]\n[[sweep]]\nmethod = ['GC-SRI-patch']\n\
+        integrator = ['implicit']\ncells = [8]\ntime_step = [{ growth = 0.3 }]\n\
+        [[expect_case]]\nmethod = 'MPM'\nstatus = 'ok'\n";
+
+    #[test]
+    fn every_setup_has_its_row_every_method_its_column_and_the_first_of_several_runs_is_shown() {
+        let source = StudySource { name: "s.toml".to_owned(), text: STUDY.to_owned() };
+        let study = Study::check(&source).expect("sound");
+        let records = records_of(STUDY);
+        let results = StudyResults::new(&study, &records, Tier::Full);
+        let Some(Block::Table(table)) = block(&results) else { panic!("a table") };
+        assert_eq!((table.columns.len(), table.rows.len()), (4, 2));
+        let shown = |method: &str, cells: usize| {
+            let fits = |one: &&Record| one.case.cells == cells && one.case.method.to_string() == method;
+            end_of(records.iter().find(fits).expect("a record"))
+        };
+        for (row, cells) in table.rows.iter().zip([4, 8]) {
+            assert_eq!(row[0], Cell::Text(format!("{cells} cells, 2 points")));
+            assert_eq!([&row[1], &row[2]], [&shown("MPM", cells), &shown("GIMP", cells)]);
+        }
+        assert_eq!(
+            (&table.rows[0][3], &table.rows[1][3]),
+            (&Cell::missing(NOT_TRIED), &shown("GC-SRI-patch", 8))
+        );
     }
 }

@@ -8,6 +8,7 @@ pub mod text_table;
 
 use crate::render::number;
 use crate::render::render_error::RenderError;
+use std::borrow::Cow;
 
 /// A table.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -234,6 +235,20 @@ impl Table {
     pub fn notes(mut self, notes: impl IntoIterator<Item = String>) -> Self {
         self.notes.extend(notes);
         self
+    }
+
+    /// The table with its first rows only, where it has more than so many.
+    pub(crate) fn first_rows(&self, most: usize) -> Cow<'_, Self> {
+        if self.rows.len() <= most {
+            return Cow::Borrowed(self);
+        }
+        let Self { title, columns, rows, notes } = self;
+        Cow::Owned(Self {
+            title: title.clone(),
+            columns: columns.clone(),
+            rows: rows[..most].to_vec(),
+            notes: notes.clone(),
+        })
     }
 
     /// Refuses a row with too few or too many cells.

@@ -92,6 +92,10 @@ pub fn checks_table(record: &Record) -> Table {
     for check in record_checks::start_checks(record).iter().chain(at_end.iter().flatten()) {
         add(check.what, Cell::Error(check.value), bound_cell(check));
     }
+    for row in record.measures.iter().filter(|row| row.time_factor.is_none()) {
+        let exact = format!("exactly {:.7}", row.exact);
+        add(&row.name, Cell::Text(format!("{:.7}", row.found)), Cell::Text(exact));
+    }
     add("storage n E_oed/K_w", Cell::Error(record.groups.storage), plain());
     add("finite strain m_vl q", Cell::Error(record.groups.finite_strain), plain());
     add("inertia c_v/(H V)", Cell::Error(record.groups.inertia), plain());

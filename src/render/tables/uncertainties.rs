@@ -2,7 +2,7 @@
 
 use crate::convergence::uncertainty::eca_hoekstra::ErrorModel;
 use crate::convergence::uncertainty::grid_convergence::Behaviour;
-use crate::judge::paths::Judgement;
+use crate::judge::judgement::Judgement;
 use crate::render::table::{Cell, Table, columns};
 
 /// One row a value that was asked for; none where none was.

@@ -44,6 +44,7 @@ impl Checker<'_> {
             water_drift_below: bound(self, &table.water_drift_below, "water_drift_below"),
             pore_water,
             water_left_within: bound(self, &table.water_left_within, "water_left_within"),
+            largest_pressure: table.largest_pressure.as_ref().map(|range| bounds_of(range)),
             one_layer_within: bound(self, &table.one_layer_within, "one_layer_within"),
             spurious_velocity: self.spurious_velocity(table, scene),
             peak_time_factor: table.peak_time_factor.as_ref().map(|range| bounds_of(range)),

@@ -3,6 +3,7 @@
 use crate::case::Case;
 use crate::case::keys::Key;
 use crate::mpm::run::integrator::Formulation;
+use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::study::check::checker::{Checker, Common};
 use crate::study::file::SweepTable;
@@ -139,16 +140,20 @@ impl Checker<'_> {
     /// Square cells must fill the width: their number over the height decides their size.
     pub(crate) fn cells_fill_the_width(&mut self, table: &SweepTable, cases: impl Iterator<Item = Case>) {
         let gaps = cases.filter(|case| case.column.cells_across(case.cells).is_none());
-        let gaps: HashMap<usize, Column> = gaps.map(|case| (case.cells, case.column)).collect();
+        let gaps: HashMap<usize, (Column, SceneKind)> =
+            gaps.map(|case| (case.cells, (case.column, case.scene))).collect();
         for typed in table.typed("cells").into_iter().flat_map(Spanned::get_ref) {
             let TypedInput::Count(cells) = typed.get_ref() else { continue };
             let cells = usize::try_from(*cells).unwrap_or(0);
-            let Some(column) = gaps.get(&cells) else { continue };
+            let Some((column, scene)) = gaps.get(&cells) else { continue };
             let size = column.height / cells as f64;
+            let [key, table] = if scene.is_a_layer() { ["length", "layer"] } else { ["width", "column"] };
             self.complain(
                 typed.span(),
-                format!("square cells of {size} m do not fill a width of {} m", column.horizontal_extent),
-                format!("a width of {size} m is one cell wide, or take a number of cells that divides it"),
+                format!("square cells of {size} m do not fill a {key} of {} m", column.horizontal_extent),
+                format!(
+                    "a {key} holds whole cells of every size: `{key} = {size}` in [{table}] is one of these"
+                ),
             );
         }
     }

@@ -126,7 +126,17 @@ mod tests {
         assert!(refused("strain = 0.3\nload = 1e5", "").contains("a `load` and a `strain`"));
         assert!(refused("strain = 1.2", "").contains("`column.strain` is 1.2"));
         // The seed's porosity is 0.3.
-        assert!(refused("strain = 0.35", "").contains("pores"));
+        for (strain, line) in [("0.35", 4), ("0.3", 4)] {
+            let told = refused(&format!("strain = {strain}"), "");
+            assert!(
+                told.contains(&format!("a strain of {strain} leaves no pores: the porosity is 0.3")),
+                "{told}"
+            );
+            assert!(
+                told.contains(&format!("t.toml:{line}:")) && told.contains("a `porosity` above"),
+                "{told}"
+            );
+        }
         assert!(checked("strain = 0.25", "").is_ok());
         // One of the swept soils is too soft for the load, though the study's own is not.
         let told = refused("load = 2e5", "youngs_modulus = [1e6, 3e5]");

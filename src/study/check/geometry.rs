@@ -1,7 +1,7 @@
 //! Checks of where the soil is and what loads it: the tables `[column]` and `[layer]`.
 
-use crate::case::Case;
 use crate::case::keys::{Key, Value};
+use crate::case::{Case, Task};
 use crate::elementary;
 use crate::exact::exact_error::ExactError;
 use crate::exact::xie_leo::XieLeo;
@@ -63,7 +63,16 @@ impl Checker<'_> {
             self.complain(
                 typed.span(),
                 format!("the soil of `{name}` has no weight"),
-                "own weight belongs to the scenes of a column, like \"terzaghi\", \"xie-leo\" and \"at-rest\"",
+                "own weight belongs to the scenes \"terzaghi\", \"xie-leo\", \"dynamic-column\" and \"at-rest\"",
+            );
+        }
+        let has_weight = |typed: &&One| matches!(typed.get_ref(), TypedInput::Flag(true));
+        let of_stability = seed.task == Task::Stability && scene.takes_self_weight();
+        if let Some(typed) = file.column.typed("self_weight").filter(has_weight).filter(|_| of_stability) {
+            self.complain(
+                typed.span(),
+                "a weight is a force that does not change: the critical step is that of the weightless column",
+                "leave `self_weight` out of a study of stability",
             );
         }
         let in_a_line = |typed: &&One| !matches!(typed.get_ref(), TypedInput::Count(2));
@@ -152,9 +161,17 @@ impl Checker<'_> {
         }
         let parameters = column_parameters(column, soil);
         if let Err(error @ ExactError::LoadClosesPores { limit, .. }) = XieLeo::new(&parameters) {
+            if let Some(strain) = &file.column.strain {
+                let (value, porosity) = (strain.get_ref(), soil.porosity);
+                self.complain(
+                    strain.span(),
+                    format!("a strain of {value} leaves no pores: the porosity is {porosity}"),
+                    format!("write `strain` below {porosity}, or in [material] a `porosity` above {value}"),
+                );
+                return;
+            }
             let typed = file.column.typed("load").or(file.material.typed("porosity"));
             let typed = typed.or(file.material.typed("youngs_modulus")).map(Spanned::span);
-            let typed = typed.or(file.column.strain.as_ref().map(|strain| strain.span()));
             let most = limit * soil.oedometric_modulus();
             let least = -elementary::exp_m1(-column.load / soil.oedometric_modulus());
             self.complain(

@@ -6,12 +6,17 @@ use crate::cli::commands::new::solver::Language;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::study::name::{name_of, refused_name};
+use crate::study::shipped::shipped_studies;
 use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::PathBuf;
 
-/// The text of a new study; `{name}` stands for its name.
-const STARTER: &str = include_str!("starter.toml");
+/// Texts of new studies by their scenes, the first where none is named; `{name}` stands for the name.
+const STARTERS: [(&str, &str); 3] = [
+    ("terzaghi", include_str!("starter.toml")),
+    ("xie-leo", include_str!("starter-large.toml")),
+    ("cosine-layer", include_str!("starter-plane.toml")),
+];
 
 /// Arguments of `new`.
 #[derive(Debug, clap::Args)]
@@ -23,19 +28,48 @@ pub struct Arguments {
     /// [default: my-solver]
     #[arg(value_name = "SOLVER")]
     solver: Option<PathBuf>,
+    /// Scene of the study: terzaghi where not given, xie-leo at large strain, cosine-layer in the plane
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<String>,
     /// What the adapter of a solver is written in
     #[arg(long, value_enum)]
     language: Option<Language>,
 }
 
 /// The text of a starter of a name.
-fn starter(name: &str) -> String {
-    STARTER.replace("{name}", name)
+///
+/// # Errors
+/// A sentence with what to take where the scene has none.
+fn starter(name: &str, scene: Option<&str>) -> anyhow::Result<String> {
+    let [(usual, _), ..] = STARTERS;
+    let scene = scene.unwrap_or(usual);
+    if let Some((_, text)) = STARTERS.iter().find(|(known, _)| *known == scene) {
+        return Ok(text.replace("{name}", name));
+    }
+    let with = STARTERS.map(|(known, _)| known).join(", ");
+    let line = format!("scene = \"{scene}\"");
+    let shipped =
+        shipped_studies().into_iter().find(|study| study.text.lines().any(|one| one.starts_with(&line)));
+    Err(Ended::usage(match shipped {
+        Some(study) => format!(
+            "there is no starter of the scene `{scene}` (there is of {with}); `oedometer list --show {}` prints a shipped \
+             study of it",
+            name_of(&study.name)
+        ),
+        None => format!(
+            "no scene with a study is called `{scene}`: there are starters of {with}; `oedometer list` names all"
+        ),
+    }))
 }
 
 /// Writes the file, where there is none yet.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let is_solver = arguments.solver.is_some() || arguments.language.is_some();
+    if is_solver && arguments.scene.is_some() {
+        return Err(Ended::usage(
+            "`--scene` belongs to `oedometer new NAME`: the adapter of a solver is for `terzaghi`",
+        ));
+    }
     if is_solver && arguments.name.as_os_str() == "solver" {
         let folder = arguments.solver.clone().unwrap_or_else(|| PathBuf::from("my-solver"));
         return solver::write(&folder, arguments.language.unwrap_or(Language::Python));
@@ -50,10 +84,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if let Some(why) = refused_name(name) {
         return Err(Ended::usage(format!("a study cannot be called `{name}`: {why}")));
     }
+    let text = starter(name, arguments.scene.as_deref())?;
     let folder = arguments.name.parent().map_or_else(PathBuf::new, std::path::Path::to_path_buf);
     let path = folder.join(format!("{name}.toml"));
     let written = OpenOptions::new().write(true).create_new(true).open(&path);
-    let written = written.and_then(|mut file| file.write_all(starter(name).as_bytes()));
+    let written = written.and_then(|mut file| file.write_all(text.as_bytes()));
     written.map_err(|error| match error.kind() {
         std::io::ErrorKind::AlreadyExists => {
             Ended::usage(format!("{} is there already: take another name", path.display()))

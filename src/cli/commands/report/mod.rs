@@ -7,7 +7,7 @@ use crate::campaign::run_options::RunOptions;
 use crate::campaign::run_report::RunReport;
 use crate::case::Case;
 use crate::case::tier::Tier;
-use crate::cli::commands::check::GOLDEN;
+use crate::cli::commands::check::{GOLDEN, refuse_unfinished};
 use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, jobs_of, load_or_shipped, run_and_store};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::side_by_side::side_by_side;
@@ -91,6 +91,7 @@ fn run_missing(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<R
     let tier = arguments.tier.into();
     let options = RunOptions { resume: true, ..RunOptions::whole(tier, jobs_of(arguments.jobs)) };
     let mut reports = run_and_store(studies, studies, &options, &arguments.records, Beside::Nothing)?;
+    refuse_unfinished(&reports)?;
     if tier < Tier::Full {
         for (study, report) in studies.iter().zip(&mut reports) {
             add_finished(study, report, &arguments.records);

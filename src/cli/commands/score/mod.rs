@@ -19,6 +19,7 @@ use crate::record::ERROR_COLUMNS;
 use crate::render::tables::scores;
 use crate::scene::SceneKind;
 use crate::study::check::Study;
+use crate::study::check::checker::Purpose;
 use std::path::PathBuf;
 
 /// Arguments of `score`.
@@ -159,7 +160,9 @@ pub fn study_of(asked: &Asked) -> anyhow::Result<(Study, Vec<f64>)> {
     lines.assign(asked.assignments)?;
     lines.refuse_without_effect(&overrides::OF_RUNS)?;
     let is_requested = lines.has("output.time_factors");
-    let study = lines.study_with(["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned))?;
+    // No grid of this program has to fit the body that another one solved.
+    let sweep = ["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned);
+    let study = lines.study_for(Purpose::Theory, sweep)?;
     let requested = match study.planned.first() {
         Some(planned) if is_requested => planned.case.time_factors.clone(),
         _ => Vec::new(),

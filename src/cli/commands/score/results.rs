@@ -204,9 +204,14 @@ impl Read {
         let has = |quantity: Quantity| self.score.errors.iter().any(|row| row.quantity == quantity);
         let is_plane = held.case.scene.has_plane_fields();
         if has(Quantity::Displacement) && !has(Quantity::Settlement) {
-            let place =
-                if is_plane { "on the surface under the crest of the load" } else { "on the surface" };
-            self.notes.push(format!("no settlement is judged, for no sample lies {place}"));
+            let why = if held.case.scene.has_plates() {
+                "it is the plate's, which no sample has: [settlement] in the mapping takes a curve"
+            } else if is_plane {
+                "no sample lies on the surface under the crest of the load"
+            } else {
+                "no sample lies on the surface"
+            };
+            self.notes.push(format!("no settlement is judged, for {why}"));
         }
         let first = self.states.first();
         if is_plane

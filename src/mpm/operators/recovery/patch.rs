@@ -6,15 +6,26 @@
 //! beyond `2π/3`, a negative stiffness that no step survives.
 
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{Grid, SIXTH, power};
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid, SIXTH, index_of, power};
+use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
 use crate::soil::tensor::{Vector, solve_symmetric};
 
 /// Cells along one direction of a patch.
 const BLOCK: usize = 3;
 /// Most cells of a patch, over the dimensions there are.
 const MOST_CELLS: usize = BLOCK * BLOCK;
-/// Points of a column whose rows are worked out side by side.
-const LANES: usize = 4;
+
+/// Which cells of a patch are occupied, but for its middle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Neighbours<const D: usize> {
+    /// All.
+    #[default]
+    All,
+    /// Those of a rectangle: lower and upper ones, a direction.
+    Rectangle([(bool, bool); D]),
+    /// Others.
+    Some,
+}
 
 /// Recovery weights of every point over the `3^D` cells around its own.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,12 +34,18 @@ pub struct PatchRows<const D: usize> {
     first: Vec<usize>,
     /// `3^D` weights a point.
     weights: Vec<f64>,
+    /// Neighbours of each occupied cell.
+    neighbours: Vec<Neighbours<D>>,
 }
 
 impl<const D: usize> PatchRows<D> {
-    /// Room for `points` points.
-    pub fn with_points(points: usize) -> Self {
-        Self { first: vec![0; points], weights: vec![0.0; points * Self::width()] }
+    /// Room for `points` points, in so many cells.
+    pub fn with_points(points: usize, cells: usize) -> Self {
+        Self {
+            first: vec![0; points],
+            weights: vec![0.0; points * Self::width()],
+            neighbours: vec![Neighbours::All; cells],
+        }
     }
 
     const fn width() -> usize {
@@ -36,46 +53,53 @@ impl<const D: usize> PatchRows<D> {
     }
 
     /// Fits the rows to the points' places and to the occupied cells.
+    ///
+    /// The weights of the fit are products over the directions, and where the occupied cells fill a rectangle the
+    /// moments that the normal equations mix vanish: with the row `r` of the line through the cells along a
+    /// direction and the shares `a` of their weights, the plane's row is `r_i a_j + a_i r_j − a_i a_j`. Rows along a
+    /// direction are worked out for some points side by side as if all cells were there, and then those that are
+    /// not.
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
-        if D == 1 {
-            self.build_in_column(cells);
-            return;
+        for cell in cells.occupied() {
+            self.neighbours[cell] = Neighbours::of(grid, cells, cell);
         }
-        for (point, place) in cells.place.iter().enumerate() {
-            let row = &mut self.weights[point * Self::width()..(point + 1) * Self::width()];
-            let home = grid.cell_at(place);
-            let first = grid.flat_cell(&home.map(|index| index - 1));
-            self.first[point] = first;
-            let mut patch = Patch::<D>::empty();
-            for block in 0..Self::width() {
-                let (cell, steps) = block_cell(grid, first, block);
-                if cells.is_occupied(cell) {
-                    let offset = std::array::from_fn(|d| (home[d] + steps[d]) as f64 - 0.5 - place[d]);
-                    patch.add(block, offset);
-                }
-            }
-            patch.rows_into(row);
-        }
-    }
-
-    /// The rows of a column in closed form: some points side by side, as if every patch were whole, and
-    /// then those that are not.
-    fn build_in_column(&mut self, cells: &Cells<D>) {
-        let (rows, _) = self.weights.as_chunks_mut::<BLOCK>();
+        let lowest: usize = grid.cell_stride().iter().sum();
         let points = cells.of_point.chunks(LANES).zip(cells.place.chunks(LANES));
-        let out = self.first.chunks_mut(LANES).zip(rows.chunks_mut(LANES));
-        for ((homes, places), (first, rows)) in points.zip(out) {
-            let mut offsets = [0.0; LANES];
-            for (offset, (home, place)) in offsets.iter_mut().zip(homes.iter().zip(places)) {
-                *offset = *home as f64 + 0.5 - place[0];
+        let out = self.first.chunks_mut(LANES).zip(self.weights.chunks_mut(LANES * Self::width()));
+        let mut lines = [LineRows::default(); D];
+        for ((homes, places), (firsts, weights)) in points.zip(out) {
+            for d in 0..D {
+                let place = lanes_of(places, d, GHOST_LAYERS as f64);
+                if D == 1 {
+                    for (cell, home) in lines[d].cells.iter_mut().zip(homes) {
+                        *cell = *home as f64;
+                    }
+                } else {
+                    for lane in 0..LANES {
+                        lines[d].cells[lane] = grid.line(d).cell_at(place[lane]);
+                    }
+                }
+                fill::<D>(&mut lines[d], &place);
             }
-            let [lower, middle, upper] = whole_column_rows(&offsets);
-            for (lane, home) in homes.iter().enumerate() {
-                first[lane] = home - 1;
-                rows[lane] = match (cells.is_occupied(home - 1), cells.is_occupied(home + 1)) {
-                    (true, true) => [lower[lane], middle[lane], upper[lane]],
-                    sides => cut_column_row(offsets[lane], sides),
-                };
+            let rows = weights.chunks_exact_mut(Self::width());
+            for (lane, (first, row)) in firsts.iter_mut().zip(rows).take(homes.len()).enumerate() {
+                let mut home = 0;
+                for d in 0..D {
+                    home += grid.cell_stride()[d] * index_of(lines[d].cells[lane]);
+                }
+                *first = home - lowest;
+                let neighbours =
+                    if cells.is_occupied(home) { self.neighbours[home] } else { Neighbours::Some };
+                match neighbours {
+                    Neighbours::Some => fit(grid, cells, home, &places[lane], row),
+                    Neighbours::All => combine(&lines, lane, row),
+                    Neighbours::Rectangle(sides) => {
+                        for d in 0..D {
+                            lines[d].cut(lane, sides[d]);
+                        }
+                        combine(&lines, lane, row);
+                    }
+                }
             }
         }
     }
@@ -83,15 +107,13 @@ impl<const D: usize> PatchRows<D> {
     /// Value at a point of a field given at the cells.
     #[inline]
     pub fn value(&self, grid: &Grid<D>, point: usize, field: &[f64]) -> f64 {
-        let row = &self.weights[point * Self::width()..(point + 1) * Self::width()];
-        if D == 1 {
-            let first = self.first[point];
-            return row.iter().zip(&field[first..first + BLOCK]).map(|(weight, value)| weight * value).sum();
-        }
+        let rows = self.weights[point * Self::width()..].chunks_exact(BLOCK);
         let mut value = 0.0;
-        for block in 0..Self::width() {
-            let (cell, _) = block_cell(grid, self.first[point], block);
-            value += row[block] * field[cell];
+        for (run, row) in rows.take(Self::width() / BLOCK).enumerate() {
+            let first = self.first[point] + if D > 1 { run * grid.cell_stride()[D - 1] } else { 0 };
+            for (weight, cell) in row.iter().zip(&field[first..first + BLOCK]) {
+                value += weight * cell;
+            }
         }
         value
     }
@@ -133,17 +155,85 @@ fn distance_weight(distance: f64) -> f64 {
     }
 }
 
-/// The rows of points in a column, whose cells' centres lie `offsets` cells above them, where all cells of
-/// the patch are occupied: the same fit as [`Patch`] in closed form. Moving points pay for it at every
-/// step.
+impl<const D: usize> Neighbours<D> {
+    /// The neighbours of a cell.
+    fn of(grid: &Grid<D>, cells: &Cells<D>, cell: usize) -> Self {
+        let mut sides = [(true, true); D];
+        for d in 0..D {
+            let stride = grid.cell_stride()[d];
+            sides[d] = (cells.is_occupied(cell - stride), cells.is_occupied(cell + stride));
+        }
+        let first = cell - grid.cell_stride().iter().sum::<usize>();
+        let is_rectangle = (0..power(BLOCK, D)).all(|block| {
+            let (other, steps) = block_cell(grid, first, block);
+            let is_in = (0..D).all(|d| [sides[d].0, true, sides[d].1][steps[d]]);
+            cells.is_occupied(other) == is_in
+        });
+        if !is_rectangle {
+            Self::Some
+        } else if sides == [(true, true); D] {
+            Self::All
+        } else {
+            Self::Rectangle(sides)
+        }
+    }
+}
+
+/// Lines fitted along one direction through the cells around some points, side by side, `[cell][point]`.
+#[derive(Clone, Copy)]
+struct LineRows {
+    /// Cell of each point, as a whole number.
+    cells: Lanes,
+    /// How far above each point the centre of its cell lies, in cells.
+    offsets: Lanes,
+    /// Weights of the cells in the line's value at the point.
+    line: [Lanes; BLOCK],
+    /// Shares of the cells in the sum of the weights of the fit.
+    shares: [Lanes; BLOCK],
+}
+
+impl Default for LineRows {
+    fn default() -> Self {
+        let zero = [0.0; LANES];
+        Self { cells: zero, offsets: zero, line: [[0.0; LANES]; BLOCK], shares: [[0.0; LANES]; BLOCK] }
+    }
+}
+
+impl LineRows {
+    /// The row of a point some of whose cells are empty: the line through two, or the value of the only one.
+    #[inline]
+    fn cut(&mut self, lane: usize, sides: (bool, bool)) {
+        let offset = self.offsets[lane];
+        let (line, mut shares) = match sides {
+            (true, true) => return,
+            (false, true) => ([0.0, 1.0 + offset, -offset], [0.0, offset, offset + 1.0]),
+            (true, false) => ([offset, 1.0 - offset, 0.0], [offset - 1.0, offset, 0.0]),
+            (false, false) => ([0.0, 1.0, 0.0], [0.0, 1.0, 0.0]),
+        };
+        if sides != (false, false) {
+            let is_there = [sides.0, true, sides.1];
+            for k in 0..BLOCK {
+                shares[k] = if is_there[k] { distance_weight(shares[k]) } else { 0.0 };
+            }
+            let sum: f64 = shares.iter().sum();
+            shares = shares.map(|weight| weight / sum);
+        }
+        for k in 0..BLOCK {
+            (self.line[k][lane], self.shares[k][lane]) = (line[k], shares[k]);
+        }
+    }
+}
+
+/// The rows of points at places (in cells) where all cells are occupied, and in a plane the shares: the same fit as
+/// [`Patch`] in closed form. Moving points pay for it at every step.
 ///
 /// The spline is the cubic B-spline, whose four values around a point have the moments 1, 0 and 1/3.
 /// The patch lacks the outermost, `u³/6` at the distance `2 − u` on the near side, `u = |offset|`,
 /// which gives its own moments, and the fit's weights from them.
-#[inline]
-fn whole_column_rows(offsets: &[f64; LANES]) -> [[f64; LANES]; BLOCK] {
-    let mut rows = [[0.0; LANES]; BLOCK];
-    for (lane, offset) in offsets.iter().enumerate() {
+#[inline(never)]
+fn fill<const D: usize>(rows: &mut LineRows, place: &Lanes) {
+    for lane in 0..LANES {
+        let offset = rows.cells[lane] + 0.5 - place[lane];
         let u = offset.abs();
         let rest = 1.0 - u;
         let square = u * u;
@@ -153,24 +243,67 @@ fn whole_column_rows(offsets: &[f64; LANES]) -> [[f64; LANES]; BLOCK] {
         let near = 1.0 - home - far - lacking;
         let (lever, tilt) = (2.0 - u, 3.0 * lacking * (2.0 - u));
         let scale = 1.0 / (1.0 - lacking - tilt * lever);
-        let near = near * (1.0 - tilt) * scale;
-        let far = far * (1.0 - 3.0 * tilt) * scale;
-        rows[0][lane] = if *offset > 0.0 { near } else { far };
-        rows[1][lane] = 1.0 - near - far;
-        rows[2][lane] = if *offset > 0.0 { far } else { near };
+        let line_near = near * (1.0 - tilt) * scale;
+        let line_far = far * (1.0 - 3.0 * tilt) * scale;
+        let is_above = offset > 0.0;
+        rows.offsets[lane] = offset;
+        rows.line[0][lane] = if is_above { line_near } else { line_far };
+        rows.line[1][lane] = 1.0 - line_near - line_far;
+        rows.line[2][lane] = if is_above { line_far } else { line_near };
     }
-    rows
+    // A column has no use for the shares.
+    if D > 1 {
+        for lane in 0..LANES {
+            let u = rows.offsets[lane].abs();
+            let rest = 1.0 - u;
+            let square = u * u;
+            let per_sum = 1.0 / (1.0 - SIXTH * square * u);
+            let far = SIXTH * rest * rest * rest * per_sum;
+            let home = (2.0 / 3.0 - square + 0.5 * square * u) * per_sum;
+            let near = 1.0 - home - far;
+            let is_above = rows.offsets[lane] > 0.0;
+            rows.shares[0][lane] = if is_above { near } else { far };
+            rows.shares[1][lane] = home;
+            rows.shares[2][lane] = if is_above { far } else { near };
+        }
+    }
 }
 
-/// The row of a point in a column whose patch lacks a cell: the line through two cells, or the value of
-/// the only one.
+/// The row of a point from those of its directions.
 #[inline]
-fn cut_column_row(offset: f64, (has_lower, has_upper): (bool, bool)) -> [f64; BLOCK] {
-    match (has_lower, has_upper) {
-        (false, true) => [0.0, 1.0 + offset, -offset],
-        (true, false) => [offset, 1.0 - offset, 0.0],
-        _ => [0.0, 1.0, 0.0],
+fn combine<const D: usize>(lines: &[LineRows; D], lane: usize, row: &mut [f64]) {
+    if D == 1 {
+        for k in 0..BLOCK {
+            row[k] = lines[0].line[k][lane];
+        }
+        return;
     }
+    let (across, up) = (&lines[0], &lines[D - 1]);
+    for (j, run) in row.chunks_exact_mut(BLOCK).enumerate() {
+        let (share, tilt) = (up.shares[j][lane], up.line[j][lane] - up.shares[j][lane]);
+        for (i, weight) in run.iter_mut().enumerate() {
+            *weight = across.line[i][lane] * share + across.shares[i][lane] * tilt;
+        }
+    }
+}
+
+/// The row of a point in any patch, by the normal equations.
+#[inline(never)]
+fn fit<const D: usize>(grid: &Grid<D>, cells: &Cells<D>, home: usize, place: &Vector<D>, row: &mut [f64]) {
+    let (index, stride) = (grid.cell_index(home), grid.cell_stride());
+    let first = home - stride.iter().sum::<usize>();
+    let mut patch = Patch::<D>::empty();
+    for block in 0..power(BLOCK, D) {
+        let (cell, steps) = block_cell(grid, first, block);
+        if cells.is_occupied(cell) {
+            let mut offset = [0.0; D];
+            for d in 0..D {
+                offset[d] = (index[d] + steps[d]) as f64 - 0.5 - place[d];
+            }
+            patch.add(block, offset);
+        }
+    }
+    patch.rows_into(row);
 }
 
 /// The occupied cells around one point: weighted moments of `[1, x, y]` about the point.
@@ -253,7 +386,7 @@ mod tests {
     ) -> Vec<(f64, f64)> {
         let mut cells = Cells::new(grid, points.len());
         cells.locate(grid, points, 0.3);
-        let mut rows = PatchRows::with_points(points.len());
+        let mut rows = PatchRows::with_points(points.len(), grid.cell_count());
         rows.build(grid, &cells);
         let at_cells: Vec<f64> = (0..grid.cell_count()).map(|cell| field(&grid.cell_centre(cell))).collect();
         (0..points.len())
@@ -286,26 +419,49 @@ mod tests {
         }
     }
 
+    /// The row of a point in a cell of which only some of the neighbours are occupied, and that of its fit.
+    fn both_rows<const D: usize>(
+        place: Vector<D>,
+        is_occupied: impl Fn(&[usize; D]) -> bool,
+    ) -> [Vec<f64>; 2] {
+        let grid = Grid::new(1.0, [3; D]);
+        let mut points = Points::lattice(1.0, [3; D], 1);
+        let centre = points.len() / 2;
+        let keep: Vec<usize> = (0..points.len())
+            .filter(|point| {
+                let cell = grid.cell_of(&points.position[*point]).map(|index| index - GHOST_LAYERS);
+                *point == centre || is_occupied(&cell)
+            })
+            .collect();
+        points = points.select(&keep);
+        let point = keep.iter().position(|kept| *kept == centre).expect("the middle");
+        points.position[point] = place.map(|x| 1.0 + x);
+        let mut cells = Cells::new(&grid, points.len());
+        cells.locate(&grid, &points, 0.3);
+        let mut rows = PatchRows::with_points(points.len(), grid.cell_count());
+        rows.build(&grid, &cells);
+        let width = power(BLOCK, D);
+        let mut fitted = vec![0.0; width];
+        fit(&grid, &cells, cells.of_point[point], &cells.place[point], &mut fitted);
+        [rows.weights[point * width..][..width].to_vec(), fitted]
+    }
+
     #[test]
-    fn a_column_s_closed_form_is_the_fit() {
-        for (lower, upper) in [(true, true), (true, false), (false, true), (false, false)] {
-            for step in -20..=20 {
-                let offset = f64::from(step) / 40.0;
-                let mut patch = Patch::<1>::empty();
-                for (block, is_there) in [lower, true, upper].into_iter().enumerate() {
-                    if is_there {
-                        patch.add(block, [offset + block as f64 - 1.0]);
-                    }
+    fn closed_forms_are_the_fit_in_a_column_and_for_every_pattern_of_a_plane() {
+        for step in 0..40 {
+            let place = f64::from(step) / 40.0;
+            for pattern in 0..4 {
+                let [got, fitted] = both_rows([place], |[cell]| pattern >> (cell / 2) & 1 == 1);
+                for (got, fitted) in got.iter().zip(&fitted) {
+                    assert!((got - fitted).abs() < 1e-14, "{got} for {fitted} at {place}");
                 }
-                let mut row = [0.0; BLOCK];
-                patch.rows_into(&mut row);
-                let closed = match (lower, upper) {
-                    (true, true) => whole_column_rows(&[offset; LANES]).map(|lanes| lanes[LANES - 1]),
-                    sides => cut_column_row(offset, sides),
-                };
-                for (got, fitted) in closed.iter().zip(&row) {
-                    assert!((got - fitted).abs() < 1e-14, "{got} for {fitted} at {offset}");
-                }
+            }
+        }
+        for pattern in 0..512 {
+            let place = [0.3 + 0.001 * f64::from(pattern), 0.9 - 0.0015 * f64::from(pattern)];
+            let [got, fitted] = both_rows(place, |[x, y]| pattern >> (x + 3 * y) & 1 == 1);
+            for (got, fitted) in got.iter().zip(&fitted) {
+                assert!((got - fitted).abs() < 1e-13, "{got} for {fitted} in pattern {pattern}");
             }
         }
     }

@@ -1,0 +1,97 @@
+//! References and theory lines that were made before: a report asks for the same ones again and again, and one at large
+//! strain takes a march in time.
+
+use crate::case::Case;
+use crate::exact::exact_error::ExactError;
+use crate::exact::reference::{Reference, ReferenceKind};
+use crate::measure::exact_fields::reference_of;
+use std::collections::HashMap;
+use std::sync::{Arc, LazyLock, Mutex};
+
+/// Values by what they depend on.
+pub(crate) type Known<T> = LazyLock<Mutex<HashMap<String, T>>>;
+
+/// Values that are kept of each kind.
+const MOST_KNOWN: usize = 256;
+
+/// What a reference depends on: the columns of many methods and studies are the same.
+pub(crate) fn key_of(case: &Case, kind: ReferenceKind, times: &[f64]) -> String {
+    format!("{:?} {:?} {kind:?} {times:?}", case.column, case.material)
+}
+
+/// What is known by a key, or else is made and kept.
+///
+/// # Errors
+/// Those of the making; nothing is kept then.
+pub(crate) fn known_or<T: Clone>(
+    known: &Known<T>,
+    key: String,
+    make: impl FnOnce() -> Result<T, ExactError>,
+) -> Result<T, ExactError> {
+    if let Some(found) = known.lock().ok().and_then(|known| known.get(&key).cloned()) {
+        return Ok(found);
+    }
+    let made = make()?;
+    if let Ok(mut known) = known.lock() {
+        if known.len() >= MOST_KNOWN {
+            known.clear();
+        }
+        known.insert(key, made.clone());
+    }
+    Ok(made)
+}
+
+/// A reference for the column and soil of a case at time factors, made once: the values are those of
+/// [`reference_of`], bit for bit.
+///
+/// # Errors
+/// When it refuses them.
+pub fn known_reference(
+    case: &Case,
+    kind: ReferenceKind,
+    times: &[f64],
+) -> Result<Arc<Reference>, ExactError> {
+    static KNOWN: Known<Arc<Reference>> = LazyLock::new(Mutex::default);
+    known_or(&KNOWN, key_of(case, kind, times), || reference_of(case, kind, times).map(Arc::new))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Task;
+    use crate::scene::SceneKind;
+    use std::cell::Cell;
+
+    #[test]
+    fn the_same_is_made_once_and_another_column_is_another() {
+        let known: Known<f64> = LazyLock::new(Mutex::default);
+        let made = Cell::new(0);
+        let ask = |case: &Case, times: &[f64]| {
+            let make = || {
+                made.set(made.get() + 1);
+                Ok(case.column.height)
+            };
+            known_or(&known, key_of(case, ReferenceKind::Terzaghi, times), make).expect("made")
+        };
+        let case = Case::seed(Task::Solve, SceneKind::Terzaghi);
+        let mut higher = case.clone();
+        higher.column.height *= 2.0;
+        assert_eq!([ask(&case, &[0.1]), ask(&case, &[0.1])], [case.column.height; 2]);
+        assert_eq!(made.get(), 1);
+        assert_eq!(ask(&higher, &[0.1]), higher.column.height);
+        let _ = ask(&case, &[0.2]);
+        assert_eq!(made.get(), 3);
+        let mut softer = case.clone();
+        softer.material.youngs_modulus *= 0.5;
+        let _ = ask(&softer, &[0.1]);
+        assert_eq!(made.get(), 4, "another soil");
+    }
+
+    #[test]
+    fn what_is_refused_is_not_kept() {
+        let known: Known<f64> = LazyLock::new(Mutex::default);
+        let refuse = || Err(ExactError::UnknownReference("none".to_owned()));
+        assert!(known_or(&known, "key".to_owned(), refuse).is_err());
+        assert_eq!(known_or(&known, "key".to_owned(), || Ok(2.0)).expect("made"), 2.0);
+    }
+}

@@ -1,0 +1,95 @@
+//! What a study measures beside errors of fields: peaks, and what moves where nothing may.
+
+use crate::record::{MeasureRow, Record};
+use crate::render::page::Block;
+use crate::render::report::StudyResults;
+use crate::render::table::{Cell, Table, columns};
+
+/// A row of every case and measure, that of its worst output; nothing where nothing is measured so.
+pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
+    let mut rows: Vec<Vec<Cell>> = Vec::new();
+    for record in results.records {
+        let case = record.case.label();
+        rows.extend(worst_of(record).into_iter().map(|row| cells_of(&case, row)));
+    }
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let header = "case | measure | > T_v | > found | > exact | > error";
+    let table = Table::of("Measures beside the errors", columns(header), rows)
+        .note("of an output the worst; `T_v` is empty where a measure is of the whole run")
+        .note(
+            "spurious_velocity: largest nodal velocity over the hydraulic conductivity; pore_water: water in the soil over \
+             its pores, less one; largest_pressure: of any water point since the start, over the load, where 1 is what \
+             consolidation begins with at most; the error is relative where the exact value is not zero",
+        );
+    vec![Block::Heading("Measures".to_owned()), Block::Table(table)]
+}
+
+/// The measures of a record as rows of a table of what is found, what is exact, and the error.
+pub fn cells_of(case: &str, row: &MeasureRow) -> Vec<Cell> {
+    let time = row.time_factor.map_or(Cell::Text(String::new()), |factor| Cell::Text(factor.to_string()));
+    let value = |value: f64| Cell::Text(format!("{value:.7}"));
+    let number = |number: f64| if row.exact == 0.0 { Cell::Error(number) } else { value(number) };
+    vec![
+        case.into(),
+        Cell::Code(row.name.clone()),
+        time,
+        number(row.found),
+        if row.exact == 0.0 { Cell::Text("0".to_owned()) } else { value(row.exact) },
+        Cell::Error(row.error()),
+    ]
+}
+
+/// Of every measure of a record the row with the largest error, in the order of the record; what is no number is worst.
+fn worst_of(record: &Record) -> Vec<&MeasureRow> {
+    let mut worst: Vec<&MeasureRow> = Vec::new();
+    for row in &record.measures {
+        match worst.iter_mut().find(|other| other.name == row.name) {
+            Some(other) if row.error().is_nan() || row.error().abs() > other.error().abs() => *other = row,
+            Some(_) => {}
+            None => worst.push(row),
+        }
+    }
+    worst
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::case::tier::Tier;
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    #[test]
+    fn a_peak_stands_beside_the_exact_one_and_of_outputs_the_worst() {
+        let text = "title = \"t\"\nscene = \"mandel\"\noutput = { time_factors = [0.0645, 0.068, 0.0717] }\n[[sweep]]\n\
+                    method = [\"GIMP-SRI\"]\nintegrator = [\"implicit\"]\ncells = [10]\ntime_step = [{ growth = 0.02 }]\n";
+        let study =
+            Study::check(&StudySource { name: "s.toml".to_owned(), text: text.to_owned() }).expect("sound");
+        let mut records = records_of(text);
+        let told = |records: &[Record]| {
+            let blocks = blocks(&StudyResults::new(&study, records, Tier::Full));
+            let Some(Block::Table(table)) = blocks.last() else { return String::new() };
+            table.to_text().expect("a table")
+        };
+        let text = told(&records);
+        // 0.54606 at T = 0.06802, less the error of ten cells.
+        assert!(text.contains("| peak_pressure    |     | 0.54") && text.contains("| 0.5460597 |"), "{text}");
+        assert!(text.contains("| peak_time_factor |     | 0.06") && text.contains("| 0.0680287 |"), "{text}");
+        let at = |time_factor: f64, found: f64| MeasureRow {
+            name: "spurious_velocity".to_owned(),
+            time_factor: Some(time_factor),
+            reference: "at-rest".to_owned(),
+            found,
+            exact: 0.0,
+        };
+        records[0].measures = vec![at(0.1, 1e-14), at(0.2, -3e-13), at(0.3, 2e-13)];
+        assert!(told(&records).contains("| 0.2 | -3.00e-13 |     0 |"), "{}", told(&records));
+        records[0].measures[0].found = f64::NAN;
+        assert!(told(&records).contains("| 0.1 |"), "{}", told(&records));
+        records[0].measures.clear();
+        assert_eq!(told(&records), "");
+    }
+}
