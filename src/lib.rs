@@ -48,6 +48,9 @@
 //! | 21 | domains of water points | `src/mpm/layers/water_domains.rs:take_domains` |
 //! | 22 | balances of two layers | `src/mpm/layers/water_to_nodes.rs:map_water_masses`, `src/mpm/layers/water_to_nodes.rs:map_forces` |
 //! | 23 | pressure along the water | `src/mpm/layers/water_pressure.rs:update_pressure` |
+//! | 24, 25, 26, 27 | manufactured motions, and what acts on them | `src/exact/manufactured/motion.rs:place`, `src/exact/manufactured/state.rs:of`, `src/exact/manufactured/state.rs:body_forces`, `src/exact/manufactured/state.rs:source` |
+//! | 28 | neo-Hookean stress | `src/soil/law.rs:neo_hookean_stress` |
+//! | 29 | the middle of a step | `src/mpm/forced_body.rs:update_forced_pressure`, `src/mpm/explicit/deformation.rs:middle_gradient` |
 //!
 //! # The step
 //!

@@ -43,7 +43,10 @@ pub fn dotted_key(scene: &str, name: &str) -> Result<String, String> {
         Some(scene) => scene,
         None => scene_of(scene)?.1,
     };
-    let body = if scene.needs_two_dimensions() { "layer" } else { "column" };
+    let body = match scene.table_of_geometry() {
+        "column" if scene.needs_two_dimensions() => "layer",
+        table => table,
+    };
     let tables = [body, "material", "integrator", "points"];
     let found = tables.iter().find(|table| Key::named(name, table).is_some());
     found.map(|table| format!("{table}.{name}")).ok_or_else(|| {

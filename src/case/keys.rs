@@ -194,6 +194,19 @@ const FILLING: Kind = Kind::Number(Range::Within(
     "it is the share of the top cell that is filled: more than 0, at most 1",
 ));
 
+const STRETCH: Kind = Kind::Number(Range::Within(
+    -0.99,
+    0.99,
+    "a chosen stretch of {}",
+    "from 1 on it folds the body: it lies between -0.99 and 0.99",
+));
+const TURN: Kind = Kind::Number(Range::Within(
+    -4.0,
+    4.0,
+    "a chosen angle of {}",
+    "more than a whole turn either way needs finer meshes than there are: it lies between -4 and 4 rad",
+));
+
 // One row per key: name, tables, values, unit, field of the case; meaning.
 keys! {
     method in &["sweep"], Kind::Method, "", method; "Method by its name, or by its choices"
@@ -251,6 +264,16 @@ keys! {
     dimensions in &["column"], Kind::Count(2), "", column.dimensions; "Directions that are solved"
     loading_time in &["column"], Kind::Number(Range::NotNegative), "s", column.loading_time;
         "Time over which the load grows, 0 where it acts at once"
+    amplitude_x in &["sweep", "manufactured"], STRETCH, "", column.motion.amplitude_x;
+        "Amplitude A of a chosen stretch along x"
+    amplitude_y in &["sweep", "manufactured"], STRETCH, "", column.motion.amplitude_y;
+        "Amplitude B of a chosen stretch along y"
+    amplitude in &["sweep", "manufactured"], TURN, "rad", column.motion.amplitude;
+        "Amplitude of a chosen vortex: its largest angle"
+    frequency in &["sweep", "manufactured"], POSITIVE, "rad/s", column.motion.frequency;
+        "Frequency ω of a chosen motion, which is largest at ωt = π/2 and back at π"
+    pressure in &["sweep", "manufactured"], POSITIVE, "Pa", column.load;
+        "Amplitude P of a chosen pressure, by which errors of pressure and stress are measured too"
     self_weight in &["column"], Kind::Flag, "", column.self_weight;
         "Whether skeleton and water have a weight; pressures are told beyond the hydrostatic one"
 }
@@ -350,6 +373,7 @@ mod tests {
             let expected: &[&str] = match key.name {
                 "integrator" => &["integrator", "time_step"],
                 "length" | "width" => &["length", "width"],
+                "load" | "pressure" => &["load", "pressure"],
                 name => &[name],
             };
             assert_eq!(changed, expected, "{key:?}");

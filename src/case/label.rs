@@ -2,7 +2,6 @@
 
 use crate::case::keys::{Key, Value};
 use crate::case::{Case, Task, USUAL_POINTS, step_label};
-use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::run::TimeStepRule;
 use crate::scene::arrangement::Arrangement;
 use crate::soil::conductivity_mean::ConductivityMean;
@@ -14,7 +13,7 @@ impl Case {
     /// What is special about integration and equations: empty for the paper's integration of the
     /// scene's own equations.
     pub fn variant(&self) -> String {
-        let (settings, usual) = (&self.settings, ExplicitSettings::default());
+        let (settings, usual) = (&self.settings, self.scene.default_settings());
         let named = [
             (self.formulation != self.integrator.default_formulation(), self.formulation.name().to_owned()),
             (settings.scheme != usual.scheme, settings.scheme.name().to_owned()),

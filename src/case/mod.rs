@@ -16,7 +16,7 @@ use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::Formulation;
 pub use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::SceneKind;
-use crate::scene::column::Column;
+use crate::scene::column::{Column, column_parameters};
 use crate::soil::material::Material;
 use crate::wording::words;
 use serde::{Deserialize, Serialize};
@@ -95,7 +95,7 @@ impl Case {
             task,
             scene,
             column: scene.default_column(),
-            material: Material { law: scene.default_law(), ..Material::default() },
+            material: scene.default_material(),
             method: Method {
                 basis: Basis::Hat,
                 strain: StrainGradient::Standard,
@@ -107,7 +107,7 @@ impl Case {
             },
             integrator,
             formulation: integrator.default_formulation(),
-            settings: ExplicitSettings::default(),
+            settings: scene.default_settings(),
             cells: 1,
             points_per_cell: USUAL_POINTS,
             time_step: integrator.default_rule(),
@@ -164,7 +164,7 @@ impl Case {
 
     /// Whether water and skeleton are as compressible as the seed's: not a step towards incompressibility.
     pub fn has_usual_compressibility(&self) -> bool {
-        let seed = Material::default();
+        let seed = self.scene.default_material();
         self.material.water_bulk_modulus == seed.water_bulk_modulus
             && self.material.poissons_ratio == seed.poissons_ratio
     }
@@ -186,9 +186,9 @@ impl Case {
         of_layer(self.points_per_cell) + of_layer(self.column.points.water_per_cell)
     }
 
-    /// Time, s, at which `T_v = 1`.
+    /// Time, s, at which `T_v = 1`; of a motion half its period.
     pub fn seconds_per_time_factor(&self) -> f64 {
-        self.column.height * self.column.height / self.material.coefficient_of_consolidation()
+        column_parameters(&self.column, &self.material).time(1.0)
     }
 
     /// Memory that a run may take, bytes, to an order of magnitude: its points, and the factors of the direct
@@ -290,7 +290,7 @@ mod tests {
     #[test]
     fn the_hash_follows_every_input() {
         let mut hashes = vec![seed().hash()];
-        let changes: [fn(&mut Case); 43] = [
+        let changes: [fn(&mut Case); 47] = [
             |case| case.task = Task::Stability,
             |case| case.scene = SceneKind::XieLeo,
             |case| case.column.height = 2.0,
@@ -300,6 +300,10 @@ mod tests {
             |case| case.column.base = Some(Base::ALL[0]),
             |case| case.column.loading_time = 2.0,
             |case| case.column.self_weight = true,
+            |case| case.column.motion.amplitude_x = 0.1,
+            |case| case.column.motion.amplitude_y = 0.1,
+            |case| case.column.motion.amplitude = 0.1,
+            |case| case.column.motion.frequency = 0.1,
             |case| case.column.points.offset = 0.1,
             |case| case.column.points.jitter = 0.1,
             |case| case.column.points.filling = 0.5,

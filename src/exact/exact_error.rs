@@ -67,6 +67,34 @@ pub enum ExactError {
         /// Initial porosity `n_0`.
         porosity: f64,
     },
+    /// A law whose stresses are not known along a motion.
+    #[error(
+        "the stresses of the law `{law}` are not known in closed form along the motion `{motion}`: `neo-hookean` is \
+         for every motion, `log-linear` for `manufactured-box`, where nothing shears"
+    )]
+    LawOfMotion {
+        /// Name of the law.
+        law: &'static str,
+        /// Name of the motion.
+        motion: &'static str,
+    },
+    /// A law that has no closed form in a column.
+    #[error("the law `{law}` has no closed form in a column: it belongs to the manufactured scenes")]
+    LawOfColumn {
+        /// Name of the law.
+        law: &'static str,
+    },
+    /// A motion that takes more volume than the pores have.
+    #[error(
+        "the motion would close the pores: it leaves J = {least} of the volume somewhere, which must stay above the \
+         share {grains} of the grains; take smaller amplitudes or a larger porosity"
+    )]
+    MotionClosesPores {
+        /// Least volume ratio.
+        least: f64,
+        /// `1 − n_0`.
+        grains: f64,
+    },
     /// A quantity of either sign that is not finite.
     #[error("the {quantity} must be finite, got {value}")]
     NotFinite {

@@ -25,6 +25,7 @@ pub(crate) mod exact_error;
 pub(crate) mod field_values;
 pub mod large_strain;
 pub mod mandel;
+pub mod manufactured;
 pub(crate) mod parameters;
 pub(crate) mod quadrature;
 pub mod reference;
@@ -34,5 +35,5 @@ pub mod xie_leo;
 
 pub use crate::exact::exact_error::{ExactError, normal};
 pub use crate::exact::field_values::{Accuracy, FieldValues};
-pub use crate::exact::parameters::{Base, ColumnParameters};
+pub use crate::exact::parameters::{Base, ColumnParameters, MotionParameters};
 pub use crate::exact::reference::{Reference, ReferenceKind};

@@ -1,6 +1,7 @@
 //! The column and its material, as plain SI numbers.
 
 use crate::exact::exact_error::{ExactError, normal, positive};
+use std::f64::consts::PI;
 
 /// How a layer rests on its impermeable base.
 #[derive(
@@ -36,6 +37,28 @@ impl Base {
             Self::Rough => "rough",
             Self::Smooth => "smooth",
         }
+    }
+}
+
+/// A motion that is written down: its amplitudes and its frequency.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
+pub struct MotionParameters {
+    /// Amplitude `A` of the stretch along x.
+    pub amplitude_x: f64,
+    /// Amplitude `B` of the stretch along y.
+    pub amplitude_y: f64,
+    /// Amplitude of a vortex: its largest angle, rad.
+    pub amplitude: f64,
+    /// Frequency `ω` of `sin²(ωt)`, rad/s; 0 where nothing is made to move.
+    pub frequency: f64,
+}
+
+impl MotionParameters {
+    /// Whether nothing is made to move: records of such cases say nothing of it.
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
     }
 }
 
@@ -75,6 +98,8 @@ pub struct ColumnParameters {
     /// Whether skeleton and water have a weight: the stress of the start is that of the buoyant skeleton, and
     /// pressures are those beyond the hydrostatic one.
     pub self_weight: bool,
+    /// How a manufactured solution moves; nothing else heeds it.
+    pub motion: MotionParameters,
 }
 
 impl Default for ColumnParameters {
@@ -94,6 +119,7 @@ impl Default for ColumnParameters {
             gravity: 9.81,
             loading_time: 0.0,
             self_weight: false,
+            motion: MotionParameters::default(),
         }
     }
 }
@@ -137,13 +163,19 @@ impl ColumnParameters {
         self.hydraulic_conductivity * self.oedometric_modulus() / self.unit_weight_of_water()
     }
 
-    /// Time `t = T_v H²/c_v` of a time factor, s.
+    /// Time `t = T_v H²/c_v` of a time factor, s; of a motion `ωt/π` is the factor.
     pub fn time(&self, time_factor: f64) -> f64 {
+        if self.motion.frequency > 0.0 {
+            return time_factor * (PI / self.motion.frequency);
+        }
         time_factor * self.height * self.height / self.coefficient_of_consolidation()
     }
 
-    /// Time factor `T_v = c_v t/H²` of a time in s.
+    /// Time factor `T_v = c_v t/H²` of a time in s; of a motion `ωt/π`.
     pub fn time_factor(&self, time: f64) -> f64 {
+        if self.motion.frequency > 0.0 {
+            return time / (PI / self.motion.frequency);
+        }
         time * self.coefficient_of_consolidation() / (self.height * self.height)
     }
 

@@ -74,7 +74,8 @@ fn values_of_column(seed: &ColumnParameters) -> Result<BTreeMap<String, f64>, Ex
     let mut values = BTreeMap::new();
     let seed = *seed;
     let soft = ColumnParameters { load: LARGE_LOAD, water_bulk_modulus: SOFT_WATER, ..seed };
-    for kind in ReferenceKind::ALL {
+    // Motions that were chosen have no column; their balances hold them in the tests.
+    for kind in ReferenceKind::ALL.into_iter().filter(|kind| !kind.is_manufactured()) {
         for (column, parameters) in [("seed column", seed), ("soft water, 200 kPa", soft)] {
             let reference = Reference::new(kind, &parameters, &TIME_FACTORS)?;
             note_solution(&mut values, &format!("{kind} {column}"), &reference, &parameters, &TIME_FACTORS)?;

@@ -35,7 +35,9 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
     let final_settlement = match references.first() {
         None => f64::NAN,
         // What a load of the scale would make, where nothing settles.
-        Some(own) if own.kind() == ReferenceKind::AtRest => parameters.final_settlement(),
+        Some(own) if own.kind() == ReferenceKind::AtRest || own.kind().is_manufactured() => {
+            parameters.final_settlement()
+        }
         Some(own) => own.settlement(LONG_AFTER)?,
     };
     let history: Vec<HistoryRow> = outcome

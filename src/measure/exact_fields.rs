@@ -4,6 +4,7 @@ use crate::case::Case;
 use crate::exact::cosine_layer::{LayerFields, LayerState};
 use crate::exact::exact_error::ExactError;
 use crate::exact::field_values::FieldValues;
+use crate::exact::manufactured::Manufactured;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::mpm::run::snapshot::{PlaneSamples, Samples, WaterSamples};
 use crate::scene::column::column_parameters;
@@ -40,6 +41,9 @@ impl ExactFields {
     /// # Errors
     /// When the reference refuses the time factor.
     pub fn of(reference: &Reference, time_factor: f64, places: SamplePlaces<'_>) -> Result<Self, ExactError> {
+        if let Some(motion) = reference.manufactured().filter(|_| !places.distances.is_empty()) {
+            return Self::of_motion(motion, time_factor, places);
+        }
         match reference.plane_state(time_factor)? {
             Some(layer) if !places.distances.is_empty() => Self::along_layer(&layer, places),
             _ => Self::over_height(reference, time_factor, places),
@@ -68,6 +72,22 @@ impl ExactFields {
             exact.pressure.push(fields.pressure);
             exact.effective_stress.push(fields.effective_stress);
             exact.displacement.push(fields.displacement);
+        }
+        Ok(exact)
+    }
+
+    fn of_motion(
+        motion: &Manufactured,
+        time_factor: f64,
+        places: SamplePlaces<'_>,
+    ) -> Result<Self, ExactError> {
+        let mut exact = Self::default();
+        for (distance, height) in places.distances.iter().zip(places.heights) {
+            let fields = motion.plane_fields(time_factor, [*distance, *height])?;
+            exact.pressure.push(fields.pressure);
+            exact.effective_stress.push(fields.effective_stress[1][1]);
+            exact.horizontal_displacement.push(fields.displacement[0]);
+            exact.displacement.push(fields.displacement[1]);
         }
         Ok(exact)
     }

@@ -103,7 +103,7 @@ pub fn snapshot_errors(
     snapshot: &Snapshot,
 ) -> Result<Vec<ErrorRow>, ExactError> {
     let load = case.column.load;
-    let final_settlement = reference.settlement(LONG_AFTER)?;
+    let final_settlement = reference.displacement_scale(LONG_AFTER)?;
     let resolution = resolution(reference, time_factor);
     let mut rows = Vec::new();
     for (sample, samples) in [

@@ -1,5 +1,6 @@
 //! The discretised body: points, nodes and the operators that join them.
 
+use crate::mpm::forcing::{Forced, Forcing};
 use crate::mpm::method::{Configuration, Method};
 use crate::mpm::operators::recovery::RecoveryOperator;
 use crate::mpm::operators::rigid_plate::RigidPlate;
@@ -16,6 +17,7 @@ use crate::soil::continuity::Continuity;
 use crate::soil::law::Stiffness;
 use crate::soil::material::Material;
 use crate::soil::tensor::{Tensor, Vector, product};
+use std::sync::Arc;
 
 /// What is to be solved: geometry, material, load and initial state, and by which operators.
 #[derive(Clone, Debug)]
@@ -51,6 +53,8 @@ pub struct Problem<const D: usize> {
     pub initial_gradient: Tensor<D>,
     /// Pressure that this problem is about, Pa: what leaves it a thousandfold has blown up.
     pub pressure_scale: f64,
+    /// Body forces and source of water that act on every point, where a motion is made by them.
+    pub forcing: Option<Arc<dyn Forcing<D>>>,
     /// Whether a result that the scene cannot reach ends the run; not where growth is the question.
     pub is_bounded: bool,
 }
@@ -105,6 +109,8 @@ pub struct Body<const D: usize> {
     pub plate: Option<RigidPlate>,
     /// Weight of skeleton and water; the pressures of the points are total ones then.
     pub weight: Option<SelfWeight>,
+    /// What acts on every point from outside.
+    pub forcing: Option<Forced<D>>,
     /// `N` and `∇N` between points and nodes.
     pub basis: PointStencils<D>,
     /// `G` where it is not the gradient of the basis.
@@ -142,6 +148,7 @@ impl<const D: usize> Body<D> {
             plate_load,
             weight,
             initial_gradient,
+            forcing,
             ..
         } = problem;
         let count = points.len();
@@ -159,6 +166,7 @@ impl<const D: usize> Body<D> {
                 .stretching(configuration.moves_points() && !method.domains_follow()),
             plate: None,
             weight: weight.map(|gravity| SelfWeight::of(gravity, &points)),
+            forcing: forcing.map(|acting| Forced::of(acting, &grid, &points)),
             basis: method.basis.stencils(count),
             strain: StrainOperator::of(method.strain, count),
             cell_memory: CellMemory::new(&grid),

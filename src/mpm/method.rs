@@ -234,6 +234,11 @@ impl Method {
         }
     }
 
+    /// Whether it is somebody else's solver.
+    pub fn is_attached(&self) -> bool {
+        self.attached.is_some()
+    }
+
     /// Whether every point takes the pressure of its cell's centre: reduced integration without recovery.
     pub fn has_constant_recovery(&self) -> bool {
         self.pressure == PressureIntegration::Sri && self.recovery == Recovery::Constant

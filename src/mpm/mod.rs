@@ -5,7 +5,7 @@
 //! (`cells`) and recovery (`recovery`). A `body` joins them with points and nodes; `explicit` is
 //! the step of Zheng et al. (2021); `assembled` is the same step as one banded map where nothing
 //! moves; `layers` puts the water into points of its own; `run` drives any of them from output to
-//! output; `implicit` takes steps of any size on the same operators, with the linear systems of
+//! output; `forcing` is what acts on every point from outside, `forced_body` what that does to a body; `implicit` takes steps of any size on the same operators, with the linear systems of
 //! `direct_solver`.
 //!
 //! Nothing here knows of studies, references or reports.
@@ -16,6 +16,8 @@ pub mod body;
 pub mod critical_step;
 pub mod direct_solver;
 pub mod explicit;
+pub mod forced_body;
+pub mod forcing;
 pub mod implicit;
 pub mod layers;
 pub mod loaded_body;

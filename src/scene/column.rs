@@ -1,7 +1,6 @@
 //! Geometry and load of columns and layers that drain at their top.
 
-use crate::exact::parameters::Base;
-use crate::exact::parameters::ColumnParameters;
+use crate::exact::parameters::{Base, ColumnParameters, MotionParameters};
 use crate::scene::arrangement::Arrangement;
 use crate::soil::material::Material;
 use serde::{Deserialize, Serialize};
@@ -33,6 +32,9 @@ pub struct Column {
     /// Where the points lie in their cells.
     #[serde(default, skip_serializing_if = "Arrangement::is_regular")]
     pub points: Arrangement,
+    /// How a square moves whose motion is chosen.
+    #[serde(default, skip_serializing_if = "MotionParameters::is_none")]
+    pub motion: MotionParameters,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
@@ -69,6 +71,7 @@ impl Default for Column {
             loading_time: 0.0,
             self_weight: false,
             points: Arrangement::default(),
+            motion: MotionParameters::default(),
         }
     }
 }
@@ -120,5 +123,6 @@ pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
         gravity: soil.gravity,
         loading_time: column.loading_time,
         self_weight: column.self_weight,
+        motion: column.motion,
     }
 }

@@ -39,6 +39,8 @@ pub enum SceneBody {
     Layer,
     /// A slab between two rigid plates, in two dimensions only; its fields vary as a column's do.
     Slab,
+    /// A square between rollers on all sides, in two dimensions only, whose motion is chosen.
+    Square,
 }
 
 /// Size of strains.

@@ -10,6 +10,7 @@ mod definition;
 mod dynamic_column;
 mod dynamic_single_mode;
 mod mandel;
+mod manufactured;
 pub mod problem;
 mod single_mode;
 mod standing_wave;
@@ -17,9 +18,15 @@ mod terzaghi;
 mod xie_leo;
 
 use crate::exact::exact_error::ExactError;
+use crate::exact::manufactured::Manufactured;
+use crate::exact::manufactured::model::ManufacturedModel;
+use crate::exact::manufactured::motion::Motion;
 use crate::exact::reference::{Reference, ReferenceKind};
+use crate::mpm::explicit::scheme::Scheme;
+use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::method::{Configuration, Method};
-use crate::scene::column::Column;
+use crate::mpm::run::integrator::IntegratorKind;
+use crate::scene::column::{Column, column_parameters};
 use crate::scene::definition::{
     SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
 };
@@ -49,11 +56,17 @@ pub enum SceneKind {
     Mandel,
     /// A column at rest under its own weight.
     AtRest,
+    /// A square stretched along its axes by body forces, at large strain.
+    ManufacturedBox,
+    /// A square with shear inside, at large strain.
+    ManufacturedShear,
+    /// A square with a disc inside that turns, at large strain.
+    ManufacturedVortex,
 }
 
 impl SceneKind {
     /// Every scene.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 12] = [
         Self::Terzaghi,
         Self::SingleMode,
         Self::XieLeo,
@@ -63,6 +76,9 @@ impl SceneKind {
         Self::StandingWave,
         Self::Mandel,
         Self::AtRest,
+        Self::ManufacturedBox,
+        Self::ManufacturedShear,
+        Self::ManufacturedVortex,
     ];
 
     /// The scene's own file.
@@ -77,6 +93,9 @@ impl SceneKind {
             Self::StandingWave => &standing_wave::STANDING_WAVE,
             Self::Mandel => &mandel::MANDEL,
             Self::AtRest => &at_rest::AT_REST,
+            Self::ManufacturedBox => &manufactured::BOX,
+            Self::ManufacturedShear => &manufactured::SHEAR,
+            Self::ManufacturedVortex => &manufactured::VORTEX,
         }
     }
 
@@ -115,11 +134,77 @@ impl SceneKind {
 
     /// Law of the soil where a study names none.
     pub fn default_law(self) -> Law {
-        if self.is_large_strain() { Law::LogLinear } else { Law::Linear }
+        match self.model() {
+            Some(model) => model.law,
+            None if self.is_large_strain() => Law::LogLinear,
+            None => Law::Linear,
+        }
+    }
+
+    /// Soil where a study names nothing.
+    pub fn default_material(self) -> Material {
+        let law = self.default_law();
+        if self.is_manufactured() {
+            Material { law, ..manufactured::soil() }
+        } else {
+            Material { law, ..Material::default() }
+        }
+    }
+
+    /// Choices of the explicit integrator where a study names none: the paper's, but of second order in the step
+    /// where a smooth motion is held against exact fields.
+    pub fn default_settings(self) -> ExplicitSettings {
+        if self.is_manufactured() {
+            ExplicitSettings { scheme: Scheme::Leapfrog, drag: Drag::Centred, ..ExplicitSettings::default() }
+        } else {
+            ExplicitSettings::default()
+        }
+    }
+
+    /// The motion that was chosen, and its law where nobody names one; none where a load or a start moves the body.
+    fn model(self) -> Option<ManufacturedModel> {
+        match self.references().first() {
+            Some(ReferenceKind::Manufactured(model)) => Some(*model),
+            _ => None,
+        }
+    }
+
+    /// Whether its motion is one that was chosen, and body forces and a source make it.
+    pub fn is_manufactured(self) -> bool {
+        self.definition().body == SceneBody::Square
+    }
+
+    /// Why an input of a motion is none of this scene's, where it is not.
+    pub fn refuses_input_of_motion(self, name: &str) -> Option<&'static str> {
+        match (self.model()?.motion, name) {
+            (Motion::Vortex, "amplitude_x" | "amplitude_y") => {
+                Some("a vortex has one amplitude, its largest angle: `amplitude`")
+            }
+            (Motion::Box | Motion::Shear, "amplitude") => {
+                Some("this motion has two amplitudes: `amplitude_x` and `amplitude_y`")
+            }
+            _ => None,
+        }
+    }
+
+    /// Why the scene cannot be solved by an integrator, where it cannot.
+    pub fn refuses_integrator(self, integrator: IntegratorKind) -> Option<&'static str> {
+        (self.is_manufactured() && integrator != IntegratorKind::Explicit).then_some(
+            "body forces and source of a manufactured motion act in explicit steps alone: implicit ones are not \
+             built yet",
+        )
     }
 
     /// Why the scene cannot take a law, where it cannot.
     pub fn refuses_law(self, law: Law) -> Option<&'static str> {
+        if let Some(model) = self.model() {
+            return (!ManufacturedModel { law, ..model }.has_law()).then_some(
+                "the stresses of this law are not known in closed form along the motion of this scene",
+            );
+        }
+        if self.is_large_strain() && !Law::OF_COLUMNS.contains(&law) {
+            return Some("this law has no closed form in a column: it belongs to the manufactured scenes");
+        }
         match (self.is_large_strain(), law == Law::Linear) {
             (true, true) => {
                 Some("the law `linear` is of small strain: its conductivity ignores that the pores close")
@@ -144,6 +229,17 @@ impl SceneKind {
 
     /// Why the scene cannot take a method, where it cannot.
     pub fn refuses_method(self, method: Method) -> Option<&'static str> {
+        if self.is_manufactured() && method.is_attached() {
+            return Some(
+                "somebody else's solver is not told the body forces and the source of a manufactured motion",
+            );
+        }
+        if self.is_manufactured() && method.strain.is_bbar() {
+            return Some(
+                "B-bar changes the strain of a point by its volume alone, and a manufactured motion is followed by \
+                 the whole gradient at mid step",
+            );
+        }
         let is_frozen = method.configuration.is_none_or(|kind| kind == Configuration::Frozen);
         (self.has_plates() && (method.basis.is_spline() || !is_frozen)).then_some(
             "a rigid plate holds the nodes of a face: it takes weights that stay (`frozen`), of hats or domains and \
@@ -182,6 +278,7 @@ impl SceneKind {
             SceneBody::Column => Column { self_weight: self.is_at_rest(), ..Column::default() },
             SceneBody::Layer => Column::layer(),
             SceneBody::Slab => Column::slab(),
+            SceneBody::Square => manufactured::square(self.model().map(|model| model.motion)),
         }
     }
 
@@ -210,9 +307,24 @@ impl SceneKind {
         self.definition().body == SceneBody::Layer
     }
 
+    /// The table of a study that has its geometry, and what is done to it.
+    pub fn table_of_geometry(self) -> &'static str {
+        match self.definition().body {
+            SceneBody::Column | SceneBody::Slab => "column",
+            SceneBody::Layer => "layer",
+            SceneBody::Square => "manufactured",
+        }
+    }
+
+    /// Why its parameters make no problem, where the motion that was chosen cannot be.
+    pub fn refuses_motion(self, column: &Column, soil: &Material) -> Option<ExactError> {
+        let model = ManufacturedModel { law: soil.law, ..self.model()? };
+        Manufactured::new(model, &column_parameters(column, soil)).err()
+    }
+
     /// Whether its exact fields vary along the body too, so that there is no profile over the depth.
     pub fn has_plane_fields(self) -> bool {
-        self.is_a_layer()
+        self.is_a_layer() || self.is_manufactured()
     }
 
     /// Whether it is about locking, so that runs are told apart by the stiffness of water and soil.
@@ -259,6 +371,11 @@ impl SceneKind {
             ReferenceKind::DynamicColumn => Self::DynamicColumn,
             ReferenceKind::Mandel => Self::Mandel,
             ReferenceKind::AtRest => Self::AtRest,
+            ReferenceKind::Manufactured(model) => match model.motion {
+                Motion::Box => Self::ManufacturedBox,
+                Motion::Shear => Self::ManufacturedShear,
+                Motion::Vortex => Self::ManufacturedVortex,
+            },
             _ => Self::Terzaghi,
         }
     }

@@ -16,6 +16,7 @@ use crate::mpm::state::points::Points;
 use crate::scene::SceneKind;
 use crate::scene::column::{Column, column_parameters};
 use crate::scene::definition::{SceneLoad, SceneStart};
+use crate::scene::manufactured;
 use crate::soil::material::Material;
 
 /// Cells above the column, so that a surface that rises stays on the grid.
@@ -99,8 +100,12 @@ pub fn column_problem<const D: usize>(
     let water =
         column.points.has_two_layers().then_some(if of_water == 0 { points_per_cell } else { of_water });
     let water = water.map(layer_of).transpose()?;
-    extent[D - 1] += HEADROOM;
+    let forcing = scene.model().map(|model| manufactured::forcing(model, column, soil)).transpose()?;
+    if forcing.is_none() {
+        extent[D - 1] += HEADROOM;
+    }
     let support = match column.base {
+        _ if scene.is_manufactured() => Support::closed(),
         Some(Base::Rough) => Support::oedometer().on_rough_base(),
         Some(Base::Smooth) | None if scene.has_plates() => Support::oedometer().with_movable_side(),
         Some(Base::Smooth) | None => Support::oedometer(),
@@ -130,6 +135,7 @@ pub fn column_problem<const D: usize>(
         // Round-off is of the size of what weighs.
         pressure_scale: weight
             .map_or(load, |gravity| load.max(soil.mixture_density() * gravity * column.height)),
+        forcing,
         is_bounded: true,
     })
 }

@@ -50,7 +50,7 @@ impl Law {
     }
 
     /// Kirchhoff's potential `Φ` at the engineering strain `J − 1`, `dΦ = κ dσ'` over `k_0 E_oed`, zero in the
-    /// initial state; in closed form for every law.
+    /// initial state; in closed form for every law of columns, not a number for others.
     #[inline]
     pub fn flow_potential(self, strain: f64) -> f64 {
         match self {
@@ -60,6 +60,7 @@ impl Law {
             Self::LogLinear | Self::Engineering => strain,
             // κ = J, dσ' = dJ/J²
             Self::PorosityDependent => elementary::ln_1p(strain),
+            Self::NeoHookean => f64::NAN,
         }
     }
 
@@ -70,6 +71,7 @@ impl Law {
         match self {
             Self::Linear | Self::LogLinear | Self::Engineering => elementary::exp_m1(-compression),
             Self::PorosityDependent => -compression / (1.0 + compression),
+            Self::NeoHookean => f64::NAN,
         }
     }
 }
@@ -94,7 +96,7 @@ mod tests {
 
     #[test]
     fn the_potential_is_the_integral_of_the_mobility_over_the_stress() {
-        for law in Law::ALL {
+        for law in Law::OF_COLUMNS {
             for compression in [-0.2, 1e-6, 0.1, 0.7] {
                 let strain = law.strain_under(compression);
                 assert!((law.uniaxial_stress_ratio(strain) + compression).abs() < 1e-15, "{law:?}");

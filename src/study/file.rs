@@ -47,6 +47,8 @@ pub struct StudyFile {
     pub column: InputTable<One, ColumnKeys>,
     /// Geometry and load of a layer.
     pub layer: Typed<InputTable<One, LayerKeys>>,
+    /// Motion and pressure of a square that are chosen.
+    pub manufactured: Typed<InputTable<One, ManufacturedKeys>>,
     /// Where the points lie in their cells.
     #[serde(default)]
     pub points: InputTable<One, PointsKeys>,
@@ -98,6 +100,7 @@ macro_rules! tables_of_inputs {
 
 tables_of_inputs!(
     LayerKeys: "layer",
+    ManufacturedKeys: "manufactured",
     PointsKeys: "points",
     MaterialKeys: "material",
     IntegratorKeys: "integrator",

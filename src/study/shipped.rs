@@ -25,7 +25,8 @@ const SHIPPED: &[(&str, &str)] = shipped! {
     "large-strain-points" "large-strain-crossing" "large-strain-plane" "large-strain-small"
     "large-strain-half" "large-strain-start" "large-strain-chord" "large-strain-ramp" "large-strain-ramp-half"
     "large-strain-ramp-steps" "large-strain-limit" "nodal-pressure" "large-strain-nodal" "two-layers"
-    "two-layers-large-strain" "two-layers-plane" "stability-layers" "map"
+    "two-layers-large-strain" "two-layers-plane" "stability-layers" "manufactured-box" "manufactured-shear"
+    "manufactured-vortex" "map"
 };
 
 /// The shipped study of a name.

@@ -9,6 +9,7 @@ mod first_hour;
 mod foreign;
 mod gate;
 mod impossible_results;
+mod manufactured;
 mod mapping;
 mod planted_damage;
 mod plate_and_weight;

@@ -69,7 +69,11 @@ fn markdown(header: &str, rows: impl Iterator<Item = Vec<String>>) -> String {
 
 /// The inputs of a case that a table takes.
 fn inputs(table: &str) -> String {
-    let scene = if table == "layer" { SceneKind::CosineLayer } else { SceneKind::Terzaghi };
+    let scene = match table {
+        "layer" => SceneKind::CosineLayer,
+        "manufactured" => SceneKind::ManufacturedBox,
+        _ => SceneKind::Terzaghi,
+    };
     let seed = Case::seed(Task::Solve, scene);
     let rows = Key::of(table).map(|key| {
         let left_out = match key.name {
@@ -78,6 +82,13 @@ fn inputs(table: &str) -> String {
             "formulation" => "the integrator's and scene's own".to_owned(),
             "law" => "the scene's own".to_owned(),
             "length" | "base" if table == "sweep" => "the layer's".to_owned(),
+            "amplitude_x" | "amplitude_y" | "amplitude" | "frequency" | "pressure" => match (table, key.name)
+            {
+                ("sweep", _) => "the motion's".to_owned(),
+                (_, "amplitude_y") => "0.25, shear -0.2".to_owned(),
+                (_, "amplitude") => "1.5".to_owned(),
+                _ => value_of(key, &seed),
+            },
             _ => value_of(key, &seed),
         };
         vec![code(key.name), values(key), key.unit.to_owned(), left_out, key.meaning.to_owned()]

@@ -10,4 +10,5 @@ mod mpm_two_dimensions;
 mod option_pairs;
 mod runs_cosine_layer;
 mod runs_large_strain;
+mod runs_manufactured;
 mod runs_profile;

@@ -331,6 +331,7 @@ fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
         loading_time: 0.0,
         initial_gradient: [[0.0, 0.0], [0.0, strain]],
         pressure_scale: one.pressure_scale,
+        forcing: None,
         is_bounded: true,
     }
 }

@@ -9,6 +9,7 @@ use crate::exact::consolidation;
 use crate::exact::cosine_layer::LayerFields;
 use crate::exact::field_values::Accuracy;
 use crate::exact::mandel::Mandel;
+use crate::exact::manufactured::PlaneValues;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::scene::SceneKind;
@@ -71,6 +72,19 @@ impl serde::Serialize for PrintedRow {
     }
 }
 
+/// The same of a motion that was chosen, over the side of its square and the amplitude of its pressure.
+fn motion_columns(fields: &PlaneValues, parameters: &ColumnParameters) -> [(&'static str, f64); 5] {
+    let [[xx, xy], [_, yy]] = fields.effective_stress.map(|row| row.map(|stress| stress / parameters.load));
+    let [horizontal, vertical] = fields.displacement.map(|component| component / parameters.height);
+    [
+        ("horizontal_displacement_ratio", horizontal),
+        ("vertical_displacement_ratio", vertical),
+        ("effective_stress_ratio_xx", xx),
+        ("effective_stress_ratio_yy", yy),
+        ("effective_stress_ratio_xy", xy),
+    ]
+}
+
 /// What `--x` adds: the distance, displacements over the height, effective stresses over the load.
 fn plane_columns(fields: &LayerFields, parameters: &ColumnParameters) -> [(&'static str, f64); 5] {
     let [xx, yy, _, xy] = fields.effective_stress.map(|stress| stress / parameters.load);
@@ -100,7 +114,8 @@ impl Distances {
             (None, Some(typed)) => ("--along", "xi", typed),
             (None, None) => return Ok(None),
         };
-        if !matches!(kind, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible) {
+        let is_layer = matches!(kind, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible);
+        if !is_layer && !kind.is_manufactured() {
             return Err(Ended::usage(format!(
                 "`{option}` is of a layer: `{kind}` depends on the depth alone; leave it out, or ask for `{}` or `{}`",
                 ReferenceKind::CosineLayer,
@@ -165,6 +180,16 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let state = if distances.is_some() { reference.plane_state(time_factor)? } else { None };
         for zeta in &depths {
             let fields = reference.fields(time_factor, *zeta)?;
+            if let (Some(motion), Some(distances)) = (reference.manufactured(), &distances) {
+                for ratio in &distances.ratios {
+                    let at = motion.plane_fields(time_factor, [*ratio, 1.0 - zeta])?;
+                    let mut columns = row(*zeta, at.pressure);
+                    columns.push((distances.column, *ratio));
+                    columns.extend(motion_columns(&at, &parameters));
+                    rows.push(PrintedRow(columns));
+                }
+                continue;
+            }
             let (Some(state), Some(distances)) = (&state, &distances) else {
                 rows.push(PrintedRow(row(*zeta, fields.pressure)));
                 continue;

@@ -61,6 +61,8 @@ pub fn predict<const D: usize>(
 /// limit of one, and unequal ones a limit between those of one layer with the points of either.
 fn one_layer<const D: usize>(problem: &Problem<D>) -> Problem<D> {
     let mut one = problem.clone();
+    // What acts from outside moves no limit.
+    one.forcing = None;
     if let Some(water) = one.water.take().filter(|water| water.len() > one.points.len()) {
         one.points = water;
     }

@@ -2,7 +2,7 @@
 
 use crate::elementary;
 use crate::mpm::state::grid::SIXTH;
-use crate::soil::tensor::{Tensor, Vector, product, product_with_transpose};
+use crate::soil::tensor::{Tensor, Vector, identity, inverse, product, product_with_transpose};
 
 /// What follows the deformation of a point beside its volume.
 #[derive(Clone, Copy)]
@@ -11,6 +11,8 @@ pub enum Following {
     Domain,
     /// Its inverse deformation gradient.
     InverseDeformation,
+    /// Both of them.
+    Both,
     /// Nothing else.
     Nothing,
 }
@@ -26,14 +28,13 @@ impl Following {
         increment: &Tensor<D>,
     ) -> f64 {
         let stretch: Vector<D> = std::array::from_fn(|d| stretch_of(increment[d][d]));
-        match self {
-            Self::Domain => {
-                for d in 0..D {
-                    half_length[d] *= stretch[d];
-                }
+        if matches!(self, Self::Domain | Self::Both) {
+            for d in 0..D {
+                half_length[d] *= stretch[d];
             }
-            Self::InverseDeformation => *inverse_deformation = relaxed(inverse_deformation, increment),
-            Self::Nothing => {}
+        }
+        if matches!(self, Self::InverseDeformation | Self::Both) {
+            *inverse_deformation = relaxed(inverse_deformation, increment);
         }
         stretch.iter().product()
     }
@@ -80,6 +81,21 @@ fn relaxed<const D: usize>(inverse: &Tensor<D>, increment: &Tensor<D>) -> Tensor
     std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j] - once[i][j] + 0.5 * twice[i][j]))
 }
 
+/// `(I + Δt L/2)⁻¹` of a velocity gradient `L` at the start of a step.
+#[inline]
+pub fn to_middle<const D: usize>(gradient: &Tensor<D>, dt: f64) -> Tensor<D> {
+    let unit = identity::<D>();
+    let forth = std::array::from_fn(|i| std::array::from_fn(|j| unit[i][j] + 0.5 * dt * gradient[i][j]));
+    inverse(&forth).0
+}
+
+/// A velocity gradient `L` at the start of a step, on the configuration of its middle: `L (I + Δt L/2)⁻¹`. Its
+/// exponential is `I + Δt L` to second order, which is what points that are moved by `Δt v` undergo.
+#[inline]
+pub fn middle_gradient<const D: usize>(gradient: &Tensor<D>, dt: f64) -> Tensor<D> {
+    product(gradient, &to_middle(gradient, dt))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -106,6 +122,22 @@ mod tests {
         }
         let stretched = rotated(&stress, &[[0.1, 0.3], [0.3, -0.2]]);
         assert_eq!(stretched, stress, "a strain without spin turns nothing");
+    }
+
+    #[test]
+    fn a_step_at_its_middle_is_that_of_points_moved_along_straight_lines() {
+        // exp of the middle gradient is I + Δt L but for third order.
+        let gradient = [[0.3, -0.8], [0.5, -0.4]];
+        let off = |dt: f64| {
+            let increment = middle_gradient(&gradient, dt).map(|row| row.map(|rate| dt * rate));
+            let back = relaxed(&identity::<2>(), &increment);
+            let moved: Tensor<2> = std::array::from_fn(|i| {
+                std::array::from_fn(|j| f64::from(u8::from(i == j)) + dt * gradient[i][j])
+            });
+            let whole = product(&back, &moved);
+            (whole[0][0] - 1.0).abs() + whole[0][1].abs() + whole[1][0].abs() + (whole[1][1] - 1.0).abs()
+        };
+        assert!(off(1e-2) < 1e-6 && (7.5..8.5).contains(&(off(2e-2) / off(1e-2))), "{}", off(1e-2));
     }
 
     #[test]

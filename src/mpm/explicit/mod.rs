@@ -8,7 +8,7 @@ pub mod points_to_nodes;
 pub mod scheme;
 
 use crate::mpm::body::Body;
-use crate::mpm::explicit::deformation::{Following, rotated, stretch_of};
+use crate::mpm::explicit::deformation::{Following, middle_gradient, rotated, stretch_of};
 use crate::mpm::method::{Configuration, Memory, PressureIntegration};
 use crate::mpm::momentum::{NodalBalance, implicit_drag, per_water_inertia};
 use crate::mpm::operators::recovery::points_in_cells::points_in_cells;
@@ -16,7 +16,7 @@ use crate::mpm::operators::stencil::{Blocks, with_stencils};
 use crate::mpm::operators::strain_gradient::StrainOperator;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::mpm::state::nodes::Nodes;
-use crate::soil::tensor::{Tensor, product};
+use crate::soil::tensor::{Tensor, inverse, product};
 
 pub use crate::mpm::explicit::scheme::{Drag, ExplicitSettings};
 
@@ -148,6 +148,8 @@ impl<const D: usize> Body<D> {
         let stride = *self.grid.node_stride();
         let (field, dilation_rates) = (&self.nodes.solid_velocity[..], &self.dilation_rates[..]);
         let (law, stiffness) = (self.material.law, self.stiffness);
+        // A motion that is held against exact fields is followed at the middle of the step, to second order.
+        let is_at_middle = self.forcing.is_some();
         let points = &mut self.points;
         let count = points.len();
         let (volume_ratio, half_length) =
@@ -159,11 +161,19 @@ impl<const D: usize> Body<D> {
             if is_total {
                 gradient = product(&gradient, &inverse_deformation[point]);
             }
+            if is_at_middle {
+                gradient = middle_gradient(&gradient, dt);
+            }
             let mut increment = gradient.map(|row| row.map(|rate| dt * rate));
             let before = volume_ratio[point];
             if deforms {
                 volume_ratio[point] *=
                     following.deform(&mut half_length[point], &mut inverse_deformation[point], &increment);
+            }
+            if law.is_hyperelastic() {
+                let deformation = inverse(&inverse_deformation[point]).0;
+                effective_stress[point] = stiffness.neo_hookean_stress(&deformation, volume_ratio[point]);
+                continue;
             }
             let mut shared = 0.0;
             if is_bbar {
@@ -207,8 +217,11 @@ impl<const D: usize> Body<D> {
 
     #[inline]
     fn following(&self) -> Following {
+        let is_hyperelastic = self.material.law.is_hyperelastic();
         match self.configuration {
+            Configuration::Updated if self.method.domains_follow() && is_hyperelastic => Following::Both,
             Configuration::Updated if self.method.domains_follow() => Following::Domain,
+            Configuration::Updated if is_hyperelastic => Following::InverseDeformation,
             Configuration::Total => Following::InverseDeformation,
             Configuration::Updated | Configuration::Frozen => Following::Nothing,
         }
@@ -217,6 +230,10 @@ impl<const D: usize> Body<D> {
     /// Step 7: pressure increments at the sites of the method's divergence, recovered to the points:
     /// `Δp = −Δt (K_w/n) [∇·v_s + ∇·w]` (docs/theory.md, Eq. 8).
     fn update_pressure(&mut self, dt: f64) {
+        if self.forcing.is_some() {
+            self.update_forced_pressure(dt);
+            return;
+        }
         self.nodal_flux();
         self.surface_flux += dt * self.outflow_of(&self.nodes.flux);
         self.evaluate_sites(|body, place, porosity| {

@@ -53,6 +53,9 @@ impl<const D: usize> Body<D> {
             if self.weight.is_some() {
                 self.add_weight();
             }
+            if self.forcing.is_some() {
+                self.add_body_forces();
+            }
         }
     }
 

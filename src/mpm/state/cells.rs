@@ -262,6 +262,21 @@ impl<const D: usize> Cells<D> {
         divergence * share_of_corner(grid)
     }
 
+    /// Gradient of a nodal field at the centre of a cell, by the linear shape functions, `[component][direction]`,
+    /// 1/m of the field.
+    #[inline]
+    pub fn centre_gradient(&self, grid: &Grid<D>, cell: usize, field: &[Vector<D>]) -> Tensor<D> {
+        let mut gradient = [[0.0; D]; D];
+        for (corner, node) in grid.corners(self.divergence_node[cell]).enumerate() {
+            for direction in 0..D {
+                for component in 0..D {
+                    gradient[component][direction] += side(corner, direction) * field[node][component];
+                }
+            }
+        }
+        gradient.map(|row| row.map(|slope| slope * share_of_corner(grid)))
+    }
+
     /// The nodes of that divergence with their coefficients, 1/m.
     pub fn centre_divergence_row(&self, grid: &Grid<D>, cell: usize) -> Vec<(usize, Vector<D>)> {
         let coefficients = |corner| std::array::from_fn(|d| side(corner, d) * share_of_corner(grid));
@@ -331,6 +346,10 @@ mod tests {
             .collect();
         let cell = grid.flat_cell(&grid.cell_of(&[0.7, 0.2]));
         assert!((cells.centre_divergence(&grid, cell, &field) - 1.5).abs() < 1e-13);
+        let gradient = cells.centre_gradient(&grid, cell, &field);
+        for (got, exact) in gradient.iter().flatten().zip([2.0, 7.0, 5.0, -0.5]) {
+            assert!((got - exact).abs() < 1e-13, "{got} for {exact}");
+        }
         // tr(∇v F⁻¹) with ∇v = [[2, 7], [5, −0.5]].
         cells.inverse_deformation[cell] = [[0.5, 0.25], [0.125, 2.0]];
         let expected = 2.0 * 0.5 + 7.0 * 0.125 + 5.0 * 0.25 - 0.5 * 2.0;

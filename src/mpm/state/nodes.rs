@@ -98,6 +98,11 @@ impl<const D: usize> Support<D> {
         Self { lower: [true; D], upper, rough_base: false, outermost: None }
     }
 
+    /// Rollers on every face.
+    pub fn closed() -> Self {
+        Self { lower: [true; D], upper: [true; D], rough_base: false, outermost: None }
+    }
+
     /// Nothing held at all.
     pub fn free() -> Self {
         Self { lower: [false; D], upper: [false; D], rough_base: false, outermost: None }

@@ -45,7 +45,12 @@ impl Checker<'_> {
             return None;
         }
         if let Some(why) = scene.refuses_method(method) {
-            self.complain(span, why, "take \"GIMP-SRI-patch\", or another method without `TL-`");
+            let help = if scene.is_manufactured() {
+                "take \"GIMP-SRI-patch\", \"TL-GIMP-SRI-patch\", or another method of this program without B-bar"
+            } else {
+                "take \"GIMP-SRI-patch\", or another method without `TL-`"
+            };
+            self.complain(span, why, help);
             return None;
         }
         Some(method)

@@ -95,6 +95,15 @@ impl Checker<'_> {
     /// Complains where a formulation meets an integrator that cannot solve it.
     fn formulations_fit(&mut self, table: &SweepTable, span: &Range<usize>, sweep: &Sweep, base: &Case) {
         let scene = base.scene;
+        if let Some(why) = sweep.cases(base).find_map(|one| scene.refuses_integrator(one.integrator)) {
+            let place = table.typed("integrator").map(Spanned::span);
+            self.complain(
+                place.unwrap_or(span.start..span.start + 1),
+                why,
+                "take `integrator = [\"explicit\"]`, or leave the key out",
+            );
+            return;
+        }
         let refusal = |one: Case| one.integrator.refuses_formulation(one.formulation);
         if let Some(why) = sweep.cases(base).find_map(refusal) {
             let place = table.typed("formulation").map(Spanned::span);

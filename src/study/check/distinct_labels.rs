@@ -31,10 +31,16 @@ impl Checker<'_> {
     }
 }
 
-/// Whether a key is what its scene calls the input: a column has a width where a layer has a length.
+/// Whether a key is what its scene calls the input: a column has a width where a layer has a length, and a load where a
+/// motion has a pressure.
 fn is_of_the_scene(name: &str, planned: &[PlannedCase]) -> bool {
-    let other_name = |case: &Case| if case.scene.is_a_layer() { "width" } else { "length" };
-    planned.first().is_none_or(|planned| other_name(&planned.case) != name)
+    let other_names = |case: &Case| {
+        [
+            if case.scene.is_a_layer() { "width" } else { "length" },
+            if case.scene.is_manufactured() { "load" } else { "pressure" },
+        ]
+    };
+    planned.first().is_none_or(|planned| !other_names(&planned.case).contains(&name))
 }
 
 #[cfg(test)]

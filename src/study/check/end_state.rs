@@ -41,9 +41,20 @@ impl Checker<'_> {
         if self.purpose != Purpose::Solving || !self.diagnostics.is_empty() {
             return;
         }
-        let closes =
-            |case: &Case| case.scene.is_large_strain() && final_strain(case) >= case.material.porosity;
+        let moves = |case: &Case| case.scene.refuses_motion(&case.column, &case.material);
+        let closes = |case: &Case| {
+            let is_loaded = case.scene.is_large_strain() && !case.scene.is_manufactured();
+            is_loaded && final_strain(case) >= case.material.porosity || moves(case).is_some()
+        };
         let Some(case) = cases.find(closes) else { return };
+        if let Some(error) = moves(&case) {
+            self.complain(
+                place,
+                error.to_string(),
+                "the case cannot be: see the tables [manufactured] and [material]",
+            );
+            return;
+        }
         let soil = &case.material;
         self.complain(
             place,

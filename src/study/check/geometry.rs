@@ -12,6 +12,7 @@ use crate::study::check::checker::Checker;
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::{StudyFile, SweepTable};
 use crate::study::inputs::{One, TypedInput};
+use std::ops::Range;
 use toml::Spanned;
 
 /// Final strain `m_vl q` up to which small-strain theory is taken without a word.
@@ -21,6 +22,16 @@ impl Checker<'_> {
     /// The values of the column's or the layer's table, whichever the scene is about; the other is refused.
     pub(crate) fn geometry(&mut self, file: &StudyFile, seed: &Case) -> Vec<(&'static Key, Value)> {
         let (scene, name) = (seed.scene, seed.scene.name());
+        if scene.is_manufactured() {
+            return self.motion(file, seed);
+        }
+        if let Some(motion) = &file.manufactured {
+            self.complain(
+                motion.span(),
+                format!("the motion of `{name}` is not chosen: the scene has no [manufactured]"),
+                "it belongs to \"manufactured-box\", \"manufactured-shear\" and \"manufactured-vortex\"",
+            );
+        }
         if scene.is_a_layer() {
             if let Some(span) =
                 file.column.inputs.iter().map(|(_, typed)| typed.span()).min_by_key(|s| s.start)
@@ -77,16 +88,65 @@ impl Checker<'_> {
         self.inputs("column", &file.column.inputs, seed)
     }
 
-    /// Complains where a sweep names an input of the other kind of body: a width of a layer, a base of a column.
+    /// The values of the table of a chosen motion; the other tables of geometry are refused, for the body is the unit
+    /// square and its points begin on the regular lattice.
+    fn motion(&mut self, file: &StudyFile, seed: &Case) -> Vec<(&'static Key, Value)> {
+        let name = seed.scene.name();
+        let of_column = file.column.inputs.iter().map(|(_, typed)| typed.span());
+        let of_column = of_column.chain(file.column.strain.as_ref().map(|typed| typed.span()));
+        let of_points = file.points.inputs.iter().map(|(_, typed)| typed.span());
+        for (table, place) in [
+            ("column", of_column.min_by_key(|span| span.start)),
+            ("layer", file.layer.as_ref().map(|layer| layer.span())),
+            ("points", of_points.min_by_key(|span| span.start)),
+        ] {
+            if let Some(place) = place {
+                self.complain(
+                    place,
+                    format!("the scene `{name}` has no [{table}]"),
+                    "its body is the unit square, points on the regular lattice; what it does stands in the table \
+                     [manufactured]: amplitudes, frequency, pressure",
+                );
+            }
+        }
+        let Some(table) = &file.manufactured else { return Vec::new() };
+        for (key, typed) in &table.get_ref().inputs {
+            self.moves_by(key, typed.span(), seed.scene);
+        }
+        self.inputs("manufactured", &table.get_ref().inputs, seed)
+    }
+
+    /// Complains where a motion has no such amplitude.
+    fn moves_by(&mut self, key: &Key, place: Range<usize>, scene: SceneKind) {
+        if let Some(why) = scene.refuses_input_of_motion(key.name) {
+            self.complain(place, format!("the scene `{}` has no `{}`", scene.name(), key.name), why);
+        }
+    }
+
+    /// Complains where a sweep names an input of another kind of body: a width of a layer, a base of a column.
     pub(crate) fn geometry_is_the_scenes(&mut self, table: &SweepTable, scene: SceneKind) {
-        let [own, other] = if scene.is_a_layer() { ["layer", "column"] } else { ["column", "layer"] };
+        let own = scene.table_of_geometry();
+        let is_foreign = |key: &Key| {
+            let of_geometry =
+                ["column", "layer", "manufactured"].iter().any(|table| key.tables.contains(table));
+            let of_points = scene.is_manufactured() && key.tables.contains(&"points");
+            of_points || of_geometry && !key.tables.contains(&own)
+        };
         for (key, list) in &table.inputs {
-            if key.tables.contains(&other) && !key.tables.contains(&own) {
+            self.moves_by(key, list.span(), scene);
+            if is_foreign(key) {
                 let names: Vec<&str> = Key::of(own).map(|key| key.name).collect();
                 self.complain(
                     list.span(),
                     format!("the scene `{}` has no `{}`", scene.name(), key.name),
-                    format!("its geometry and load are {}", names.join(", ")),
+                    if scene.is_manufactured() {
+                        format!(
+                            "its points begin on the regular lattice of the unit square; it has {}",
+                            names.join(", ")
+                        )
+                    } else {
+                        format!("its geometry and load are {}", names.join(", "))
+                    },
                 );
             }
         }
@@ -96,7 +156,7 @@ impl Checker<'_> {
     /// solutions say so before anything runs.
     pub(crate) fn porosity_at_the_end(&mut self, file: &StudyFile, base: &Case) {
         let Case { scene, column, material: soil, .. } = base;
-        if !scene.is_large_strain() || !self.diagnostics.is_empty() {
+        if !scene.is_large_strain() || scene.is_manufactured() || !self.diagnostics.is_empty() {
             return;
         }
         let parameters = column_parameters(column, soil);

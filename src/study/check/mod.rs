@@ -156,6 +156,7 @@ impl Checker<'_> {
         let task = self.choice(file.task.as_deref(), "task", Task::default())?;
         let case_seconds =
             self.positive(file.case_seconds.as_deref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
+        self.task_fits(file, task, scene);
         self.solvers = self.solvers(file, case_seconds);
         let common = self.common(file, Case::seed(task, scene));
         let mut base = common.base();
@@ -229,6 +230,19 @@ impl Checker<'_> {
                 .unwrap_or(0),
             warnings: std::mem::take(&mut self.warnings),
         })
+    }
+
+    /// Complains where a critical step is to be observed of a body that is not left alone.
+    fn task_fits(&mut self, file: &StudyFile, task: Task, scene: SceneKind) {
+        if let Some(typed) = file.task.as_ref().filter(|_| task == Task::Stability && scene.is_manufactured())
+        {
+            self.complain(
+                typed.span(),
+                "what acts on a manufactured motion hides what grows by itself: its critical step is predicted and \
+                 not observed",
+                "leave `task` out, or take a scene that is left alone",
+            );
+        }
     }
 
     /// Complains at the end of a study without a case.

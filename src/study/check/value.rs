@@ -97,6 +97,14 @@ impl Checker<'_> {
     /// Whether a scene takes a word where it is a mean of the conductivity.
     fn mean_fits(&mut self, word: &str, span: TextSpan, key: &Key, scene: SceneKind) -> bool {
         let is_chord = key.name == "conductivity_mean" && word == ConductivityMean::Chord.name();
+        if is_chord && scene.is_manufactured() {
+            self.complain(
+                span,
+                "the chord mean is of a flux that a surface under a load lets out, and a manufactured motion has none",
+                "leave it out",
+            );
+            return false;
+        }
         let fits = !is_chord || scene.is_large_strain();
         if !fits {
             self.complain(

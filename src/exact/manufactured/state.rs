@@ -1,0 +1,212 @@
+//! All that follows from a motion and a pressure at a point of the skeleton and a time.
+
+use crate::exact::manufactured::jet::{Jet, Slope, TIME};
+use crate::exact::manufactured::model::ManufacturedModel;
+use crate::exact::parameters::ColumnParameters;
+use crate::soil::law::Law;
+use std::f64::consts::PI;
+
+/// What the balances take of the soil.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Soil {
+    /// Lamé's first parameter, Pa.
+    lame: f64,
+    /// Shear modulus, Pa.
+    shear: f64,
+    /// Share `1 − n_0` of the grains in the initial volume.
+    grains: f64,
+    /// Density of the grains, kg/m³.
+    grain_density: f64,
+    /// Density of the water, kg/m³.
+    water_density: f64,
+    /// Bulk modulus of the water, Pa.
+    water_bulk_modulus: f64,
+    /// `k_0/γ_w`, m⁴/(N s).
+    mobility: f64,
+}
+
+impl Soil {
+    /// Of parameters.
+    pub fn of(parameters: &ColumnParameters) -> Self {
+        let shear = parameters.youngs_modulus / (2.0 * (1.0 + parameters.poissons_ratio));
+        Self {
+            lame: parameters.oedometric_modulus() - 2.0 * shear,
+            shear,
+            grains: 1.0 - parameters.porosity,
+            grain_density: parameters.grain_density,
+            water_density: parameters.water_density,
+            water_bulk_modulus: parameters.water_bulk_modulus,
+            mobility: parameters.hydraulic_conductivity / parameters.unit_weight_of_water(),
+        }
+    }
+}
+
+/// The state of a point of the skeleton. Vectors are `[component]`, tensors `[row][column]`.
+#[derive(Clone, Copy, Debug)]
+pub struct State {
+    soil: Soil,
+    position: [Jet; 2],
+    pressure: Jet,
+    volume_ratio: Slope,
+    porosity: Slope,
+    /// `F⁻¹`.
+    inverse_deformation: [[Slope; 2]; 2],
+    pressure_gradient: [Slope; 2],
+    flux: [Slope; 2],
+    water_velocity: [Slope; 2],
+    effective_stress: [[Slope; 2]; 2],
+}
+
+/// A vector or a row from its places.
+fn both<T>(of: impl Fn(usize) -> T) -> [T; 2] {
+    [of(0), of(1)]
+}
+
+impl State {
+    /// Of a point `X`, m, at a time, s (docs/theory.md, Eqs 24 and 25).
+    pub fn of(
+        model: ManufacturedModel,
+        parameters: &ColumnParameters,
+        soil: &Soil,
+        place: [f64; 2],
+        time: f64,
+    ) -> Self {
+        let position = model.motion.place(&parameters.motion, place, time);
+        let [x, y] = both(|d| (Jet::coordinate(d, place[d]) * PI).cos());
+        let beat = (Jet::coordinate(TIME, time) * (2.0 * parameters.motion.frequency)).sin();
+        let pressure = beat * x * y * parameters.load;
+        let deformation = both(|i| both(|j| position[i].along(j)));
+        let [[xx, xy], [yx, yy]] = deformation;
+        let volume_ratio = xx * yy - xy * yx;
+        let per_volume = volume_ratio.recip();
+        let inverse_deformation =
+            [[yy * per_volume, xy * per_volume * -1.0], [yx * per_volume * -1.0, xx * per_volume]];
+        // grad p = F⁻ᵀ grad_X p
+        let pressure_gradient = both(|i| {
+            inverse_deformation[0][i] * pressure.along(0) + inverse_deformation[1][i] * pressure.along(1)
+        });
+        let porosity = Slope::constant(1.0) - per_volume * soil.grains;
+        // w = −(k/γ_w) grad p with k = k_0 J²
+        let mobility = volume_ratio * volume_ratio * -soil.mobility;
+        let flux = both(|i| mobility * pressure_gradient[i]);
+        let water_velocity = both(|i| position[i].along(TIME) + flux[i] / porosity);
+        let effective_stress = stress(model.law, soil, &deformation, volume_ratio, per_volume);
+        Self {
+            soil: *soil,
+            position,
+            pressure,
+            volume_ratio,
+            porosity,
+            inverse_deformation,
+            pressure_gradient,
+            flux,
+            water_velocity,
+            effective_stress,
+        }
+    }
+
+    /// Derivative of a quantity along `x` or `y` on the current configuration, `F⁻ᵀ grad_X`.
+    fn derivative(&self, quantity: &Slope, direction: usize) -> f64 {
+        let inverse = &self.inverse_deformation;
+        inverse[0][direction].value * quantity.slope[0] + inverse[1][direction].value * quantity.slope[1]
+    }
+
+    /// Divergence of a vector on the current configuration.
+    fn divergence(&self, vector: &[Slope; 2]) -> f64 {
+        self.derivative(&vector[0], 0) + self.derivative(&vector[1], 1)
+    }
+
+    fn solid_velocity_slope(&self) -> [Slope; 2] {
+        both(|i| self.position[i].along(TIME))
+    }
+
+    /// Present place, m.
+    pub fn position(&self) -> [f64; 2] {
+        both(|i| self.position[i].value)
+    }
+
+    /// Volume ratio `J`.
+    pub fn volume_ratio(&self) -> f64 {
+        self.volume_ratio.value
+    }
+
+    /// Porosity.
+    pub fn porosity(&self) -> f64 {
+        self.porosity.value
+    }
+
+    /// Pore pressure, Pa, compression positive.
+    pub fn pressure(&self) -> f64 {
+        self.pressure.value
+    }
+
+    /// Effective Cauchy stress, Pa, tension positive.
+    pub fn effective_stress(&self) -> [[f64; 2]; 2] {
+        self.effective_stress.map(|row| row.map(|component| component.value))
+    }
+
+    /// Velocity of the skeleton, m/s.
+    pub fn solid_velocity(&self) -> [f64; 2] {
+        self.solid_velocity_slope().map(|component| component.value)
+    }
+
+    /// Velocity of the pore water, m/s.
+    pub fn water_velocity(&self) -> [f64; 2] {
+        self.water_velocity.map(|component| component.value)
+    }
+
+    /// Body forces on the mixture, N per m³ of mixture, and on the water, N per m³ of water: what is left of the
+    /// momentum balances (docs/theory.md, Eq. 26). Rates follow the skeleton.
+    pub fn body_forces(&self) -> [[f64; 2]; 2] {
+        let soil = &self.soil;
+        let porosity = self.porosity.value;
+        let water = both(|i| soil.water_density * self.water_velocity[i].slope[TIME]);
+        let mixture = both(|i| {
+            let grains = (1.0 - porosity) * soil.grain_density * self.position[i].bend[TIME][TIME];
+            grains + porosity * water[i] - self.divergence(&self.effective_stress[i])
+                + self.pressure_gradient[i].value
+        });
+        // The drag balances the pressure gradient: no more is left for the water.
+        [mixture, water]
+    }
+
+    /// Source of water, volume per volume of mixture and second: what is left of the continuity
+    /// (docs/theory.md, Eq. 27).
+    pub fn source(&self) -> f64 {
+        let storage = self.porosity.value / self.soil.water_bulk_modulus * self.pressure.slope[TIME];
+        self.divergence(&self.solid_velocity_slope()) + self.divergence(&self.flux) + storage
+    }
+}
+
+/// Effective stress of a law from the deformation gradient.
+fn stress(
+    law: Law,
+    soil: &Soil,
+    deformation: &[[Slope; 2]; 2],
+    volume_ratio: Slope,
+    per_volume: Slope,
+) -> [[Slope; 2]; 2] {
+    if law == Law::NeoHookean {
+        // [μ (F Fᵀ − I) + λ ln J I]/J
+        let pressure = volume_ratio.ln() * soil.lame + Slope::constant(-soil.shear);
+        return both(|i| {
+            both(|j| {
+                let [left, right] = [&deformation[i], &deformation[j]];
+                let stretch = (left[0] * right[0] + left[1] * right[1]) * soil.shear;
+                let whole = if i == j { stretch + pressure } else { stretch };
+                whole * per_volume
+            })
+        });
+    }
+    // Without shear or spin: 2μ ln F_ii + λ ln J.
+    let volumetric = volume_ratio.ln() * soil.lame;
+    both(|i| {
+        both(|j| {
+            if i == j {
+                deformation[i][i].ln() * (2.0 * soil.shear) + volumetric
+            } else {
+                Slope::constant(0.0)
+            }
+        })
+    })
+}

@@ -1,0 +1,126 @@
+//! Motions of a square that are written down, and made by body forces and a source of water: large strain in the
+//! plane against exact fields. Points cross cells in both directions and come back.
+
+use crate::exact::exact_error::ExactError;
+use crate::exact::manufactured::Manufactured;
+use crate::exact::manufactured::model::ManufacturedModel;
+use crate::exact::manufactured::motion::Motion;
+use crate::exact::parameters::MotionParameters;
+use crate::exact::reference::ReferenceKind;
+use crate::mpm::forcing::Forcing;
+use crate::scene::column::{Column, column_parameters};
+use crate::scene::definition::{
+    ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
+};
+use crate::soil::material::Material;
+use crate::soil::tensor::Vector;
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+pub(crate) static BOX: SceneDefinition = SceneDefinition {
+    name: Motion::Box.name(),
+    summary: "square stretched along its axes by body forces and back: exact fields at large strain in the plane",
+    references: &[ReferenceKind::Manufactured(ManufacturedModel::of(Motion::Box))],
+    ..OF_ALL
+};
+
+pub(crate) static SHEAR: SceneDefinition = SceneDefinition {
+    name: Motion::Shear.name(),
+    summary: "the same with shear inside, in a neo-Hookean soil",
+    references: &[ReferenceKind::Manufactured(ManufacturedModel::of(Motion::Shear))],
+    ..OF_ALL
+};
+
+pub(crate) static VORTEX: SceneDefinition = SceneDefinition {
+    name: Motion::Vortex.name(),
+    summary: "a disc that turns inside a square at rest, and back: tells domains that turn from those that do not",
+    references: &[ReferenceKind::Manufactured(ManufacturedModel::of(Motion::Vortex))],
+    ..OF_ALL
+};
+
+/// What the motions have in common: at the start nothing is displaced, presses or moves.
+const OF_ALL: SceneDefinition = SceneDefinition {
+    name: "",
+    summary: "",
+    references: &[],
+    model_difference: |_, _| None,
+    body: SceneBody::Square,
+    strain: SceneStrain::Large,
+    load: SceneLoad::None,
+    has_waves: true,
+    start: SceneStart::OverDepth(|_, _| Ok(ColumnStart::unloaded())),
+    start_pressure: StartPressure::Uniform(|_, _| 0.0),
+};
+
+/// A soil whose groups are of order one: `λ = μ = 0.4`, `K_w = 20 E`, `γ_w/k_0 = 10`, and so many pores that volumes
+/// may halve.
+pub(crate) fn soil() -> Material {
+    Material {
+        youngs_modulus: 1.0,
+        poissons_ratio: 0.25,
+        porosity: 0.6,
+        grain_density: 1.0,
+        water_density: 0.5,
+        water_bulk_modulus: 20.0,
+        hydraulic_conductivity: 0.5,
+        gravity: 10.0,
+        ..Material::default()
+    }
+}
+
+/// The unit square with the amplitudes of a motion.
+pub(crate) fn square(motion: Option<Motion>) -> Column {
+    let [amplitude_x, amplitude_y, amplitude] = match motion {
+        None => [0.0; 3],
+        Some(Motion::Box) => [0.25, 0.25, 0.0],
+        Some(Motion::Shear) => [0.25, -0.2, 0.0],
+        Some(Motion::Vortex) => [0.0, 0.0, 1.5],
+    };
+    Column {
+        horizontal_extent: 1.0,
+        dimensions: 2,
+        load: 0.2,
+        motion: MotionParameters { amplitude_x, amplitude_y, amplitude, frequency: FRAC_PI_2 },
+        ..Column::default()
+    }
+}
+
+/// The exact solution, as it acts on a body.
+#[derive(Clone, Copy, Debug)]
+struct MadeMotion(Manufactured);
+
+/// What acts on a body in a motion, for a square and its soil.
+///
+/// # Errors
+/// When the parameters are impossible.
+pub(crate) fn forcing<const D: usize>(
+    model: ManufacturedModel,
+    square: &Column,
+    soil: &Material,
+) -> Result<Arc<dyn Forcing<D>>, ExactError> {
+    let model = ManufacturedModel { law: soil.law, ..model };
+    Ok(Arc::new(MadeMotion(Manufactured::new(model, &column_parameters(square, soil))?)))
+}
+
+/// A place in the plane; its last component is the vertical one.
+fn in_plane<const D: usize>(place: &Vector<D>) -> [f64; 2] {
+    [place[0], place[D - 1]]
+}
+
+fn in_space<const D: usize>(vector: [f64; 2]) -> Vector<D> {
+    std::array::from_fn(|d| vector[d.min(1)])
+}
+
+impl<const D: usize> Forcing<D> for MadeMotion {
+    fn body_forces(&self, place: &Vector<D>, time: f64) -> [Vector<D>; 2] {
+        self.0.state_at(in_plane(place), time).body_forces().map(in_space)
+    }
+
+    fn source(&self, place: &Vector<D>, time: f64) -> f64 {
+        self.0.state_at(in_plane(place), time).source()
+    }
+
+    fn material_place(&self, place: &Vector<D>, time: f64, guess: &Vector<D>) -> Vector<D> {
+        in_space(self.0.material_place(in_plane(place), time, in_plane(guess)))
+    }
+}

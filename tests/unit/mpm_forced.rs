@@ -1,0 +1,106 @@
+//! A body on which body forces and a source act: one step against what they give, and the places that they are
+//! taken at.
+
+use super::*;
+use crate::mpm::forcing::Forcing;
+use crate::mpm::method::Method;
+use crate::scene::SceneKind;
+use crate::scene::problem::column_problem;
+use std::sync::Arc;
+
+/// Constant forces, and a source that is the place along x, so that it says where it was asked for.
+#[derive(Debug)]
+struct Plain;
+
+impl Forcing<2> for Plain {
+    fn body_forces(&self, _: &Vector<2>, time: f64) -> [Vector<2>; 2] {
+        [[3.0 + time, -2.0], [0.5, 0.25]]
+    }
+    fn source(&self, place: &Vector<2>, time: f64) -> f64 {
+        place[0] + 10.0 * time
+    }
+    fn material_place(&self, place: &Vector<2>, _: f64, _: &Vector<2>) -> Vector<2> {
+        // The body was moved by a tenth along x.
+        [place[0] - 0.1, place[1]]
+    }
+}
+
+fn body(method: &str) -> Body<2> {
+    let scene = SceneKind::ManufacturedBox;
+    let (column, soil) = (scene.default_column(), scene.default_material());
+    let method = Method::named(method).expect("a method");
+    let mut problem = column_problem::<2>(scene, &column, &soil, method, 4, 2).expect("the unit square");
+    problem.forcing = Some(Arc::new(Plain));
+    let mut body = Body::new(problem);
+    body.forcing.as_mut().expect("forced").time = 1.5;
+    body
+}
+
+#[test]
+fn forces_of_a_volume_arrive_at_the_nodes_whole() {
+    for method in ["GIMP-SRI-patch", "TL-GIMP", "uGIMP-SRI", "CPDI-SRI-patch"] {
+        let mut body = body(method);
+        // Half the volume everywhere: forces are of the current one.
+        body.points.volume_ratio.fill(0.5);
+        body.map_forces();
+        let sum = |forces: &[Vector<2>], d: usize| forces.iter().map(|force| force[d]).sum::<f64>();
+        let nodes = &body.nodes;
+        for (got, exact) in [
+            (sum(&nodes.mixture_force, 0), 0.5 * 4.5),
+            (sum(&nodes.mixture_force, 1), -1.0),
+            (sum(&nodes.water_force, 0), 0.25),
+            (sum(&nodes.water_force, 1), 0.125),
+        ] {
+            assert!((got - exact).abs() < 1e-13, "{method}: {got} for {exact}");
+        }
+    }
+}
+
+#[test]
+fn a_source_raises_the_pressure_where_its_divergence_is_taken_at_the_middle_of_the_step() {
+    let dt = 1e-3;
+    for (method, shift, is_by_cells) in
+        [("GIMP-SRI", 0.1, true), ("TL-GIMP-SRI", 0.0, true), ("GIMP", 0.0, false), ("TL-GIMP", 0.0, false)]
+    {
+        let mut body = body(method);
+        body.map_forces();
+        body.update_forced_pressure(dt);
+        let stiffness = body.material.water_bulk_modulus / body.material.porosity;
+        for (place, pressure) in body.points.initial_position.iter().zip(&body.points.pressure) {
+            let x = if is_by_cells { (place[0] * 4.0).floor() / 4.0 + 0.125 - shift } else { place[0] };
+            let exact = dt * stiffness * (x + 10.0 * (1.5 + 0.5 * dt));
+            assert!((pressure - exact).abs() < 1e-12, "{method} at {place:?}: {pressure} for {exact}");
+        }
+    }
+}
+
+#[test]
+fn porosities_of_a_source_are_those_of_the_middle_and_volumes_those_of_the_end() {
+    let mut body = body("GIMP-SRI");
+    body.map_forces();
+    // The step ends at J = 1.2: its middle is 1.1, with n = 1 − 0.4/1.1.
+    body.points.volume_ratio.fill(1.2);
+    body.update_forced_pressure(1e-3);
+    let porosity = 1.0 - 0.4 / 1.1;
+    let x = 0.125 - 0.1;
+    let exact = 1e-3 * body.material.water_bulk_modulus / porosity * (x + 10.0 * 1.5005);
+    assert!((body.points.pressure[0] - exact).abs() < 1e-12, "{} for {exact}", body.points.pressure[0]);
+    assert!(body.points.volume_ratio.iter().all(|ratio| *ratio == 1.2));
+}
+
+#[test]
+fn a_divergence_is_taken_on_the_configuration_of_the_middle() {
+    // v = 2x along x: L = 2, and at the middle of a step of 0.1 the divergence is 2/(1 + 0.1).
+    let mut body = body("GIMP-SRI");
+    for node in 0..body.nodes.len() {
+        let x = body.grid.node_position(node)[0];
+        body.nodes.solid_velocity[node] = [2.0 * x, 0.0];
+    }
+    let field = body.nodes.solid_velocity.clone();
+    let cell = body.cells.occupied().next().expect("a cell");
+    for place in [Place::Centre(cell), Place::Point(9)] {
+        let back = body.half_step_back(place, 0.1);
+        let got = body.middle_divergence(place, &back, &field);
+        assert!((got - 2.0 / 1.1).abs() < 1e-13, "{got}");
+    }
+}
