@@ -110,8 +110,15 @@ mod tests {
         assert!((found.classification.order.expect("an order") - 2.0).abs() < 1e-9);
         assert!(convergence(&[0.1], &[], None).is_err());
         // 0.171, −0.145, −0.223 % go to a limit, and their sizes alone would grow.
-        let signed = convergence(&[0.1, 0.05, 0.025, 0.0125], &[1.71e-3, -1.45e-3, -2.23e-3, -2.43e-3], None);
-        assert_ne!(signed.expect("a series").classification.class, Class::Divergent);
+        let of = |errors: [f64; 4]| {
+            let found = convergence(&[0.1, 0.05, 0.025, 0.0125], &errors, None);
+            found.expect("a series").classification
+        };
+        let errors = [1.71e-3, -1.45e-3, -2.23e-3, -2.43e-3];
+        let signed = of(errors);
+        assert_eq!(signed.class, Class::FloorLimited);
+        assert!((signed.order.expect("an order") - 2.0).abs() < 0.3, "{signed:?}");
+        assert_ne!(signed, of(errors.map(f64::abs)));
     }
 
     #[test]

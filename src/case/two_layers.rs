@@ -59,4 +59,12 @@ impl Case {
         .into_iter()
         .find_map(|(is_so, why, help)| is_so.then_some((why, help)))
     }
+
+    /// Why a column of this case cannot carry its weight, and what would do, or nothing where it can.
+    pub fn refuses_own_weight(&self) -> Option<(&'static str, &'static str)> {
+        (self.column.self_weight && self.column.points.offset != 0.0).then_some((
+            "domains shifted off their lattice integrate no weight exactly: the column would flow from the start",
+            "leave `offset` out, or take `self_weight = false`",
+        ))
+    }
 }

@@ -84,7 +84,7 @@ fn a_sheared_square_and_a_vortex_run_by_their_names_and_keys() {
             "--method",
             "GIMP-SRI-patch",
             "--cells",
-            "4",
+            "8",
             "--time-factor",
             "0.1",
             "--set",

@@ -105,8 +105,8 @@ fn with_every_other_option_a_weight_leaves_the_excess_pressure_as_it_is() {
         for ((label, heavy), (same, light)) in errors_of(heavy).into_iter().zip(light) {
             assert_eq!(label, same);
             // Points off their lattice, and those of splines, integrate no weight exactly.
-            if ["shifted", "jittered", "bspline"].iter().any(|inexact| label.contains(inexact)) {
-                assert!(heavy > light, "{label}: {heavy} for {light}");
+            if ["jittered", "bspline"].iter().any(|inexact| label.contains(inexact)) {
+                assert!(heavy > 0.9 * light, "{label}: {heavy} for {light}");
                 continue;
             }
             assert!((heavy / light - 1.0).abs() < within, "{label}: {heavy} for {light}");

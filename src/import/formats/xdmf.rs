@@ -9,7 +9,6 @@ use crate::import::formats::frame::{Array, Association, Cells, Frame, Wanted};
 use crate::import::formats::hdf5::Store;
 use crate::import::formats::vtu::places;
 use crate::import::formats::xml::{Element, tree_of};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Cells: name, code among mixed cells, points, type of VTK.
@@ -65,7 +64,7 @@ pub fn read(path: &Path, bytes: &[u8], place: usize, wanted: Wanted) -> Result<F
     let root = tree_of(bytes)?;
     let grids = grids_of(&root)?;
     let grid = *grids.get(place).ok_or_else(|| format!("it has {} states", grids.len()))?;
-    let mut reading = Reading { path, stores: BTreeMap::new(), budget: Budget::of_file(bytes.len()) };
+    let mut reading = Reading { path, stores: Vec::new(), budget: Budget::of_file(bytes.len()) };
     let mut frame = Frame { time: time_of_grid(grid)?, ..Frame::default() };
     let before = |name: &str| {
         let own = grid.child(name).into_iter();
@@ -111,7 +110,8 @@ fn shape_of(item: &Element) -> Result<Vec<usize>, String> {
 
 struct Reading<'a> {
     path: &'a Path,
-    stores: BTreeMap<PathBuf, Store>,
+    /// Stores that are open, with their files: a state names a few.
+    stores: Vec<(PathBuf, Store)>,
     budget: Budget,
 }
 
@@ -213,11 +213,13 @@ impl Reading<'_> {
     ) -> Result<Vec<f64>, String> {
         let (file, inside) = place.split_once(":/").ok_or_else(|| format!("`{place}` names no data set"))?;
         let file = beside(self.path, file.trim());
-        if !self.stores.contains_key(&file) {
+        let is_open = |(open, _): &(PathBuf, Store)| *open == file;
+        let at = self.stores.iter().position(is_open).unwrap_or(self.stores.len());
+        if at == self.stores.len() {
             let store = Store::open(&file).map_err(|why| format!("{}: {why}", file.display()))?;
-            self.stores.insert(file.clone(), store);
+            self.stores.push((file, store));
         }
-        let store = self.stores.get_mut(&file).ok_or("a store that is there")?;
+        let store = &mut self.stores[at].1;
         let rows = match (start.first(), size.first()) {
             (Some(start), Some(size)) => Some((*start as u64, *size as u64)),
             _ => None,

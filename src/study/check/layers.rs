@@ -1,4 +1,4 @@
-//! Checks of the layers of points: what goes with two, and how many points the water has.
+//! Checks of the layers of points: what goes with two, how many points the water has, and what carries a weight.
 
 use crate::case::Case;
 use crate::study::check::checker::Checker;
@@ -6,7 +6,7 @@ use crate::study::file::{StudyFile, SweepTable};
 use toml::Spanned;
 
 impl Checker<'_> {
-    /// Complains where a case of a sweep cannot have two layers, or where points of the water are named and no case
+    /// Complains where a case of a sweep cannot carry its weight or have two layers, or where points of the water are named and no case
     /// has any.
     pub(crate) fn layers_fit<Cases: Iterator<Item = Case>>(
         &mut self,
@@ -18,6 +18,9 @@ impl Checker<'_> {
         let of_sweep = |key: &str| table.typed(key).map(Spanned::span);
         let named = |key: &str| of_sweep(key).or_else(|| file.points.typed(key).map(Spanned::span));
         let place = named("layers").unwrap_or(start..start + 1);
+        if let Some((why, help)) = cases().find_map(|case| case.refuses_own_weight()) {
+            self.complain(named("offset").unwrap_or(start..start + 1), why, help);
+        }
         if let Some((why, help)) = cases().find_map(|case| case.refuses_two_layers()) {
             self.complain(place, why, help);
         } else if let Some(of_water) = named("water_per_cell")
@@ -74,6 +77,14 @@ mod tests {
                 checked(scene, "\"GIMP\"", "layers = [2]\nintegrator = [\"explicit\"]").expect_err(why);
             assert!(error.contains(why), "{error}");
         }
+    }
+
+    #[test]
+    fn points_off_their_lattice_carry_no_weight() {
+        let scene = "xie-leo\"\ncolumn.self_weight = true #";
+        let error = checked(scene, "\"GIMP\"", "offset = [0.25]").expect_err("a shifted lattice");
+        assert!(error.contains("integrate no weight exactly") && error.contains("--> t.toml:"), "{error}");
+        assert!(checked(scene, "\"GIMP\"", "jitter = [0.1]").is_ok());
     }
 
     #[test]
