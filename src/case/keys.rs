@@ -252,7 +252,10 @@ keys! {
         case.column.points.jitter = case.column.points.jitter.abs();
     }; "Largest shift of a row of points up or down, in spacings of the points"
     filling in &["sweep", "points"], FILLING, "", column.points.filling; "Share of the top cell that is filled"
-    layers in &["sweep", "points"], Kind::Count(2), "", column.points.layers;
+    layers in &["sweep", "points"], Kind::Count(2), "", column.points.layers, then |case| {
+        // One layer has no points of the water's own.
+        case.column.points.water_per_cell *= usize::from(case.column.points.layers == 2);
+    };
         "Layers of points: 1 carries skeleton and water, 2 are one of each"
     water_per_cell in &["sweep", "points"], Kind::Count(MOST_POINTS), "", column.points.water_per_cell;
         "Points of the water per cell and direction in two layers, as many as the skeleton's where nothing is said"

@@ -170,4 +170,16 @@ mod tests {
         assert_eq!((told.len(), told[0].method, told[0].ratios), (1, None, Some([1.0; 3])));
         assert!(twins(&records, key, (Value::Count(2), Value::Count(3))).is_empty());
     }
+
+    #[test]
+    fn runs_of_two_layers_have_their_twins_in_one() {
+        let records = records_of(
+            "title = 't'\nscene = 'terzaghi'\n[output]\ntime_factors = [1e-4]\n[[sweep]]\nmethod = ['GIMP-SRI-patch']\n\
+             cells = [4]\nlayers = [1, 2]\n",
+        );
+        let key = Key::named("layers", "points").expect("a key");
+        let pairs = twins(&records, key, (Value::Count(1), Value::Count(2)));
+        assert_eq!((records.len(), pairs.len()), (2, 1));
+        assert!(pairs[0].other.case.column.points.has_two_layers());
+    }
 }
