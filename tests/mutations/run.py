@@ -89,7 +89,16 @@ def switched(fault, text):
     on = f"crate::fault::is_on({fault['number']})"
     if fault.get("raw"):
         return fault["to"].replace("FAULT", on)
-    return f"(if {on} {{ {fault['to']} }} else {{ {text} }})"
+    to = fault["to"]
+    binding = [re.fullmatch(r"let (\w+) = (.*);", one, re.S) for one in (to, text)]
+    if all(binding) and binding[0].group(1) == binding[1].group(1):
+        name, (other, own) = binding[1].group(1), [one.group(2) for one in binding]
+        return f"let {name} = if {on} {{ {other} }} else {{ {own} }};"
+    if text.endswith(";") and to.endswith(";"):
+        return f"if {on} {{ {to} }} else {{ {text} }}"
+    if all(one.startswith("if ") and "{" not in one and "let " not in one for one in (to, text)):
+        return f"if (if {on} {{ {to[3:]} }} else {{ {text[3:]} }})"
+    return f"(if {on} {{ {to} }} else {{ {text} }})"
 
 
 def with_switches(tree, faults):
