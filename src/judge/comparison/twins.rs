@@ -42,7 +42,7 @@ pub fn twins<'a>(records: &'a [Record], key: &Key, (first, second): (Value, Valu
 pub struct TwinsOfSituation {
     /// The situation.
     pub situation: Situation,
-    /// The method; none where every method has the same errors on both sides.
+    /// The method; none of all that have the same errors on both sides.
     pub method: Option<Method>,
     /// Pairs there are.
     pub pairs: usize,
@@ -66,28 +66,26 @@ pub fn by_situation(all: &[Twins<'_>]) -> Vec<TwinsOfSituation> {
 /// Errors that differ by less than this share are the same, but for round-off.
 const SAME: f64 = 1e-6;
 
-/// The pairs of a situation by their method, in one where the methods do not differ in what the input does.
+/// The pairs of a situation by their method; those of methods for which the input changes nothing in one, at the end.
 fn by_method(situation: Situation, all: &[Twins<'_>]) -> Vec<TwinsOfSituation> {
-    let own: Vec<&Twins<'_>> = all.iter().filter(|pair| Situation::of(pair.one) == situation).collect();
-    let whole = in_numbers(situation, None, &own);
-    let is_same = |ratio: f64| (ratio - 1.0).abs() <= SAME;
-    if whole.ratios.is_none_or(|[least, _, largest]| is_same(least) && is_same(largest)) {
-        return vec![whole];
-    }
-    let mut methods: Vec<Method> = Vec::new();
-    for pair in &own {
-        if !methods.contains(&pair.one.case.method) {
-            methods.push(pair.one.case.method);
+    let mut methods: Vec<(Method, Vec<&Twins<'_>>)> = Vec::new();
+    for pair in all.iter().filter(|pair| Situation::of(pair.one) == situation) {
+        let method = pair.one.case.method;
+        match methods.iter_mut().find(|(known, _)| *known == method) {
+            Some((_, own)) => own.push(pair),
+            None => methods.push((method, vec![pair])),
         }
     }
-    methods
-        .into_iter()
-        .map(|method| {
-            let own: Vec<&Twins<'_>> =
-                own.iter().copied().filter(|pair| pair.one.case.method == method).collect();
-            in_numbers(situation, Some(method), &own)
-        })
-        .collect()
+    let is_same = |ratio: f64| (ratio - 1.0).abs() <= SAME;
+    let (alike, differing): (Vec<_>, Vec<_>) =
+        methods.into_iter().partition(|(_, own)| own.iter().flat_map(|pair| ratios_of(pair)).all(is_same));
+    let mut told: Vec<TwinsOfSituation> =
+        differing.iter().map(|(method, own)| in_numbers(situation, Some(*method), own)).collect();
+    let alike: Vec<&Twins<'_>> = alike.into_iter().flat_map(|(_, own)| own).collect();
+    if !alike.is_empty() {
+        told.push(in_numbers(situation, None, &alike));
+    }
+    told
 }
 
 fn in_numbers(situation: Situation, method: Option<Method>, own: &[&Twins<'_>]) -> TwinsOfSituation {

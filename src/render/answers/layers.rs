@@ -44,7 +44,7 @@ fn compare(results: &[StudyResults<'_>], key: &Key, links: Links<'_>) -> Option<
             |place: usize| Cell::of(one.ratios.map(|all| all[place]), Cell::Number, "no pair has an error");
         vec![
             one.situation.name().into(),
-            one.method.map_or(Cell::Text("every one".to_owned()), |method| Cell::Code(method.to_string())),
+            one.method.map_or(Cell::Text(others(&told, one)), |method| Cell::Code(method.to_string())),
             Cell::Count(one.pairs as u64),
             ratio(0),
             ratio(1),
@@ -78,6 +78,12 @@ fn burst_note(bursts: &[String]) -> String {
     }
 }
 
+/// What a row of all methods with the same errors is called, beside rows of methods that differ or alone.
+fn others(told: &[TwinsOfSituation], row: &TwinsOfSituation) -> String {
+    let is_differing = |one: &TwinsOfSituation| one.situation == row.situation && one.method.is_some();
+    if told.iter().any(is_differing) { "every other method" } else { "every method" }.to_owned()
+}
+
 /// What the pairs say: where the layers are one, where two are better and where worse, and what they cost.
 fn sentence(told: &[TwinsOfSituation], bursts: usize) -> String {
     let pairs: usize = told.iter().map(|one| one.pairs).sum();
@@ -88,11 +94,12 @@ fn sentence(told: &[TwinsOfSituation], bursts: usize) -> String {
         let situation = one.situation.name().to_lowercase();
         parts.push(match &one.method {
             None => format!(
-                "{situation}: the same error to {:.0e}",
+                "{situation}, {}: the same error within {:.0e}",
+                others(told, one),
                 (largest - 1.0).abs().max((least - 1.0).abs()).max(1e-16)
             ),
             Some(method) => format!(
-                "{situation}, `{method}`: the error of two is {} times that of one at the median ({} to {})",
+                "{situation}, `{method}`: two layers have {} times the error of one ({} to {})",
                 number::number(median),
                 number::number(least),
                 number::number(largest)
@@ -139,7 +146,7 @@ mod tests {
         let Some(Block::Paragraph(sentence)) = section.blocks.first() else { panic!("a sentence first") };
         assert!(
             sentence.starts_with(
-                "Over 2 pairs of runs: small strain, points out of place, `GC-SRI-patch`: the error of two is "
+                "Over 2 pairs of runs: small strain, points out of place, `GC-SRI-patch`: two layers have "
             ),
             "{sentence}"
         );
