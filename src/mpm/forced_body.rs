@@ -9,7 +9,6 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::explicit::deformation::to_middle;
-use crate::mpm::forcing::Forced;
 use crate::mpm::method::PressureIntegration;
 use crate::mpm::operators::pairs::add_weighted;
 use crate::mpm::operators::recovery::points_in_cells::points_in_cells;
@@ -46,7 +45,8 @@ impl<const D: usize> Body<D> {
     }
 
     /// Brings cells and nodes to the volumes of the middle of a step of points that have been strained, and back.
-    fn enter_middle(&mut self, forced: &mut Forced<D>) {
+    fn enter_middle(&mut self) {
+        let Some(forced) = &mut self.forcing else { return };
         forced.find_middle(&self.points);
         forced.swap_middle(&mut self.points);
         self.cells.sum_volumes(&self.points, self.material.porosity);
@@ -57,28 +57,28 @@ impl<const D: usize> Body<D> {
     }
 
     /// Gives the points the deformation of the step's end again; cells and nodes follow in the next step.
-    fn leave_middle(&mut self, forced: &mut Forced<D>) {
-        forced.swap_middle(&mut self.points);
+    fn leave_middle(&mut self) {
+        if let Some(forced) = &mut self.forcing {
+            forced.swap_middle(&mut self.points);
+        }
     }
 
     /// Step 7 of a body with a source.
     pub(crate) fn update_forced_pressure(&mut self, dt: f64) {
         self.find_centres();
-        let Some(mut forced) = self.forcing.take() else { return };
-        self.take_sources(&mut forced, 0.5 * dt);
-        self.enter_middle(&mut forced);
+        self.take_sources(0.5 * dt);
+        self.enter_middle();
         self.nodal_flux();
         self.evaluate_sites(|body, place, porosity| {
             let back = body.half_step_back(place, dt);
             let gained = body.volume_rate(porosity, |field| body.middle_divergence(place, &back, field));
-            dt * body.material.water_bulk_modulus / porosity * (source_at(&forced, place) - gained)
+            dt * body.material.water_bulk_modulus / porosity * (body.source_at(place) - gained)
         });
         let at = points_in_cells!(self);
         let pressures = &mut self.points.pressure;
         self.recovery
             .recover(&at, &self.site_values, pressures, |pressure, increment| *pressure += increment);
-        self.leave_middle(&mut forced);
-        self.forcing = Some(forced);
+        self.leave_middle();
     }
 
     /// Looks for the points of the skeleton at the cells' centres at the start of the step; where weights stay on the
@@ -91,7 +91,8 @@ impl<const D: usize> Body<D> {
     }
 
     /// Takes the sources at the method's sites, so many seconds after the start of the step.
-    fn take_sources(&self, forced: &mut Forced<D>, later: f64) {
+    fn take_sources(&mut self, later: f64) {
+        let Some(forced) = &mut self.forcing else { return };
         let time = forced.time + later;
         match self.method.pressure {
             PressureIntegration::Sri => forced.take_sources_at_centres(self.cells.occupied(), time),
@@ -104,11 +105,11 @@ impl<const D: usize> Body<D> {
     /// Takes the body forces and the sources so many seconds after the start of the step: for balances that are asked
     /// for there many times.
     pub(crate) fn act_later(&mut self, later: f64) {
-        let Some(mut forced) = self.forcing.take() else { return };
-        let time = forced.time + later;
-        forced.take_forces(&self.points, time);
-        self.take_sources(&mut forced, later);
-        self.forcing = Some(forced);
+        if let Some(forced) = &mut self.forcing {
+            let time = forced.time + later;
+            forced.take_forces(&self.points, time);
+        }
+        self.take_sources(later);
     }
 
     /// `(I + Δt L/2)⁻¹` at a place: from the middle of a step back to its start, where its weights are from. Unity
@@ -135,15 +136,6 @@ impl<const D: usize> Body<D> {
         }
         let gradient = product(&self.start_gradient(place, field), back);
         (0..D).map(|d| gradient[d][d]).sum()
-    }
-}
-
-/// Source at a place, 1/s.
-#[inline]
-pub(crate) fn source_at<const D: usize>(forced: &Forced<D>, place: Place) -> f64 {
-    match place {
-        Place::Centre(cell) => forced.source_at_centre(cell),
-        Place::Point(point) => forced.source_at_point(point),
     }
 }
 
