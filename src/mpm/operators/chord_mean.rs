@@ -96,7 +96,8 @@ mod tests {
             let height = body.points.initial_position[point][D - 1];
             let ratio = ratios[whole(height * CELLS as f64)];
             body.points.volume_ratio[point] = ratio;
-            body.points.inverse_deformation[point][D - 1][D - 1] = 1.0 / ratio;
+            let back = &mut body.points.inverse_deformation[point];
+            back[D - 1][D - 1] = 1.0 / ratio;
         }
         body.follow_points();
         body
