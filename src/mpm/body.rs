@@ -303,14 +303,11 @@ impl<const D: usize> Body<D> {
             self.support = self.surface.end_splines(&self.grid, &self.points);
             self.cells.end_at(&self.grid, self.support.outermost.unwrap_or(usize::MAX));
         }
-        match &self.domains {
-            Some(domains) => {
-                build_corners(&mut self.basis, &self.grid, &self.cells.place, &domains.half_edges);
-            }
-            None => {
-                let places = [&self.cells.place[..], &self.points.half_length[..]];
-                self.method.basis.build(&mut self.basis, &self.grid, &self.support, places);
-            }
+        if let Some(domains) = &self.domains {
+            build_corners(&mut self.basis, &self.grid, &self.cells.place, &domains.half_edges);
+        } else {
+            let places = [&self.cells.place[..], &self.points.half_length[..]];
+            self.method.basis.build(&mut self.basis, &self.grid, &self.support, places);
         }
         self.strain.build(&self.grid, &self.cells, &self.points.half_length);
         self.recovery.build(&self.grid, &self.cells);
