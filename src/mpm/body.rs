@@ -15,6 +15,7 @@ use crate::mpm::state::domains::Domains;
 use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::{Nodes, Support};
 use crate::mpm::state::points::Points;
+use crate::mpm::state::velocity_slopes::VelocitySlopes;
 use crate::soil::continuity::Continuity;
 use crate::soil::law::Stiffness;
 use crate::soil::material::Material;
@@ -119,6 +120,8 @@ pub struct Body<const D: usize> {
     pub strain: StrainOperator<D>,
     /// Domains of the points where they turn with the material.
     pub domains: Option<Domains<D>>,
+    /// Slopes of the points' velocities, where they bring them to the nodes.
+    pub slopes: Option<VelocitySlopes<D>>,
     /// What the cells remember.
     pub cell_memory: CellMemory<D>,
     /// Faces that are held.
@@ -174,6 +177,7 @@ impl<const D: usize> Body<D> {
             forcing: forcing.map(|acting| Forced::of(acting, &grid, &points)),
             basis: if domains.is_some() { corner_stencils(count) } else { method.basis.stencils(count) },
             domains,
+            slopes: None,
             strain: StrainOperator::of(method.strain, count),
             cell_memory: CellMemory::new(&grid),
             support,

@@ -7,4 +7,5 @@ pub mod grid;
 pub mod lanes;
 pub mod nodes;
 pub mod points;
+pub mod velocity_slopes;
 pub mod water_points;
