@@ -20,6 +20,7 @@ use crate::scene::column::{Column, column_parameters};
 use crate::soil::material::Material;
 use crate::wording::words;
 use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
 
 /// State and operators of a point, bytes.
 const BYTES_A_POINT: f64 = 500.0;
@@ -123,9 +124,16 @@ impl Case {
 
     /// The hash as the number that its digits are.
     pub fn number(&self) -> u64 {
-        // Serialising plain numbers and words cannot fail; were it to, an empty text still hashes.
-        let canonical = serde_json::to_string(self).unwrap_or_default();
-        let hash = blake3::hash(canonical.as_bytes());
+        thread_local! {
+            // Every case of a large study is hashed several times.
+            static CANONICAL: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+        }
+        let hash = CANONICAL.with_borrow_mut(|canonical| {
+            canonical.clear();
+            // Serialising plain numbers and words cannot fail; were it to, what there is still hashes.
+            let _ = serde_json::to_writer(&mut *canonical, self);
+            blake3::hash(canonical)
+        });
         hash.as_bytes().iter().take(HASH_DIGITS / 2).fold(0, |number, byte| (number << 8) | u64::from(*byte))
     }
 
