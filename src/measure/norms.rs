@@ -26,7 +26,7 @@ pub struct FieldDifference<'a> {
 
 impl<'a> FieldDifference<'a> {
     /// `computed − exact`. None where the lists are empty, do not match, hold what is not a number or no volume at all.
-    pub fn of(computed: &[f64], exact: &'a [f64], volumes: &'a [f64]) -> Option<Self> {
+    pub fn of(computed: &'a [f64], exact: &'a [f64], volumes: &'a [f64]) -> Option<Self> {
         let is_measurable = computed.len() == exact.len()
             && computed.len() == volumes.len()
             && computed.iter().chain(exact).all(|value| value.is_finite())

@@ -10,7 +10,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 /// Which record the rows of a case are made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RowsOf {
     /// Number that the hash of the case is.
     pub case: u64,
@@ -40,6 +40,11 @@ impl RowsOf {
 /// When they are longer than a member may be.
 pub(crate) fn packed_rows(of: RowsOf, rows: &str) -> std::io::Result<Vec<u8>> {
     packed(of.header(), rows.as_bytes())
+}
+
+/// Whether a member of the table has the rows of a record.
+pub(crate) fn is_rows_of(member: &[u8], of: RowsOf) -> bool {
+    Header::read(member).is_some_and(|header| header.kind == Kind::Rows && RowsOf::of(&header) == of)
 }
 
 /// Writes the table of cases in their order. `rows` makes those of a case, packed, none where its record cannot be

@@ -4,7 +4,7 @@
 //! The file has no name on systems that let it go, and is nobody's a day later on others: a run that is killed leaves
 //! nothing, and the next one makes the rows of its records.
 
-use crate::record::packed_table::RowsOf;
+use crate::record::packed_table::{RowsOf, is_rows_of};
 use crate::record::whole_file::create_part;
 use std::collections::HashMap;
 use std::fs::{self, File};
@@ -18,7 +18,8 @@ pub(crate) struct RowsAtHand {
     /// Its name, where the system would not let it go.
     path: Option<PathBuf>,
     end: u64,
-    places: HashMap<RowsOf, (u64, usize)>,
+    /// Where the last rows of a case begin, and their length.
+    places: HashMap<u64, (u64, u32)>,
 }
 
 impl RowsAtHand {
@@ -40,18 +41,19 @@ impl RowsAtHand {
     pub fn keep(&mut self, of: RowsOf, member: &[u8]) -> io::Result<()> {
         self.file.seek(SeekFrom::Start(self.end))?;
         self.file.write_all(member)?;
-        self.places.insert(of, (self.end, member.len()));
-        self.end += member.len() as u64;
+        let length = u32::try_from(member.len()).map_err(|_| io::ErrorKind::FileTooLarge)?;
+        self.places.insert(of.case, (self.end, length));
+        self.end += u64::from(length);
         Ok(())
     }
 
     /// The rows of a record as they stand in the table, where they were kept.
     pub fn packed(&mut self, of: RowsOf) -> Option<Vec<u8>> {
-        let (from, length) = *self.places.get(&of)?;
+        let (from, length) = *self.places.get(&of.case)?;
         self.file.seek(SeekFrom::Start(from)).ok()?;
-        let mut member = vec![0; length];
+        let mut member = vec![0; length as usize];
         self.file.read_exact(&mut member).ok()?;
-        Some(member)
+        is_rows_of(&member, of).then_some(member)
     }
 }
 
@@ -83,8 +85,12 @@ mod tests {
         }
         let mut text = |of| rows.packed(of).and_then(|member| unpacked(&member));
         assert_eq!(text(of(2, 1)).as_deref(), Some("b,2\nb,3\n"));
-        assert_eq!([text(of(1, 1)), text(of(1, 2))], [Some("a,1\n".to_owned()), Some("a,4\n".to_owned())]);
-        assert_eq!([text(of(3, 1)), text(of(2, 2))], [None, None], "another case, another run");
+        assert_eq!(text(of(1, 2)).as_deref(), Some("a,4\n"));
+        assert_eq!(
+            [text(of(3, 1)), text(of(2, 2)), text(of(1, 1))],
+            [None, None, None],
+            "another case, another run"
+        );
         drop(rows);
         assert_eq!(fs::read_dir(&study).expect("a folder").count(), 0);
     }
