@@ -188,7 +188,12 @@ impl PackedStore {
         text.push('\n');
         text.push_str(&self.wall_line(record)?);
         text.push('\n');
-        if let Some(place) = self.append(kind, record, &text)? {
+        let place = match self.append(kind, record, &text) {
+            // A full disk is the records': rows can be made again.
+            Err(_) if self.take_rows_at_hand().is_some() => self.append(kind, record, &text)?,
+            appended => appended?,
+        };
+        if let Some(place) = place {
             self.keep_rows(record, Entry::from(&place.header).rows());
         }
         Ok(())
@@ -215,7 +220,6 @@ impl PackedStore {
         if let (Some(at_hand), Ok(rows)) = (&mut *rows_at_hand, rows)
             && at_hand.keep(of, &rows).is_err()
         {
-            // A full disk is the records' now.
             *rows_at_hand = None;
         }
     }
