@@ -16,8 +16,9 @@ pub enum Basis {
     Ugimp,
     /// GIMP with point domains that follow the deformation.
     Cpgimp,
-    /// Hat functions averaged over the ends of domains that follow the deformation (CPDI,
-    /// Sadeghirad, Brannon & Burghardt 2011): domains that tile the material keep tiling it.
+    /// Hat functions averaged over the ends of domains that follow the deformation, in the plane over the corners
+    /// of parallelograms that turn and shear with it (CPDI, Sadeghirad, Brannon & Burghardt 2011): domains that
+    /// tile the material keep tiling it.
     Cpdi,
     /// Quadratic B-splines at the points (Steffen, Kirby & Berzins 2008).
     Bspline2,

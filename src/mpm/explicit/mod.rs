@@ -140,6 +140,7 @@ impl<const D: usize> Body<D> {
             StrainOperator::BetweenEnds(stencils) => self.strain_points(stencils.blocks(), dt),
         }
         (self.basis, self.strain) = (basis, strain);
+        self.turn_domains();
     }
 
     fn strain_points<const W: usize>(&mut self, blocks: Blocks<'_, D, W>, dt: f64) {
@@ -217,11 +218,12 @@ impl<const D: usize> Body<D> {
 
     #[inline]
     fn following(&self) -> Following {
-        let is_hyperelastic = self.material.law.is_hyperelastic();
+        // A hyperelastic law asks for the whole deformation, and so do domains that turn.
+        let is_whole = self.material.law.is_hyperelastic() || self.domains.is_some();
         match self.configuration {
-            Configuration::Updated if self.method.domains_follow() && is_hyperelastic => Following::Both,
+            Configuration::Updated if self.method.domains_follow() && is_whole => Following::Both,
             Configuration::Updated if self.method.domains_follow() => Following::Domain,
-            Configuration::Updated if is_hyperelastic => Following::InverseDeformation,
+            Configuration::Updated if is_whole => Following::InverseDeformation,
             Configuration::Total => Following::InverseDeformation,
             Configuration::Updated | Configuration::Frozen => Following::Nothing,
         }

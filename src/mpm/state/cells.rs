@@ -236,7 +236,7 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Occupied cells in index order.
-    pub fn occupied(&self) -> impl Iterator<Item = usize> + '_ {
+    pub fn occupied(&self) -> impl Iterator<Item = usize> + Clone + '_ {
         self.occupied.iter().copied()
     }
 

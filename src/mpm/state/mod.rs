@@ -2,6 +2,7 @@
 
 pub mod cell_memory;
 pub mod cells;
+pub mod domains;
 pub mod grid;
 pub mod lanes;
 pub mod nodes;
