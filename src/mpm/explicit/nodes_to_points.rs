@@ -4,7 +4,7 @@
 //! are in registers.
 
 use crate::mpm::body::Body;
-use crate::mpm::explicit::points_to_nodes::{add_momenta, momenta_of, volumes_of};
+use crate::mpm::explicit::points_to_nodes::{add_momenta, add_momenta_in_line, momenta_of, volumes_of};
 use crate::mpm::operators::stencil::{Blocks, with_stencils};
 use crate::mpm::run::profile::{Phase, enter};
 use crate::mpm::state::lanes::LANES;
@@ -111,6 +111,10 @@ impl<const D: usize> Body<D> {
                 for (given, point) in given.iter_mut().zip(block.clone()) {
                     let volumes = volumes_of(initial_volume[point], volume_ratio[point], solid_fraction);
                     *given = momenta_of(volumes, &solid_velocity[point], &water_velocity[point]);
+                }
+                if D == 1 {
+                    add_momenta_in_line(basis, block, momenta, &given);
+                    continue;
                 }
                 for (given, point) in given.iter().zip(block) {
                     basis.visit_runs(

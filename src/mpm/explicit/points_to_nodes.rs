@@ -5,6 +5,7 @@
 //! takes what belongs across the run into what the point gives, and sums side by side what belongs to one node.
 
 use crate::mpm::body::Body;
+use crate::mpm::operators::line_sums::{gradients_of, weights_of};
 use crate::mpm::operators::pairs::add_weighted;
 use crate::mpm::operators::stencil::{Blocks, Run, with_stencils};
 use crate::mpm::state::lanes::LANES;
@@ -12,6 +13,7 @@ use crate::mpm::state::points::Points;
 use crate::mpm::wide::wide;
 use crate::soil::conductivity_mean::ConductivityMean;
 use crate::soil::tensor::{Tensor, Vector, product_with_transpose};
+use std::ops::Range;
 
 impl<const D: usize> Body<D> {
     /// Sums masses, volumes and drag of the points to the nodes.
@@ -95,62 +97,71 @@ impl<const D: usize> Body<D> {
             }
         }
         let (masses, momenta, forces) = (&mut sums.masses[..], &mut sums.momenta[..], &mut sums.forces[..]);
-        let mut given = [Given::<D>::default(); LANES];
+        let (mut given_masses, mut given_momenta) = ([[0.0; 4]; LANES], [[[0.0; D]; 2]; LANES]);
+        let mut given_stresses = [[[[0.0; D]; 2]; D]; LANES];
         for first in (0..count).step_by(LANES) {
             let block = first..count.min(first + LANES);
-            for (given, point) in given.iter_mut().zip(block.clone()) {
+            for (lane, point) in block.clone().enumerate().take(LANES) {
                 let (initial, ratio) = (points.initial_volume[point], points.volume_ratio[point]);
                 let volumes = volumes_of(initial, ratio, solid_fraction);
-                let [grain_volume, pore_volume] = volumes;
                 if MASSES {
+                    let [grain_volume, pore_volume] = volumes;
                     let drag = pore_volume * unit_weight / soil.hydraulic_conductivity_at(ratio);
-                    given.masses = [grain_volume, pore_volume, drag, 0.0];
+                    given_masses[lane] = [grain_volume, pore_volume, drag, 0.0];
                 }
                 if VELOCITIES {
-                    given.momenta =
+                    given_momenta[lane] =
                         momenta_of(volumes, &points.solid_velocity[point], &points.water_velocity[point]);
                 }
                 if FORCES {
-                    given.stresses = points.stresses(point, is_total);
+                    given_stresses[lane] = points.stresses(point, is_total);
                 }
             }
-            for (given, point) in given.iter().zip(block) {
+            if D == 1 {
+                // The same, summed over neighbours first.
+                if MASSES {
+                    basis.add_in_line(
+                        block.clone(),
+                        masses.as_flattened_mut(),
+                        weights_of,
+                        #[inline(always)]
+                        |lane| given_masses[lane],
+                    );
+                }
+                if VELOCITIES {
+                    add_momenta_in_line(basis, block.clone(), momenta, &given_momenta);
+                }
+                if FORCES {
+                    let forces = forces.as_flattened_mut().as_flattened_mut();
+                    basis.add_in_line(
+                        block,
+                        forces,
+                        gradients_of,
+                        #[inline(always)]
+                        |lane| [given_stresses[lane][0][0][0], given_stresses[lane][0][1][0]],
+                    );
+                }
+                continue;
+            }
+            for (lane, point) in block.enumerate().take(LANES) {
                 basis.visit_runs(
                     &stride,
                     point,
                     #[inline(always)]
                     |run| {
                         if MASSES {
-                            add_masses(masses, run, &given.masses);
+                            add_masses(masses, run, &given_masses[lane]);
                         }
                         if VELOCITIES {
-                            add_momenta(momenta, run, &given.momenta);
+                            add_momenta(momenta, run, &given_momenta[lane]);
                         }
                         if FORCES {
-                            add_forces(forces, run, &given.stresses);
+                            add_forces(forces, run, &given_stresses[lane]);
                         }
                     },
                 );
             }
         }
-    }
-}
-
-/// What a point gives to its nodes, times their weights or gradients.
-#[derive(Clone, Copy)]
-struct Given<const D: usize> {
-    /// Volume of the grains and of the pores (m^D), drag (N s/m), and nothing.
-    masses: [f64; 4],
-    /// Volume times velocity of the grains and of the pores, m^D m/s.
-    momenta: [Vector<D>; 2],
-    /// What each unit of a direction's gradient gives to the mixture and to the water, `[direction][phase][component]`,
-    /// N m.
-    stresses: [[Vector<D>; 2]; D],
-}
-
-impl<const D: usize> Default for Given<D> {
-    fn default() -> Self {
-        Self { masses: [0.0; 4], momenta: [[0.0; D]; 2], stresses: [[[0.0; D]; 2]; D] }
     }
 }
 
@@ -179,7 +190,10 @@ pub(crate) fn momenta_of<const D: usize>(
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 fn add_masses<const D: usize, const W: usize>(masses: &mut [[f64; 4]], run: &Run<D, W>, given: &[f64; 4]) {
-    let given = given.map(|mass| run.across[0] * mass);
+    let mut given = *given;
+    for mass in &mut given {
+        *mass *= run.across[0];
+    }
     for (node, weight) in masses[run.first..run.first + W].iter_mut().zip(&run.weights) {
         add_weighted(node, *weight, &given);
     }
@@ -202,15 +216,35 @@ pub(crate) fn add_momenta<const D: usize, const W: usize>(
     }
 }
 
-/// Adds the forces of what each unit of gradient gives to the mixture and to the water to a run of nodes.
+/// Adds the momenta of the points of a block of a line to their nodes.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn add_momenta_in_line<const D: usize, const W: usize>(
+    basis: Blocks<'_, D, W>,
+    block: Range<usize>,
+    momenta: &mut [[Vector<D>; 2]],
+    given: &[[Vector<D>; 2]; LANES],
+) {
+    let momenta = momenta.as_flattened_mut().as_flattened_mut();
+    basis.add_in_line(
+        block,
+        momenta,
+        weights_of,
+        #[inline(always)]
+        |lane| [given[lane][0][0], given[lane][1][0]],
+    );
+}
+
+/// Adds the forces of what each unit of gradient gives to the mixture and to the water, `[direction][phase][component]`,
+/// to a run of nodes.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 fn add_forces<const D: usize, const W: usize>(
     forces: &mut [[Vector<D>; 2]],
     run: &Run<D, W>,
-    stresses: &[[Vector<D>; 2]; D],
+    given: &[[Vector<D>; 2]; D],
 ) {
-    let mut given = *stresses;
+    let mut given = *given;
     for e in 0..D {
         for stress in given[e].as_flattened_mut() {
             *stress *= run.across[e];

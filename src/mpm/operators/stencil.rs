@@ -18,7 +18,7 @@ pub struct Stencils<const D: usize, const W: usize> {
 }
 
 /// Rows of some neighbouring points, `[direction]`.
-type RowBlock<const D: usize, const W: usize> = [LaneRows<W>; D];
+pub type RowBlock<const D: usize, const W: usize> = [LaneRows<W>; D];
 
 /// Rows of some neighbouring points along one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -198,8 +198,10 @@ impl<const D: usize> PointStencils<D> {
 /// every store.
 #[derive(Clone, Copy, Debug)]
 pub struct Blocks<'a, const D: usize, const W: usize> {
-    first: &'a [usize],
-    rows: &'a [RowBlock<D, W>],
+    /// Flat index of the lowest node of each point's block.
+    pub first: &'a [usize],
+    /// Rows of the points, some neighbours side by side.
+    pub rows: &'a [RowBlock<D, W>],
 }
 
 impl<const D: usize, const W: usize> Blocks<'_, D, W> {

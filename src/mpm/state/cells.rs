@@ -33,8 +33,9 @@ pub struct Cells<const D: usize> {
     reached_around: Vec<bool>,
     /// Whether each cell is occupied and has an empty neighbour.
     at_edge: Vec<bool>,
-    /// Occupied cells in index order.
+    /// Occupied cells in index order, and how often they have changed.
     occupied: Vec<usize>,
+    occupations: u64,
     /// Current volume of each cell's points, m^D.
     volume: Vec<f64>,
     /// Volume-weighted mean porosity of each occupied cell's points.
@@ -68,6 +69,7 @@ impl<const D: usize> Cells<D> {
             reached_around: vec![false; count],
             at_edge: vec![false; count],
             occupied: Vec::with_capacity(count),
+            occupations: 0,
             volume: vec![0.0; count],
             porosity: vec![0.0; count],
             inverse_deformation: vec![[[0.0; D]; D]; count],
@@ -121,9 +123,13 @@ impl<const D: usize> Cells<D> {
 
     /// Lists the cells that hold points.
     fn list_occupied(&mut self) {
-        self.occupied.clear();
         let counts = self.point_count.iter().enumerate();
-        self.occupied.extend(counts.filter(|(_, count)| **count > 0).map(|(cell, _)| cell));
+        let found = counts.filter(|(_, count)| **count > 0).map(|(cell, _)| cell);
+        if !found.clone().eq(self.occupied.iter().copied()) {
+            self.occupied.clear();
+            self.occupied.extend(found);
+            self.occupations += 1;
+        }
     }
 
     /// Finds the cells of other points among those that `holders` knows to hold the material, but for some that are
@@ -286,6 +292,12 @@ impl<const D: usize> Cells<D> {
     /// Occupied cells in index order.
     pub fn occupied(&self) -> impl Iterator<Item = usize> + '_ {
         self.occupied.iter().copied()
+    }
+
+    /// How often the occupied cells have changed: what hangs on them alone stands while this does.
+    #[inline]
+    pub fn occupations(&self) -> u64 {
+        self.occupations
     }
 
     /// Lets cells above a last node take the divergence of the cell below it.

@@ -38,8 +38,9 @@ pub struct PatchRows<const D: usize> {
     /// Whether each point's row is no product of lines, and its weights then.
     is_fitted: Vec<bool>,
     fitted: Vec<[f64; MOST_CELLS]>,
-    /// Neighbours of each occupied cell.
+    /// Neighbours of each occupied cell, and which of its [occupations](Cells::occupations) they are of.
     neighbours: Vec<Neighbours<D>>,
+    occupations: Option<u64>,
 }
 
 impl<const D: usize> PatchRows<D> {
@@ -51,6 +52,7 @@ impl<const D: usize> PatchRows<D> {
             is_fitted: vec![false; points],
             fitted: vec![[0.0; MOST_CELLS]; points],
             neighbours: vec![Neighbours::All; cells],
+            occupations: None,
         }
     }
 
@@ -66,8 +68,10 @@ impl<const D: usize> PatchRows<D> {
             #[inline(always)]
             || self.build_lines(grid, cells),
         );
-        for cell in cells.occupied() {
-            self.neighbours[cell] = Neighbours::of(grid, cells, cell);
+        if self.occupations.replace(cells.occupations()) != Some(cells.occupations()) {
+            for cell in cells.occupied() {
+                self.neighbours[cell] = Neighbours::of(grid, cells, cell);
+            }
         }
         let lowest: usize = grid.cell_stride().iter().sum();
         self.is_fitted.fill(false);
