@@ -73,20 +73,17 @@ impl<const D: usize> Body<D> {
             for (at_point, point) in motions.iter_mut().zip(block.clone()) {
                 *at_point = basis.values(&stride, point, motion);
             }
-            if flip < 1.0 {
-                for ([solid, water, solid_rate, water_rate], point) in motions.iter().zip(block.clone()) {
-                    for d in 0..D {
-                        let kicked = solid_velocity[point][d] + kick * solid_rate[d];
-                        solid_velocity[point][d] = flip * kicked + pic * solid[d];
-                        let kicked = water_velocity[point][d] + kick * water_rate[d];
-                        water_velocity[point][d] = flip * kicked + pic * water[d];
-                    }
+            for ([_, _, solid_rate, water_rate], point) in motions.iter().zip(block.clone()) {
+                for d in 0..D {
+                    solid_velocity[point][d] += kick * solid_rate[d];
+                    water_velocity[point][d] += kick * water_rate[d];
                 }
-            } else {
-                for ([_, _, solid_rate, water_rate], point) in motions.iter().zip(block.clone()) {
+            }
+            if flip < 1.0 {
+                for ([solid, water, ..], point) in motions.iter().zip(block.clone()) {
                     for d in 0..D {
-                        solid_velocity[point][d] += kick * solid_rate[d];
-                        water_velocity[point][d] += kick * water_rate[d];
+                        solid_velocity[point][d] = flip * solid_velocity[point][d] + pic * solid[d];
+                        water_velocity[point][d] = flip * water_velocity[point][d] + pic * water[d];
                     }
                 }
             }
