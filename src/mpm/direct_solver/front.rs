@@ -35,10 +35,7 @@ impl Front<'_> {
     /// # Errors
     /// The column without a pivot.
     pub fn eliminate(&mut self, pivots: &mut [usize]) -> Result<(), usize> {
-        wide(
-            #[inline(always)]
-            || self.eliminate_panels(pivots),
-        )
+        wide!(self.eliminate_panels(pivots))
     }
 
     #[inline(always)]

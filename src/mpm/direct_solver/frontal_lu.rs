@@ -115,10 +115,7 @@ impl FrontalLu {
 
     /// Replaces a right-hand side by the solution; nothing is allocated.
     pub fn solve(&mut self, values: &mut [f64]) {
-        wide(
-            #[inline(always)]
-            || self.substitute(values),
-        );
+        wide!(self.substitute(values));
     }
 
     #[inline(always)]

@@ -38,7 +38,7 @@ impl<const D: usize> Body<D> {
         self.nodes.gather_motion();
         let basis = std::mem::take(&mut self.basis);
         with_stencils!(&basis, stencils => {
-            wide(#[inline(always)] || self.carry_points_by::<BACK, _>(stencils.blocks(), motion));
+            wide!(self.carry_points_by::<BACK, _>(stencils.blocks(), motion));
         });
         self.basis = basis;
     }

@@ -40,7 +40,7 @@ impl<const D: usize> Body<D> {
     fn map_points<const MASSES: bool, const VELOCITIES: bool, const FORCES: bool>(&mut self) {
         let basis = std::mem::take(&mut self.basis);
         with_stencils!(&basis, stencils => {
-            wide(#[inline(always)] || self.sum_points::<MASSES, VELOCITIES, FORCES, _>(stencils.blocks()));
+            wide!(self.sum_points::<MASSES, VELOCITIES, FORCES, _>(stencils.blocks()));
         });
         self.basis = basis;
         if MASSES {
@@ -78,25 +78,14 @@ impl<const D: usize> Body<D> {
         &mut self,
         basis: Blocks<'_, D, W>,
     ) {
+        self.nodes.clear_sums(MASSES, VELOCITIES, FORCES);
         let (soil, sums) = (&self.material, &mut self.nodes.sums);
+        let (masses, momenta, forces) = (&mut sums.masses[..], &mut sums.momenta[..], &mut sums.forces[..]);
         let (solid_fraction, unit_weight) = (1.0 - soil.porosity, soil.unit_weight_of_water());
         // Slices of one length: the bounds of all are checked here and not at every point.
         let count = self.points.len();
         let points = PointSlices::of(&self.points, count);
-        let is_total = self.is_pushed_forward;
-        let stride = *self.grid.node_stride();
-        if MASSES {
-            sums.masses.fill([0.0; 4]);
-        }
-        if VELOCITIES {
-            sums.momenta.fill([[0.0; D]; 2]);
-        }
-        if FORCES {
-            for (forces, external) in sums.forces.iter_mut().zip(&self.nodes.external_force) {
-                *forces = [*external, [0.0; D]];
-            }
-        }
-        let (masses, momenta, forces) = (&mut sums.masses[..], &mut sums.momenta[..], &mut sums.forces[..]);
+        let (stride, is_total) = (*self.grid.node_stride(), self.is_pushed_forward);
         let (mut given_masses, mut given_momenta) = ([[0.0; 4]; LANES], [[[0.0; D]; 2]; LANES]);
         let mut given_stresses = [[[[0.0; D]; 2]; D]; LANES];
         for first in (0..count).step_by(LANES) {

@@ -27,19 +27,13 @@ impl<const D: usize> Body<D> {
         let (basis, strain) = (std::mem::take(&mut self.basis), std::mem::take(&mut self.strain));
         match &strain {
             StrainOperator::Basis => with_stencils!(&basis, stencils => {
-                wide(#[inline(always)] || self.strain_points(stencils.blocks(), dt));
+                wide!(self.strain_points(stencils.blocks(), dt));
             }),
             StrainOperator::Composite(stencils) => {
-                wide(
-                    #[inline(always)]
-                    || self.strain_points(stencils.blocks(), dt),
-                );
+                wide!(self.strain_points(stencils.blocks(), dt));
             }
             StrainOperator::BetweenEnds(stencils) => {
-                wide(
-                    #[inline(always)]
-                    || self.strain_points(stencils.blocks(), dt),
-                );
+                wide!(self.strain_points(stencils.blocks(), dt));
             }
         }
         (self.basis, self.strain) = (basis, strain);

@@ -128,20 +128,15 @@ fn build<const D: usize, const W: usize, S: ShapeFunction<W>>(
         }
         return;
     }
-    wide(
+    wide!(stencils.set_lanes(
+        grid,
+        places,
         #[inline(always)]
-        || {
-            stencils.set_lanes(
-                grid,
-                places,
-                #[inline(always)]
-                |first, direction, place, rows| {
-                    let half_length = lanes_of(&half_lengths[first..], direction, 0.5 * grid.cell_size);
-                    fill_rows::<W, S>(grid.line(direction), place, &half_length, rows)
-                },
-            )
+        |first, direction, place, rows| {
+            let half_length = lanes_of(&half_lengths[first..], direction, 0.5 * grid.cell_size);
+            fill_rows::<W, S>(grid.line(direction), place, &half_length, rows)
         },
-    );
+    ));
 }
 
 /// Rows of some points along a direction, at places in cells, of domains of half-lengths in m; returns the lowest
@@ -153,10 +148,7 @@ fn fill_rows<const W: usize, S: ShapeFunction<W>>(
     half_length: &Lanes,
     rows: &mut LaneRows<W>,
 ) -> Lanes {
-    wide(
-        #[inline(always)]
-        || fill_lanes::<W, S>(line, place, half_length, rows),
-    )
+    wide!(fill_lanes::<W, S>(line, place, half_length, rows))
 }
 
 #[inline(always)]

@@ -48,19 +48,14 @@ impl<const D: usize> StrainOperator<D> {
         match self {
             Self::Basis => {}
             Self::Composite(stencils) => {
-                wide(
+                wide!(stencils.set_lanes(
+                    grid,
+                    &cells.place,
                     #[inline(always)]
-                    || {
-                        stencils.set_lanes(
-                            grid,
-                            &cells.place,
-                            #[inline(always)]
-                            |_, direction, place, rows| {
-                                fill_composite_rows::<D>(grid.line(direction), place, rows)
-                            },
-                        )
+                    |_, direction, place, rows| {
+                        fill_composite_rows::<D>(grid.line(direction), place, rows)
                     },
-                );
+                ));
                 // Where a neighbour is missing, the polynomial is of a lower degree.
                 let cut = cells.runs().iter().filter(|(home, _)| !cells.is_reached_around(*home));
                 for (home, points) in cut.cloned() {
@@ -171,10 +166,7 @@ fn composite_row<const D: usize>(
 /// node of each. Not inlined: what is written is known to be nothing that is read.
 #[inline(never)]
 fn fill_composite_rows<const D: usize>(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
-    wide(
-        #[inline(always)]
-        || fill_composite_lanes::<D>(line, place, rows),
-    )
+    wide!(fill_composite_lanes::<D>(line, place, rows))
 }
 
 #[inline(always)]

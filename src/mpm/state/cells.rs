@@ -78,10 +78,7 @@ impl<const D: usize> Cells<D> {
 
     /// Finds the cell of every point and sums volumes over each cell's points.
     pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, initial_porosity: f64) {
-        wide(
-            #[inline(always)]
-            || self.find_places(grid, &points.position),
-        );
+        wide!(self.find_places(grid, &points.position));
         self.find_runs();
         self.point_count.fill(0);
         for (cell, run) in &self.runs {

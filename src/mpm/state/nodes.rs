@@ -206,6 +206,22 @@ impl<const D: usize> Nodes<D> {
         self.solid_mass.is_empty()
     }
 
+    /// Begins new [`sums`](Self::sums) of masses, of momenta and of forces; those of the forces begin with what acts
+    /// from outside.
+    pub fn clear_sums(&mut self, masses: bool, momenta: bool, forces: bool) {
+        if masses {
+            self.sums.masses.fill([0.0; 4]);
+        }
+        if momenta {
+            self.sums.momenta.fill([[0.0; D]; 2]);
+        }
+        if forces {
+            for (forces, external) in self.sums.forces.iter_mut().zip(&self.external_force) {
+                *forces = [*external, [0.0; D]];
+            }
+        }
+    }
+
     /// Turns the points' [`sums`](Self::sums) into masses, volumes and drag of the soil.
     pub fn take_masses(&mut self, soil: &Material) {
         for (solid_mass, [grain_volume, ..]) in self.solid_mass.iter_mut().zip(&self.sums.masses) {

@@ -71,17 +71,12 @@ impl<const D: usize> RecoveryOperator<D> {
             Self::Own => each(out, put, |point| sites[point]),
             Self::Constant => each(out, put, |point| constant::value(at, point, sites)),
             Self::Patch(rows) => {
-                wide(
+                wide!(each(
+                    out,
+                    put,
                     #[inline(always)]
-                    || {
-                        each(
-                            out,
-                            put,
-                            #[inline(always)]
-                            |point| rows.value(at.grid, point, sites),
-                        )
-                    },
-                );
+                    |point| rows.value(at.grid, point, sites),
+                ));
             }
             Self::Nodal(means) => {
                 means.fit(at, sites);

@@ -64,10 +64,7 @@ impl<const D: usize> PatchRows<D> {
     /// direction are worked out for some points side by side as if all cells were there, and then those that are
     /// not.
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
-        wide(
-            #[inline(always)]
-            || self.build_lines(grid, cells),
-        );
+        wide!(self.build_lines(grid, cells));
         if self.occupations.replace(cells.occupations()) != Some(cells.occupations()) {
             for cell in cells.occupied() {
                 self.neighbours[cell] = Neighbours::of(grid, cells, cell);
@@ -279,10 +276,7 @@ impl LineRows {
 /// which gives its own moments, and the fit's weights from them.
 #[inline(never)]
 fn fill<const D: usize>(rows: &mut LineRows, cells: &Lanes, place: &Lanes) {
-    wide(
-        #[inline(always)]
-        || fill_lanes::<D>(rows, cells, place),
-    );
+    wide!(fill_lanes::<D>(rows, cells, place));
 }
 
 #[inline(always)]
