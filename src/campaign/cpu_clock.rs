@@ -1,11 +1,17 @@
 //! How long the processor has worked on a thread: what other programs take of the machine does not count.
 
-/// Seconds that this thread has been on a processor, where the system tells: Linux does, in the first number of
-/// `schedstat`, ns.
+/// Seconds that this thread has been on a processor, where the system tells.
+#[cfg(unix)]
+#[expect(clippy::unnecessary_wraps, reason = "other systems do not tell")]
 pub fn thread_seconds() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: u64 = text.split_whitespace().next()?.parse().ok()?;
-    (nanoseconds > 0).then_some(1e-9 * nanoseconds as f64)
+    let worked = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Some(worked.tv_sec as f64 + 1e-9 * worked.tv_nsec as f64)
+}
+
+/// Seconds that this thread has been on a processor: not told here.
+#[cfg(not(unix))]
+pub fn thread_seconds() -> Option<f64> {
+    None
 }
 
 #[cfg(test)]
