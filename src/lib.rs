@@ -64,7 +64,7 @@
 //! | 3, nodal velocities | `src/mpm/explicit/mod.rs:nodal_velocities` |
 //! | 4, points | `src/mpm/explicit/nodes_to_points.rs:advance_points` |
 //! | 5, mapping back | `src/mpm/explicit/nodes_to_points.rs:advance_points_and_map_back`, `src/mpm/explicit/points_to_nodes.rs:map_velocities` |
-//! | 6, effective stress | `src/mpm/explicit/mod.rs:update_effective_stress` |
+//! | 6, effective stress | `src/mpm/explicit/stresses.rs:update_effective_stress` |
 //! | 7, pressure | `src/mpm/explicit/mod.rs:update_pressure`, `src/mpm/operators/recovery/mod.rs:recover` |
 //! | 8, next step | `src/mpm/run/driver.rs:solve` |
 //!

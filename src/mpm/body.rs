@@ -352,12 +352,13 @@ impl<const D: usize> Body<D> {
     /// takes the divergence of.
     pub fn nodal_flux(&mut self) {
         let nodes = &mut self.nodes;
-        for active in 0..nodes.active().len() {
-            let node = nodes.active()[active];
-            let porosity = nodes.porosity[node];
-            for d in 0..D {
-                let solid = nodes.solid_velocity[node][d];
-                nodes.flux[node][d] = solid + porosity * (nodes.water_velocity[node][d] - solid);
+        for run in &nodes.runs {
+            let (porosity, solid) = (&nodes.porosity[run.clone()], &nodes.solid_velocity[run.clone()]);
+            let (water, flux) = (&nodes.water_velocity[run.clone()], &mut nodes.flux[run.clone()]);
+            for node in 0..run.len() {
+                for d in 0..D {
+                    flux[node][d] = solid[node][d] + porosity[node] * (water[node][d] - solid[node][d]);
+                }
             }
         }
     }

@@ -29,3 +29,4 @@ pub mod run;
 pub mod state;
 pub mod undrained_start;
 pub mod weighing_body;
+pub mod wide;

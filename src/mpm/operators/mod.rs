@@ -4,6 +4,7 @@
 pub mod basis;
 pub mod chord_mean;
 pub mod corners;
+pub mod line_sums;
 pub mod pairs;
 pub mod recovery;
 pub mod rigid_plate;

@@ -1,6 +1,6 @@
 //! Sparse operators between points and nodes: one small tensor-product block of nodes a point.
 
-use crate::mpm::operators::pairs::add_weighted;
+use crate::mpm::operators::pairs::{add_weighted, weighted_sum};
 use crate::mpm::operators::row::Row;
 use crate::mpm::state::grid::{GHOST_LAYERS, Grid, index_of, power};
 use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
@@ -21,7 +21,7 @@ pub struct Stencils<const D: usize, const W: usize> {
 }
 
 /// Rows of some neighbouring points, `[direction]`.
-type RowBlock<const D: usize, const W: usize> = [LaneRows<W>; D];
+pub type RowBlock<const D: usize, const W: usize> = [LaneRows<W>; D];
 
 /// Rows of some neighbouring points along one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,15 +113,20 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         point: usize,
         mut node_visitor: impl FnMut(usize, f64, &Vector<D>),
     ) {
-        self.blocks().visit_runs(stride, point, |run| {
-            for k in 0..W {
-                let mut gradient = [0.0; D];
-                for d in 0..D {
-                    gradient[d] = run.across[d] * if d == 0 { run.gradients[k] } else { run.weights[k] };
+        self.blocks().visit_runs(
+            stride,
+            point,
+            #[inline(always)]
+            |run| {
+                for k in 0..W {
+                    let mut gradient = [0.0; D];
+                    for d in 0..D {
+                        gradient[d] = run.across[d] * if d == 0 { run.gradients[k] } else { run.weights[k] };
+                    }
+                    node_visitor(run.first + k, run.across[0] * run.weights[k], &gradient);
                 }
-                node_visitor(run.first + k, run.across[0] * run.weights[k], &gradient);
-            }
-        });
+            },
+        );
     }
 
     /// Divergence of a nodal vector field at the point.
@@ -212,8 +217,10 @@ impl<const D: usize> PointStencils<D> {
 /// every store.
 #[derive(Clone, Copy, Debug)]
 pub struct Blocks<'a, const D: usize, const W: usize> {
-    first: &'a [usize],
-    rows: &'a [RowBlock<D, W>],
+    /// Flat index of the lowest node of each point's block.
+    pub first: &'a [usize],
+    /// Rows of the points, some neighbours side by side.
+    pub rows: &'a [RowBlock<D, W>],
     parts: usize,
 }
 
@@ -263,34 +270,57 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
-        let mut value = [0.0; D];
-        self.visit_runs(stride, point, |run| run.add_value(&mut value, field));
+        let [value] = self.values(stride, point, field.as_chunks().0);
         value
+    }
+
+    /// The same of several vectors that lie side by side at each node.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn values<const M: usize>(
+        &self,
+        stride: &[usize; D],
+        point: usize,
+        fields: &[[Vector<D>; M]],
+    ) -> [Vector<D>; M] {
+        let mut values = [[0.0; D]; M];
+        self.visit_runs(
+            stride,
+            point,
+            #[inline(always)]
+            |run| {
+                let sum = weighted_sum(&run.weights, &fields[run.first..run.first + W]);
+                add_weighted(values.as_flattened_mut(), run.across[0], sum.as_flattened());
+            },
+        );
+        values
     }
 
     /// Gradient of a nodal vector field at the point, `[component][direction]`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        let mut gradient = [[0.0; D]; D];
-        self.visit_runs(stride, point, |run| {
-            // All directions but the first have the same sum along the run.
-            let (mut slope, mut value) = ([0.0; D], [0.0; D]);
-            let nodes = field[run.first..run.first + W].iter();
-            for (node, (along, weight)) in nodes.zip(run.gradients.iter().zip(&run.weights)) {
-                for component in 0..D {
-                    slope[component] += along * node[component];
-                    value[component] += weight * node[component];
+        let nodes = field.as_chunks::<1>().0;
+        // `[direction][component]`: components lie side by side at the nodes.
+        let mut slopes = [[0.0; D]; D];
+        self.visit_runs(
+            stride,
+            point,
+            #[inline(always)]
+            |run| {
+                let nodes = &nodes[run.first..run.first + W];
+                let [slope] = weighted_sum(&run.gradients, nodes);
+                add_weighted(&mut slopes[0], run.across[0], &slope);
+                if D > 1 {
+                    // All directions but the first have the same sum along the run.
+                    let [value] = weighted_sum(&run.weights, nodes);
+                    for direction in 1..D {
+                        add_weighted(&mut slopes[direction], run.across[direction], &value);
+                    }
                 }
-            }
-            for component in 0..D {
-                for direction in 0..D {
-                    let sum = if direction == 0 { slope[component] } else { value[component] };
-                    gradient[component][direction] += run.across[direction] * sum;
-                }
-            }
-        });
-        gradient
+            },
+        );
+        std::array::from_fn(|component| std::array::from_fn(|direction| slopes[direction][component]))
     }
 }
 
@@ -307,19 +337,6 @@ pub struct Run<const D: usize, const W: usize> {
     /// What the other directions give: to the weights and to the first component of the gradients, and to each of the
     /// others, 1/m.
     pub across: Vector<D>,
-}
-
-impl<const D: usize, const W: usize> Run<D, W> {
-    /// Adds the run's share of the value of a nodal field.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn add_value(&self, value: &mut Vector<D>, field: &[Vector<D>]) {
-        let mut sum = [0.0; D];
-        for (node, weight) in field[self.first..self.first + W].iter().zip(&self.weights) {
-            add_weighted(&mut sum, *weight, node);
-        }
-        add_weighted(value, self.across[0], &sum);
-    }
 }
 
 /// Visits the nodes of a tensor product of rows with their weights.
