@@ -6,7 +6,6 @@
 use crate::elementary;
 use crate::mpm::body::Body;
 use crate::mpm::implicit::unknowns::Unknowns;
-use crate::mpm::method::Memory;
 use crate::mpm::run::integrator::Formulation;
 use crate::mpm::state::points::Points;
 use crate::soil::tensor::{Tensor, Vector, dot, identity, inverse, strain_between};
@@ -193,10 +192,7 @@ impl<const D: usize> Trial<D> {
             }
         }
         if moves_points {
-            if self.body.method.memory == Memory::Cells {
-                let body = &mut self.body;
-                body.cell_memory.spread_over_points(&body.grid, &body.cells, &mut body.points);
-            }
+            self.body.remember_by_cells();
             self.body.build_operators();
             self.body.map_masses();
             self.unknowns = Unknowns::of(&self.body);

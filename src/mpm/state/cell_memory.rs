@@ -7,8 +7,14 @@
 //! at the end of every step, the parabola whose means over the cell and its neighbours are those of
 //! the points: conservative in each cell, exact for quadratic fields, idempotent while nothing moves.
 //! (The null space of the points-to-grid map is what Tran & Sołowski 2019 filter for stresses.)
+//!
+//! Of a soil that strains vertically only, stresses and places are the volumes' own (`confined_points`): stresses are
+//! remembered by what they differ from the law, points share the length of their cell by what they fill, and the
+//! parabola of the pressure ends at what is known at the drained surface.
 
+use crate::mpm::operators::surface_load::LoadedSurface;
 use crate::mpm::state::cells::Cells;
+use crate::mpm::state::confined_points::ConfinedPoints;
 use crate::mpm::state::grid::Grid;
 use crate::mpm::state::points::Points;
 use crate::soil::tensor::Vector;
@@ -28,11 +34,15 @@ pub struct CellMemory<const D: usize> {
     slope: Vec<Vector<D>>,
     /// Half its second derivative, a direction, 1/m².
     bend: Vec<Vector<D>>,
+    /// Height of the drained surface over the cells that it ends, m; infinite elsewhere.
+    surface: Vec<f64>,
+    /// Where stresses and places follow from the volumes.
+    confined: Option<ConfinedPoints>,
 }
 
 impl<const D: usize> CellMemory<D> {
-    /// Room for the cells of a grid.
-    pub fn new(grid: &Grid<D>) -> Self {
+    /// Room for the cells of a grid, for points whose stresses and places follow from their volumes, or do not.
+    pub fn new(grid: &Grid<D>, confined: Option<ConfinedPoints>) -> Self {
         let count = grid.cell_count();
         let (scalars, vectors) = (vec![0.0; count], vec![[0.0; D]; count]);
         Self {
@@ -42,6 +52,8 @@ impl<const D: usize> CellMemory<D> {
             mean: scalars,
             slope: vectors.clone(),
             bend: vectors,
+            surface: vec![f64::INFINITY; count],
+            confined,
         }
     }
 
@@ -76,6 +88,7 @@ impl<const D: usize> CellMemory<D> {
         grid: &Grid<D>,
         cells: &Cells<D>,
         initial_volume: &[f64],
+        at_surface: Option<f64>,
         field: impl Fn(usize) -> f64,
     ) {
         self.mean.fill(0.0);
@@ -87,7 +100,8 @@ impl<const D: usize> CellMemory<D> {
         }
         for cell in cells.occupied() {
             for d in 0..D {
-                let (slope, bend) = self.parabola(grid, cells, cell, d);
+                let known = at_surface.filter(|_| d + 1 == D && self.surface[cell].is_finite());
+                let (slope, bend) = self.parabola(grid, cells, cell, d, known);
                 self.slope[cell][d] = slope;
                 self.bend[cell][d] = bend;
             }
@@ -95,9 +109,17 @@ impl<const D: usize> CellMemory<D> {
     }
 
     /// Slope and half the second derivative of the parabola through a cell's mean and two others':
-    /// those of both neighbours, or of two on one side; with one neighbour, a line.
+    /// those of both neighbours, or of two on one side, or of one and a value known at the surface; with one
+    /// neighbour alone, a line.
     #[inline]
-    fn parabola(&self, grid: &Grid<D>, cells: &Cells<D>, cell: usize, d: usize) -> (f64, f64) {
+    fn parabola(
+        &self,
+        grid: &Grid<D>,
+        cells: &Cells<D>,
+        cell: usize,
+        d: usize,
+        known: Option<f64>,
+    ) -> (f64, f64) {
         let stride = grid.cell_stride()[d];
         let [lower, upper] = [cell - stride, cell + stride];
         let (near, far) = match (cells.is_occupied(lower), cells.is_occupied(upper)) {
@@ -113,7 +135,11 @@ impl<const D: usize> CellMemory<D> {
             (distance, square, self.mean[other] - self.mean[cell])
         };
         let (x1, s1, f1) = difference(near);
-        let Some((x2, s2, f2)) = far.map(difference) else { return (f1 / x1, 0.0) };
+        let at_surface = known.map(|value| {
+            let distance = self.surface[cell] - self.centre[cell][d];
+            (distance, distance * distance - self.spread[cell][d], value - self.mean[cell])
+        });
+        let Some((x2, s2, f2)) = at_surface.or_else(|| far.map(difference)) else { return (f1 / x1, 0.0) };
         let per_determinant = 1.0 / (x1 * s2 - x2 * s1);
         ((f1 * s2 - f2 * s1) * per_determinant, (x1 * f2 - x2 * f1) * per_determinant)
     }
@@ -131,27 +157,50 @@ impl<const D: usize> CellMemory<D> {
     }
 
     /// Spreads pressure, effective stress and volume ratio over the points of each cell by the
-    /// parabolas through the cells' means.
-    pub fn spread_over_points(&mut self, grid: &Grid<D>, cells: &Cells<D>, points: &mut Points<D>) {
+    /// parabolas through the cells' means; the pressure at a drained surface, Pa, is known where stresses and places
+    /// follow from the volumes.
+    pub fn spread_over_points(
+        &mut self,
+        grid: &Grid<D>,
+        cells: &Cells<D>,
+        points: &mut Points<D>,
+        surface: &LoadedSurface<D>,
+        pressure_at_surface: f64,
+    ) {
+        let confined = self.confined;
         self.place(cells, points);
-        self.fit(grid, cells, &points.initial_volume, |point| points.pressure[point]);
-        for point in 0..points.len() {
-            points.pressure[point] = self.value(cells.of_point[point], &points.position[point]);
+        if let Some(soil) = &confined {
+            self.surface.fill(f64::INFINITY);
+            for (point, height) in surface.edges(points) {
+                self.surface[cells.of_point[point]] = height;
+            }
+            soil.add_stress(points, -1.0);
         }
-        self.fit(grid, cells, &points.initial_volume, |point| points.volume_ratio[point]);
+        self.fit(grid, cells, &points.initial_volume, None, |point| points.volume_ratio[point]);
         for point in 0..points.len() {
             let ratio = self.value(cells.of_point[point], &points.position[point]);
             // The domains still tile the material: what they fill does not change.
             points.stressed_share[point] *= points.volume_ratio[point] / ratio;
             points.volume_ratio[point] = ratio;
         }
+        if let Some(soil) = &confined {
+            soil.share_out(grid, &cells.of_point, points);
+        }
+        let known = confined.map(|_| pressure_at_surface);
+        self.fit(grid, cells, &points.initial_volume, known, |point| points.pressure[point]);
+        for point in 0..points.len() {
+            points.pressure[point] = self.value(cells.of_point[point], &points.position[point]);
+        }
         for (i, j) in (0..D).flat_map(|i| (i..D).map(move |j| (i, j))) {
-            self.fit(grid, cells, &points.initial_volume, |point| points.effective_stress[point][i][j]);
+            self.fit(grid, cells, &points.initial_volume, None, |point| points.effective_stress[point][i][j]);
             for point in 0..points.len() {
                 let value = self.value(cells.of_point[point], &points.position[point]);
                 points.effective_stress[point][i][j] = value;
                 points.effective_stress[point][j][i] = value;
             }
+        }
+        if let Some(soil) = &confined {
+            soil.add_stress(points, 1.0);
         }
     }
 }
@@ -175,9 +224,9 @@ mod tests {
 
     fn spread(field: &[f64]) -> Vec<f64> {
         let (grid, points, cells) = crossed();
-        let mut memory = CellMemory::new(&grid);
+        let mut memory = CellMemory::new(&grid, None);
         memory.place(&cells, &points);
-        memory.fit(&grid, &cells, &points.initial_volume, |point| field[point]);
+        memory.fit(&grid, &cells, &points.initial_volume, None, |point| field[point]);
         (0..points.len()).map(|point| memory.value(cells.of_point[point], &points.position[point])).collect()
     }
 
