@@ -208,6 +208,7 @@ impl<const D: usize> CellMemory<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::soil::law::Law;
     use crate::soil::material::Material;
 
     /// Points of ten cells, shifted by a share of a cell and squeezed towards the base.
@@ -237,6 +238,45 @@ mod tests {
         for (got, exact) in spread(&field).iter().zip(&field) {
             assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
         }
+    }
+
+    #[test]
+    fn a_confined_soil_keeps_its_law_and_the_pressure_of_its_surface() {
+        let (grid, mut points, mut cells) = crossed();
+        let soil = Material { law: Law::LogLinear, ..Material::default() };
+        let confined = ConfinedPoints::of(&points, &soil, true).expect("a law of columns");
+        // A front that no cell resolves, and domains that do not fit it.
+        for point in 0..points.len() {
+            let front = if point < 26 { 0.0 } else { (point - 25) as f64 / 5.0 };
+            points.volume_ratio[point] = 1.0 - 0.4 * front * front;
+            points.pressure[point] = 1.0 - front.powi(3);
+            points.half_length[point][0] *= 0.9 + 0.04 * points.initial_position[point][0];
+        }
+        confined.add_stress(&mut points, 1.0);
+        cells.locate(&grid, &points, soil.porosity);
+        let surface = LoadedSurface::of(&points, 1.0);
+        let mut memory = CellMemory::new(&grid, Some(confined));
+        let before = points.clone();
+        memory.spread_over_points(&grid, &cells, &mut points, &surface, 0.25);
+        for point in 0..points.len() {
+            let law = confined.stress_at::<1>(points.volume_ratio[point])[0][0];
+            assert!((points.effective_stress[point][0][0] - law).abs() < 1e-9 * soil.youngs_modulus);
+            assert_eq!(grid.cell_of(&points.position[point]), grid.cell_of(&before.position[point]));
+        }
+        assert!((points.volume_ratio[29] - before.volume_ratio[29]).abs() > 0.01, "the front was spread");
+        // The parabola through the points of the top cell ends at the surface with the pressure there.
+        let top: Vec<usize> =
+            (0..points.len()).filter(|point| cells.of_point[*point] == cells.of_point[29]).collect();
+        assert!(top.len() >= 3, "{top:?}");
+        let edge = before.position[29][0] + before.half_length[29][0];
+        let places: Vec<f64> = top[..3].iter().map(|point| points.position[*point][0]).collect();
+        let mut end = 0.0;
+        for (i, point) in top[..3].iter().enumerate() {
+            let others = (0..3).filter(|j| *j != i);
+            let weight: f64 = others.map(|j| (edge - places[j]) / (places[i] - places[j])).product();
+            end += weight * points.pressure[*point];
+        }
+        assert!((end - 0.25).abs() < 1e-9, "{end}");
     }
 
     proptest::proptest! {
