@@ -24,7 +24,6 @@ pub mod loaded_body;
 pub mod method;
 pub mod momentum;
 pub mod operators;
-mod remembering_body;
 pub mod run;
 pub mod state;
 pub mod undrained_start;

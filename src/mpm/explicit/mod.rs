@@ -9,7 +9,7 @@ pub mod scheme;
 
 use crate::mpm::body::Body;
 use crate::mpm::explicit::deformation::{Following, middle_gradient, rotated, stretch_of};
-use crate::mpm::method::{Configuration, PressureIntegration};
+use crate::mpm::method::{Configuration, Memory, PressureIntegration};
 use crate::mpm::momentum::{NodalBalance, implicit_drag, per_water_inertia};
 use crate::mpm::operators::recovery::points_in_cells::points_in_cells;
 use crate::mpm::operators::stencil::{Blocks, with_stencils};
@@ -45,7 +45,9 @@ impl<const D: usize> Body<D> {
         self.update_effective_stress(dt); // step 6
         enter(Phase::Recovery);
         self.update_pressure(dt); // step 7, and step 8 is the next one
-        self.remember_by_cells();
+        if self.method.memory == Memory::Cells && self.configuration.moves_points() {
+            self.cell_memory.spread_over_points(&self.grid, &self.cells, &mut self.points);
+        }
     }
 
     /// Step 1: operators, masses and velocities on the points' places. Where nothing moves, the

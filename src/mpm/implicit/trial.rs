@@ -6,6 +6,7 @@
 use crate::elementary;
 use crate::mpm::body::Body;
 use crate::mpm::implicit::unknowns::Unknowns;
+use crate::mpm::method::Memory;
 use crate::mpm::run::integrator::Formulation;
 use crate::mpm::state::points::Points;
 use crate::soil::tensor::{Tensor, Vector, dot, identity, inverse, strain_between};
@@ -192,7 +193,10 @@ impl<const D: usize> Trial<D> {
             }
         }
         if moves_points {
-            self.body.remember_by_cells();
+            if self.body.method.memory == Memory::Cells {
+                let body = &mut self.body;
+                body.cell_memory.spread_over_points(&body.grid, &body.cells, &mut body.points);
+            }
             self.body.build_operators();
             self.body.map_masses();
             self.unknowns = Unknowns::of(&self.body);

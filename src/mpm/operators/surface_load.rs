@@ -120,11 +120,6 @@ impl<const D: usize> LoadedSurface<D> {
         place
     }
 
-    /// Topmost points with the height of the surface over each, m.
-    pub fn edges(&self, points: &Points<D>) -> impl Iterator<Item = (usize, f64)> {
-        self.spots.iter().map(move |spot| (spot.point, self.place(points, spot)[D - 1]))
-    }
-
     /// The surface of a body with a basis: its load is spread with the weights of that basis, and
     /// with hats where domains smear them.
     #[must_use]

@@ -5,9 +5,9 @@
 //! ```
 //!
 //! with the law's uniaxial stress ratio `s` (docs/theory.md, Eqs 6 and 7) and the lengths `l` of the domains. Where the
-//! cells remember, the volume ratios of the points are spread anew at every step, and these two follow from them: what
-//! a first front that no cell resolves left in the stresses and places of the points would stay for ever otherwise,
-//! and no balance sees it.
+//! cells remember, the volume ratios of the points are spread anew at every step, and these follow from them, the
+//! pressure with the stress that it is in balance with (docs/theory.md, Eq. 30): what a first front that no cell
+//! resolves left in the stresses and places of the points would stay for ever otherwise, and no balance sees it.
 
 use crate::mpm::state::grid::Grid;
 use crate::mpm::state::points::Points;
@@ -61,13 +61,16 @@ impl ConfinedPoints {
         stress
     }
 
-    /// Adds the stress of the law at each point's volume ratio to what it has, times a factor.
+    /// Adds the stress of the law at each point's volume ratio, times a factor, to its effective stress and its
+    /// pressure: what a front changes in both and leaves in balance.
     pub fn add_stress<const D: usize>(&self, points: &mut Points<D>, factor: f64) {
-        for (stress, ratio) in points.effective_stress.iter_mut().zip(&points.volume_ratio) {
+        let stresses = points.effective_stress.iter_mut().zip(&mut points.pressure);
+        for ((stress, pressure), ratio) in stresses.zip(&points.volume_ratio) {
             let of_law = self.stress_at::<D>(*ratio);
             for d in 0..D {
                 stress[d][d] += factor * of_law[d][d];
             }
+            *pressure += factor * of_law[D - 1][D - 1];
         }
     }
 
