@@ -51,6 +51,8 @@
 //! | 24, 25, 26, 27 | manufactured motions, and what acts on them | `src/exact/manufactured/motion.rs:place`, `src/exact/manufactured/state.rs:of`, `src/exact/manufactured/state.rs:body_forces`, `src/exact/manufactured/state.rs:source` |
 //! | 28 | neo-Hookean stress | `src/soil/law.rs:neo_hookean_stress` |
 //! | 29 | the middle of a step | `src/mpm/forced_body.rs:update_forced_pressure`, `src/mpm/explicit/deformation.rs:middle_gradient` |
+//! | 30 | weights of domains that turn | `src/mpm/operators/corners.rs:build_corners`, `src/mpm/state/domains.rs:follow` |
+//! | 31 | cells that remember a confined soil | `src/mpm/state/confined_points.rs:share_out`, `src/mpm/state/cell_memory.rs:spread_over_points` |
 //!
 //! # The step
 //!

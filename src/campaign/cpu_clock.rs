@@ -2,10 +2,11 @@
 
 /// Seconds that this thread has been on a processor, where the system tells.
 #[cfg(unix)]
-#[expect(clippy::unnecessary_wraps, reason = "other systems do not tell")]
 pub fn thread_seconds() -> Option<f64> {
-    let worked = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-    Some(worked.tv_sec as f64 + 1e-9 * worked.tv_nsec as f64)
+    use rustix::time::{ClockId, clock_gettime};
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    let seconds = time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64;
+    (seconds > 0.0).then_some(seconds)
 }
 
 /// Seconds that this thread has been on a processor: not told here.

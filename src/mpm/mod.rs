@@ -18,6 +18,7 @@ pub mod direct_solver;
 pub mod explicit;
 pub mod forced_body;
 pub mod forcing;
+pub mod formulation;
 pub mod implicit;
 pub mod layers;
 pub mod loaded_body;

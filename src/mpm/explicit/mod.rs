@@ -2,6 +2,7 @@
 //!
 //! A body's step reads as the paper's list: [`kick_and_drift`](Body::kick_and_drift). Drag is part of step 2.
 
+pub mod affine;
 pub mod deformation;
 pub mod nodes_to_points;
 pub mod points_to_nodes;
@@ -32,6 +33,7 @@ impl<const D: usize> Body<D> {
         }
         enter(Phase::Motion);
         self.nodal_velocities(kick, dt); // step 3
+        self.take_slopes();
         if settings.mapping_back {
             self.advance_points_and_map_back(kick, dt, settings.flip); // steps 4 and 5
         } else {

@@ -65,6 +65,7 @@ impl<const D: usize> Body<D> {
 
     /// Velocities of the nodes from the momenta that the points gave them.
     pub(crate) fn take_velocities(&mut self) {
+        self.add_slopes();
         self.nodes.take_velocities(&self.material);
         if let Some(plate) = &self.plate {
             plate.tie_velocities(&mut self.nodes);

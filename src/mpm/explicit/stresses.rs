@@ -37,6 +37,7 @@ impl<const D: usize> Body<D> {
             }
         }
         (self.basis, self.strain) = (basis, strain);
+        self.turn_domains();
     }
 
     #[inline(always)]
@@ -100,11 +101,12 @@ impl<const D: usize> Body<D> {
 
     #[inline]
     fn following(&self) -> Following {
-        let is_hyperelastic = self.material.law.is_hyperelastic();
+        // A hyperelastic law asks for the whole deformation, and so do domains that turn.
+        let is_whole = self.material.law.is_hyperelastic() || self.domains.is_some();
         match self.configuration {
-            Configuration::Updated if self.method.domains_follow() && is_hyperelastic => Following::Both,
+            Configuration::Updated if self.method.domains_follow() && is_whole => Following::Both,
             Configuration::Updated if self.method.domains_follow() => Following::Domain,
-            Configuration::Updated if is_hyperelastic => Following::InverseDeformation,
+            Configuration::Updated if is_whole => Following::InverseDeformation,
             Configuration::Total => Following::InverseDeformation,
             Configuration::Updated | Configuration::Frozen => Following::Nothing,
         }

@@ -128,9 +128,11 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
     // Forces and drag of a node: of all points whose weights reach it.
     let mut by_node = vec![Vec::new(); body.nodes.len()];
     let first = body.basis.first();
+    let parts = first.len() / by_point.len();
+    let blocks_of = |point: usize| &first[point * parts..(point + 1) * parts];
     for (point, felt) in by_point.iter().enumerate() {
         // Neighbours mostly feel the same, and need not say so twice.
-        if point == 0 || first[point] != first[point - 1] || *felt != by_point[point - 1] {
+        if point == 0 || blocks_of(point) != blocks_of(point - 1) || *felt != by_point[point - 1] {
             body.basis.visit(stride, point, |node, _, _| by_node[node].extend_from_slice(felt));
         }
     }

@@ -1,5 +1,6 @@
 //! What water points give to the nodes, while it is summed.
 
+use crate::mpm::layers::cell_forces::CellSums;
 use crate::soil::tensor::Vector;
 
 /// What the water points give to each node, while it is summed; `[node]`.
@@ -9,11 +10,13 @@ pub struct WaterSums<const D: usize> {
     pub masses: Vec<[f64; 4]>,
     /// Momentum, kg m/s.
     pub momenta: Vec<Vector<D>>,
+    /// What the water points give to each cell; `[cell]`, m^D Pa and m^D.
+    pub cells: Vec<CellSums>,
 }
 
 impl<const D: usize> WaterSums<D> {
-    /// Room for so many nodes.
-    pub fn with_nodes(count: usize) -> Self {
-        Self { masses: vec![[0.0; 4]; count], momenta: vec![[0.0; D]; count] }
+    /// Room for so many nodes and cells.
+    pub fn with_nodes(count: usize, cells: usize) -> Self {
+        Self { masses: vec![[0.0; 4]; count], momenta: vec![[0.0; D]; count], cells: vec![[0.0; 4]; cells] }
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod basis;
 pub mod chord_mean;
+pub mod corners;
 pub mod line_sums;
 pub mod pairs;
 pub mod recovery;

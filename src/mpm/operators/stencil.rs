@@ -9,12 +9,15 @@ use crate::soil::tensor::{Tensor, Vector};
 /// Weights and gradients of every point over a block of `W` nodes in each direction.
 ///
 /// The block of a point is the tensor product of one row a direction, which is what is stored:
-/// `2 D W` numbers a point whatever the dimension, those of neighbouring points side by side.
+/// `2 D W` numbers a point whatever the dimension, those of neighbouring points side by side. A point whose weights
+/// are no product has several blocks, of which they are the sum.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stencils<const D: usize, const W: usize> {
-    /// Flat index of the lowest node of each point's block.
+    /// Flat index of the lowest node of each point's block, or of each of its blocks.
     pub first: Vec<usize>,
     rows: Vec<RowBlock<D, W>>,
+    /// Blocks per point.
+    parts: usize,
 }
 
 /// Rows of some neighbouring points, `[direction]`.
@@ -32,8 +35,14 @@ pub struct LaneRows<const W: usize> {
 impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Room for `points` points, all rows zero.
     pub fn with_points(points: usize) -> Self {
+        Self::with_parts(points, 1)
+    }
+
+    /// Room for `points` points of so many blocks each, all rows zero; of one on a line.
+    pub fn with_parts(points: usize, parts: usize) -> Self {
         let empty = LaneRows { weights: [[0.0; LANES]; W], gradients: [[0.0; LANES]; W] };
-        Self { first: vec![0; points], rows: vec![[empty; D]; points.div_ceil(LANES)] }
+        let blocks = points * parts;
+        Self { first: vec![0; blocks], rows: vec![[empty; D]; blocks.div_ceil(LANES)], parts }
     }
 
     /// Sets the block of a point from one row a direction.
@@ -45,6 +54,12 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
             self.set_row(grid, point, direction, &rows[direction]);
         }
         self.first[point] = first;
+    }
+
+    /// Sets one of the blocks of a point.
+    #[inline]
+    pub fn set_part(&mut self, grid: &Grid<D>, point: usize, part: usize, rows: &[Row<W>; D]) {
+        self.set(grid, point * self.parts + part, rows);
     }
 
     /// Sets the row of a point along a direction where the lowest node is known already.
@@ -86,7 +101,7 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     /// The blocks of all points, borrowed once for a loop over them.
     #[inline]
     pub fn blocks(&self) -> Blocks<'_, D, W> {
-        Blocks { first: &self.first, rows: &self.rows }
+        Blocks { first: &self.first, rows: &self.rows, parts: self.parts }
     }
 
     /// Visits the nodes of a point's block with weight and gradient (1/m).
@@ -181,13 +196,17 @@ impl<const D: usize> PointStencils<D> {
         with_stencils!(self, stencils => stencils.divergence(stride, point, field))
     }
 
-    /// The nodes of a point's block with their gradients (1/m), where they are not zero: the
+    /// The nodes of a point's blocks with their gradients (1/m), where they are not zero: the
     /// divergence at the point as a functional of a nodal field.
     pub fn gradient_row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, Vector<D>)> {
-        let mut row = Vec::new();
+        let mut row: Vec<(usize, Vector<D>)> = Vec::new();
         self.visit(grid.node_stride(), point, |node, _, gradient| {
-            if *gradient != [0.0; D] {
-                row.push((node, *gradient));
+            if *gradient == [0.0; D] {
+                return;
+            }
+            match row.iter_mut().find(|(other, _)| *other == node) {
+                Some((_, sum)) => (0..D).for_each(|d| sum[d] += gradient[d]),
+                None => row.push((node, *gradient)),
             }
         });
         row
@@ -202,6 +221,7 @@ pub struct Blocks<'a, const D: usize, const W: usize> {
     pub first: &'a [usize],
     /// Rows of the points, some neighbours side by side.
     pub rows: &'a [RowBlock<D, W>],
+    parts: usize,
 }
 
 impl<const D: usize, const W: usize> Blocks<'_, D, W> {
@@ -209,7 +229,20 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn visit_runs(&self, stride: &[usize; D], point: usize, mut run_visitor: impl FnMut(&Run<D, W>)) {
-        let (rows, lane) = (&self.rows[point / LANES], point % LANES);
+        // On a line a point has one block, and the compiler knows.
+        if D == 1 {
+            self.visit_block(stride, point, &mut run_visitor);
+            return;
+        }
+        for block in point * self.parts..(point + 1) * self.parts {
+            self.visit_block(stride, block, &mut run_visitor);
+        }
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn visit_block(&self, stride: &[usize; D], block: usize, run_visitor: &mut impl FnMut(&Run<D, W>)) {
+        let (rows, lane) = (&self.rows[block / LANES], block % LANES);
         let mut run = Run { first: 0, weights: [0.0; W], gradients: [0.0; W], across: [1.0; D] };
         for k in 0..W {
             run.weights[k] = rows[0].weights[k][lane];
@@ -217,7 +250,7 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
         }
         for number in 0..power(W, D - 1) {
             let mut rest = number;
-            run.first = self.first[point];
+            run.first = self.first[block];
             run.across = [1.0; D];
             for direction in 1..D {
                 let k = rest % W;
