@@ -52,6 +52,7 @@
 //! | 28 | neo-Hookean stress | `src/soil/law.rs:neo_hookean_stress` |
 //! | 29 | the middle of a step | `src/mpm/forced_body.rs:update_forced_pressure`, `src/mpm/explicit/deformation.rs:middle_gradient` |
 //! | 30 | weights of domains that turn | `src/mpm/operators/corners.rs:build_corners`, `src/mpm/state/domains.rs:follow` |
+//! | 31 | slopes of velocities | `src/mpm/explicit/affine.rs:add_slopes` |
 //!
 //! # The step
 //!
