@@ -52,6 +52,7 @@
 //! | 28 | neo-Hookean stress | `src/soil/law.rs:neo_hookean_stress` |
 //! | 29 | the middle of a step | `src/mpm/forced_body.rs:update_forced_pressure`, `src/mpm/explicit/deformation.rs:middle_gradient` |
 //! | 30 | cells that remember a confined soil | `src/mpm/state/confined_points.rs:share_out`, `src/mpm/state/cell_memory.rs:spread_over_points` |
+//! | 31 | forces of cells with one rate | `src/mpm/layers/cell_forces.rs:map_cell_forces` |
 //!
 //! # The step
 //!
