@@ -114,7 +114,7 @@ fn case(method: &str, cells: usize, configuration: Configuration) -> Case {
         points_per_cell: 2,
         time_step: TimeStepRule::Stable(0.8),
         time_factors: vec![0.05],
-        swept: Vec::new(),
+        swept: std::sync::Arc::default(),
     }
 }
 

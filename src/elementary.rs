@@ -10,7 +10,7 @@ use nalgebra::Complex;
 
 pub use libm::{
     acos, asin, atan, cos, erf, erfc, exp, exp2, expm1 as exp_m1, hypot, log as ln, log1p as ln_1p, log2,
-    log10, pow as powf, sin, tan,
+    log10, pow as powf, sin, sincos, tan,
 };
 
 /// `xⁿ` by repeated squaring, in this order of products.

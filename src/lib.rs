@@ -51,8 +51,9 @@
 //! | 24, 25, 26, 27 | manufactured motions, and what acts on them | `src/exact/manufactured/motion.rs:place`, `src/exact/manufactured/state.rs:of`, `src/exact/manufactured/state.rs:body_forces`, `src/exact/manufactured/state.rs:source` |
 //! | 28 | neo-Hookean stress | `src/soil/law.rs:neo_hookean_stress` |
 //! | 29 | the middle of a step | `src/mpm/forced_body.rs:update_forced_pressure`, `src/mpm/explicit/deformation.rs:middle_gradient` |
-//! | 30 | cells that remember a confined soil | `src/mpm/state/confined_points.rs:share_out`, `src/mpm/state/cell_memory.rs:spread_over_points` |
-//! | 31 | forces of cells with one rate | `src/mpm/layers/cell_forces.rs:map_cell_forces` |
+//! | 30 | weights of domains that turn | `src/mpm/operators/corners.rs:build_corners`, `src/mpm/state/domains.rs:follow` |
+//! | 31 | cells that remember a confined soil | `src/mpm/state/confined_points.rs:share_out`, `src/mpm/state/cell_memory.rs:spread_over_points` |
+//! | 32 | forces of cells with one rate | `src/mpm/layers/cell_forces.rs:map_cell_forces` |
 //!
 //! # The step
 //!
@@ -65,7 +66,7 @@
 //! | 3, nodal velocities | `src/mpm/explicit/mod.rs:nodal_velocities` |
 //! | 4, points | `src/mpm/explicit/nodes_to_points.rs:advance_points` |
 //! | 5, mapping back | `src/mpm/explicit/nodes_to_points.rs:advance_points_and_map_back`, `src/mpm/explicit/points_to_nodes.rs:map_velocities` |
-//! | 6, effective stress | `src/mpm/explicit/mod.rs:update_effective_stress` |
+//! | 6, effective stress | `src/mpm/explicit/stresses.rs:update_effective_stress` |
 //! | 7, pressure | `src/mpm/explicit/mod.rs:update_pressure`, `src/mpm/operators/recovery/mod.rs:recover` |
 //! | 8, next step | `src/mpm/run/driver.rs:solve` |
 //!

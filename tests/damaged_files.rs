@@ -1,11 +1,11 @@
 //! Real files of other programs, damaged on purpose: never a panic, never more memory or time than their size allows.
 //!
-//! A few hundred cases run with every test. Thousands: `cargo test --release --test damaged_files -- --ignored`;
-//! `DAMAGED_CASES` says how many.
+//! A hundred cases, always the same, run with every test. Thousands of every program's files, other ones each time:
+//! `cargo test --release --test damaged_files -- --ignored`; `DAMAGED_CASES` says how many of each.
 
 use oedometer::api::read::read;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
 use std::fs;
@@ -26,7 +26,9 @@ const ANY: usize = 96 << 20;
 const PER_BYTE: usize = 2500;
 /// No file of some kilobytes takes longer on the slowest machine.
 const LONGEST: Duration = Duration::from_secs(60);
-/// Cases of the long test where nobody says how many.
+/// Cases of each family in every test.
+const FEW: u32 = 15;
+/// Cases of each family in the long test, where nobody says how many.
 const MANY: u32 = 20_000;
 
 /// A result of a program: its folder, what is read of it, and how.
@@ -220,14 +222,16 @@ impl Copies {
     }
 }
 
-fn damage_many(cases: u32) {
+/// Damages the files of every family so many times.
+fn damage_all(cases: u32, runner_of: impl Fn(Config) -> TestRunner) {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let copies = Copies::new();
-    let config = Config { cases, failure_persistence: None, ..Config::default() };
-    let cases = (0..FAMILIES.len(), 0.0..1.0_f64, prop::collection::vec(damages(), 1..4));
-    let run = TestRunner::new(config)
-        .run(&cases, |(family, share, damages)| copies.damaged(&FAMILIES[family], share, &damages));
-    run.unwrap_or_else(|error| panic!("{error}"));
+    for family in &FAMILIES {
+        let config = Config { cases, failure_persistence: None, ..Config::default() };
+        let which = (0.0..1.0_f64, prop::collection::vec(damages(), 1..4));
+        let run = runner_of(config).run(&which, |(share, damages)| copies.damaged(family, share, &damages));
+        run.unwrap_or_else(|error| panic!("{}: {error}", family.folder));
+    }
 }
 
 #[test]
@@ -242,14 +246,16 @@ fn every_family_is_read_where_nothing_is_damaged() {
 
 #[test]
 fn damaged_files_are_refused_within_bounds() {
-    damage_many(120);
+    damage_all(FEW, |config| {
+        TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha))
+    });
 }
 
 #[test]
 #[ignore = "minutes: thousands of cases, for an optimised program"]
 fn thousands_of_damaged_files_are_refused_within_bounds() {
     let asked = std::env::var("DAMAGED_CASES").ok().and_then(|typed| typed.parse().ok());
-    damage_many(asked.unwrap_or(MANY));
+    damage_all(asked.unwrap_or(MANY), TestRunner::new);
 }
 
 #[test]

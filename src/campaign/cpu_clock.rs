@@ -1,11 +1,18 @@
 //! How long the processor has worked on a thread: what other programs take of the machine does not count.
 
-/// Seconds that this thread has been on a processor, where the system tells: Linux does, in the first number of
-/// `schedstat`, ns.
+/// Seconds that this thread has been on a processor, where the system tells.
+#[cfg(unix)]
 pub fn thread_seconds() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: u64 = text.split_whitespace().next()?.parse().ok()?;
-    (nanoseconds > 0).then_some(1e-9 * nanoseconds as f64)
+    use rustix::time::{ClockId, clock_gettime};
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    let seconds = time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64;
+    (seconds > 0.0).then_some(seconds)
+}
+
+/// Seconds that this thread has been on a processor: not told here.
+#[cfg(not(unix))]
+pub fn thread_seconds() -> Option<f64> {
+    None
 }
 
 #[cfg(test)]

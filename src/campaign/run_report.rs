@@ -25,14 +25,14 @@ pub enum Progress {
     },
     /// Work done since the last word, in the unit of the plan.
     Advanced(u64),
-    /// A case is done.
-    Finished {
+    /// A case failed.
+    Failed {
         /// Its study.
         study: String,
         /// Label of the case.
         label: String,
-        /// Failure sentence, where it failed.
-        failure: Option<String>,
+        /// Failure sentence.
+        failure: String,
     },
 }
 

@@ -261,11 +261,10 @@ fn run_and_keep(
         stopped.store(true, Ordering::Relaxed);
         return Some(Err(error.into()));
     }
-    tell(Progress::Finished {
-        study: runner.study().name.clone(),
-        label: case.label(),
-        failure: record.status.failure().map(ToString::to_string),
-    });
+    if let Some(failure) = record.status.failure() {
+        let study = runner.study().name.clone();
+        tell(Progress::Failed { study, label: case.label(), failure: failure.to_string() });
+    }
     Some(Ok(Box::new(record)))
 }
 

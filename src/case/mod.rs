@@ -20,6 +20,8 @@ use crate::scene::column::{Column, column_parameters};
 use crate::soil::material::Material;
 use crate::wording::words;
 use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
+use std::sync::Arc;
 
 /// State and operators of a point, bytes.
 const BYTES_A_POINT: f64 = 500.0;
@@ -84,7 +86,7 @@ pub struct Case {
     /// Inputs by their keys that its label names, for other cases of the same study have all else in common. They are
     /// the study's business, neither part of the identity of a case nor kept in its record.
     #[serde(skip)]
-    pub swept: Vec<&'static str>,
+    pub swept: Arc<[&'static str]>,
 }
 
 impl Case {
@@ -112,7 +114,7 @@ impl Case {
             points_per_cell: USUAL_POINTS,
             time_step: integrator.default_rule(),
             time_factors: Vec::new(),
-            swept: Vec::new(),
+            swept: Arc::default(),
         }
     }
 
@@ -123,9 +125,7 @@ impl Case {
 
     /// The hash as the number that its digits are.
     pub fn number(&self) -> u64 {
-        // Serialising plain numbers and words cannot fail; were it to, an empty text still hashes.
-        let canonical = serde_json::to_string(self).unwrap_or_default();
-        let hash = blake3::hash(canonical.as_bytes());
+        let hash = canonical_hash(self);
         hash.as_bytes().iter().take(HASH_DIGITS / 2).fold(0, |number, byte| (number << 8) | u64::from(*byte))
     }
 
@@ -210,6 +210,21 @@ impl Case {
         let solver = if solves { long * row * factors } else { 0.0 };
         solver + BYTES_A_POINT * short * long * points_a_cell
     }
+}
+
+thread_local! {
+    /// Text of a case: every one of a large study is hashed several times.
+    static CANONICAL: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Hash over all inputs of a case, as JSON.
+fn canonical_hash(case: &Case) -> blake3::Hash {
+    CANONICAL.with_borrow_mut(|canonical| {
+        canonical.clear();
+        // Serialising plain numbers and words cannot fail; were it to, what there is still hashes.
+        let _ = serde_json::to_writer(&mut *canonical, case);
+        blake3::hash(canonical)
+    })
 }
 
 /// A step rule as the command line takes it.

@@ -70,10 +70,8 @@ impl StudyBar {
                 self.bar.set_message(format!("{}{taken_up}{beyond}", count_of(cases, "case", "cases")));
             }
             Progress::Advanced(work) => self.bar.inc(work),
-            Progress::Finished { study, label, failure } => {
-                if let Some(failure) = failure {
-                    self.bar.suspend(|| say!("{study}: {label}: {failure}"));
-                }
+            Progress::Failed { study, label, failure } => {
+                self.bar.suspend(|| say!("{study}: {label}: {failure}"));
             }
         }
     }

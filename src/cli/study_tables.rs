@@ -2,12 +2,12 @@
 
 use crate::case::Case;
 use crate::case::tier::Tier;
-use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::record::Record;
 use crate::record::long_tables::{LongTable, columns_csv};
 use crate::record::machines_table::MachinesTable;
-use crate::record::packed_table::{RowsOf, write_packed_table};
+use crate::record::packed_store::Entry;
+use crate::record::packed_table::{packed_rows, write_packed_table};
 use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;
 use crate::record::table_file::TableForm;
@@ -16,7 +16,7 @@ use crate::record::whole_file::write_whole;
 use crate::study::check::Study;
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
+use std::collections::hash_map;
 use std::path::PathBuf;
 
 /// Cases up to which a table is plain CSV; that of more is compressed, to a fifteenth.
@@ -49,7 +49,7 @@ pub fn write_table(
         say!("{}: {damage}", study.name);
     }
     let cases = study.cases(Tier::Full);
-    let table = if store.is_packed() && cases.len() > MOST_PLAIN_CASES {
+    let table = if is_compressed(store, cases.len()) {
         compressed_table(study, store, &cases)?
     } else {
         single_tables(study, store, at_hand, &cases, beside)?
@@ -58,6 +58,11 @@ pub fn write_table(
         write_whole(&store.folder().join("columns.csv"), columns_csv()?.as_bytes())?;
     }
     Ok(table)
+}
+
+/// Whether the table of a study of so many cases is compressed.
+pub fn is_compressed(store: &RecordStore, cases: usize) -> bool {
+    store.is_packed() && cases > MOST_PLAIN_CASES
 }
 
 /// Says how many records of a table are of other sources.
@@ -105,7 +110,7 @@ fn single_tables(
         with_records(store, &at_hand, cases, |record| {
             foreign += usize::from(record.provenance.sources != own);
             machines.add(record);
-            Ok(tidy::write_rows(&mut *out, &study.name, record)?)
+            out.write_all(tidy::rows_of(&study.name, record).as_bytes())
         })
     })?;
     tell_of_foreign(study, foreign);
@@ -129,7 +134,7 @@ pub fn write_machines(study: &Study, store: &RecordStore) -> anyhow::Result<()> 
     for case in study.cases(Tier::Full) {
         let Some((entry, wall)) = store.entry_and_wall(case) else { continue };
         let tags = (entry.program, entry.build);
-        if let Entry::Vacant(place) = builds.entry(tags)
+        if let hash_map::Entry::Vacant(place) = builds.entry(tags)
             && let Some(origin) = store.origin(case)
         {
             place.insert(origin);
@@ -144,24 +149,17 @@ pub fn write_machines(study: &Study, store: &RecordStore) -> anyhow::Result<()> 
 fn compressed_table(study: &Study, store: &RecordStore, cases: &[&Case]) -> anyhow::Result<PathBuf> {
     let by_number: HashMap<u64, &Case> = cases.iter().map(|case| (case.number(), *case)).collect();
     let own = Provenance::of_this_program();
-    let entries = || cases.iter().filter_map(|case| store.entry(case));
-    let foreign = entries().filter(|entry| entry.program != own.program_tag()).count();
-    let rows_of = |entry: &crate::record::packed_store::Entry| RowsOf {
-        case: entry.case,
-        generation: entry.generation,
-        program: entry.program,
-        build: entry.build,
-    };
+    let entries: Vec<Entry> = cases.iter().filter_map(|case| store.entry(case)).collect();
+    let foreign = entries.iter().filter(|entry| entry.program != own.program_tag()).count();
     let table = store.folder().join(format!("{}.csv.gz", study.name));
-    let mut refused = None;
-    let places = entries().map(|entry| rows_of(&entry)).collect::<Vec<_>>();
-    write_packed_table(&table, &tidy::header_line(), places.into_iter(), |rows| {
+    let mut rows_at_hand = store.take_rows_at_hand();
+    write_packed_table(&table, &tidy::header_line(), entries.iter().map(Entry::rows), |rows| {
+        if let Some(member) = rows_at_hand.as_mut().and_then(|at_hand| at_hand.packed(rows)) {
+            return Some(Ok(member));
+        }
         let record = store.kept(by_number.get(&rows.case)?)?;
-        tidy::rows_of(&study.name, &record).map_err(|error| refused = Some(error)).ok()
+        Some(packed_rows(rows, &tidy::rows_of(&study.name, &record)))
     })?;
-    if let Some(error) = refused {
-        return Err(Ended::with(Exit::CaseFailed, format!("cannot write {}: {error}", table.display())));
-    }
     tell_of_foreign(study, foreign);
     Ok(table)
 }

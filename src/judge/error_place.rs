@@ -2,7 +2,7 @@
 
 use crate::exact::exact_error::ExactError;
 use crate::exact::reference::ReferenceKind;
-use crate::measure::error_contributions::contributions;
+use crate::measure::error_contributions::largest_contribution;
 use crate::measure::exact_fields::{exact_samples, reference_of};
 use crate::record::{ErrorRow, Record};
 use crate::wording::{short, typed};
@@ -34,7 +34,7 @@ pub fn place_of(record: &Record, row: &ErrorRow) -> Result<Option<ErrorPlace>, E
     let exact = exact_samples(case, &reference, row.time_factor, samples)?;
     let fields = row.quantity.field(samples).zip(row.quantity.field(&exact));
     Ok(fields.and_then(|(computed, exact)| {
-        let worst = *contributions(computed, exact, &samples.volume).first()?;
+        let worst = largest_contribution(computed, exact, &samples.volume)?;
         Some(ErrorPlace {
             zeta: 1.0 - samples.initial_height[worst.index] / case.column.height,
             share: worst.share,

@@ -207,7 +207,7 @@ impl<'a> Path<'a> {
         if self.axis == Axis::WaterBulkModulus {
             case.material.water_bulk_modulus = Material::default().water_bulk_modulus;
         }
-        case.swept.retain(|name| *name != self.axis.name());
+        case.swept = case.swept.iter().copied().filter(|name| *name != self.axis.name()).collect();
         let mut parts = vec![case.method.to_string()];
         if case.is_attached() {
             parts.extend((self.axis != Axis::Cells).then(|| format!("{} cells", case.cells)));

@@ -11,6 +11,9 @@ use crate::scene::column::column_parameters;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
+/// Samples from which on several threads take a part of them each.
+const MANY_SAMPLES: usize = 50_000;
+
 /// Exact fields, `[sample]`; SI, signs as in [`Samples`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExactFields {
@@ -55,24 +58,42 @@ impl ExactFields {
         time_factor: f64,
         places: SamplePlaces<'_>,
     ) -> Result<Self, ExactError> {
-        let mut known: HashMap<u64, FieldValues> = HashMap::new();
-        let mut exact = Self::default();
+        let all = places.heights.len();
+        let mut exact = Self {
+            pressure: vec![0.0; all],
+            effective_stress: vec![0.0; all],
+            displacement: vec![0.0; all],
+            horizontal_displacement: vec![0.0; all],
+        };
         // A column strains vertically only, a slab between rigid plates evenly across.
         let across = reference.strain_across(time_factor)?;
-        exact.horizontal_displacement.extend(places.distances.iter().map(|distance| across * distance));
-        exact.horizontal_displacement.resize(places.heights.len(), 0.0);
-        for height in places.heights {
-            let fields = match known.entry(height.to_bits()) {
-                Entry::Occupied(found) => *found.get(),
-                Entry::Vacant(new) => {
-                    let depth = (1.0 - height / places.height).clamp(0.0, 1.0);
-                    *new.insert(reference.fields(time_factor, depth)?)
-                }
-            };
-            exact.pressure.push(fields.pressure);
-            exact.effective_stress.push(fields.effective_stress);
-            exact.displacement.push(fields.displacement);
+        for (horizontal, distance) in exact.horizontal_displacement.iter_mut().zip(places.distances) {
+            *horizontal = across * distance;
         }
+        let threads = if all < MANY_SAMPLES {
+            1
+        } else {
+            std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get)
+        };
+        let part = all.div_ceil(threads).max(1);
+        let parts = (places.heights.chunks(part).zip(exact.pressure.chunks_mut(part)))
+            .zip(exact.effective_stress.chunks_mut(part).zip(exact.displacement.chunks_mut(part)));
+        std::thread::scope(|scope| {
+            let fill = |((heights, pressure), (effective_stress, displacement))| {
+                let of_heights = HeightFields { reference, time_factor, height: places.height };
+                let into = [pressure, effective_stress, displacement];
+                move || of_heights.fill(heights, into)
+            };
+            // The last part is this thread's own.
+            let mut parts: Vec<_> = parts.map(fill).collect();
+            let own = parts.pop();
+            let others: Vec<_> = parts.into_iter().map(|part| scope.spawn(part)).collect();
+            own.map_or(Ok(()), |part| part())?;
+            others.into_iter().try_for_each(|part| match part.join() {
+                Ok(filled) => filled,
+                Err(panic) => std::panic::resume_unwind(panic),
+            })
+        })?;
         Ok(exact)
     }
 
@@ -108,6 +129,46 @@ impl ExactFields {
             exact.horizontal_displacement.push(horizontal);
         }
         Ok(exact)
+    }
+}
+
+/// Fields of a reference over the height at a time factor.
+#[derive(Clone, Copy)]
+struct HeightFields<'a> {
+    reference: &'a Reference,
+    time_factor: f64,
+    /// Height of the column or layer, m.
+    height: f64,
+}
+
+impl HeightFields<'_> {
+    /// Fills in pressure, effective stress and displacement at heights. Where these are in order, equal ones are
+    /// neighbours and the last one is all that has to be known.
+    fn fill(self, heights: &[f64], into: [&mut [f64]; 3]) -> Result<(), ExactError> {
+        let is_in_order = heights.is_sorted();
+        let mut last: Option<(u64, FieldValues)> = None;
+        let mut known: HashMap<u64, FieldValues> = HashMap::new();
+        let [pressure, effective_stress, displacement] = into;
+        for (place, height) in heights.iter().enumerate() {
+            let key = height.to_bits();
+            let fields = match last.filter(|(known, _)| *known == key) {
+                Some((_, fields)) => fields,
+                None if is_in_order => self.at(*height)?,
+                None => match known.entry(key) {
+                    Entry::Occupied(found) => *found.get(),
+                    Entry::Vacant(new) => *new.insert(self.at(*height)?),
+                },
+            };
+            last = Some((key, fields));
+            pressure[place] = fields.pressure;
+            effective_stress[place] = fields.effective_stress;
+            displacement[place] = fields.displacement;
+        }
+        Ok(())
+    }
+
+    fn at(self, height: f64) -> Result<FieldValues, ExactError> {
+        self.reference.fields(self.time_factor, (1.0 - height / self.height).clamp(0.0, 1.0))
     }
 }
 
@@ -166,4 +227,35 @@ pub fn exact_samples(
         }),
         ..Samples::default()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::parameters::ColumnParameters;
+
+    #[test]
+    fn many_samples_in_any_order_have_the_values_of_single_ones_to_the_bit() {
+        let column = ColumnParameters::default();
+        let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[0.1]).expect("the seed column");
+        let rows = MANY_SAMPLES / 50;
+        let in_order: Vec<f64> = (0..MANY_SAMPLES + 7)
+            .map(|place| (place * rows / (MANY_SAMPLES + 7)) as f64 / rows as f64)
+            .collect();
+        let mut mixed = in_order.clone();
+        mixed.rotate_left(rows / 3);
+        mixed.reverse();
+        for heights in [&in_order, &mixed, &in_order[..10].to_vec()] {
+            let places = SamplePlaces { height: column.height, heights, distances: &[] };
+            let exact = ExactFields::of(&reference, 0.1, places).expect("inside");
+            for (place, height) in heights.iter().enumerate().step_by(997) {
+                let one = reference.fields(0.1, 1.0 - height / column.height).expect("inside");
+                let found = [exact.pressure[place], exact.effective_stress[place], exact.displacement[place]];
+                assert_eq!(found, [one.pressure, one.effective_stress, one.displacement]);
+            }
+            assert!(exact.horizontal_displacement.iter().all(|u| *u == 0.0));
+        }
+        let beyond = SamplePlaces { height: column.height, heights: &in_order, distances: &[] };
+        assert!(ExactFields::of(&reference, -0.1, beyond).is_err(), "by every thread");
+    }
 }

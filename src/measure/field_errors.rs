@@ -6,7 +6,7 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::exact::exact_error::ExactError;
 use crate::exact::reference::Reference;
 use crate::measure::exact_fields::exact_samples;
-use crate::measure::norms;
+use crate::measure::norms::FieldDifference;
 use crate::mpm::run::snapshot::{Samples, Snapshot};
 use crate::record::ErrorRow;
 
@@ -50,17 +50,21 @@ impl FieldError<'_> {
     pub fn rows(self, computed: &[f64], exact: &[f64], volume: &[f64]) -> impl Iterator<Item = ErrorRow> {
         let largest = exact.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         let is_lost = largest <= self.resolution * self.scale.abs();
-        FIELD_NORMS.into_iter().filter(move |_| !is_lost).filter_map(move |norm| {
-            Some(ErrorRow {
-                time_factor: self.time_factor,
-                quantity: self.quantity,
-                sample: self.sample,
-                norm,
-                reference: self.reference.to_owned(),
-                value: norms::relative_error(norm, computed, exact, volume)?,
-                absolute: norms::absolute_error(norm, computed, exact, volume)? / self.scale,
-            })
-        })
+        let difference = if is_lost { None } else { FieldDifference::of(computed, exact, volume) };
+        let errors = difference.map(|difference| difference.in_norms(FIELD_NORMS));
+        FIELD_NORMS.into_iter().zip(errors.into_iter().flatten()).filter_map(
+            move |(norm, (absolute, relative))| {
+                Some(ErrorRow {
+                    time_factor: self.time_factor,
+                    quantity: self.quantity,
+                    sample: self.sample,
+                    norm,
+                    reference: self.reference.to_owned(),
+                    value: relative?,
+                    absolute: absolute? / self.scale,
+                })
+            },
+        )
     }
 }
 

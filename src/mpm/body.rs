@@ -2,6 +2,7 @@
 
 use crate::mpm::forcing::{Forced, Forcing};
 use crate::mpm::method::{Configuration, Method};
+use crate::mpm::operators::corners::{build_corners, corner_stencils};
 use crate::mpm::operators::recovery::RecoveryOperator;
 use crate::mpm::operators::rigid_plate::RigidPlate;
 use crate::mpm::operators::self_weight::SelfWeight;
@@ -11,9 +12,11 @@ use crate::mpm::operators::surface_load::{LoadShape, LoadedSurface};
 use crate::mpm::state::cell_memory::CellMemory;
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::confined_points::ConfinedPoints;
+use crate::mpm::state::domains::Domains;
 use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::{Nodes, Support};
 use crate::mpm::state::points::Points;
+use crate::mpm::state::velocity_slopes::VelocitySlopes;
 use crate::soil::continuity::Continuity;
 use crate::soil::law::Stiffness;
 use crate::soil::material::Material;
@@ -116,6 +119,10 @@ pub struct Body<const D: usize> {
     pub basis: PointStencils<D>,
     /// `G` where it is not the gradient of the basis.
     pub strain: StrainOperator<D>,
+    /// Domains of the points where they turn with the material.
+    pub domains: Option<Domains<D>>,
+    /// Slopes of the points' velocities, where they bring them to the nodes.
+    pub slopes: Option<VelocitySlopes<D>>,
     /// What the cells remember.
     pub cell_memory: CellMemory<D>,
     /// Faces that are held.
@@ -157,6 +164,7 @@ impl<const D: usize> Body<D> {
             * (1.0 - material.porosity)
             * material.grain_density;
         let sites = if method.pressure.is_by_cells() { grid.cell_count() } else { count };
+        let domains = Domains::of(method, configuration, &points);
         let strains_vertically =
             load_shape == LoadShape::Uniform && plate_load.is_none() && forcing.is_none();
         let confined = strains_vertically
@@ -173,7 +181,9 @@ impl<const D: usize> Body<D> {
             plate: None,
             weight: weight.map(|gravity| SelfWeight::of(gravity, &points)),
             forcing: forcing.map(|acting| Forced::of(acting, &grid, &points)),
-            basis: method.basis.stencils(count),
+            basis: if domains.is_some() { corner_stencils(count) } else { method.basis.stencils(count) },
+            domains,
+            slopes: None,
             strain: StrainOperator::of(method.strain, count),
             cell_memory: CellMemory::new(&grid, confined),
             support,
@@ -228,6 +238,14 @@ impl<const D: usize> Body<D> {
                     }
                 }
             }
+        }
+        self.turn_domains();
+    }
+
+    /// Takes domains that turn with the points' deformation since the start of the run.
+    pub(crate) fn turn_domains(&mut self) {
+        if let Some(domains) = &mut self.domains {
+            domains.follow(&self.points.inverse_deformation);
         }
     }
 
@@ -295,8 +313,12 @@ impl<const D: usize> Body<D> {
             self.support = self.surface.end_splines(&self.grid, &self.points);
             self.cells.end_at(&self.grid, self.support.outermost.unwrap_or(usize::MAX));
         }
-        let places = [&self.cells.place[..], &self.points.half_length[..]];
-        self.method.basis.build(&mut self.basis, &self.grid, &self.support, places);
+        if let Some(domains) = &self.domains {
+            build_corners(&mut self.basis, &self.grid, &self.cells.place, &domains.half_edges);
+        } else {
+            let places = [&self.cells.place[..], &self.points.half_length[..]];
+            self.method.basis.build(&mut self.basis, &self.grid, &self.support, places);
+        }
         self.strain.build(&self.grid, &self.cells, &self.points.half_length);
         self.recovery.build(&self.grid, &self.cells);
         if self.is_pushed_forward {
@@ -336,12 +358,13 @@ impl<const D: usize> Body<D> {
     /// takes the divergence of.
     pub fn nodal_flux(&mut self) {
         let nodes = &mut self.nodes;
-        for active in 0..nodes.active().len() {
-            let node = nodes.active()[active];
-            let porosity = nodes.porosity[node];
-            for d in 0..D {
-                let solid = nodes.solid_velocity[node][d];
-                nodes.flux[node][d] = solid + porosity * (nodes.water_velocity[node][d] - solid);
+        for run in &nodes.runs {
+            let (porosity, solid) = (&nodes.porosity[run.clone()], &nodes.solid_velocity[run.clone()]);
+            let (water, flux) = (&nodes.water_velocity[run.clone()], &mut nodes.flux[run.clone()]);
+            for node in 0..run.len() {
+                for d in 0..D {
+                    flux[node][d] = solid[node][d] + porosity[node] * (water[node][d] - solid[node][d]);
+                }
             }
         }
     }

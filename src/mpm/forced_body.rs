@@ -9,34 +9,44 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::explicit::deformation::to_middle;
-use crate::mpm::forcing::Forced;
+use crate::mpm::method::PressureIntegration;
+use crate::mpm::operators::pairs::add_weighted;
 use crate::mpm::operators::recovery::points_in_cells::points_in_cells;
+use crate::mpm::operators::stencil::with_stencils;
 use crate::mpm::operators::volumetric::Place;
 use crate::soil::tensor::{Tensor, Vector, identity, product};
 
 impl<const D: usize> Body<D> {
-    /// Adds the body forces to those on the nodes, by the points' own places and volumes.
-    pub(crate) fn add_body_forces(&mut self) {
-        let Some(mut forced) = self.forcing.take() else { return };
-        forced.begin_step(&self.points);
-        let stride = *self.grid.node_stride();
-        for point in 0..self.points.len() {
-            let [mixture, water] =
-                forced.acting.body_forces(&self.points.initial_position[point], forced.time);
-            let volume = self.points.volume(point);
-            let nodes = &mut self.nodes;
-            self.basis.visit(&stride, point, |node, weight, _| {
-                for d in 0..D {
-                    nodes.mixture_force[node][d] += weight * (volume * mixture[d]);
-                    nodes.water_force[node][d] += weight * (volume * water[d]);
-                }
-            });
+    /// Begins a step of a body that something acts on, at a time, s.
+    pub(crate) fn begin_forced_step(&mut self, time: f64) {
+        if let Some(forced) = &mut self.forcing {
+            forced.begin_step(&self.points, time);
         }
-        self.forcing = Some(forced);
+    }
+
+    /// Adds the body forces to those on the nodes, by the points' own volumes.
+    pub(crate) fn add_body_forces(&mut self) {
+        let Some(forced) = &self.forcing else { return };
+        let (stride, points, nodes) = (*self.grid.node_stride(), &self.points, &mut self.nodes);
+        with_stencils!(&self.basis, stencils => {
+            let blocks = stencils.blocks();
+            for (point, forces) in forced.forces().iter().enumerate() {
+                let volume = points.volume(point);
+                let [mixture, water] = forces.map(|force| force.map(|component| volume * component));
+                blocks.visit_runs(&stride, point, |run| {
+                    for (k, weight) in run.weights.iter().enumerate() {
+                        let (node, weight) = (run.first + k, run.across[0] * weight);
+                        add_weighted(&mut nodes.mixture_force[node], weight, &mixture);
+                        add_weighted(&mut nodes.water_force[node], weight, &water);
+                    }
+                });
+            }
+        });
     }
 
     /// Brings cells and nodes to the volumes of the middle of a step of points that have been strained, and back.
-    fn enter_middle(&mut self, forced: &mut Forced<D>) {
+    fn enter_middle(&mut self) {
+        let Some(forced) = &mut self.forcing else { return };
         forced.find_middle(&self.points);
         forced.swap_middle(&mut self.points);
         self.cells.sum_volumes(&self.points, self.material.porosity);
@@ -47,50 +57,59 @@ impl<const D: usize> Body<D> {
     }
 
     /// Gives the points the deformation of the step's end again; cells and nodes follow in the next step.
-    fn leave_middle(&mut self, forced: &mut Forced<D>) {
-        forced.swap_middle(&mut self.points);
+    fn leave_middle(&mut self) {
+        if let Some(forced) = &mut self.forcing {
+            forced.swap_middle(&mut self.points);
+        }
     }
 
     /// Step 7 of a body with a source.
     pub(crate) fn update_forced_pressure(&mut self, dt: f64) {
-        let Some(mut forced) = self.forcing.take() else { return };
-        self.find_centres(&mut forced);
-        self.enter_middle(&mut forced);
+        self.find_centres();
+        self.take_sources(0.5 * dt);
+        self.enter_middle();
         self.nodal_flux();
-        let time = forced.time + 0.5 * dt;
         self.evaluate_sites(|body, place, porosity| {
             let back = body.half_step_back(place, dt);
             let gained = body.volume_rate(porosity, |field| body.middle_divergence(place, &back, field));
-            let added = forced.acting.source(body.material_place(&forced, place), time);
-            dt * body.material.water_bulk_modulus / porosity * (added - gained)
+            dt * body.material.water_bulk_modulus / porosity * (body.source_at(place) - gained)
         });
         let at = points_in_cells!(self);
         let pressures = &mut self.points.pressure;
         self.recovery
             .recover(&at, &self.site_values, pressures, |pressure, increment| *pressure += increment);
-        self.leave_middle(&mut forced);
-        self.forcing = Some(forced);
+        self.leave_middle();
     }
 
-    /// Looks for the points of the skeleton at the cells' centres at the start of the step; on the initial
-    /// configuration they are the centres themselves.
-    fn find_centres(&self, forced: &mut Forced<D>) {
-        if self.is_pushed_forward || !self.method.pressure.is_by_cells() {
-            return;
-        }
-        for cell in self.cells.occupied() {
-            let centre = self.grid.cell_centre(cell);
-            let found = forced.acting.material_place(&centre, forced.time, &forced.at_centre[cell]);
-            forced.at_centre[cell] = found;
+    /// Looks for the points of the skeleton at the cells' centres at the start of the step; where weights stay on the
+    /// initial configuration they are the centres themselves.
+    pub(crate) fn find_centres(&mut self) {
+        let Some(forced) = &mut self.forcing else { return };
+        if self.configuration.moves_points() && self.method.pressure == PressureIntegration::Sri {
+            forced.find_centres(&self.grid, self.cells.occupied());
         }
     }
 
-    /// The point of the skeleton at a place.
-    fn material_place<'a>(&'a self, forced: &'a Forced<D>, place: Place) -> &'a Vector<D> {
-        match place {
-            Place::Centre(cell) => &forced.at_centre[cell],
-            Place::Point(point) => &self.points.initial_position[point],
+    /// Takes the sources at the method's sites, so many seconds after the start of the step.
+    fn take_sources(&mut self, later: f64) {
+        let Some(forced) = &mut self.forcing else { return };
+        let time = forced.time + later;
+        match self.method.pressure {
+            PressureIntegration::Sri => forced.take_sources_at_centres(self.cells.occupied(), time),
+            PressureIntegration::Points | PressureIntegration::Mean => {
+                forced.take_sources_at_points(&self.points, time);
+            }
         }
+    }
+
+    /// Takes the body forces and the sources so many seconds after the start of the step: for balances that are asked
+    /// for there many times.
+    pub(crate) fn act_later(&mut self, later: f64) {
+        if let Some(forced) = &mut self.forcing {
+            let time = forced.time + later;
+            forced.take_forces(&self.points, time);
+        }
+        self.take_sources(later);
     }
 
     /// `(I + Δt L/2)⁻¹` at a place: from the middle of a step back to its start, where its weights are from. Unity

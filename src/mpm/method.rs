@@ -4,6 +4,7 @@ use crate::mpm::attached::{Attached, AttachedText};
 use crate::wording::words;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::sync::LazyLock;
 
 /// Weights between points and nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -15,8 +16,9 @@ pub enum Basis {
     Ugimp,
     /// GIMP with point domains that follow the deformation.
     Cpgimp,
-    /// Hat functions averaged over the ends of domains that follow the deformation (CPDI,
-    /// Sadeghirad, Brannon & Burghardt 2011): domains that tile the material keep tiling it.
+    /// Hat functions averaged over the ends of domains that follow the deformation, in the plane over the corners
+    /// of parallelograms that turn and shear with it (CPDI, Sadeghirad, Brannon & Burghardt 2011): domains that
+    /// tile the material keep tiling it.
     Cpdi,
     /// Quadratic B-splines at the points (Steffen, Kirby & Berzins 2008).
     Bspline2,
@@ -215,6 +217,12 @@ const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 14] 
     ]
 };
 
+/// Every method that has a name, with its first one: every line of a plan and of a table asks.
+static KNOWN: LazyLock<Vec<(Method, String)>> = LazyLock::new(|| {
+    let with_method = |name: String| Some((Method::named(&name)?, name));
+    Method::names().into_iter().filter_map(with_method).collect()
+});
+
 /// Prefix of the names of methods with weights on the initial configuration.
 const TOTAL_PREFIX: &str = "TL-";
 /// Suffix of the names of methods whose cells remember.
@@ -325,9 +333,9 @@ impl fmt::Display for Method {
         if let Some(attached) = self.attached {
             return out.write_str(attached.name());
         }
-        let name_of = |method: Self| Self::names().into_iter().find(|name| Self::named(name) == Some(method));
+        let name_of = |method: Self| KNOWN.iter().find(|(known, _)| *known == method).map(|(_, name)| name);
         if let Some(name) = name_of(*self) {
-            return out.write_str(&name);
+            return out.write_str(name);
         }
         match (name_of(Self { configuration: None, ..*self }), self.configuration) {
             (Some(name), None) => write!(out, "{name}"),

@@ -12,6 +12,7 @@ pub(crate) mod pack;
 pub mod packed_store;
 pub(crate) mod packed_table;
 pub mod provenance;
+pub(crate) mod rows_at_hand;
 pub(crate) mod seal;
 pub(crate) mod single_files;
 pub mod store;

@@ -4,10 +4,12 @@ use crate::record::pack::FOLDER;
 use crate::record::pack::index::{Damage, Index, Place};
 use crate::record::pack::member::{Header, Kind, packed, unpacked};
 use crate::record::pack::writer::Writer;
+use crate::record::packed_table::{RowsOf, packed_rows};
 use crate::record::provenance::Provenance;
+use crate::record::rows_at_hand::RowsAtHand;
 use crate::record::seal::{Layout, is_whole, sealed};
 use crate::record::whole_file::StoreError;
-use crate::record::{Record, Status, WallSample};
+use crate::record::{Record, Status, WallSample, tidy};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -25,6 +27,8 @@ struct State {
     index: Option<Index>,
     /// Opened when something is first written.
     writer: Option<Writer>,
+    /// Rows of the records that are written, where they are asked for.
+    rows: Option<RowsAtHand>,
 }
 
 /// What the store knows of a record without unpacking it.
@@ -180,8 +184,44 @@ impl PackedStore {
             Status::Failed(_) if record.status.is_worth_another_run() => Kind::LateRecord,
             Status::Failed(_) => Kind::FailedRecord,
         };
-        let text = sealed(record, Layout::OneLine).map_err(|source| self.json(source))?;
-        self.append(kind, record, &format!("{text}\n{}\n", self.wall_line(record)?))
+        let mut text = sealed(record, Layout::OneLine).map_err(|source| self.json(source))?;
+        text.push('\n');
+        text.push_str(&self.wall_line(record)?);
+        text.push('\n');
+        let place = match self.append(kind, record, &text) {
+            // A full disk is the records': rows can be made again.
+            Err(_) if self.take_rows_at_hand().is_some() => self.append(kind, record, &text)?,
+            appended => appended?,
+        };
+        if let Some(place) = place {
+            self.keep_rows(record, Entry::from(&place.header).rows());
+        }
+        Ok(())
+    }
+
+    /// Makes rows of every record that is written from now on, for the table that is written at the end.
+    pub fn keep_rows_at_hand(&self) {
+        // Without them they are made of the records once more.
+        self.state().rows = RowsAtHand::in_folder(&self.study).ok();
+    }
+
+    /// The rows that were kept.
+    pub fn take_rows_at_hand(&self) -> Option<RowsAtHand> {
+        self.state().rows.take()
+    }
+
+    fn keep_rows(&self, record: &Record, of: RowsOf) {
+        if self.state().rows.is_none() {
+            return;
+        }
+        let study = self.study.file_name().unwrap_or_default().to_string_lossy();
+        let rows = packed_rows(of, &tidy::rows_of(&study, record));
+        let rows_at_hand = &mut self.state().rows;
+        if let (Some(at_hand), Ok(rows)) = (&mut *rows_at_hand, rows)
+            && at_hand.keep(of, &rows).is_err()
+        {
+            *rows_at_hand = None;
+        }
     }
 
     /// Appends the wall times of a record alone.
@@ -189,7 +229,7 @@ impl PackedStore {
     /// # Errors
     /// When the file system refuses.
     pub fn write_wall(&self, record: &Record) -> Result<(), StoreError> {
-        self.append(Kind::Wall, record, &format!("{}\n", self.wall_line(record)?))
+        self.append(Kind::Wall, record, &format!("{}\n", self.wall_line(record)?)).map(|_| ())
     }
 
     fn json(&self, source: serde_json::Error) -> StoreError {
@@ -197,11 +237,16 @@ impl PackedStore {
     }
 
     fn wall_line(&self, record: &Record) -> Result<String, StoreError> {
-        let line = serde_json::json!({ "hash": record.hash, "wall": record.wall });
+        #[derive(serde::Serialize)]
+        struct Line<'a> {
+            hash: &'a str,
+            wall: &'a [WallSample],
+        }
+        let line = Line { hash: &record.hash, wall: &record.wall };
         serde_json::to_string(&line).map_err(|source| self.json(source))
     }
 
-    fn append(&self, kind: Kind, record: &Record, text: &str) -> Result<(), StoreError> {
+    fn append(&self, kind: Kind, record: &Record, text: &str) -> Result<Option<Place>, StoreError> {
         let generation = self.generation()?;
         let header = Header {
             kind,
@@ -214,23 +259,23 @@ impl PackedStore {
         self.append_member(&packed(header, text.as_bytes()).map_err(self.refused("pack a record for"))?)
     }
 
-    fn append_member(&self, member: &[u8]) -> Result<(), StoreError> {
+    fn append_member(&self, member: &[u8]) -> Result<Option<Place>, StoreError> {
         let mut state = self.state();
-        let State { index: Some(index), writer: Some(writer) } = &mut *state else { return Ok(()) };
+        let State { index: Some(index), writer: Some(writer), .. } = &mut *state else { return Ok(None) };
         let place = writer.append(member).map_err(|source| StoreError::Io {
             action: "write",
             path: writer.path().to_owned(),
             source,
         })?;
         index.note(place);
-        Ok(())
+        Ok(Some(place))
     }
 
     /// Count of this run; the first who asks opens the pack.
     fn generation(&self) -> Result<u32, StoreError> {
         let folder = self.study.join(FOLDER);
         let mut state = self.state();
-        let State { index, writer } = &mut *state;
+        let State { index, writer, .. } = &mut *state;
         if let Some(writer) = writer {
             return Ok(writer.generation());
         }
@@ -255,6 +300,12 @@ fn wall_of(line: &str) -> Option<Vec<WallSample>> {
 }
 
 impl Entry {
+    /// What rows of the table are made of it.
+    pub fn rows(&self) -> RowsOf {
+        let Self { case, generation, program, build, .. } = *self;
+        RowsOf { case, generation, program, build }
+    }
+
     /// Whether the record is to be taken up by a program: of its version and sources, and not out of its time.
     pub fn is_taken_up_by(&self, program: &Provenance) -> bool {
         self.program == program.program_tag() && self.end != CaseEnd::Late

@@ -34,7 +34,21 @@ impl RowsOf {
     }
 }
 
-/// Writes the table of cases in their order. `rows` makes those of a case, none where its record cannot be read.
+/// The rows of a record as a member of the table.
+///
+/// # Errors
+/// When they are longer than a member may be.
+pub(crate) fn packed_rows(of: RowsOf, rows: &str) -> std::io::Result<Vec<u8>> {
+    packed(of.header(), rows.as_bytes())
+}
+
+/// Whether a member of the table has the rows of a record.
+pub(crate) fn is_rows_of(member: &[u8], of: RowsOf) -> bool {
+    Header::read(member).is_some_and(|header| header.kind == Kind::Rows && RowsOf::of(&header) == of)
+}
+
+/// Writes the table of cases in their order. `rows` makes those of a case, packed, none where its record cannot be
+/// read.
 ///
 /// # Errors
 /// When the file system refuses.
@@ -42,7 +56,7 @@ pub fn write_packed_table(
     path: &Path,
     columns: &str,
     cases: impl Iterator<Item = RowsOf>,
-    mut rows: impl FnMut(RowsOf) -> Option<String>,
+    mut rows: impl FnMut(RowsOf) -> Option<std::io::Result<Vec<u8>>>,
 ) -> Result<(), StoreError> {
     // The columns are a member of their own, whose tag says what they are.
     let tag = blake3::hash(columns.as_bytes()).as_bytes()[..8]
@@ -63,7 +77,7 @@ pub fn write_packed_table(
                 Some(member) => out.write_all(&member)?,
                 None => {
                     if let Some(rows) = rows(case) {
-                        out.write_all(&packed(case.header(), rows.as_bytes())?)?;
+                        out.write_all(&rows?)?;
                     }
                 }
             }
@@ -95,7 +109,7 @@ mod tests {
             made.set(0);
             let rows = |one: RowsOf| {
                 made.set(made.get() + 1);
-                (one.case != 9).then(|| format!("{},{}\n", one.case, one.generation))
+                (one.case != 9).then(|| packed_rows(one, &format!("{},{}\n", one.case, one.generation)))
             };
             write_packed_table(&path, columns, cases.iter().copied(), rows).expect("written");
             (text_of(&path), made.get())

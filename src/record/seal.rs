@@ -35,9 +35,18 @@ pub(crate) fn sealed(value: &impl Serialize, layout: Layout) -> serde_json::Resu
 
 /// Whether a text is as it was sealed, in either layout.
 pub(crate) fn is_whole(text: &str) -> bool {
-    SEALS.iter().zip(ENDS).any(|(seal, end)| {
-        text.rsplit_once(seal).is_some_and(|(content, rest)| rest == format!("{}\"{end}", digest_of(content)))
-    })
+    SEALS.iter().zip(ENDS).any(|(seal, end)| sealed_by(text, seal, end).is_some_and(is_digest_of))
+}
+
+/// What a text seals, and the digest that it has of it; none where it does not end as a seal does.
+fn sealed_by<'a>(text: &'a str, seal: &str, end: &str) -> Option<(&'a str, &'a str)> {
+    let text = text.strip_suffix(end)?.strip_suffix('"')?;
+    let (text, digest) = text.split_at_checked(text.len().checked_sub(DIGEST_DIGITS)?)?;
+    Some((text.strip_suffix(seal)?, digest))
+}
+
+fn is_digest_of((content, digest): (&str, &str)) -> bool {
+    digest_of(content) == digest
 }
 
 fn digest_of(content: &str) -> String {

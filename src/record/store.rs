@@ -5,6 +5,7 @@ use crate::record::origins::Origins;
 use crate::record::pack::index::Damage;
 use crate::record::packed_store::{CaseEnd, Entry, PackedStore, number_of};
 use crate::record::provenance::Provenance;
+use crate::record::rows_at_hand::RowsAtHand;
 use crate::record::whole_file::StoreError;
 use crate::record::{Record, SCHEMA, Status, WallSample, single_files};
 use serde::Deserialize;
@@ -150,6 +151,16 @@ impl RecordStore {
             }
         }
         origins
+    }
+
+    /// Makes the rows of every record that is written from now on, for a table that is written at the end of this run.
+    pub fn keep_rows_at_hand(&self) {
+        self.packs.keep_rows_at_hand();
+    }
+
+    /// The rows that were made so.
+    pub(crate) fn take_rows_at_hand(&self) -> Option<RowsAtHand> {
+        self.packs.take_rows_at_hand()
     }
 
     /// The packs, each with the bytes of it that are whole.

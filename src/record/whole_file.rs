@@ -137,6 +137,17 @@ pub(crate) fn random_word() -> String {
     format!("{:016x}", RandomState::new().build_hasher().finish())
 }
 
+/// A file to write and to read for as long as this process runs, under a name that nobody else takes and that is
+/// stale when it has ended.
+///
+/// # Errors
+/// When the file system refuses.
+pub(crate) fn create_part(folder: &Path, name: &str) -> std::io::Result<(PathBuf, fs::File)> {
+    let path = folder.join(part_name(name));
+    let file = fs::File::options().read(true).write(true).create_new(true).open(&path)?;
+    Ok((path, file))
+}
+
 /// A name that no other writer takes: of this host, this process, and random.
 fn part_name(file: &str) -> String {
     format!(".{file}.{}.{}.{}{PART}", *PLACE, std::process::id(), random_word())

@@ -4,10 +4,12 @@
 use crate::exact::exact_error::ExactError;
 use crate::exact::manufactured::Manufactured;
 use crate::exact::manufactured::model::ManufacturedModel;
-use crate::exact::manufactured::motion::Motion;
+use crate::exact::manufactured::motion::{Motion, Spot};
+use crate::exact::manufactured::state::Inertia;
 use crate::exact::parameters::MotionParameters;
 use crate::exact::reference::ReferenceKind;
-use crate::mpm::forcing::Forcing;
+use crate::mpm::forcing::{BodyForces, Forcing};
+use crate::mpm::formulation::Formulation;
 use crate::scene::column::{Column, column_parameters};
 use crate::scene::definition::{
     ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
@@ -85,11 +87,15 @@ pub(crate) fn square(motion: Option<Motion>) -> Column {
     }
 }
 
-/// The exact solution, as it acts on a body.
-#[derive(Clone, Copy, Debug)]
-struct MadeMotion(Manufactured);
+/// The exact solution, as it acts on a body whose points are known.
+#[derive(Clone, Debug)]
+struct MadeMotion {
+    solution: Manufactured,
+    /// What the formulas take of the points' initial places, `[point]`.
+    spots: Vec<Spot>,
+}
 
-/// What acts on a body in a motion, for a square and its soil.
+/// What acts on a body in a motion, for a square and its soil; points at initial places, m.
 ///
 /// # Errors
 /// When the parameters are impossible.
@@ -97,30 +103,88 @@ pub(crate) fn forcing<const D: usize>(
     model: ManufacturedModel,
     square: &Column,
     soil: &Material,
+    points: &[Vector<D>],
 ) -> Result<Arc<dyn Forcing<D>>, ExactError> {
     let model = ManufacturedModel { law: soil.law, ..model };
-    Ok(Arc::new(MadeMotion(Manufactured::new(model, &column_parameters(square, soil))?)))
+    let solution = Manufactured::new(model, &column_parameters(square, soil))?;
+    Ok(Arc::new(MadeMotion {
+        solution,
+        spots: points.iter().map(|place| Spot::of(in_plane(place))).collect(),
+    }))
 }
 
 /// A place in the plane; its last component is the vertical one.
+#[inline]
 fn in_plane<const D: usize>(place: &Vector<D>) -> [f64; 2] {
     [place[0], place[D - 1]]
 }
 
+#[inline]
 fn in_space<const D: usize>(vector: [f64; 2]) -> Vector<D> {
     std::array::from_fn(|d| vector[d.min(1)])
 }
 
+impl MadeMotion {
+    /// What the formulas take of a place: what is known of a point with its number, where it is that point's.
+    #[inline]
+    fn spot(&self, number: usize, place: [f64; 2]) -> Spot {
+        match self.spots.get(number) {
+            Some(spot) if spot.place == place => *spot,
+            _ => Spot::of(place),
+        }
+    }
+}
+
+/// Accelerations that the balances of a formulation keep.
+fn inertia_of(formulation: Formulation) -> Inertia {
+    match formulation {
+        Formulation::QuasiStatic => Inertia::None,
+        Formulation::UP => Inertia::Skeleton,
+        Formulation::VW => Inertia::Both,
+    }
+}
+
 impl<const D: usize> Forcing<D> for MadeMotion {
-    fn body_forces(&self, place: &Vector<D>, time: f64) -> [Vector<D>; 2] {
-        self.0.state_at(in_plane(place), time).body_forces().map(in_space)
+    fn body_forces(
+        &self,
+        formulation: Formulation,
+        places: &[Vector<D>],
+        time: f64,
+        forces: &mut [BodyForces<D>],
+    ) {
+        let (moment, inertia) = (self.solution.moment(time), inertia_of(formulation));
+        for (number, (place, forces)) in places.iter().zip(forces).enumerate() {
+            let spot = self.spot(number, in_plane(place));
+            *forces = self.solution.state_of(&spot, &moment).body_forces(inertia).map(in_space);
+        }
     }
 
-    fn source(&self, place: &Vector<D>, time: f64) -> f64 {
-        self.0.state_at(in_plane(place), time).source()
+    fn sources(
+        &self,
+        places: &[Vector<D>],
+        sites: &mut dyn Iterator<Item = usize>,
+        time: f64,
+        sources: &mut [f64],
+    ) {
+        let moment = self.solution.moment(time);
+        for site in sites {
+            let spot = self.spot(site, in_plane(&places[site]));
+            sources[site] = self.solution.state_of(&spot, &moment).source();
+        }
     }
 
-    fn material_place(&self, place: &Vector<D>, time: f64, guess: &Vector<D>) -> Vector<D> {
-        in_space(self.0.material_place(in_plane(place), time, in_plane(guess)))
+    fn material_places(
+        &self,
+        present: &dyn Fn(usize) -> Vector<D>,
+        sites: &mut dyn Iterator<Item = usize>,
+        time: f64,
+        places: &mut [Vector<D>],
+    ) {
+        let moment = self.solution.moment(time);
+        for site in sites {
+            let guess = in_plane(&places[site]);
+            let found = self.solution.material_place(in_plane(&present(site)), &moment, guess);
+            places[site] = in_space(found);
+        }
     }
 }

@@ -189,9 +189,9 @@ impl SceneKind {
 
     /// Why the scene cannot be solved by an integrator, where it cannot.
     pub fn refuses_integrator(self, integrator: IntegratorKind) -> Option<&'static str> {
-        (self.is_manufactured() && integrator != IntegratorKind::Explicit).then_some(
-            "body forces and source of a manufactured motion act in explicit steps alone: implicit ones are not \
-             built yet",
+        (self.is_manufactured() && integrator == IntegratorKind::SemiImplicit).then_some(
+            "body forces and source of a manufactured motion act at the stages of explicit and implicit steps: a \
+             semi-implicit one takes stress and pressure at times of their own",
         )
     }
 
@@ -290,6 +290,11 @@ impl SceneKind {
     /// Whether the mean of its load is zero: what one half of the body takes in, the other gives.
     pub fn presses_out_no_water(self) -> bool {
         self.definition().load == SceneLoad::Cosine
+    }
+
+    /// Whether balances without inertia leave out what it is about; a motion that was chosen is made in any balances.
+    pub fn needs_inertia(self) -> bool {
+        self.has_waves() && !self.is_manufactured()
     }
 
     /// Whether waves run in it.

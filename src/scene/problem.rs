@@ -100,7 +100,10 @@ pub fn column_problem<const D: usize>(
     let water =
         column.points.has_two_layers().then_some(if of_water == 0 { points_per_cell } else { of_water });
     let water = water.map(layer_of).transpose()?;
-    let forcing = scene.model().map(|model| manufactured::forcing(model, column, soil)).transpose()?;
+    let forcing = scene
+        .model()
+        .map(|model| manufactured::forcing(model, column, soil, &points.initial_position))
+        .transpose()?;
     if forcing.is_none() {
         extent[D - 1] += HEADROOM;
     }

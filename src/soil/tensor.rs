@@ -65,10 +65,17 @@ pub fn solve_symmetric<const D: usize>(
     solution
 }
 
-/// Inverse and determinant of a deformation gradient: near enough to the unit tensor to need no
-/// pivoting. Where it is singular, the numbers are not finite.
+/// Inverse and determinant of a deformation gradient: in the plane whatever it turns, elsewhere near enough to the
+/// unit tensor to need no pivoting. Where it is singular, the numbers are not finite.
 #[inline]
 pub fn inverse<const D: usize>(tensor: &Tensor<D>) -> (Tensor<D>, f64) {
+    if D == 2 {
+        let determinant = tensor[0][0] * tensor[1][1] - tensor[0][1] * tensor[1][0];
+        let per_determinant = 1.0 / determinant;
+        let adjugate = |i: usize, j: usize| if i == j { tensor[1 - i][1 - j] } else { -tensor[i][j] };
+        let inverse = std::array::from_fn(|i| std::array::from_fn(|j| per_determinant * adjugate(i, j)));
+        return (inverse, determinant);
+    }
     let (mut rest, mut inverse, mut determinant) = (*tensor, identity::<D>(), 1.0);
     for pivot in 0..D {
         let per_pivot = 1.0 / rest[pivot][pivot];
@@ -118,6 +125,11 @@ mod tests {
                 assert!((unit[i][j] - if i == j { 1.0 } else { 0.0 }).abs() < 1e-15);
             }
         }
+    }
+
+    #[test]
+    fn a_right_angle_is_turned_back() {
+        assert_eq!(inverse(&[[0.0, -1.0], [1.0, 0.0]]), ([[0.0, 1.0], [-1.0, 0.0]], 1.0));
     }
 
     #[test]

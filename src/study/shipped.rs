@@ -23,7 +23,7 @@ const SHIPPED: &[(&str, &str)] = shipped! {
     "hard-tiny" "hard-huge" "hard-early" "hard-strain" "hard-long" "large-strain-column" "large-strain-mesh"
     "large-strain-explicit" "large-strain-implicit" "large-strain-integrators" "large-strain-models"
     "large-strain-points" "large-strain-crossing" "large-strain-plane" "large-strain-small"
-    "large-strain-half" "large-strain-start" "large-strain-chord" "large-strain-ramp" "large-strain-ramp-half"
+    "large-strain-half" "large-strain-start" "large-strain-chord" "large-strain-chord-plane" "large-strain-ramp" "large-strain-ramp-half"
     "large-strain-ramp-steps" "large-strain-limit" "nodal-pressure" "large-strain-nodal" "two-layers"
     "two-layers-large-strain" "two-layers-plane" "stability-layers" "manufactured-box" "manufactured-shear"
     "manufactured-vortex" "map"

@@ -148,7 +148,7 @@ fn ramp_is_the_mean_of_steps() {
     let step = DynamicColumn::new(&seed, Start::Step, &[]).unwrap();
     let duration = 0.3;
     let ramp = DynamicColumn::new(&seed, Start::Ramp { duration }, &[]).unwrap();
-    let mean = |time: f64, zeta: f64, field: fn(&FieldValues) -> f64| {
+    let mean = |time: f64, zeta: f64, parts: u32, field: fn(&FieldValues) -> f64| {
         // Over τ = (√x)², for the step's fields start like √t.
         let from = (time - duration).max(0.0);
         crate::exact::quadrature::integrate(
@@ -158,22 +158,19 @@ fn ramp_is_the_mean_of_steps() {
             },
             from.sqrt(),
             time.sqrt(),
-            40,
+            parts,
         ) / duration
     };
-    for (time, zeta) in [(0.2, 0.02), (0.3, 0.1), (0.5, 0.05), (2.0, 0.1)] {
+    // Waves have many kinks at small times. After they have died the mean is exact.
+    for (time, zeta, parts, tolerance) in
+        [(0.2, 0.02, 20, 1e-3), (0.3, 0.1, 20, 1e-3), (0.5, 0.05, 20, 1e-3), (2.0, 0.1, 5, 1e-12)]
+    {
         let fields = ramp.fields(seed.time_factor(time), zeta).unwrap();
-        let pressure = mean(time, zeta, |f| f.pressure);
-        let displacement = mean(time, zeta, |f| f.displacement);
-        assert!((fields.pressure - pressure).abs() < 1e-3, "{} {pressure} at {time}", fields.pressure);
-        assert!((fields.displacement / displacement - 1.0).abs() < 1e-3);
+        let pressure = mean(time, zeta, parts, |f| f.pressure);
+        let displacement = mean(time, zeta, parts, |f| f.displacement);
+        assert!((fields.pressure - pressure).abs() < tolerance, "{} {pressure} at {time}", fields.pressure);
+        assert!((fields.displacement / displacement - 1.0).abs() < tolerance);
     }
-    // After the waves have died the mean needs no small times and is exact.
-    let (time, zeta) = (2.0, 0.1);
-    let fields = ramp.fields(seed.time_factor(time), zeta).unwrap();
-    assert!((fields.pressure - mean(time, zeta, |f| f.pressure)).abs() < 1e-12);
-    let displacement = mean(time, zeta, |f| f.displacement);
-    assert!((fields.displacement / displacement - 1.0).abs() < 1e-12);
 }
 
 #[test]

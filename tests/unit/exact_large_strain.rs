@@ -49,17 +49,18 @@ fn incompressible_limit_is_xie_leo() {
 
 #[test]
 fn a_line_to_draw_is_what_it_says_and_takes_fewer_points() {
-    for load in [1e3, 2e5, 4e5] {
-        let column = column(load);
+    // At seven tenths of strain the first two resolutions differ by 3e-6 of the load: too much for a line too.
+    let steep = ColumnParameters { porosity: 0.8, ..column(1.444_8e6) };
+    for column in [column(1e3), column(2e5), column(4e5), steep] {
         let drawn = LargeStrain::for_lines(&column, INCOMPRESSIBLE, &TIMES).unwrap();
         let closed = XieLeo::new(&column).unwrap();
         let accuracy = drawn.accuracy(0.5).unwrap();
         let worst = TIMES.iter().flat_map(|time| (0..=20).map(|i| (*time, f64::from(i) / 20.0)));
         let worst = worst.fold(0.0_f64, |worst, (time, zeta)| {
             let (a, b) = (drawn.fields(time, zeta).unwrap(), closed.fields(time, zeta).unwrap());
-            worst.max((a.pressure - b.pressure).abs() / load)
+            worst.max((a.pressure - b.pressure).abs() / column.load)
         });
-        assert!(worst < accuracy.tail_bound && accuracy.tail_bound < ENOUGH_TO_DRAW, "{worst}, {accuracy:?}");
+        assert!(worst < accuracy.tail_bound && accuracy.tail_bound < 1e-6, "{worst}, {accuracy:?}");
         let exact = LargeStrain::new(&column, INCOMPRESSIBLE, &TIMES).unwrap();
         assert!(accuracy.terms < exact.accuracy(0.5).unwrap().terms, "{accuracy:?}");
     }
@@ -256,7 +257,7 @@ fn a_growing_load_at_small_strain_is_terzaghi_s_mean() {
         // In u² the integrand is smooth at the moment that each share of the load comes on.
         let since = (time_factor - duration).max(0.0).sqrt();
         let mean = |value: &dyn Fn(f64) -> f64| {
-            integrate(|u| 2.0 * u * value(u * u), since, time_factor.sqrt(), 400) / duration
+            integrate(|u| 2.0 * u * value(u * u), since, time_factor.sqrt(), 100) / duration
         };
         for zeta in [0.0, 0.03, 0.4, 1.0] {
             let fields = general.fields(time_factor, zeta).unwrap();

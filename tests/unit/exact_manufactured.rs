@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::exact::manufactured::motion::Motion;
+use crate::exact::manufactured::state::Inertia;
 use crate::exact::parameters::MotionParameters;
 use crate::soil::law::Law;
 
@@ -74,7 +75,7 @@ impl Here<'_> {
 
     /// What is at a present place.
     fn at(&self, position: [f64; 2], time: f64) -> State {
-        let found = self.solution.material_place(position, time, self.place);
+        let found = self.solution.material_place(position, &self.solution.moment(time), self.place);
         self.solution.state_at(found, time)
     }
 
@@ -121,7 +122,7 @@ fn the_momentum_of_mixture_and_water_is_balanced() {
     everywhere(|here| {
         let (now, soil) = (here.now(), here.solution.parameters);
         let n = now.porosity();
-        let [mixture, water] = now.body_forces();
+        let [mixture, water] = now.body_forces(Inertia::Both);
         for i in 0..2 {
             let solid = soil.grain_density * here.rate(&|state| state.solid_velocity()[i]);
             let of_water = soil.water_density * here.rate(&|state| state.water_velocity()[i]);
@@ -132,6 +133,26 @@ fn the_momentum_of_mixture_and_water_is_balanced() {
             let drag = n * soil.unit_weight_of_water() / (soil.hydraulic_conductivity * ratio * ratio);
             let relative = now.water_velocity()[i] - now.solid_velocity()[i];
             vanishes(of_water + pressure + drag * relative - water[i], "water", here);
+        }
+    });
+}
+
+#[test]
+fn balances_without_all_accelerations_have_their_own_forces() {
+    everywhere(|here| {
+        let (now, soil) = (here.now(), here.solution.parameters);
+        let n = now.porosity();
+        for i in 0..2 {
+            let still =
+                here.along(i, &State::pressure) - here.divergence(&|state| state.effective_stress()[i]);
+            let [mixture, water] = now.body_forces(Inertia::None);
+            vanishes(still - mixture[i], "mixture at rest", here);
+            assert_eq!(water[i], 0.0);
+            let acceleration = here.rate(&|state| state.solid_velocity()[i]);
+            let density = (1.0 - n) * soil.grain_density + n * soil.water_density;
+            let [mixture, water] = now.body_forces(Inertia::Skeleton);
+            vanishes(density * acceleration + still - mixture[i], "mixture as one", here);
+            vanishes(soil.water_density * acceleration - water[i], "water with the skeleton", here);
         }
     });
 }

@@ -157,3 +157,27 @@ fn in_a_layer_the_other_end_may_look_like_the_other_sign() {
     let told = told.expect("a layer");
     assert!(told.len() == 1 && told[0].contains("does `x` count from the other end?"), "{told:?}");
 }
+
+#[test]
+fn mistakes_of_very_many_samples_are_seen_in_some_of_them() {
+    let column = ColumnParameters::default();
+    let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[0.1]).expect("the seed column");
+    let nodes = 40_000;
+    let mut state = SampledState { time: column.time(0.1), ..SampledState::default() };
+    for node in 0..=nodes {
+        let fields = reference.fields(0.1, f64::from(node) / f64::from(nodes)).expect("inside");
+        state.initial_height.push(1.0 - f64::from(node) / f64::from(nodes));
+        state.volume.push(1.0);
+        // Every other node is in the middle of a side, and the displacements are in mm.
+        state.pressure.push(if node % 2 == 1 { 0.0 } else { fields.pressure });
+        state.displacement.push(1e3 * fields.displacement);
+    }
+    let told = told(&[state]);
+    assert_eq!(told.len(), 2, "{told:?}");
+    let zeros = told.iter().find(|told| told.contains("mid-side")).expect("the zeros");
+    let count: f64 =
+        zeros.split(" at ").nth(1).and_then(|rest| rest.split(' ').next()?.parse().ok()).expect("a count");
+    // Of 5000 without a rhythm: half of them, and neither none nor all.
+    assert!((2400.0..2600.0).contains(&count) && zeros.contains("samples looked at"), "{zeros}");
+    assert!(told.iter().any(|told| told.contains("1000 × the exact one: is it in mm")), "{told:?}");
+}

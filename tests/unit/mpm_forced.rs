@@ -2,7 +2,8 @@
 //! taken at.
 
 use super::*;
-use crate::mpm::forcing::Forcing;
+use crate::mpm::forcing::{BodyForces, Forcing};
+use crate::mpm::formulation::Formulation;
 use crate::mpm::method::Method;
 use crate::scene::SceneKind;
 use crate::scene::problem::column_problem;
@@ -13,15 +14,27 @@ use std::sync::Arc;
 struct Plain;
 
 impl Forcing<2> for Plain {
-    fn body_forces(&self, _: &Vector<2>, time: f64) -> [Vector<2>; 2] {
-        [[3.0 + time, -2.0], [0.5, 0.25]]
+    fn body_forces(&self, _: Formulation, _: &[Vector<2>], time: f64, forces: &mut [BodyForces<2>]) {
+        forces.fill([[3.0 + time, -2.0], [0.5, 0.25]]);
     }
-    fn source(&self, place: &Vector<2>, time: f64) -> f64 {
-        place[0] + 10.0 * time
+    fn sources(
+        &self,
+        places: &[Vector<2>],
+        sites: &mut dyn Iterator<Item = usize>,
+        time: f64,
+        sources: &mut [f64],
+    ) {
+        sites.for_each(|site| sources[site] = places[site][0] + 10.0 * time);
     }
-    fn material_place(&self, place: &Vector<2>, _: f64, _: &Vector<2>) -> Vector<2> {
+    fn material_places(
+        &self,
+        present: &dyn Fn(usize) -> Vector<2>,
+        sites: &mut dyn Iterator<Item = usize>,
+        _: f64,
+        places: &mut [Vector<2>],
+    ) {
         // The body was moved by a tenth along x.
-        [place[0] - 0.1, place[1]]
+        sites.for_each(|site| places[site] = [present(site)[0] - 0.1, present(site)[1]]);
     }
 }
 
@@ -32,7 +45,7 @@ fn body(method: &str) -> Body<2> {
     let mut problem = column_problem::<2>(scene, &column, &soil, method, 4, 2).expect("the unit square");
     problem.forcing = Some(Arc::new(Plain));
     let mut body = Body::new(problem);
-    body.forcing.as_mut().expect("forced").time = 1.5;
+    body.begin_forced_step(1.5);
     body
 }
 
@@ -103,4 +116,52 @@ fn a_divergence_is_taken_on_the_configuration_of_the_middle() {
         let got = body.middle_divergence(place, &back, &field);
         assert!((got - 2.0 / 1.1).abs() < 1e-13, "{got}");
     }
+}
+
+#[test]
+fn strains_are_taken_on_the_configuration_of_the_middle() {
+    // The same field: a step of 0.1 stretches by exp(0.2/1.1) = 1.199…, which is 1 + 0.2 but for third order;
+    // exp(0.2) = 1.221… would be the strain of the start.
+    for method in ["GIMP-SRI", "GC-SRI-patch", "CE-SRI-patch", "TL-GIMP-SRI"] {
+        let mut body = body(method);
+        for node in 0..body.nodes.len() {
+            let x = body.grid.node_position(node)[0];
+            body.nodes.solid_velocity[node] = [2.0 * x, 0.0];
+        }
+        body.update_effective_stress(0.1);
+        let strain = 0.2_f64 / 1.1;
+        // λ = μ = 0.4
+        for (ratio, [[along, _], [_, up]]) in
+            body.points.volume_ratio.iter().zip(&body.points.effective_stress)
+        {
+            assert!((ratio - strain.exp()).abs() < 1e-12, "{method}: {ratio} for {}", strain.exp());
+            assert!((along - 1.2 * strain).abs() < 1e-12, "{method}: {along} for {}", 1.2 * strain);
+            assert!((up - 0.4 * strain).abs() < 1e-12, "{method}: {up} for {}", 0.4 * strain);
+        }
+    }
+}
+
+#[test]
+fn domains_turn_with_a_step_and_carry_their_corners_along() {
+    // A body that turns by 0.1: a point's long edge goes from (h, 0) to h (1, 0.1) but for third order.
+    let mut body = body("CPDI-SRI-patch");
+    let half = body.points.half_length[0][0];
+    for node in 0..body.nodes.len() {
+        let [x, y] = body.grid.node_position(node);
+        body.nodes.solid_velocity[node] = [-y, x];
+    }
+    body.update_effective_stress(0.1);
+    body.build_operators();
+    let [[along, up], _] = body.domains.as_ref().expect("domains that turn").half_edges[9];
+    assert!((along / half - 1.0).abs() < 2e-3 && (up / half - 0.1).abs() < 2e-3, "{along} {up}");
+    // A field whose hats' interpolant turns with the corners: |x − a| about a line of nodes through the domain's edge.
+    let kink: Vec<Vector<2>> =
+        (0..body.nodes.len()).map(|node| [(body.grid.node_position(node)[0] - 0.25).abs(), 0.0]).collect();
+    let place = body.points.position[9];
+    let edges = body.domains.as_ref().expect("domains").half_edges[9];
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let mean: f64 =
+        corners.iter().map(|(s, t)| 0.25 * (place[0] + s * edges[0][0] + t * edges[1][0] - 0.25).abs()).sum();
+    let got = body.basis.value(body.grid.node_stride(), 9, &kink)[0];
+    assert!((got - mean).abs() < 1e-14, "{got} for {mean}");
 }

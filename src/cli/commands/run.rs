@@ -13,7 +13,7 @@ use crate::cli::progress::StudyBar;
 use crate::cli::slurm;
 use crate::cli::stream::say;
 use crate::cli::study_files;
-use crate::cli::study_tables::{Beside, write_table};
+use crate::cli::study_tables::{Beside, is_compressed, write_table};
 use crate::foreign::reading::mapping_of;
 use crate::judge::absent::Absent;
 use crate::record::provenance::Provenance;
@@ -188,6 +188,12 @@ pub fn run_and_store(
     };
     let only_on_disk = options.only_on_disk && !studies.iter().zip(&stores).any(is_held);
     let options = RunOptions { only_on_disk, ..options.clone() };
+    for (study, store) in studies.iter().zip(&stores) {
+        // Wall times that are taken at the end change the rows.
+        if only_on_disk && !is_part_of_many(store, &options) && is_compressed(store, study.planned.len()) {
+            store.keep_rows_at_hand();
+        }
+    }
     let kept = selected.iter().zip(&stores).map(|(study, store)| Selected { study, store: Some(store) });
     let name = match studies {
         [study] => study.name.clone(),
@@ -215,9 +221,7 @@ pub fn run_and_store(
         if report.tally.recorded == 0 {
             continue;
         }
-        // One table of many shares is written once, by `merge`, and not anew by each of them.
-        let is_part = options.shard.is_some_and(|shard| shard.count > 1) && store.is_packed();
-        let place = if is_part {
+        let place = if is_part_of_many(store, &options) {
             store.folder().to_owned()
         } else {
             write_table(study, store, &report.records, beside)?
@@ -225,6 +229,12 @@ pub fn run_and_store(
         tell_of(study, report, &place);
     }
     Ok(reports)
+}
+
+/// Whether a run leaves a part of a table: that of many shares is written once, by `merge`, and not anew by each of
+/// them.
+fn is_part_of_many(store: &RecordStore, options: &RunOptions) -> bool {
+    options.shard.is_some_and(|shard| shard.count > 1) && store.is_packed()
 }
 
 /// The first error that is no case's own: nothing can be kept any more.

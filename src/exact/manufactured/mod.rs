@@ -16,6 +16,7 @@ pub mod state;
 use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
 use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::manufactured::model::ManufacturedModel;
+use crate::exact::manufactured::motion::{Moment, Spot};
 use crate::exact::manufactured::state::{Soil, State};
 use crate::exact::parameters::ColumnParameters;
 use std::f64::consts::PI;
@@ -71,12 +72,23 @@ impl Manufactured {
 
     /// All that follows from motion and pressure for the point `X` (m) of the skeleton at a time, s.
     pub fn state_at(&self, place: [f64; 2], time: f64) -> State {
-        State::of(self.model, &self.parameters, &self.soil, place, time)
+        self.state_of(&Spot::of(place), &self.moment(time))
+    }
+
+    /// The same for a point and a time that are known already: for many points at one time.
+    #[inline]
+    pub fn state_of(&self, spot: &Spot, moment: &Moment) -> State {
+        State::of(self.model, &self.parameters, &self.soil, spot, moment)
+    }
+
+    /// What all points take of a time, s.
+    pub fn moment(&self, time: f64) -> Moment {
+        Moment::of(self.parameters.motion.frequency, time)
     }
 
     /// The point `X` of the skeleton that is at a place at a time, from a guess, m.
-    pub fn material_place(&self, place: [f64; 2], time: f64, guess: [f64; 2]) -> [f64; 2] {
-        self.model.motion.material_place(&self.parameters.motion, place, time, guess)
+    pub fn material_place(&self, place: [f64; 2], moment: &Moment, guess: [f64; 2]) -> [f64; 2] {
+        self.model.motion.material_place(&self.parameters.motion, place, moment, guess)
     }
 
     /// The fields at the point `X` of the skeleton, m, at a time factor.

@@ -2,9 +2,9 @@
 
 use crate::exact::manufactured::jet::{Jet, Slope, TIME};
 use crate::exact::manufactured::model::ManufacturedModel;
+use crate::exact::manufactured::motion::{Moment, Spot};
 use crate::exact::parameters::ColumnParameters;
 use crate::soil::law::Law;
-use std::f64::consts::PI;
 
 /// What the balances take of the soil.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,40 +41,55 @@ impl Soil {
     }
 }
 
-/// The state of a point of the skeleton. Vectors are `[component]`, tensors `[row][column]`.
+/// Accelerations that the momentum balances keep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inertia {
+    /// Each phase's own.
+    Both,
+    /// That of the skeleton, which the water has too.
+    Skeleton,
+    /// None.
+    None,
+}
+
+/// The state of a point of the skeleton. Vectors are `[component]`, tensors `[row][column]`. What few ask for is made
+/// where it is asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct State {
     soil: Soil,
+    law: Law,
     position: [Jet; 2],
     pressure: Jet,
+    /// `F`.
+    deformation: [[Slope; 2]; 2],
     volume_ratio: Slope,
+    /// `1/J`.
+    per_volume: Slope,
     porosity: Slope,
     /// `F⁻¹`.
     inverse_deformation: [[Slope; 2]; 2],
     pressure_gradient: [Slope; 2],
     flux: [Slope; 2],
-    water_velocity: [Slope; 2],
-    effective_stress: [[Slope; 2]; 2],
 }
 
 /// A vector or a row from its places.
+#[inline]
 fn both<T>(of: impl Fn(usize) -> T) -> [T; 2] {
     [of(0), of(1)]
 }
 
 impl State {
-    /// Of a point `X`, m, at a time, s (docs/theory.md, Eqs 24 and 25).
+    /// Of a point and a time (docs/theory.md, Eqs 24 and 25).
+    #[inline]
     pub fn of(
         model: ManufacturedModel,
         parameters: &ColumnParameters,
         soil: &Soil,
-        place: [f64; 2],
-        time: f64,
+        spot: &Spot,
+        moment: &Moment,
     ) -> Self {
-        let position = model.motion.place(&parameters.motion, place, time);
-        let [x, y] = both(|d| (Jet::coordinate(d, place[d]) * PI).cos());
-        let beat = (Jet::coordinate(TIME, time) * (2.0 * parameters.motion.frequency)).sin();
-        let pressure = beat * x * y * parameters.load;
+        let position = model.motion.place(&parameters.motion, spot, moment);
+        let pressure = Jet::growing(&spot.pressure_shape(), moment.beat.map(|value| parameters.load * value));
         let deformation = both(|i| both(|j| position[i].along(j)));
         let [[xx, xy], [yx, yy]] = deformation;
         let volume_ratio = xx * yy - xy * yx;
@@ -89,35 +104,75 @@ impl State {
         // w = −(k/γ_w) grad p with k = k_0 J²
         let mobility = volume_ratio * volume_ratio * -soil.mobility;
         let flux = both(|i| mobility * pressure_gradient[i]);
-        let water_velocity = both(|i| position[i].along(TIME) + flux[i] / porosity);
-        let effective_stress = stress(model.law, soil, &deformation, volume_ratio, per_volume);
         Self {
             soil: *soil,
+            law: model.law,
             position,
             pressure,
+            deformation,
             volume_ratio,
+            per_volume,
             porosity,
             inverse_deformation,
             pressure_gradient,
             flux,
-            water_velocity,
-            effective_stress,
         }
     }
 
     /// Derivative of a quantity along `x` or `y` on the current configuration, `F⁻ᵀ grad_X`.
+    #[inline]
     fn derivative(&self, quantity: &Slope, direction: usize) -> f64 {
         let inverse = &self.inverse_deformation;
         inverse[0][direction].value * quantity.slope[0] + inverse[1][direction].value * quantity.slope[1]
     }
 
     /// Divergence of a vector on the current configuration.
+    #[inline]
     fn divergence(&self, vector: &[Slope; 2]) -> f64 {
         self.derivative(&vector[0], 0) + self.derivative(&vector[1], 1)
     }
 
+    #[inline]
     fn solid_velocity_slope(&self) -> [Slope; 2] {
         both(|i| self.position[i].along(TIME))
+    }
+
+    #[inline]
+    fn water_velocity_slope(&self) -> [Slope; 2] {
+        let per_porosity = self.porosity.recip();
+        both(|i| self.position[i].along(TIME) + self.flux[i] * per_porosity)
+    }
+
+    /// Effective stress of the law from the deformation gradient.
+    #[inline]
+    fn stress(&self) -> [[Slope; 2]; 2] {
+        let (soil, deformation) = (&self.soil, &self.deformation);
+        if self.law == Law::NeoHookean {
+            // [μ (F Fᵀ − I) + λ ln J I]/J
+            let pressure = self.volume_ratio.ln() * soil.lame + Slope::constant(-soil.shear);
+            return both(|i| {
+                both(|j| {
+                    let [left, right] = [&deformation[i], &deformation[j]];
+                    let stretch = (left[0] * right[0] + left[1] * right[1]) * soil.shear;
+                    let whole = if i == j { stretch + pressure } else { stretch };
+                    whole * self.per_volume
+                })
+            });
+        }
+        // Without shear or spin: 2μ ln F_ii + λ ln J, and J = F_xx F_yy.
+        let logarithms = both(|i| deformation[i][i].ln());
+        let volumetric = (logarithms[0] + logarithms[1]) * soil.lame;
+        both(|i| {
+            both(
+                |j| {
+                    if i == j {
+                        logarithms[i] * (2.0 * soil.shear) + volumetric
+                    } else {
+                        Slope::constant(0.0)
+                    }
+                },
+            )
+        })
     }
 
     /// Present place, m.
@@ -142,7 +197,7 @@ impl State {
 
     /// Effective Cauchy stress, Pa, tension positive.
     pub fn effective_stress(&self) -> [[f64; 2]; 2] {
-        self.effective_stress.map(|row| row.map(|component| component.value))
+        self.stress().map(|row| row.map(|component| component.value))
     }
 
     /// Velocity of the skeleton, m/s.
@@ -152,19 +207,29 @@ impl State {
 
     /// Velocity of the pore water, m/s.
     pub fn water_velocity(&self) -> [f64; 2] {
-        self.water_velocity.map(|component| component.value)
+        self.water_velocity_slope().map(|component| component.value)
     }
 
     /// Body forces on the mixture, N per m³ of mixture, and on the water, N per m³ of water: what is left of the
-    /// momentum balances (docs/theory.md, Eq. 26). Rates follow the skeleton.
-    pub fn body_forces(&self) -> [[f64; 2]; 2] {
+    /// momentum balances with some of their accelerations (docs/theory.md, Eq. 26). Rates follow the skeleton.
+    #[inline]
+    pub fn body_forces(&self, inertia: Inertia) -> [[f64; 2]; 2] {
         let soil = &self.soil;
         let porosity = self.porosity.value;
-        let water = both(|i| soil.water_density * self.water_velocity[i].slope[TIME]);
+        let still = [0.0; 2];
+        let of_skeleton = || both(|i| self.position[i].bend[TIME][TIME]);
+        let [of_grains, of_water] = match inertia {
+            Inertia::Both => {
+                [of_skeleton(), self.water_velocity_slope().map(|velocity| velocity.slope[TIME])]
+            }
+            Inertia::Skeleton => [of_skeleton(); 2],
+            Inertia::None => [still; 2],
+        };
+        let stress = self.stress();
+        let water = of_water.map(|acceleration| soil.water_density * acceleration);
         let mixture = both(|i| {
-            let grains = (1.0 - porosity) * soil.grain_density * self.position[i].bend[TIME][TIME];
-            grains + porosity * water[i] - self.divergence(&self.effective_stress[i])
-                + self.pressure_gradient[i].value
+            let grains = (1.0 - porosity) * soil.grain_density * of_grains[i];
+            grains + porosity * water[i] - self.divergence(&stress[i]) + self.pressure_gradient[i].value
         });
         // The drag balances the pressure gradient: no more is left for the water.
         [mixture, water]
@@ -172,41 +237,9 @@ impl State {
 
     /// Source of water, volume per volume of mixture and second: what is left of the continuity
     /// (docs/theory.md, Eq. 27).
+    #[inline]
     pub fn source(&self) -> f64 {
         let storage = self.porosity.value / self.soil.water_bulk_modulus * self.pressure.slope[TIME];
         self.divergence(&self.solid_velocity_slope()) + self.divergence(&self.flux) + storage
     }
-}
-
-/// Effective stress of a law from the deformation gradient.
-fn stress(
-    law: Law,
-    soil: &Soil,
-    deformation: &[[Slope; 2]; 2],
-    volume_ratio: Slope,
-    per_volume: Slope,
-) -> [[Slope; 2]; 2] {
-    if law == Law::NeoHookean {
-        // [μ (F Fᵀ − I) + λ ln J I]/J
-        let pressure = volume_ratio.ln() * soil.lame + Slope::constant(-soil.shear);
-        return both(|i| {
-            both(|j| {
-                let [left, right] = [&deformation[i], &deformation[j]];
-                let stretch = (left[0] * right[0] + left[1] * right[1]) * soil.shear;
-                let whole = if i == j { stretch + pressure } else { stretch };
-                whole * per_volume
-            })
-        });
-    }
-    // Without shear or spin: 2μ ln F_ii + λ ln J.
-    let volumetric = volume_ratio.ln() * soil.lame;
-    both(|i| {
-        both(|j| {
-            if i == j {
-                deformation[i][i].ln() * (2.0 * soil.shear) + volumetric
-            } else {
-                Slope::constant(0.0)
-            }
-        })
-    })
 }

@@ -14,6 +14,7 @@ use crate::import::table::SampledState;
 use crate::import::units::{LengthUnit, StressUnit, TimeUnit};
 use crate::judge::score::completeness::short;
 use crate::measure::exact_fields::ExactFields;
+use std::borrow::Cow;
 
 /// Relative errors below this are an inaccurate solver's, and no mistake in a file.
 const INACCURATE: f64 = 0.1;
@@ -31,6 +32,10 @@ const VANISHED: f64 = 1e-6;
 const NOTABLE: f64 = 1e-3;
 /// States that are looked at, spread over all of them.
 const STATES: usize = 12;
+/// Samples of a state that are looked at where there are more than twice as many.
+const SAMPLES: u32 = 5000;
+/// Share of a part by which the place of a sample in it goes on from one to the next, of 2³².
+const GOLDEN_RATIO: u32 = 0x9e37_79b9;
 /// Time factors in which a wrong unit of time is looked for; before and after nothing changes.
 const TIME_FACTORS: std::ops::RangeInclusive<f64> = 1e-7..=20.0;
 
@@ -50,7 +55,8 @@ pub fn diagnosis(
     states: &[SampledState],
     mapping: &Mapping,
 ) -> Result<Vec<String>, ExactError> {
-    let seen = spread(states);
+    let picked: Vec<Cow<'_, SampledState>> = spread(states).into_iter().map(picked).collect();
+    let seen: Vec<&SampledState> = picked.iter().map(Cow::as_ref).collect();
     let times: Vec<f64> = seen.iter().map(|state| parameters.time_factor(state.time)).collect();
     let solution = Reference::new(reference, parameters, &times)?;
     let exact = exact_of(&solution, parameters, &times, &seen)?;
@@ -69,6 +75,7 @@ pub fn diagnosis(
             solution: &solution,
             times: &times,
             mapping,
+            are_picked: picked.iter().any(|state| matches!(state, Cow::Owned(_))),
         };
         let error = trials.error(&exact, |value| value);
         let is_wrong = error > INACCURATE;
@@ -95,6 +102,37 @@ fn spread(states: &[SampledState]) -> Vec<&SampledState> {
     (0..count).filter_map(|one| states.get(one * last / count.saturating_sub(1).max(1))).collect()
 }
 
+/// Some of the samples of a state, spread over all of them without a rhythm: a mistake is in all, and every trial takes
+/// the exact fields once more.
+fn picked(state: &SampledState) -> Cow<'_, SampledState> {
+    let all = state.initial_height.len();
+    if all <= 2 * SAMPLES as usize {
+        return Cow::Borrowed(state);
+    }
+    // One of each of as many equal parts, at a place in it that the golden ratio turns on.
+    let place = |part: u32| {
+        let within = part.wrapping_mul(GOLDEN_RATIO);
+        let places = u128::from(u64::from(part) << 32 | u64::from(within)) * all as u128;
+        usize::try_from(places / (u128::from(SAMPLES) << 32)).ok()
+    };
+    let places: Vec<usize> = (0..SAMPLES).filter_map(place).collect();
+    let of = |list: &[f64]| places.iter().filter_map(|place| list.get(*place).copied()).collect();
+    Cow::Owned(SampledState {
+        initial_distance: of(&state.initial_distance),
+        initial_height: of(&state.initial_height),
+        volume: of(&state.volume),
+        pressure: of(&state.pressure),
+        effective_stress: of(&state.effective_stress),
+        displacement: of(&state.displacement),
+        horizontal_displacement: of(&state.horizontal_displacement),
+        ..SampledState {
+            time: state.time,
+            surface_displacement: state.surface_displacement,
+            ..SampledState::default()
+        }
+    })
+}
+
 fn exact_of(
     solution: &Reference,
     parameters: &ColumnParameters,
@@ -118,6 +156,8 @@ struct Trials<'a> {
     solution: &'a Reference,
     times: &'a [f64],
     mapping: &'a Mapping,
+    /// Whether these are some of the samples only.
+    are_picked: bool,
 }
 
 impl Trials<'_> {
@@ -302,8 +342,9 @@ impl Trials<'_> {
         }
         Some(Mistake {
             sentence: format!(
-                "is exactly 0 at {zeros} of {inside} samples where it should not be, and right at the others: are they \
-                 mid-side nodes without a value?"
+                "is exactly 0 at {zeros} of {inside} samples{} where it should not be, and right at the others: are \
+                 they mid-side nodes without a value?",
+                if self.are_picked { " looked at" } else { "" }
             ),
             left: self.error_of(samples.iter().filter(|sample| !is_zero(sample)).copied(), |value, _| value),
         })

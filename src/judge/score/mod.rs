@@ -15,10 +15,11 @@ use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::Finding;
 use crate::judge::score::times::time_factors;
-use crate::measure::error_contributions::contributions;
+use crate::measure::error_contributions::largest_contribution;
 use crate::measure::exact_fields::{ExactFields, SamplePlaces};
 use crate::measure::field_errors::{FieldError, LONG_AFTER, resolution, settlement_error};
 use crate::record::ErrorRow;
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// Share of the height, and of the length, within which a sample counts as at the surface, and as
@@ -182,15 +183,17 @@ impl Score {
             parameters.final_settlement()
         };
         // The components one after the other: the L2 norm of the list is that of the vectors.
-        let displacement = [&*state.displacement, &*state.horizontal_displacement].concat();
-        let exact_displacement = [
+        let displacement = one_after_the_other(&state.displacement, &state.horizontal_displacement);
+        let exact_displacement = one_after_the_other(
             &exact.displacement[..state.displacement.len()],
             &exact.horizontal_displacement[..state.horizontal_displacement.len()],
-        ]
-        .concat();
-        let volumes = state.volume.repeat(2);
+        );
+        let volumes = one_after_the_other(
+            &state.volume,
+            if displacement.len() > state.volume.len() { &state.volume } else { &[] },
+        );
         for (quantity, computed, exact, scale) in [
-            (Quantity::Pressure, &state.pressure, &exact.pressure, parameters.load),
+            (Quantity::Pressure, &*state.pressure, &*exact.pressure, parameters.load),
             (Quantity::EffectiveStress, &state.effective_stress, &exact.effective_stress, parameters.load),
             (Quantity::Displacement, &displacement, &exact_displacement, settled),
         ] {
@@ -227,6 +230,11 @@ impl Score {
     }
 }
 
+/// Two lists as one: a million samples are copied only where they must be.
+fn one_after_the_other<'a>(first: &'a [f64], second: &[f64]) -> Cow<'a, [f64]> {
+    if second.is_empty() { Cow::Borrowed(first) } else { Cow::Owned([first, second].concat()) }
+}
+
 /// Cosine between the error of a field and the exact field, weighted by volumes; 0 where one of them is.
 fn cosine_of_error(computed: &[f64], exact: &[f64], volumes: &[f64]) -> f64 {
     let (mut product, mut of_error, mut of_exact) = (0.0, 0.0, 0.0);
@@ -254,7 +262,7 @@ impl ScoredState<'_> {
         exact: &[f64],
         volumes: &[f64],
     ) -> Option<WorstPlace> {
-        let worst = *contributions(computed, exact, volumes).first()?;
+        let worst = largest_contribution(computed, exact, volumes)?;
         let place = worst.index % self.state.initial_height.len();
         let distance = || self.state.initial_distance[place] / self.parameters.length;
         Some(WorstPlace {

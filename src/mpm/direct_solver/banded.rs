@@ -179,6 +179,8 @@ const LANES: usize = 8;
 const SHORT_ROW: usize = 32;
 
 /// `start − Σ a_i b_i` over the shorter of the two.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 pub(super) fn less_products(start: f64, a: &[f64], b: &[f64]) -> f64 {
     let chain = |start, a: &[f64], b: &[f64]| a.iter().zip(b).fold(start, |sum, (a, b)| sum - a * b);
     let count = a.len().min(b.len());

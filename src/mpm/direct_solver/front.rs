@@ -1,5 +1,7 @@
 //! Dense partial factorisation of a front: LU with pivots among its first rows, the rest updated.
 
+use crate::mpm::wide::wide;
+
 /// Columns that are factored before the rest is updated by them at once.
 const PANEL: usize = 32;
 /// Rows and columns of the blocks that stay in registers.
@@ -33,6 +35,12 @@ impl Front<'_> {
     /// # Errors
     /// The column without a pivot.
     pub fn eliminate(&mut self, pivots: &mut [usize]) -> Result<(), usize> {
+        wide!(self.eliminate_panels(pivots))
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+    fn eliminate_panels(&mut self, pivots: &mut [usize]) -> Result<(), usize> {
         let (mut start, count) = (0, pivots.len());
         while start < count {
             let end = (start + PANEL).min(count);
@@ -45,6 +53,8 @@ impl Front<'_> {
     }
 
     /// LU of the panel's columns in all rows.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
     fn factor_panel(&mut self, start: usize, end: usize, pivots: &mut [usize]) -> Result<(), usize> {
         let size = self.size;
         for column in start..end {
@@ -82,6 +92,8 @@ impl Front<'_> {
     }
 
     /// `U ← L⁻¹ U` in the panel's rows.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
     fn solve_panel_rows(&mut self, start: usize, end: usize) {
         let size = self.size;
         for row in start + 1..end {
@@ -100,6 +112,8 @@ impl Front<'_> {
     }
 
     /// Takes the panel's product from the rows and columns behind it.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
     fn update_rest(&mut self, start: usize, end: usize) {
         let (size, depth) = (self.size, end - start);
         let columns = size - end;
@@ -144,7 +158,8 @@ impl Front<'_> {
 }
 
 /// `Σ_k l_k u_k` over tiles.
-#[inline]
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 fn tile_product(multipliers: &[[f64; TILE]], panel: &[f64]) -> [[f64; TILE]; TILE] {
     let mut sums = [[0.0; TILE]; TILE];
     for (l, u) in multipliers.iter().zip(panel.chunks_exact(TILE)) {
@@ -158,6 +173,8 @@ fn tile_product(multipliers: &[[f64; TILE]], panel: &[f64]) -> [[f64; TILE]; TIL
 }
 
 /// Takes multiples of the panel's rows from a row's end.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 fn take_products(multipliers: &[f64], panel: &[f64], size: usize, from: usize, row: &mut [f64]) {
     for (k, multiplier) in multipliers.iter().enumerate() {
         for (entry, above) in row.iter_mut().zip(&panel[k * size + from..]) {

@@ -9,6 +9,7 @@ use crate::mpm::direct_solver::elimination::{Elimination, FrontShape};
 use crate::mpm::direct_solver::front::{Front, Panel};
 use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::direct_solver::sparse_matrix::SparseMatrix;
+use crate::mpm::wide::wide;
 
 /// The factors of a sparse matrix.
 #[derive(Clone, Debug)]
@@ -114,6 +115,12 @@ impl FrontalLu {
 
     /// Replaces a right-hand side by the solution; nothing is allocated.
     pub fn solve(&mut self, values: &mut [f64]) {
+        wide!(self.substitute(values));
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+    fn substitute(&mut self, values: &mut [f64]) {
         let Self { elimination, ordered, gathered, .. } = self;
         for (value, unknown) in ordered.iter_mut().zip(&elimination.order) {
             *value = values[*unknown];

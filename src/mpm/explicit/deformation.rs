@@ -2,6 +2,7 @@
 
 use crate::elementary;
 use crate::mpm::state::grid::SIXTH;
+use crate::mpm::state::lanes::LANES;
 use crate::soil::tensor::{Tensor, Vector, identity, inverse, product, product_with_transpose};
 
 /// What follows the deformation of a point beside its volume.
@@ -18,38 +19,52 @@ pub enum Following {
 }
 
 impl Following {
-    /// Factor of the volume, exact in the logarithmic strain; what follows it has followed.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn deform<const D: usize>(
-        self,
-        half_length: &mut Vector<D>,
-        inverse_deformation: &mut Tensor<D>,
-        increment: &Tensor<D>,
-    ) -> f64 {
-        let stretch: Vector<D> = std::array::from_fn(|d| stretch_of(increment[d][d]));
-        if matches!(self, Self::Domain | Self::Both) {
-            for d in 0..D {
-                half_length[d] *= stretch[d];
-            }
-        }
-        if matches!(self, Self::InverseDeformation | Self::Both) {
-            *inverse_deformation = relaxed(inverse_deformation, increment);
-        }
-        stretch.iter().product()
+    /// Whether the domain follows.
+    #[inline]
+    pub fn takes_domain(self) -> bool {
+        matches!(self, Self::Domain | Self::Both)
+    }
+
+    /// Whether the inverse deformation gradient follows.
+    #[inline]
+    pub fn takes_inverse(self) -> bool {
+        matches!(self, Self::InverseDeformation | Self::Both)
     }
 }
 
+/// Strains so small that four terms of their exponential are exact to round-off.
+const SMALL: f64 = 1e-4;
 const PER_24: f64 = 1.0 / 24.0;
 
-/// `exp(ε)`: a step's strain is so small that four terms are exact to round-off.
+/// `exp(ε)`: a step's strain is small.
 #[inline]
 pub fn stretch_of(strain: f64) -> f64 {
-    if strain.abs() < 1e-4 {
-        1.0 + strain * (1.0 + strain * (0.5 + strain * (SIXTH + strain * PER_24)))
+    if strain.abs() < SMALL { four_terms(strain) } else { elementary::exp(strain) }
+}
+
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn four_terms(strain: f64) -> f64 {
+    1.0 + strain * (1.0 + strain * (0.5 + strain * (SIXTH + strain * PER_24)))
+}
+
+/// Stretches of some points along each direction from their strains, `[point][direction]`, as [`stretch_of`] has them:
+/// where all strains are small, without a branch for each.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub fn stretches_of<const D: usize>(strains: &[Vector<D>; LANES]) -> [Vector<D>; LANES] {
+    let mut stretches = *strains;
+    let (strains, of_strains) = (strains.as_flattened(), stretches.as_flattened_mut());
+    if strains.iter().fold(true, |all, strain| all & (strain.abs() < SMALL)) {
+        for (stretch, strain) in of_strains.iter_mut().zip(strains) {
+            *stretch = four_terms(*strain);
+        }
     } else {
-        elementary::exp(strain)
+        for (stretch, strain) in of_strains.iter_mut().zip(strains) {
+            *stretch = stretch_of(*strain);
+        }
     }
+    stretches
 }
 
 /// A stress turned with the material over a step of displacement gradient `A`: `Q σ Qᵀ` with the
@@ -75,7 +90,7 @@ pub fn rotated<const D: usize>(stress: &Tensor<D>, increment: &Tensor<D>) -> Ten
 
 /// `F⁻¹ exp(−A)` for a step's strain `A`, to third order in it.
 #[inline]
-fn relaxed<const D: usize>(inverse: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
+pub fn relaxed<const D: usize>(inverse: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
     let once = product(inverse, increment);
     let twice = product(&once, increment);
     std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j] - once[i][j] + 0.5 * twice[i][j]))
@@ -104,6 +119,13 @@ mod tests {
     fn a_stretch_is_the_exponential() {
         for strain in [-0.3_f64, -9e-5, -1e-7, 0.0, 3e-6, 9.9e-5, 0.2] {
             assert!((stretch_of(strain) / strain.exp() - 1.0).abs() < 3e-16);
+        }
+        for last in [3e-6, 0.2, f64::NAN] {
+            let mut strains = [[-1e-7, 9.9e-5]; LANES];
+            strains[LANES - 1][1] = last;
+            for (stretches, strains) in stretches_of(&strains).iter().zip(&strains) {
+                assert_eq!(stretches.map(f64::to_bits), strains.map(|strain| stretch_of(strain).to_bits()));
+            }
         }
     }
 

@@ -2,21 +2,18 @@
 //!
 //! A body's step reads as the paper's list: [`kick_and_drift`](Body::kick_and_drift). Drag is part of step 2.
 
+pub mod affine;
 pub mod deformation;
 pub mod nodes_to_points;
 pub mod points_to_nodes;
 pub mod scheme;
+pub mod stresses;
 
 use crate::mpm::body::Body;
-use crate::mpm::explicit::deformation::{Following, middle_gradient, rotated, stretch_of};
-use crate::mpm::method::{Configuration, Memory, PressureIntegration};
+use crate::mpm::method::{Memory, PressureIntegration};
 use crate::mpm::momentum::{NodalBalance, implicit_drag, per_water_inertia};
 use crate::mpm::operators::recovery::points_in_cells::points_in_cells;
-use crate::mpm::operators::stencil::{Blocks, with_stencils};
-use crate::mpm::operators::strain_gradient::StrainOperator;
 use crate::mpm::run::profile::{Phase, enter};
-use crate::mpm::state::nodes::Nodes;
-use crate::soil::tensor::{Tensor, inverse, product};
 
 pub use crate::mpm::explicit::scheme::{Drag, ExplicitSettings};
 
@@ -36,6 +33,7 @@ impl<const D: usize> Body<D> {
         }
         enter(Phase::Motion);
         self.nodal_velocities(kick, dt); // step 3
+        self.take_slopes();
         if settings.mapping_back {
             self.advance_points_and_map_back(kick, dt, settings.flip); // steps 4 and 5
         } else {
@@ -71,43 +69,52 @@ impl<const D: usize> Body<D> {
             self.map_forces();
         }
         let water_density = self.material.water_density;
-        self.accelerate_nodes(kick, drag_level, |nodes, node| water_density * nodes.volume[node]);
+        self.accelerate_nodes(kick, drag_level, |volume, _| water_density * volume);
     }
 
     /// Accelerations of both phases from the forces on the nodes, with the water's inertia per volume of water
-    /// at each, kg.
+    /// at each, kg, from the volume of the mixture at a node and its number.
     #[inline]
     pub(crate) fn accelerate_nodes(
         &mut self,
         kick: f64,
         drag_level: Drag,
-        water_inertia: impl Fn(&Nodes<D>, usize) -> f64,
+        water_inertia: impl Fn(f64, usize) -> f64,
     ) {
         let nodes = &mut self.nodes;
-        for active in 0..nodes.active().len() {
-            let node = nodes.active()[active];
-            let (water_inertia, drag) = (water_inertia(nodes, node), nodes.drag[node]);
-            let whole_share = nodes.water_mass[node] * nodes.per_solid_mass[node];
-            let implicit_drag = implicit_drag(drag_level, kick, drag, whole_share, water_inertia);
-            for d in 0..D {
-                let (free, water_free) = (nodes.free[node][d], nodes.water_free[node][d]);
-                let water_share = free * whole_share;
-                let balance = NodalBalance {
-                    per_solid_mass: free * nodes.per_solid_mass[node],
-                    water_share,
-                    per_water_inertia: per_water_inertia(
-                        water_inertia,
-                        implicit_drag,
+        for run in &nodes.runs {
+            let (volume, drags) = (&nodes.volume[run.clone()], &nodes.drag[run.clone()]);
+            let (water_mass, per_solid_mass) =
+                (&nodes.water_mass[run.clone()], &nodes.per_solid_mass[run.clone()]);
+            let (free, water_free) = (&nodes.free[run.clone()], &nodes.water_free[run.clone()]);
+            let (mixture, water) = (&nodes.mixture_force[run.clone()], &nodes.water_force[run.clone()]);
+            let (solid_velocity, water_velocity) =
+                (&nodes.solid_velocity[run.clone()], &nodes.water_velocity[run.clone()]);
+            let solid_acceleration = &mut nodes.solid_acceleration[run.clone()];
+            let water_acceleration = &mut nodes.water_acceleration[run.clone()];
+            for node in 0..run.len() {
+                let (water_inertia, drag) = (water_inertia(volume[node], run.start + node), drags[node]);
+                let whole_share = water_mass[node] * per_solid_mass[node];
+                let implicit_drag = implicit_drag(drag_level, kick, drag, whole_share, water_inertia);
+                for d in 0..D {
+                    let (free, water_free) = (free[node][d], water_free[node][d]);
+                    let water_share = free * whole_share;
+                    let balance = NodalBalance {
+                        per_solid_mass: free * per_solid_mass[node],
                         water_share,
-                        water_free,
-                    ),
-                    drag,
-                    implicit_drag,
-                };
-                let velocity = [nodes.solid_velocity[node][d], nodes.water_velocity[node][d]];
-                let (mixture, water) = (nodes.mixture_force[node][d], nodes.water_force[node][d]);
-                [nodes.solid_acceleration[node][d], nodes.water_acceleration[node][d]] =
-                    balance.accelerations(mixture, water, velocity);
+                        per_water_inertia: per_water_inertia(
+                            water_inertia,
+                            implicit_drag,
+                            water_share,
+                            water_free,
+                        ),
+                        drag,
+                        implicit_drag,
+                    };
+                    let velocity = [solid_velocity[node][d], water_velocity[node][d]];
+                    [solid_acceleration[node][d], water_acceleration[node][d]] =
+                        balance.accelerations(mixture[node][d], water[node][d], velocity);
+                }
             }
         }
     }
@@ -115,115 +122,19 @@ impl<const D: usize> Body<D> {
     /// Step 3: nodal velocities by forward Euler.
     pub(crate) fn nodal_velocities(&mut self, kick: f64, dt: f64) {
         let nodes = &mut self.nodes;
-        for active in 0..nodes.active().len() {
-            let node = nodes.active()[active];
-            for d in 0..D {
-                nodes.solid_velocity[node][d] += kick * nodes.solid_acceleration[node][d];
-                nodes.water_velocity[node][d] += kick * nodes.water_acceleration[node][d];
-                nodes.displacement[node][d] += dt * nodes.solid_velocity[node][d];
-            }
-        }
-    }
-
-    /// Step 6: effective stress by the method's strain gradient; at finite strain also volume and
-    /// domain.
-    pub(crate) fn update_effective_stress(&mut self, dt: f64) {
-        if self.method.strain.is_bbar() {
-            self.recover_dilation_rates();
-        }
-        let (basis, strain) = (std::mem::take(&mut self.basis), std::mem::take(&mut self.strain));
-        match &strain {
-            StrainOperator::Basis => {
-                with_stencils!(&basis, stencils => self.strain_points(stencils.blocks(), dt));
-            }
-            StrainOperator::Composite(stencils) => self.strain_points(stencils.blocks(), dt),
-            StrainOperator::BetweenEnds(stencils) => self.strain_points(stencils.blocks(), dt),
-        }
-        (self.basis, self.strain) = (basis, strain);
-    }
-
-    fn strain_points<const W: usize>(&mut self, blocks: Blocks<'_, D, W>, dt: f64) {
-        let (deforms, is_bbar) = (self.configuration.deforms(), self.method.strain.is_bbar());
-        let (following, is_total) = (self.following(), self.configuration == Configuration::Total);
-        let stride = *self.grid.node_stride();
-        let (field, dilation_rates) = (&self.nodes.solid_velocity[..], &self.dilation_rates[..]);
-        let (law, stiffness) = (self.material.law, self.stiffness);
-        // A motion that is held against exact fields is followed at the middle of the step, to second order.
-        let is_at_middle = self.forcing.is_some();
-        let points = &mut self.points;
-        let count = points.len();
-        let (volume_ratio, half_length) =
-            (&mut points.volume_ratio[..count], &mut points.half_length[..count]);
-        let (inverse_deformation, effective_stress) =
-            (&mut points.inverse_deformation[..count], &mut points.effective_stress[..count]);
-        for point in 0..count {
-            let mut gradient = blocks.gradient(&stride, point, field);
-            if is_total {
-                gradient = product(&gradient, &inverse_deformation[point]);
-            }
-            if is_at_middle {
-                gradient = middle_gradient(&gradient, dt);
-            }
-            let mut increment = gradient.map(|row| row.map(|rate| dt * rate));
-            let before = volume_ratio[point];
-            if deforms {
-                volume_ratio[point] *=
-                    following.deform(&mut half_length[point], &mut inverse_deformation[point], &increment);
-            }
-            if law.is_hyperelastic() {
-                let deformation = inverse(&inverse_deformation[point]).0;
-                effective_stress[point] = stiffness.neo_hookean_stress(&deformation, volume_ratio[point]);
-                continue;
-            }
-            let mut shared = 0.0;
-            if is_bbar {
-                // Of the kinematics only the volume goes the way of the water's.
-                let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
-                let dilation = dt * (dilation_rates[point] - trace);
-                if deforms {
-                    volume_ratio[point] *= stretch_of(dilation);
-                }
+        for run in &nodes.runs {
+            let (solid_rate, water_rate) =
+                (&nodes.solid_acceleration[run.clone()], &nodes.water_acceleration[run.clone()]);
+            let (solid, water) =
+                (&mut nodes.solid_velocity[run.clone()], &mut nodes.water_velocity[run.clone()]);
+            let displacement = &mut nodes.displacement[run.clone()];
+            for node in 0..run.len() {
                 for d in 0..D {
-                    increment[d][d] += dilation / D as f64;
+                    solid[node][d] += kick * solid_rate[node][d];
+                    water[node][d] += kick * water_rate[node][d];
+                    displacement[node][d] += dt * solid[node][d];
                 }
-                shared = stiffness.shared_dilation_stress::<D>(dilation);
             }
-            let mut stress = effective_stress[point];
-            if deforms && D > 1 {
-                stress = rotated(&stress, &increment);
-            }
-            let modulus = law.modulus_ratio(before, volume_ratio[point]);
-            let change = stiffness.stress(&increment);
-            for d in 0..D {
-                for e in 0..D {
-                    stress[d][e] += modulus * change[d][e];
-                }
-                stress[d][d] += modulus * shared;
-            }
-            effective_stress[point] = stress;
-        }
-    }
-
-    /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
-    pub(crate) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
-        let following = self.following();
-        let points = &mut self.points;
-        points.volume_ratio[point] *= following.deform(
-            &mut points.half_length[point],
-            &mut points.inverse_deformation[point],
-            increment,
-        );
-    }
-
-    #[inline]
-    fn following(&self) -> Following {
-        let is_hyperelastic = self.material.law.is_hyperelastic();
-        match self.configuration {
-            Configuration::Updated if self.method.domains_follow() && is_hyperelastic => Following::Both,
-            Configuration::Updated if self.method.domains_follow() => Following::Domain,
-            Configuration::Updated if is_hyperelastic => Following::InverseDeformation,
-            Configuration::Total => Following::InverseDeformation,
-            Configuration::Updated | Configuration::Frozen => Following::Nothing,
         }
     }
 

@@ -4,10 +4,12 @@
 //! are in registers.
 
 use crate::mpm::body::Body;
-use crate::mpm::explicit::points_to_nodes::{add_momenta, momenta_of, volumes_of};
+use crate::mpm::explicit::points_to_nodes::{add_momenta, add_momenta_in_line, momenta_of, volumes_of};
 use crate::mpm::operators::stencil::{Blocks, with_stencils};
 use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::state::lanes::LANES;
 use crate::mpm::state::nodes::Nodes;
+use crate::mpm::wide::wide;
 
 /// Durations and shares of a step, for the points.
 #[derive(Clone, Copy)]
@@ -33,17 +35,19 @@ impl<const D: usize> Body<D> {
     }
 
     fn carry_points<const BACK: bool>(&mut self, motion: Motion) {
+        self.nodes.gather_motion();
         let basis = std::mem::take(&mut self.basis);
-        with_stencils!(&basis, stencils => if motion.flip < 1.0 {
-            self.carry_points_by::<true, BACK, _>(stencils.blocks(), motion);
-        } else {
-            self.carry_points_by::<false, BACK, _>(stencils.blocks(), motion);
+        with_stencils!(&basis, stencils => {
+            wide!(self.carry_points_by::<BACK, _>(stencils.blocks(), motion));
         });
         self.basis = basis;
     }
 
-    /// The same; where nothing is interpolated from the nodes, the water's velocities are not asked for.
-    fn carry_points_by<const PIC: bool, const BACK: bool, const W: usize>(
+    /// The same, some neighbouring points after the others: first what the nodes do at each of them, then what
+    /// follows.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn carry_points_by<const BACK: bool, const W: usize>(
         &mut self,
         basis: Blocks<'_, D, W>,
         Motion { kick, dt, flip }: Motion,
@@ -52,11 +56,8 @@ impl<const D: usize> Body<D> {
         let (pic, solid_fraction) = (1.0 - flip, 1.0 - self.material.porosity);
         let carrier = self.strain.carrier();
         let stride = *self.grid.node_stride();
-        let Nodes { solid_velocity, solid_acceleration, water_velocity, water_acceleration, sums, .. } =
-            &mut self.nodes;
-        let (solid_field, solid_rates) = (&solid_velocity[..], &solid_acceleration[..]);
-        let (water_field, water_rates) = (&water_velocity[..], &water_acceleration[..]);
-        let momenta = &mut sums.momenta[..];
+        let Nodes { solid_velocity: solid_field, motion, sums, .. } = &mut self.nodes;
+        let (solid_field, motion, momenta) = (&solid_field[..], &motion[..], &mut sums.momenta[..]);
         if BACK {
             momenta.fill([[0.0; D]; 2]);
         }
@@ -66,34 +67,60 @@ impl<const D: usize> Body<D> {
             (&mut points.solid_velocity[..count], &mut points.water_velocity[..count]);
         let (displacement, position) = (&mut points.displacement[..count], &mut points.position[..count]);
         let (initial_volume, volume_ratio) = (&points.initial_volume[..count], &points.volume_ratio[..count]);
-        for point in 0..count {
-            let ([mut solid, mut solid_rate], [mut water, mut water_rate]) = ([[0.0; D]; 2], [[0.0; D]; 2]);
-            basis.visit_runs(&stride, point, |run| {
-                run.add_value(&mut solid, solid_field);
-                run.add_value(&mut solid_rate, solid_rates);
-                run.add_value(&mut water_rate, water_rates);
-                if PIC {
-                    run.add_value(&mut water, water_field);
+        let (mut motions, mut given) = ([[[0.0; D]; 4]; LANES], [[[0.0; D]; 2]; LANES]);
+        for first in (0..count).step_by(LANES) {
+            let block = first..count.min(first + LANES);
+            for (at_point, point) in motions.iter_mut().zip(block.clone()) {
+                *at_point = basis.values(&stride, point, motion);
+            }
+            for ([_, _, solid_rate, water_rate], point) in motions.iter().zip(block.clone()) {
+                for d in 0..D {
+                    solid_velocity[point][d] += kick * solid_rate[d];
+                    water_velocity[point][d] += kick * water_rate[d];
                 }
-            });
-            let carrying = carrier.map_or(solid, |ends| ends.value(&stride, point, solid_field));
-            let (solid_velocity, water_velocity) = (&mut solid_velocity[point], &mut water_velocity[point]);
-            for d in 0..D {
-                solid_velocity[d] += kick * solid_rate[d];
-                water_velocity[d] += kick * water_rate[d];
-                if PIC {
-                    solid_velocity[d] = flip * solid_velocity[d] + pic * solid[d];
-                    water_velocity[d] = flip * water_velocity[d] + pic * water[d];
+            }
+            if flip < 1.0 {
+                for ([solid, water, ..], point) in motions.iter().zip(block.clone()) {
+                    for d in 0..D {
+                        solid_velocity[point][d] = flip * solid_velocity[point][d] + pic * solid[d];
+                        water_velocity[point][d] = flip * water_velocity[point][d] + pic * water[d];
+                    }
                 }
-                displacement[point][d] += dt * carrying[d];
-                if moving {
-                    position[point][d] += dt * carrying[d];
+            }
+            if let Some(ends) = carrier {
+                for (at_point, point) in motions.iter_mut().zip(block.clone()) {
+                    at_point[0] = ends.value(&stride, point, solid_field);
+                }
+            }
+            for ([carrying, ..], displacement) in motions.iter().zip(&mut displacement[block.clone()]) {
+                for d in 0..D {
+                    displacement[d] += dt * carrying[d];
+                }
+            }
+            if moving {
+                for ([carrying, ..], position) in motions.iter().zip(&mut position[block.clone()]) {
+                    for d in 0..D {
+                        position[d] += dt * carrying[d];
+                    }
                 }
             }
             if BACK {
-                let volumes = volumes_of(initial_volume[point], volume_ratio[point], solid_fraction);
-                let given = momenta_of(volumes, solid_velocity, water_velocity);
-                basis.visit_runs(&stride, point, |run| add_momenta(momenta, run, &given));
+                for (given, point) in given.iter_mut().zip(block.clone()) {
+                    let volumes = volumes_of(initial_volume[point], volume_ratio[point], solid_fraction);
+                    *given = momenta_of(volumes, &solid_velocity[point], &water_velocity[point]);
+                }
+                if D == 1 {
+                    add_momenta_in_line(basis, block, momenta, &given);
+                    continue;
+                }
+                for (given, point) in given.iter().zip(block) {
+                    basis.visit_runs(
+                        &stride,
+                        point,
+                        #[inline(always)]
+                        |run| add_momenta(momenta, run, given),
+                    );
+                }
             }
         }
     }

@@ -118,6 +118,7 @@ impl<const D: usize> NewtonStepper<D> {
     fn try_step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure> {
         let mut flux = 0.0;
         let mut first = true;
+        self.trial.begin_step(self.time);
         for (duration, end, share) in self.stages {
             let stage = duration * dt;
             if first {
@@ -125,6 +126,7 @@ impl<const D: usize> NewtonStepper<D> {
                 first = false;
             }
             self.load_at(self.time + end * dt);
+            self.trial.act_later(end * dt);
             self.solve_stage()?;
             flux += share * stage * self.trial.outflow();
             if *share != 1.0 {

@@ -127,8 +127,14 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
         .collect();
     // Forces and drag of a node: of all points whose weights reach it.
     let mut by_node = vec![Vec::new(); body.nodes.len()];
+    let first = body.basis.first();
+    let parts = first.len() / by_point.len();
+    let blocks_of = |point: usize| &first[point * parts..(point + 1) * parts];
     for (point, felt) in by_point.iter().enumerate() {
-        body.basis.visit(stride, point, |node, _, _| by_node[node].extend_from_slice(felt));
+        // Neighbours mostly feel the same, and need not say so twice.
+        if point == 0 || blocks_of(point) != blocks_of(point - 1) || *felt != by_point[point - 1] {
+            body.basis.visit(stride, point, |node, _, _| by_node[node].extend_from_slice(felt));
+        }
     }
     if body.material.conductivity_mean == ConductivityMean::Chord {
         feel_cells(body, &by_point, &mut by_node);
@@ -153,8 +159,10 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
     let is_by_cells = body.method.pressure.is_by_cells();
     for (point, felt) in by_point.iter().enumerate() {
         let place = if is_by_cells { body.cells.of_point[point] } else { point };
-        if let Some(site) = unknowns.rows.site_of_place[place] {
-            rows[unknowns.pressure[site]].extend_from_slice(felt);
+        let Some(site) = unknowns.rows.site_of_place[place] else { continue };
+        let row = &mut rows[unknowns.pressure[site]];
+        if !row.ends_with(felt) {
+            row.extend_from_slice(felt);
         }
     }
     for site in 0..unknowns.pressure.len() {

@@ -9,7 +9,7 @@ use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::Memory;
 use crate::mpm::run::integrator::Formulation;
 use crate::mpm::state::points::Points;
-use crate::soil::tensor::{Tensor, Vector, dot, identity, inverse, strain_between};
+use crate::soil::tensor::{Tensor, Vector, dot, identity, inverse, product, strain_between};
 
 /// Time level at which the effective stress acts in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,8 +37,10 @@ pub struct Trial<const D: usize> {
     pub start: Points<D>,
     /// Points of the anchored state.
     pub anchor: Points<D>,
-    /// Their deformation gradients.
+    /// Their deformation gradients, where points move since the start of the step.
     anchor_deformation: Vec<Tensor<D>>,
+    /// What a hyperelastic law wants beside them: their deformation from the start of the run to that of the step.
+    carried: Vec<Tensor<D>>,
     /// Velocities of skeleton and water at the nodes in the anchored state, m/s.
     pub velocity: [Vec<Vector<D>>; 2],
     /// Increment of the nodal displacement since the anchor, m.
@@ -49,7 +51,14 @@ impl<const D: usize> Trial<D> {
     /// A body anchored at its present state.
     pub fn new(mut body: Body<D>, formulation: Formulation, skeleton: Skeleton) -> Self {
         let start = body.points.clone();
+        let mut carried = vec![identity(); body.points.len()];
+        if let Some(forced) = &mut body.forcing {
+            forced.formulation = formulation;
+        }
         if body.configuration.moves_points() {
+            for (carried, back) in carried.iter_mut().zip(&body.points.inverse_deformation) {
+                *carried = inverse(back).0;
+            }
             body.points.inverse_deformation.fill(identity());
             body.is_pushed_forward = true;
             body.follow_points();
@@ -60,6 +69,7 @@ impl<const D: usize> Trial<D> {
             start,
             anchor: Points::default(),
             anchor_deformation: Vec::new(),
+            carried,
             velocity: [body.nodes.solid_velocity.clone(), body.nodes.water_velocity.clone()],
             displacement: vec![[0.0; D]; body.nodes.len()],
             formulation,
@@ -75,6 +85,17 @@ impl<const D: usize> Trial<D> {
         let body = &mut self.body;
         body.surface.load = self.full_load * share;
         body.apply_loads();
+    }
+
+    /// Begins a step at a time, s, where something acts on every point: finds who is at the centres of the cells.
+    pub fn begin_step(&mut self, time: f64) {
+        self.body.begin_forced_step(time);
+        self.body.find_centres();
+    }
+
+    /// Lets act what acts so many seconds after the start of the step.
+    pub fn act_later(&mut self, later: f64) {
+        self.body.act_later(later);
     }
 
     /// What passes the surface now, per area of it, m/s.
@@ -151,6 +172,12 @@ impl<const D: usize> Trial<D> {
             points.inverse_deformation[point] = inverse_after;
             let ratio = inverse(&after).1 / inverse(before).1;
             points.volume_ratio[point] = anchor.volume_ratio[point] * ratio;
+            if self.body.material.law.is_hyperelastic() {
+                let whole = product(&after, &self.carried[point]);
+                points.effective_stress[point] =
+                    self.body.stiffness.neo_hookean_stress(&whole, points.volume_ratio[point]);
+                return;
+            }
             strain = strain_between(before, &after, elementary::ln(ratio));
             modulus =
                 self.body.material.law.modulus_ratio(anchor.volume_ratio[point], points.volume_ratio[point]);
@@ -246,5 +273,9 @@ impl<const D: usize> Trial<D> {
             }
         }
         points.inverse_deformation[point] = identity();
+        if let Some(domains) = &mut self.body.domains {
+            domains.carry(point, &deformation);
+        }
+        self.carried[point] = product(&deformation, &self.carried[point]);
     }
 }

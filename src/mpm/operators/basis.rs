@@ -8,6 +8,7 @@ use crate::mpm::operators::stencil::{LaneRows, PointStencils, Stencils, visit_bl
 use crate::mpm::state::grid::{GHOST_LAYERS, Grid, Line, index_of, whole, whole_part};
 use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
 use crate::mpm::state::nodes::Support;
+use crate::mpm::wide::wide;
 use crate::soil::tensor::Vector;
 
 /// A basis as the compiler sees it: rows of `W` nodes per direction, which sum to one by construction.
@@ -127,16 +128,32 @@ fn build<const D: usize, const W: usize, S: ShapeFunction<W>>(
         }
         return;
     }
-    stencils.set_lanes(grid, places, |first, direction, place, rows| {
-        let half_length = lanes_of(&half_lengths[first..], direction, 0.5 * grid.cell_size);
-        fill_rows::<W, S>(grid.line(direction), place, &half_length, rows)
-    });
+    wide!(stencils.set_lanes(
+        grid,
+        places,
+        #[inline(always)]
+        |first, direction, place, rows| {
+            let half_length = lanes_of(&half_lengths[first..], direction, 0.5 * grid.cell_size);
+            fill_rows::<W, S>(grid.line(direction), place, &half_length, rows)
+        },
+    ));
 }
 
 /// Rows of some points along a direction, at places in cells, of domains of half-lengths in m; returns the lowest
 /// node of each. Not inlined: what is written is known to be nothing that is read.
 #[inline(never)]
 fn fill_rows<const W: usize, S: ShapeFunction<W>>(
+    line: Line,
+    place: &Lanes,
+    half_length: &Lanes,
+    rows: &mut LaneRows<W>,
+) -> Lanes {
+    wide!(fill_lanes::<W, S>(line, place, half_length, rows))
+}
+
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn fill_lanes<const W: usize, S: ShapeFunction<W>>(
     line: Line,
     place: &Lanes,
     half_length: &Lanes,

@@ -67,6 +67,7 @@ impl<const D: usize> Body<D> {
 mod tests {
     use super::*;
     use crate::mpm::method::Method;
+    use crate::mpm::state::grid::whole;
     use crate::scene::SceneKind;
     use crate::scene::column::Column;
     use crate::scene::problem::column_problem;
@@ -77,32 +78,37 @@ mod tests {
     const CELLS: usize = 5;
     const LOAD: f64 = 5e5;
 
-    /// A column whose weights stay, with a volume ratio in each cell.
-    fn body(law: Law, ratios: [f64; CELLS]) -> Body<1> {
+    /// A column whose weights stay, with a volume ratio in each cell; in the plane one cell wide.
+    fn body<const D: usize>(law: Law, ratios: [f64; CELLS]) -> Body<D> {
         let soil = Material {
             law,
             porosity: 0.6,
             conductivity_mean: ConductivityMean::Chord,
             ..Material::default()
         };
-        let column = Column { load: LOAD, ..Column::default() };
+        let width = 1.0 / CELLS as f64;
+        let column = Column { load: LOAD, horizontal_extent: width, dimensions: D, ..Column::default() };
         let method = Method::named("TL-GIMP-SRI-patch").expect("a method");
         let problem =
-            column_problem::<1>(SceneKind::XieLeo, &column, &soil, method, CELLS, 3).expect("a column");
+            column_problem::<D>(SceneKind::XieLeo, &column, &soil, method, CELLS, 3).expect("a column");
         let mut body = Body::new(problem);
         for point in 0..body.points.len() {
-            let ratio = ratios[point / 3];
+            let height = body.points.initial_position[point][D - 1];
+            let ratio = ratios[whole(height * CELLS as f64)];
             body.points.volume_ratio[point] = ratio;
-            body.points.inverse_deformation[point] = [[1.0 / ratio]];
+            let back = &mut body.points.inverse_deformation[point];
+            back[D - 1][D - 1] = 1.0 / ratio;
         }
         body.follow_points();
         body
     }
 
     /// `κ` over `k_0` at a node so many cells over the base.
-    fn mobility(body: &Body<1>, up: usize) -> f64 {
+    fn mobility<const D: usize>(body: &Body<D>, up: usize) -> f64 {
         let (soil, nodes) = (&body.material, &body.nodes);
-        let node = body.grid.flat_node(&[up + 2]);
+        let mut place = [2; D];
+        place[D - 1] += up;
+        let node = body.grid.flat_node(&place);
         let pores = nodes.porosity[node] * nodes.volume[node];
         let volume_ratio = (1.0 - soil.porosity) / (1.0 - nodes.porosity[node]);
         let conductivity = pores * soil.unit_weight_of_water() / nodes.drag[node];
@@ -117,21 +123,25 @@ mod tests {
             (Law::LogLinear, (|j| j) as fn(f64) -> f64, (|j| j.ln()) as fn(f64) -> f64, (-load).exp()),
             (Law::PorosityDependent, |j| j.ln(), |j| 1.0 - 1.0 / j, 1.0 / (1.0 + load)),
         ] {
-            let body = body(law, ratios);
+            let (body, plane) = (body::<1>(law, ratios), body::<2>(law, ratios));
             for up in 1..CELLS {
                 let (a, b) = (ratios[up - 1], ratios[up]);
                 let chord = (potential(b) - potential(a)) / (stress(b) - stress(a));
-                assert!((mobility(&body, up) / chord - 1.0).abs() < 1e-10, "{law:?} node {up}");
+                for got in [mobility(&body, up), mobility(&plane, up)] {
+                    assert!((got / chord - 1.0).abs() < 1e-10, "{law:?} node {up}");
+                }
             }
             let surface = ratios[CELLS - 1];
             let chord = (potential(end) - potential(surface)) / (stress(end) - stress(surface));
-            assert!((mobility(&body, CELLS) / chord - 1.0).abs() < 1e-10, "{law:?} at the surface");
+            for got in [mobility(&body, CELLS), mobility(&plane, CELLS)] {
+                assert!((got / chord - 1.0).abs() < 1e-10, "{law:?} at the surface");
+            }
         }
     }
 
     #[test]
     fn a_uniform_soil_has_its_own_conductivity_inside() {
-        let body = body(Law::LogLinear, [0.8; CELLS]);
+        let body = body::<1>(Law::LogLinear, [0.8; CELLS]);
         for up in 1..CELLS {
             assert!((mobility(&body, up) - 0.8).abs() < 1e-12, "{}", mobility(&body, up));
         }

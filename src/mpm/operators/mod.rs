@@ -3,6 +3,8 @@
 
 pub mod basis;
 pub mod chord_mean;
+pub mod corners;
+pub mod line_sums;
 pub mod pairs;
 pub mod recovery;
 pub mod rigid_plate;

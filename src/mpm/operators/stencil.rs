@@ -1,6 +1,6 @@
 //! Sparse operators between points and nodes: one small tensor-product block of nodes a point.
 
-use crate::mpm::operators::pairs::add_weighted;
+use crate::mpm::operators::pairs::{add_weighted, weighted_sum};
 use crate::mpm::operators::row::Row;
 use crate::mpm::state::grid::{GHOST_LAYERS, Grid, index_of, power};
 use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
@@ -9,16 +9,19 @@ use crate::soil::tensor::{Tensor, Vector};
 /// Weights and gradients of every point over a block of `W` nodes in each direction.
 ///
 /// The block of a point is the tensor product of one row a direction, which is what is stored:
-/// `2 D W` numbers a point whatever the dimension, those of neighbouring points side by side.
+/// `2 D W` numbers a point whatever the dimension, those of neighbouring points side by side. A point whose weights
+/// are no product has several blocks, of which they are the sum.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stencils<const D: usize, const W: usize> {
-    /// Flat index of the lowest node of each point's block.
+    /// Flat index of the lowest node of each point's block, or of each of its blocks.
     pub first: Vec<usize>,
     rows: Vec<RowBlock<D, W>>,
+    /// Blocks per point.
+    parts: usize,
 }
 
 /// Rows of some neighbouring points, `[direction]`.
-type RowBlock<const D: usize, const W: usize> = [LaneRows<W>; D];
+pub type RowBlock<const D: usize, const W: usize> = [LaneRows<W>; D];
 
 /// Rows of some neighbouring points along one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,8 +35,14 @@ pub struct LaneRows<const W: usize> {
 impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Room for `points` points, all rows zero.
     pub fn with_points(points: usize) -> Self {
+        Self::with_parts(points, 1)
+    }
+
+    /// Room for `points` points of so many blocks each, all rows zero; of one on a line.
+    pub fn with_parts(points: usize, parts: usize) -> Self {
         let empty = LaneRows { weights: [[0.0; LANES]; W], gradients: [[0.0; LANES]; W] };
-        Self { first: vec![0; points], rows: vec![[empty; D]; points.div_ceil(LANES)] }
+        let blocks = points * parts;
+        Self { first: vec![0; blocks], rows: vec![[empty; D]; blocks.div_ceil(LANES)], parts }
     }
 
     /// Sets the block of a point from one row a direction.
@@ -45,6 +54,12 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
             self.set_row(grid, point, direction, &rows[direction]);
         }
         self.first[point] = first;
+    }
+
+    /// Sets one of the blocks of a point.
+    #[inline]
+    pub fn set_part(&mut self, grid: &Grid<D>, point: usize, part: usize, rows: &[Row<W>; D]) {
+        self.set(grid, point * self.parts + part, rows);
     }
 
     /// Sets the row of a point along a direction where the lowest node is known already.
@@ -86,7 +101,7 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     /// The blocks of all points, borrowed once for a loop over them.
     #[inline]
     pub fn blocks(&self) -> Blocks<'_, D, W> {
-        Blocks { first: &self.first, rows: &self.rows }
+        Blocks { first: &self.first, rows: &self.rows, parts: self.parts }
     }
 
     /// Visits the nodes of a point's block with weight and gradient (1/m).
@@ -98,15 +113,20 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         point: usize,
         mut node_visitor: impl FnMut(usize, f64, &Vector<D>),
     ) {
-        self.blocks().visit_runs(stride, point, |run| {
-            for k in 0..W {
-                let mut gradient = [0.0; D];
-                for d in 0..D {
-                    gradient[d] = run.across[d] * if d == 0 { run.gradients[k] } else { run.weights[k] };
+        self.blocks().visit_runs(
+            stride,
+            point,
+            #[inline(always)]
+            |run| {
+                for k in 0..W {
+                    let mut gradient = [0.0; D];
+                    for d in 0..D {
+                        gradient[d] = run.across[d] * if d == 0 { run.gradients[k] } else { run.weights[k] };
+                    }
+                    node_visitor(run.first + k, run.across[0] * run.weights[k], &gradient);
                 }
-                node_visitor(run.first + k, run.across[0] * run.weights[k], &gradient);
-            }
-        });
+            },
+        );
     }
 
     /// Divergence of a nodal vector field at the point.
@@ -176,13 +196,17 @@ impl<const D: usize> PointStencils<D> {
         with_stencils!(self, stencils => stencils.divergence(stride, point, field))
     }
 
-    /// The nodes of a point's block with their gradients (1/m), where they are not zero: the
+    /// The nodes of a point's blocks with their gradients (1/m), where they are not zero: the
     /// divergence at the point as a functional of a nodal field.
     pub fn gradient_row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, Vector<D>)> {
-        let mut row = Vec::new();
+        let mut row: Vec<(usize, Vector<D>)> = Vec::new();
         self.visit(grid.node_stride(), point, |node, _, gradient| {
-            if *gradient != [0.0; D] {
-                row.push((node, *gradient));
+            if *gradient == [0.0; D] {
+                return;
+            }
+            match row.iter_mut().find(|(other, _)| *other == node) {
+                Some((_, sum)) => (0..D).for_each(|d| sum[d] += gradient[d]),
+                None => row.push((node, *gradient)),
             }
         });
         row
@@ -193,8 +217,11 @@ impl<const D: usize> PointStencils<D> {
 /// every store.
 #[derive(Clone, Copy, Debug)]
 pub struct Blocks<'a, const D: usize, const W: usize> {
-    first: &'a [usize],
-    rows: &'a [RowBlock<D, W>],
+    /// Flat index of the lowest node of each point's block.
+    pub first: &'a [usize],
+    /// Rows of the points, some neighbours side by side.
+    pub rows: &'a [RowBlock<D, W>],
+    parts: usize,
 }
 
 impl<const D: usize, const W: usize> Blocks<'_, D, W> {
@@ -202,7 +229,20 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn visit_runs(&self, stride: &[usize; D], point: usize, mut run_visitor: impl FnMut(&Run<D, W>)) {
-        let (rows, lane) = (&self.rows[point / LANES], point % LANES);
+        // On a line a point has one block, and the compiler knows.
+        if D == 1 {
+            self.visit_block(stride, point, &mut run_visitor);
+            return;
+        }
+        for block in point * self.parts..(point + 1) * self.parts {
+            self.visit_block(stride, block, &mut run_visitor);
+        }
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn visit_block(&self, stride: &[usize; D], block: usize, run_visitor: &mut impl FnMut(&Run<D, W>)) {
+        let (rows, lane) = (&self.rows[block / LANES], block % LANES);
         let mut run = Run { first: 0, weights: [0.0; W], gradients: [0.0; W], across: [1.0; D] };
         for k in 0..W {
             run.weights[k] = rows[0].weights[k][lane];
@@ -210,7 +250,7 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
         }
         for number in 0..power(W, D - 1) {
             let mut rest = number;
-            run.first = self.first[point];
+            run.first = self.first[block];
             run.across = [1.0; D];
             for direction in 1..D {
                 let k = rest % W;
@@ -230,34 +270,57 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
-        let mut value = [0.0; D];
-        self.visit_runs(stride, point, |run| run.add_value(&mut value, field));
+        let [value] = self.values(stride, point, field.as_chunks().0);
         value
+    }
+
+    /// The same of several vectors that lie side by side at each node.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn values<const M: usize>(
+        &self,
+        stride: &[usize; D],
+        point: usize,
+        fields: &[[Vector<D>; M]],
+    ) -> [Vector<D>; M] {
+        let mut values = [[0.0; D]; M];
+        self.visit_runs(
+            stride,
+            point,
+            #[inline(always)]
+            |run| {
+                let sum = weighted_sum(&run.weights, &fields[run.first..run.first + W]);
+                add_weighted(values.as_flattened_mut(), run.across[0], sum.as_flattened());
+            },
+        );
+        values
     }
 
     /// Gradient of a nodal vector field at the point, `[component][direction]`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        let mut gradient = [[0.0; D]; D];
-        self.visit_runs(stride, point, |run| {
-            // All directions but the first have the same sum along the run.
-            let (mut slope, mut value) = ([0.0; D], [0.0; D]);
-            let nodes = field[run.first..run.first + W].iter();
-            for (node, (along, weight)) in nodes.zip(run.gradients.iter().zip(&run.weights)) {
-                for component in 0..D {
-                    slope[component] += along * node[component];
-                    value[component] += weight * node[component];
+        let nodes = field.as_chunks::<1>().0;
+        // `[direction][component]`: components lie side by side at the nodes.
+        let mut slopes = [[0.0; D]; D];
+        self.visit_runs(
+            stride,
+            point,
+            #[inline(always)]
+            |run| {
+                let nodes = &nodes[run.first..run.first + W];
+                let [slope] = weighted_sum(&run.gradients, nodes);
+                add_weighted(&mut slopes[0], run.across[0], &slope);
+                if D > 1 {
+                    // All directions but the first have the same sum along the run.
+                    let [value] = weighted_sum(&run.weights, nodes);
+                    for direction in 1..D {
+                        add_weighted(&mut slopes[direction], run.across[direction], &value);
+                    }
                 }
-            }
-            for component in 0..D {
-                for direction in 0..D {
-                    let sum = if direction == 0 { slope[component] } else { value[component] };
-                    gradient[component][direction] += run.across[direction] * sum;
-                }
-            }
-        });
-        gradient
+            },
+        );
+        std::array::from_fn(|component| std::array::from_fn(|direction| slopes[direction][component]))
     }
 }
 
@@ -274,19 +337,6 @@ pub struct Run<const D: usize, const W: usize> {
     /// What the other directions give: to the weights and to the first component of the gradients, and to each of the
     /// others, 1/m.
     pub across: Vector<D>,
-}
-
-impl<const D: usize, const W: usize> Run<D, W> {
-    /// Adds the run's share of the value of a nodal field.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn add_value(&self, value: &mut Vector<D>, field: &[Vector<D>]) {
-        let mut sum = [0.0; D];
-        for (node, weight) in field[self.first..self.first + W].iter().zip(&self.weights) {
-            add_weighted(&mut sum, *weight, node);
-        }
-        add_weighted(value, self.across[0], &sum);
-    }
 }
 
 /// Visits the nodes of a tensor product of rows with their weights.

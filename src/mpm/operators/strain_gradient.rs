@@ -11,6 +11,7 @@ use crate::mpm::operators::stencil::{Blocks, LaneRows, PointStencils, Stencils};
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::{Grid, Line, SIXTH, cell_below};
 use crate::mpm::state::lanes::{LANES, Lanes};
+use crate::mpm::wide::wide;
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Nodes per direction between the ends of a domain: four at either end, at most one cell apart.
@@ -47,14 +48,17 @@ impl<const D: usize> StrainOperator<D> {
         match self {
             Self::Basis => {}
             Self::Composite(stencils) => {
-                stencils.set_lanes(grid, &cells.place, |_, direction, place, rows| {
-                    fill_composite_rows::<D>(grid.line(direction), place, rows)
-                });
+                wide!(stencils.set_lanes(
+                    grid,
+                    &cells.place,
+                    #[inline(always)]
+                    |_, direction, place, rows| {
+                        fill_composite_rows::<D>(grid.line(direction), place, rows)
+                    },
+                ));
                 // Where a neighbour is missing, the polynomial is of a lower degree.
-                cells.for_each_run(|home, points| {
-                    if cells.is_reached_around(home) {
-                        return;
-                    }
+                let cut = cells.runs().iter().filter(|(home, _)| !cells.is_reached_around(*home));
+                for (home, points) in cut.cloned() {
                     let cell = grid.cell_index(home);
                     for d in 0..D {
                         let stride = grid.cell_stride()[d];
@@ -66,7 +70,7 @@ impl<const D: usize> StrainOperator<D> {
                             }
                         }
                     }
-                });
+                }
             }
             Self::BetweenEnds(stencils) => {
                 for (point, place) in places {
@@ -162,6 +166,12 @@ fn composite_row<const D: usize>(
 /// node of each. Not inlined: what is written is known to be nothing that is read.
 #[inline(never)]
 fn fill_composite_rows<const D: usize>(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
+    wide!(fill_composite_lanes::<D>(line, place, rows))
+}
+
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn fill_composite_lanes<const D: usize>(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
     let mut lowest = [0.0; LANES];
     for lane in 0..LANES {
         let cell = line.cell_at(place[lane]);

@@ -92,11 +92,22 @@ impl<const D: usize> Body<D> {
         self.site_values = sites;
     }
 
-    /// Rate of the mixture's volume at each site, 1/s.
+    /// Rate of the mixture's volume at each site beyond that of a source, 1/s.
     pub fn evaluate_volume_rates(&mut self) {
         self.evaluate_sites(|body, place, porosity| {
-            body.volume_rate(porosity, |field| body.divergence_at(place, field))
+            let rate = body.volume_rate(porosity, |field| body.divergence_at(place, field));
+            rate - body.source_at(place)
         });
+    }
+
+    /// Source of water at a place, 1/s; nothing where none acts.
+    #[inline]
+    pub(crate) fn source_at(&self, place: Place) -> f64 {
+        let Some(forced) = &self.forcing else { return 0.0 };
+        match place {
+            Place::Centre(cell) => forced.source_at_centre(cell),
+            Place::Point(point) => forced.source_at_point(point),
+        }
     }
 
     /// The skeleton's volumetric rate at the points by the method's own `D` and `R`, 1/s: the trace that B-bar

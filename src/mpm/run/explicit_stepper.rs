@@ -123,9 +123,7 @@ impl<const D: usize> Stepper for ExplicitStepper<D> {
             if self.load.grows() {
                 self.set_load_at(steps.time_after(step));
             }
-            if let Some(forced) = &mut self.body.forcing {
-                forced.time = steps.time_after(step);
-            }
+            self.body.begin_forced_step(steps.time_after(step));
             let kick = self.rhythm.kick(dt, &settings);
             match &mut self.frozen {
                 Some(frozen) => {

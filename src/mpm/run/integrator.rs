@@ -5,6 +5,8 @@ use crate::mpm::run::time_step_rule::TimeStepRule;
 use crate::wording::words;
 use serde::{Deserialize, Serialize};
 
+pub use crate::mpm::formulation::Formulation;
+
 /// Share of the critical step where an explicit run names no rule.
 const DEFAULT_SHARE: f64 = 0.8;
 /// The same of a semi-implicit run: of first order in time, it needs a tenth of what it can stand.
@@ -104,20 +106,3 @@ impl IntegratorKind {
         }
     }
 }
-
-/// Which accelerations the balances keep (docs/theory.md, section 1).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Formulation {
-    /// None: Biot's consolidation.
-    QuasiStatic,
-    /// That of the mixture; the water's relative to the skeleton is neglected, `a_w ≈ a_s`
-    /// (Zienkiewicz 1980).
-    #[serde(rename = "u-p")]
-    UP,
-    /// Both phases' own.
-    #[serde(rename = "v-w")]
-    VW,
-}
-
-words!(Formulation: QuasiStatic "quasi-static", UP "u-p", VW "v-w");

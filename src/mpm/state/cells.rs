@@ -1,7 +1,8 @@
 //! Cell centres: occupancy, porosity and the divergence of selective reduced integration.
 
-use crate::mpm::state::grid::{GHOST_LAYERS, Grid};
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid, Line, index_of};
 use crate::mpm::state::points::Points;
+use crate::mpm::wide::wide;
 use crate::soil::tensor::{Tensor, Vector};
 use std::ops::Range;
 
@@ -21,15 +22,20 @@ pub struct Cells<const D: usize> {
     /// splines at a free surface, where the field goes on as a line.
     divergence_node: Vec<usize>,
     /// Points in each cell.
-    point_count: Vec<u32>,
+    point_count: Vec<usize>,
+    /// Runs of neighbouring points that share a cell, with it.
+    runs: Vec<(usize, Range<usize>)>,
+    /// Whether points may belong to another cell than the one that they lie in.
+    has_strays: bool,
     /// Whether a point's domain reaches into each cell.
     reached: Vec<bool>,
     /// Whether a domain reaches into both neighbours of each cell in every direction.
     reached_around: Vec<bool>,
     /// Whether each cell is occupied and has an empty neighbour.
     at_edge: Vec<bool>,
-    /// Occupied cells in index order.
+    /// Occupied cells in index order, and how often they have changed.
     occupied: Vec<usize>,
+    occupations: u64,
     /// Current volume of each cell's points, m^D.
     volume: Vec<f64>,
     /// Volume-weighted mean porosity of each occupied cell's points.
@@ -57,10 +63,13 @@ impl<const D: usize> Cells<D> {
             divergence_node: first_node.clone(),
             first_node,
             point_count: vec![0; count],
+            runs: Vec::with_capacity(points),
+            has_strays: false,
             reached: vec![false; count],
             reached_around: vec![false; count],
             at_edge: vec![false; count],
             occupied: Vec::with_capacity(count),
+            occupations: 0,
             volume: vec![0.0; count],
             porosity: vec![0.0; count],
             inverse_deformation: vec![[[0.0; D]; D]; count],
@@ -69,22 +78,55 @@ impl<const D: usize> Cells<D> {
 
     /// Finds the cell of every point and sums volumes over each cell's points.
     pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, initial_porosity: f64) {
+        wide!(self.find_places(grid, &points.position));
+        self.find_runs();
         self.point_count.fill(0);
-        let found = self.of_point.iter_mut().zip(&mut self.place);
-        for (position, (of_point, place)) in points.position.iter().zip(found) {
-            *place = grid.held_in_cells(position);
-            *of_point = grid.flat_cell(&grid.cell_at(place));
-            self.point_count[*of_point] += 1;
+        for (cell, run) in &self.runs {
+            self.point_count[*cell] += run.len();
         }
         self.list_occupied();
         self.sum_volumes(points, initial_porosity);
     }
 
+    /// Place and cell of every point.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn find_places(&mut self, grid: &Grid<D>, positions: &[Vector<D>]) {
+        let lines: [Line; D] = std::array::from_fn(|direction| grid.line(direction));
+        let strides = grid.cell_stride().map(|stride| stride as f64);
+        let found = self.of_point.iter_mut().zip(&mut self.place);
+        for (position, (of_point, place)) in positions.iter().zip(found) {
+            let mut cell = 0.0;
+            for d in 0..D {
+                place[d] = lines[d].held_in_cells(position[d]);
+                cell += strides[d] * lines[d].cell_at(place[d]);
+            }
+            *of_point = index_of(cell);
+        }
+    }
+
+    /// Finds the runs of neighbouring points that share a cell: the points of a cell follow each other, but where rows
+    /// of points cross several cells.
+    fn find_runs(&mut self) {
+        self.runs.clear();
+        let mut start = 0;
+        while let Some(cell) = self.of_point.get(start) {
+            let rest = self.of_point[start..].iter();
+            let end = start + rest.take_while(|other| *other == cell).count();
+            self.runs.push((*cell, start..end));
+            start = end;
+        }
+    }
+
     /// Lists the cells that hold points.
     fn list_occupied(&mut self) {
-        self.occupied.clear();
         let counts = self.point_count.iter().enumerate();
-        self.occupied.extend(counts.filter(|(_, count)| **count > 0).map(|(cell, _)| cell));
+        let found = counts.filter(|(_, count)| **count > 0).map(|(cell, _)| cell);
+        if !found.clone().eq(self.occupied.iter().copied()) {
+            self.occupied.clear();
+            self.occupied.extend(found);
+            self.occupations += 1;
+        }
     }
 
     /// Finds the cells of other points among those that `holders` knows to hold the material, but for some that are
@@ -117,6 +159,8 @@ impl<const D: usize> Cells<D> {
             self.place[point] = place;
             self.of_point[point] = if self.is_occupied(cell) { cell } else { home };
         }
+        self.find_runs();
+        self.has_strays = true;
         self.list_occupied();
     }
 
@@ -136,11 +180,15 @@ impl<const D: usize> Cells<D> {
     pub fn sum_volumes(&mut self, points: &Points<D>, initial_porosity: f64) {
         self.volume.fill(0.0);
         self.porosity.fill(0.0);
-        let state = points.initial_volume.iter().zip(&points.volume_ratio);
-        for (cell, (initial, ratio)) in self.of_point.iter().zip(state) {
-            self.volume[*cell] += initial * ratio;
-            // n V = (J − (1 − n_0)) V_0
-            self.porosity[*cell] += initial * (ratio - (1.0 - initial_porosity));
+        for (cell, run) in &self.runs {
+            let (mut volume, mut pores) = (self.volume[*cell], self.porosity[*cell]);
+            let state = points.initial_volume[run.clone()].iter().zip(&points.volume_ratio[run.clone()]);
+            for (initial, ratio) in state {
+                volume += initial * ratio;
+                // n V = (J − (1 − n_0)) V_0
+                pores += initial * (ratio - (1.0 - initial_porosity));
+            }
+            (self.volume[*cell], self.porosity[*cell]) = (volume, pores);
         }
         for cell in &self.occupied {
             self.porosity[*cell] /= self.volume[*cell];
@@ -159,11 +207,8 @@ impl<const D: usize> Cells<D> {
         }
         let per_cell = grid.inverse_cell_size();
         let (reached, at_edge, places) = (&mut self.reached, &self.at_edge, &self.place);
-        for_each_run(&self.of_point, |home, run| {
-            if !at_edge[home] {
-                return;
-            }
-            for (place, half_length) in places[run.clone()].iter().zip(&points.half_length[run]) {
+        for (home, run) in self.runs.iter().filter(|(home, _)| at_edge[*home]) {
+            for (place, half_length) in places[run.clone()].iter().zip(&points.half_length[run.clone()]) {
                 let cell = grid.cell_at(place);
                 for direction in 0..D {
                     // No domain is wider than a cell, so its ends are in this one or the next.
@@ -178,17 +223,23 @@ impl<const D: usize> Cells<D> {
                     }
                 }
             }
-        });
+        }
         for cell in &self.occupied {
             let is_between = |stride: &usize| self.reached[cell - stride] && self.reached[cell + stride];
             self.reached_around[*cell] = grid.cell_stride().iter().all(is_between);
         }
     }
 
-    /// Visits the runs of neighbouring points that share a cell, with it.
+    /// Runs of neighbouring points that share a cell, with it.
     #[inline]
-    pub fn for_each_run(&self, visitor: impl FnMut(usize, Range<usize>)) {
-        for_each_run(&self.of_point, visitor);
+    pub fn runs(&self) -> &[(usize, Range<usize>)] {
+        &self.runs
+    }
+
+    /// Whether points may belong to another cell than the one that they lie in.
+    #[inline]
+    pub fn has_strays(&self) -> bool {
+        self.has_strays
     }
 
     /// Whether domains reach into all neighbours of an occupied cell.
@@ -236,8 +287,14 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Occupied cells in index order.
-    pub fn occupied(&self) -> impl Iterator<Item = usize> + '_ {
+    pub fn occupied(&self) -> impl Iterator<Item = usize> + Clone + '_ {
         self.occupied.iter().copied()
+    }
+
+    /// How often the occupied cells have changed: what hangs on them alone stands while this does.
+    #[inline]
+    pub fn occupations(&self) -> u64 {
+        self.occupations
     }
 
     /// Lets cells above a last node take the divergence of the cell below it.
@@ -311,21 +368,6 @@ impl<const D: usize> Cells<D> {
     }
 }
 
-/// Visits the runs of neighbouring points that share a cell: the points of a cell follow each other, but where rows
-/// of points cross several cells.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn for_each_run(cell_of_point: &[usize], mut visitor: impl FnMut(usize, Range<usize>)) {
-    let mut start = 0;
-    while start < cell_of_point.len() {
-        let cell = cell_of_point[start];
-        let rest = cell_of_point[start..].iter();
-        let end = start + rest.take_while(|other| **other == cell).count();
-        visitor(cell, start..end);
-        start = end;
-    }
-}
-
 /// The side of a cell, in a direction, that a corner lies on: −1 or 1.
 #[inline]
 fn side(corner: usize, direction: usize) -> f64 {
@@ -367,10 +409,13 @@ mod tests {
 
     #[test]
     fn runs_hold_every_point_once_and_a_cell_may_have_several() {
-        let mut runs = Vec::new();
-        for_each_run(&[3, 3, 5, 3, 7, 7, 7], |cell, run| runs.push((cell, run)));
-        assert_eq!(runs, [(3, 0..2), (5, 2..3), (3, 3..4), (7, 4..7)]);
-        for_each_run(&[], |_, _| panic!("no point"));
+        let of_point = vec![3, 3, 5, 3, 7, 7, 7];
+        let mut cells = Cells::<1> { of_point, ..Cells::default() };
+        cells.find_runs();
+        assert_eq!(cells.runs(), [(3, 0..2), (5, 2..3), (3, 3..4), (7, 4..7)]);
+        cells.of_point.clear();
+        cells.find_runs();
+        assert_eq!(cells.runs(), []);
     }
 
     #[test]

@@ -6,7 +6,7 @@
 //!
 //! with the law's uniaxial stress ratio `s` (docs/theory.md, Eqs 6 and 7) and the lengths `l` of the domains. Where the
 //! cells remember, the volume ratios of the points are spread anew at every step, and these follow from them, the
-//! pressure with the stress that it is in balance with (docs/theory.md, Eq. 30): what a first front that no cell
+//! pressure with the stress that it is in balance with (docs/theory.md, Eq. 31): what a first front that no cell
 //! resolves left in the stresses and places of the points would stay for ever otherwise, and no balance sees it.
 
 use crate::mpm::state::grid::Grid;

@@ -133,11 +133,7 @@ impl<const D: usize> Grid<D> {
     /// next check, and until then no index may leave the arrays.
     #[inline]
     pub fn held_in_cells(&self, position: &Vector<D>) -> Vector<D> {
-        std::array::from_fn(|direction| {
-            let lowest = GHOST_LAYERS as f64;
-            // `max` and `min`, not `clamp`: they turn a NaN into a place.
-            self.in_cells(position[direction]).max(lowest).min(lowest + self.cells[direction] as f64)
-        })
+        std::array::from_fn(|direction| self.line(direction).held_in_cells(position[direction]))
     }
 
     /// Index, a direction, of the cell that holds a place in cells inside the grid; the upper rim
@@ -229,6 +225,15 @@ pub(crate) struct Line {
 }
 
 impl Line {
+    /// Coordinate in cells, held inside the grid: what [`held_in_cells`](Grid::held_in_cells) gives.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub(crate) fn held_in_cells(&self, coordinate: f64) -> f64 {
+        let lowest = GHOST_LAYERS as f64;
+        // `max` and `min`, not `clamp`: they turn a NaN into a place.
+        (coordinate * self.per_cell + lowest).max(lowest).min(lowest + self.cells)
+    }
+
     /// Index, as a whole number, of the cell that holds a place in cells inside the grid: that of
     /// [`cell_at`](Grid::cell_at).
     #[inline(always)]

@@ -3,8 +3,10 @@
 pub mod cell_memory;
 pub mod cells;
 pub mod confined_points;
+pub mod domains;
 pub mod grid;
 pub mod lanes;
 pub mod nodes;
 pub mod points;
+pub mod velocity_slopes;
 pub mod water_points;

@@ -3,6 +3,7 @@
 use crate::mpm::state::grid::Grid;
 use crate::soil::material::Material;
 use crate::soil::tensor::Vector;
+use std::ops::Range;
 
 /// Nodes with less than this share of a full cell's mass carry nothing: a point on a cell face
 /// leaves ghosts of 1e-30 behind.
@@ -41,6 +42,8 @@ pub struct Nodes<const D: usize> {
     pub solid_acceleration: Vec<Vector<D>>,
     /// Acceleration of the water, m/s².
     pub water_acceleration: Vec<Vector<D>>,
+    /// Velocities of skeleton and water and their accelerations, side by side for the points that take all of them.
+    pub motion: Vec<[Vector<D>; 4]>,
     /// `v_s + n (v_w − v_s)` with the nodal porosity, m/s: its divergence drives the pressure.
     pub flux: Vec<Vector<D>>,
     /// Displacement of the skeleton where the grid is frozen, m.
@@ -54,8 +57,9 @@ pub struct Nodes<const D: usize> {
     supports: Vec<Vector<D>>,
     /// The water's supports alone.
     water_supports: Vec<Vector<D>>,
-    /// Nodes that carry mass, in index order: of a narrow column's many are ghosts.
-    active: Vec<usize>,
+    /// Runs of neighbouring nodes that carry mass, in index order; of a narrow column's nodes many are ghosts. A
+    /// loop over the nodes of a run takes its slices of the fields, whose bounds are checked once.
+    pub runs: Vec<Range<usize>>,
     mass_cut_off: f64,
 }
 
@@ -180,13 +184,14 @@ impl<const D: usize> Nodes<D> {
             water_velocity: vectors.clone(),
             solid_acceleration: vectors.clone(),
             water_acceleration: vectors.clone(),
+            motion: vec![[[0.0; D]; 4]; count],
             flux: vectors.clone(),
             displacement: vectors,
             free: supports.clone(),
             water_free: water_supports.clone(),
             supports,
             water_supports,
-            active: Vec::with_capacity(count),
+            runs: Vec::with_capacity(count.div_ceil(2)),
             mass_cut_off: MASS_CUT_OFF * cell_mass,
         }
     }
@@ -201,59 +206,140 @@ impl<const D: usize> Nodes<D> {
         self.solid_mass.is_empty()
     }
 
+    /// Begins new [`sums`](Self::sums) of masses, of momenta and of forces; those of the forces begin with what acts
+    /// from outside.
+    pub fn clear_sums(&mut self, masses: bool, momenta: bool, forces: bool) {
+        if masses {
+            self.sums.masses.fill([0.0; 4]);
+        }
+        if momenta {
+            self.sums.momenta.fill([[0.0; D]; 2]);
+        }
+        if forces {
+            for (forces, external) in self.sums.forces.iter_mut().zip(&self.external_force) {
+                *forces = [*external, [0.0; D]];
+            }
+        }
+    }
+
     /// Turns the points' [`sums`](Self::sums) into masses, volumes and drag of the soil.
     pub fn take_masses(&mut self, soil: &Material) {
-        for (node, [grain_volume, pore_volume, drag, _]) in self.sums.masses.iter().enumerate() {
-            if *grain_volume == 0.0 && self.solid_mass[node] == 0.0 {
-                continue;
-            }
-            self.solid_mass[node] = soil.grain_density * grain_volume;
-            self.water_mass[node] = soil.water_density * pore_volume;
-            self.volume[node] = grain_volume + pore_volume;
-            self.porosity[node] = *pore_volume;
-            self.drag[node] = *drag;
+        for (solid_mass, [grain_volume, ..]) in self.solid_mass.iter_mut().zip(&self.sums.masses) {
+            *solid_mass = soil.grain_density * grain_volume;
         }
-        self.finish_masses();
+        self.find_runs();
+        let mut end = 0;
+        let runs = self.runs.iter().cloned();
+        for run in runs.chain(std::iter::once(self.solid_mass.len()..0)) {
+            for field in [&mut self.water_mass, &mut self.volume, &mut self.drag] {
+                field[end..run.start].fill(0.0);
+            }
+            end = run.end;
+        }
+        for run in &self.runs {
+            let masses = &self.sums.masses[run.clone()];
+            let (water_mass, volume) = (&mut self.water_mass[run.clone()], &mut self.volume[run.clone()]);
+            let (porosity, drags) = (&mut self.porosity[run.clone()], &mut self.drag[run.clone()]);
+            for node in 0..run.len() {
+                let [grain_volume, pore_volume, drag, _] = masses[node];
+                water_mass[node] = soil.water_density * pore_volume;
+                volume[node] = grain_volume + pore_volume;
+                porosity[node] = pore_volume;
+                drags[node] = drag;
+            }
+        }
+        self.take_reciprocals();
     }
 
     /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held or empty.
     pub fn take_velocities(&mut self, soil: &Material) {
-        for &node in &self.active {
-            let [solid, water] = self.sums.momenta[node];
-            let per_grain_volume = soil.grain_density * self.per_solid_mass[node];
-            let per_pore_volume = soil.water_density * self.per_water_mass[node];
-            for d in 0..D {
-                self.solid_velocity[node][d] = solid[d] * (self.free[node][d] * per_grain_volume);
-                self.water_velocity[node][d] = water[d] * (self.water_free[node][d] * per_pore_volume);
+        for run in &self.runs {
+            let momenta = &self.sums.momenta[run.clone()];
+            let (per_solid_mass, free) = (&self.per_solid_mass[run.clone()], &self.free[run.clone()]);
+            let (per_water_mass, water_free) =
+                (&self.per_water_mass[run.clone()], &self.water_free[run.clone()]);
+            let solid_velocity = &mut self.solid_velocity[run.clone()];
+            let water_velocity = &mut self.water_velocity[run.clone()];
+            for node in 0..run.len() {
+                let [solid, water] = momenta[node];
+                let per_grain_volume = soil.grain_density * per_solid_mass[node];
+                let per_pore_volume = soil.water_density * per_water_mass[node];
+                for d in 0..D {
+                    solid_velocity[node][d] = solid[d] * (free[node][d] * per_grain_volume);
+                    water_velocity[node][d] = water[d] * (water_free[node][d] * per_pore_volume);
+                }
             }
         }
     }
 
     /// Forces from the points' [`sums`](Self::sums).
     pub fn take_forces(&mut self) {
-        let forces = self.mixture_force.iter_mut().zip(&mut self.water_force);
-        for ((mixture, water), sums) in forces.zip(&self.sums.forces) {
-            [*mixture, *water] = *sums;
+        for run in &self.runs {
+            let (mixture, water) = (&mut self.mixture_force[run.clone()], &mut self.water_force[run.clone()]);
+            for ((mixture, water), sums) in mixture.iter_mut().zip(water).zip(&self.sums.forces[run.clone()])
+            {
+                [*mixture, *water] = *sums;
+            }
+        }
+    }
+
+    /// Velocities of skeleton and water and their accelerations, `[node]`, side by side for the points that take all of
+    /// them.
+    pub fn gather_motion(&mut self) {
+        for run in &self.runs {
+            let motion = &mut self.motion[run.clone()];
+            let (solid, water) = (&self.solid_velocity[run.clone()], &self.water_velocity[run.clone()]);
+            let (solid_rate, water_rate) =
+                (&self.solid_acceleration[run.clone()], &self.water_acceleration[run.clone()]);
+            for node in 0..run.len() {
+                motion[node] = [solid[node], water[node], solid_rate[node], water_rate[node]];
+            }
         }
     }
 
     /// Finishes what was summed: porosities, reciprocals, and which components are free. Nodes without mass
     /// are silenced: what they had would otherwise reach the points.
     pub fn finish_masses(&mut self) {
-        self.active.clear();
-        for node in 0..self.len() {
-            if self.is_active(node) {
-                self.active.push(node);
-                self.porosity[node] /= self.volume[node];
-                self.per_solid_mass[node] = 1.0 / self.solid_mass[node];
-                self.per_water_mass[node] = 1.0 / self.water_mass[node];
-                self.free[node] = self.supports[node];
-                self.water_free[node] = self.water_supports[node];
-            } else if self.porosity[node] != 0.0
-                || self.free[node] != [0.0; D]
-                || self.water_free[node] != [0.0; D]
-            {
-                self.silence(node);
+        self.find_runs();
+        self.take_reciprocals();
+    }
+
+    fn take_reciprocals(&mut self) {
+        for run in &self.runs {
+            let (volume, porosity) = (&self.volume[run.clone()], &mut self.porosity[run.clone()]);
+            let (solid_mass, per_solid_mass) =
+                (&self.solid_mass[run.clone()], &mut self.per_solid_mass[run.clone()]);
+            let (water_mass, per_water_mass) =
+                (&self.water_mass[run.clone()], &mut self.per_water_mass[run.clone()]);
+            for node in 0..run.len() {
+                porosity[node] /= volume[node];
+                per_solid_mass[node] = 1.0 / solid_mass[node];
+                per_water_mass[node] = 1.0 / water_mass[node];
+            }
+            self.free[run.clone()].copy_from_slice(&self.supports[run.clone()]);
+            self.water_free[run.clone()].copy_from_slice(&self.water_supports[run.clone()]);
+        }
+    }
+
+    /// Finds the runs of nodes that carry mass, and silences the others.
+    fn find_runs(&mut self) {
+        self.runs.clear();
+        let count = self.len();
+        let mut node = 0;
+        while node < count {
+            let start = node;
+            while node < count && self.is_active(node) {
+                node += 1;
+            }
+            if start < node {
+                self.runs.push(start..node);
+            }
+            while node < count && !self.is_active(node) {
+                let is_free = self.free[node] != [0.0; D] || self.water_free[node] != [0.0; D];
+                if is_free || self.porosity[node] != 0.0 {
+                    self.silence(node);
+                }
+                node += 1;
             }
         }
     }
@@ -275,12 +361,7 @@ impl<const D: usize> Nodes<D> {
         ] {
             field[node] = [0.0; D];
         }
-    }
-
-    /// Nodes that carry mass, in index order.
-    #[inline]
-    pub fn active(&self) -> &[usize] {
-        &self.active
+        self.motion[node] = [[0.0; D]; 4];
     }
 
     /// Whether a node carries mass.

@@ -23,6 +23,18 @@ pub(crate) struct Place {
     pub header: Header,
 }
 
+/// The same as it is kept of a million: programs and builds are few.
+#[derive(Clone, Copy, Debug)]
+struct Kept {
+    offset: u64,
+    length: u32,
+    generation: u32,
+    pack: u32,
+    /// Its place among the makers.
+    maker: u32,
+    kind: Kind,
+}
+
 /// Bytes of a pack that are no whole member.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Damage {
@@ -57,8 +69,11 @@ pub(crate) struct Index {
     packs: Vec<PathBuf>,
     /// How far each pack was read.
     ends: Vec<u64>,
-    records: HashMap<u64, Place>,
-    walls: HashMap<u64, Place>,
+    records: HashMap<u64, Kept>,
+    walls: HashMap<u64, Kept>,
+    /// Tags of program and build, each pair once.
+    makers: Vec<(u64, u64)>,
+    numbers: HashMap<(u64, u64), u32>,
     columns: Option<Place>,
     damages: Vec<Damage>,
     newest: u32,
@@ -178,14 +193,15 @@ impl Index {
 
     /// Takes note of a member; the newer of two of a case counts, and of two of one run the last.
     pub fn note(&mut self, place: Place) {
+        let kept = self.kept(&place);
         let of_kind = match place.header.kind {
             Kind::Columns => return self.columns = Some(place),
             Kind::Wall => &mut self.walls,
             _ => &mut self.records,
         };
-        let known = of_kind.entry(place.header.case).or_insert(place);
-        if place.header.generation >= known.header.generation {
-            *known = place;
+        let known = of_kind.entry(place.header.case).or_insert(kept);
+        if kept.generation >= known.generation {
+            *known = kept;
         }
         self.newest = self.newest.max(place.header.generation);
         if let Some(end) = self.ends.get_mut(place.pack as usize) {
@@ -193,20 +209,36 @@ impl Index {
         }
     }
 
+    fn kept(&mut self, place: &Place) -> Kept {
+        let Header { kind, generation, program, build, length, .. } = place.header;
+        let makers = &mut self.makers;
+        let maker = *self.numbers.entry((program, build)).or_insert_with(|| {
+            makers.push((program, build));
+            u32::try_from(makers.len() - 1).unwrap_or(u32::MAX)
+        });
+        Kept { offset: place.offset, length, generation, pack: place.pack, maker, kind }
+    }
+
+    fn place(&self, case: u64, kept: Kept) -> Place {
+        let Kept { offset, length, generation, pack, maker, kind } = kept;
+        let (program, build) = self.makers[maker as usize];
+        Place { pack, offset, header: Header { kind, generation, case, program, build, length } }
+    }
+
     /// The newest record of a case.
     pub fn record(&self, case: u64) -> Option<Place> {
-        self.records.get(&case).copied()
+        self.records.get(&case).map(|kept| self.place(case, *kept))
     }
 
     /// The wall times of a case that were written alone, where they are newer than its record.
     pub fn wall(&self, case: u64) -> Option<Place> {
         let (wall, record) = (self.walls.get(&case)?, self.records.get(&case)?);
-        (wall.header.generation >= record.header.generation).then_some(*wall)
+        (wall.generation >= record.generation).then(|| self.place(case, *wall))
     }
 
     /// Every case with a record.
-    pub fn records(&self) -> impl Iterator<Item = &Place> {
-        self.records.values()
+    pub fn records(&self) -> impl Iterator<Item = Place> {
+        self.records.iter().map(|(case, kept)| self.place(*case, *kept))
     }
 
     /// How far a pack holds whole members.

@@ -1,9 +1,6 @@
 //! One member of a pack: a gzip member (RFC 1952) whose header says what it is.
 
-use flate2::Compression;
-use flate2::read::GzDecoder;
-use flate2::write::DeflateEncoder;
-use std::io::{Read, Write};
+use crate::record::pack::deflate::{deflate, inflate};
 
 /// Constant bytes at the beginning of every member: magic and method of gzip, its flag of an extra field, no date,
 /// no system, then the length of the extra field and the name and length of its one subfield.
@@ -15,10 +12,7 @@ pub(crate) const HEADER: usize = START.len() + FIELD as usize;
 /// What follows the compressed text: its checksum and its length.
 const TRAILER: usize = 8;
 /// Longest text of a member, bytes: more is no record but an attack.
-const MOST_TEXT: u64 = 1 << 30;
-/// Effort of the compression: more of it makes a record a hundredth smaller, most of it a twentieth, and takes longer than a
-/// small case.
-const EFFORT: u32 = 1;
+const MOST_TEXT: u32 = 1 << 30;
 
 /// What a member holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,14 +103,11 @@ impl Header {
 /// # Errors
 /// When the text is longer than a member may be.
 pub(crate) fn packed(mut header: Header, text: &[u8]) -> std::io::Result<Vec<u8>> {
-    let mut checksum = flate2::Crc::new();
-    checksum.update(text);
-    let start = vec![0; HEADER];
-    let mut encoder = DeflateEncoder::new(start, Compression::new(EFFORT));
-    encoder.write_all(text)?;
-    let mut member = encoder.finish()?;
-    member.extend(checksum.sum().to_le_bytes());
-    member.extend(checksum.amount().to_le_bytes());
+    let mut member = vec![0; HEADER];
+    deflate(text, &mut member)?;
+    member.extend(crc32fast::hash(text).to_le_bytes());
+    let length = u32::try_from(text.len()).map_err(|_| std::io::ErrorKind::FileTooLarge)?;
+    member.extend(length.to_le_bytes());
     header.length = u32::try_from(member.len()).map_err(|_| std::io::ErrorKind::FileTooLarge)?;
     header.put_on(&mut member);
     Ok(member)
@@ -124,9 +115,12 @@ pub(crate) fn packed(mut header: Header, text: &[u8]) -> std::io::Result<Vec<u8>
 
 /// The text of a whole member; none where it was damaged.
 pub(crate) fn unpacked(member: &[u8]) -> Option<String> {
-    let mut text = String::new();
-    GzDecoder::new(member).take(MOST_TEXT).read_to_string(&mut text).ok()?;
-    Some(text)
+    let (packed, trailer) =
+        member.strip_prefix(&START)?.get(usize::from(FIELD)..)?.split_last_chunk::<TRAILER>()?;
+    let half = |at: usize| trailer[at..at + 4].try_into().ok().map(u32::from_le_bytes);
+    let (checksum, length) = (half(0)?, half(4).filter(|length| *length <= MOST_TEXT)?);
+    let text = inflate(packed, length as usize)?;
+    if crc32fast::hash(&text) == checksum { String::from_utf8(text).ok() } else { None }
 }
 
 /// The place of the next header in some bytes.
@@ -137,6 +131,7 @@ pub(crate) fn next_start(bytes: &[u8]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Read;
 
     const HEADER_OF_ONE: Header = Header {
         kind: Kind::Record,

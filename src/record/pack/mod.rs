@@ -9,6 +9,7 @@
 //! began it. A member is written in one go behind the last one: a writer that ends at any moment leaves whole members
 //! and at most one cut one at the end, which readers leave out and name.
 
+pub(crate) mod deflate;
 pub(crate) mod index;
 pub(crate) mod member;
 pub(crate) mod writer;

@@ -114,7 +114,7 @@ impl Checker<'_> {
             );
         }
         let still = |one: &Case| one.formulation == Formulation::QuasiStatic;
-        if scene.has_waves() && sweep.cases(base).any(|one| still(&one)) {
+        if scene.needs_inertia() && sweep.cases(base).any(|one| still(&one)) {
             let place = table.typed("formulation").map(Spanned::span);
             self.complain(
                 place.unwrap_or(span.start..span.start + 1),

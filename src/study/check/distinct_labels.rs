@@ -5,6 +5,7 @@ use crate::case::keys::Key;
 use crate::study::check::PlannedCase;
 use crate::study::check::checker::Checker;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 impl Checker<'_> {
     /// Makes every case name the inputs that only tell some of them apart by their hashes. Golden values, tables and
@@ -24,9 +25,9 @@ impl Checker<'_> {
                 .any(|(first, other)| key.get(&planned[*first].case) != key.get(&planned[*other].case))
         };
         let keys = Key::of("sweep").filter(differ).map(|key| key.name);
-        let names: Vec<&'static str> = keys.filter(|name| is_of_the_scene(name, planned)).collect();
+        let names: Arc<[&'static str]> = keys.filter(|name| is_of_the_scene(name, planned)).collect();
         for planned in planned {
-            planned.case.swept.clone_from(&names);
+            planned.case.swept = Arc::clone(&names);
         }
     }
 }

@@ -289,7 +289,7 @@ impl Checker<'_> {
         given.extend(self.inputs("material", &file.material.inputs, &seed));
         self.units_of_thought(&file.material);
         given.extend(self.inputs("integrator", &file.integrator.inputs, &seed));
-        if seed.scene.has_waves() && file.integrator.typed("formulation").is_none() {
+        if seed.scene.needs_inertia() && file.integrator.typed("formulation").is_none() {
             let waves = Value::Word(Formulation::VW.name());
             given.extend(Key::named("formulation", "integrator").map(|key| (key, waves)));
         }

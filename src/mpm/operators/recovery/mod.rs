@@ -19,6 +19,7 @@ use crate::mpm::operators::recovery::patch::PatchRows;
 use crate::mpm::operators::recovery::points_in_cells::PointsInCells;
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::Grid;
+use crate::mpm::wide::wide;
 
 /// `R` of a method, with what it keeps from step to step.
 #[derive(Clone, Debug)]
@@ -69,7 +70,14 @@ impl<const D: usize> RecoveryOperator<D> {
         match self {
             Self::Own => each(out, put, |point| sites[point]),
             Self::Constant => each(out, put, |point| constant::value(at, point, sites)),
-            Self::Patch(rows) => each(out, put, |point| rows.value(at.grid, point, sites)),
+            Self::Patch(rows) => {
+                wide!(each(
+                    out,
+                    put,
+                    #[inline(always)]
+                    |point| rows.value(at.grid, point, sites),
+                ));
+            }
             Self::Nodal(means) => {
                 means.fit(at, sites);
                 each(out, put, |point| means.value(at, point));
@@ -100,7 +108,8 @@ impl<const D: usize> RecoveryOperator<D> {
 }
 
 /// Puts the value of each point into its place.
-#[inline]
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 fn each(out: &mut [f64], put: impl Fn(&mut f64, f64), value: impl Fn(usize) -> f64) {
     for (point, place) in out.iter_mut().enumerate() {
         put(place, value(point));

@@ -8,6 +8,7 @@
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::{GHOST_LAYERS, Grid, SIXTH, index_of, power};
 use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
+use crate::mpm::wide::wide;
 use crate::soil::tensor::{Vector, solve_symmetric};
 
 /// Cells along one direction of a patch.
@@ -32,10 +33,14 @@ enum Neighbours<const D: usize> {
 pub struct PatchRows<const D: usize> {
     /// Flat index of the lowest cell of each point's block.
     first: Vec<usize>,
-    /// `3^D` weights a point.
-    weights: Vec<f64>,
-    /// Neighbours of each occupied cell.
+    /// Rows along each direction, of some neighbouring points side by side.
+    lines: Vec<[LineRows; D]>,
+    /// Whether each point's row is no product of lines, and its weights then.
+    is_fitted: Vec<bool>,
+    fitted: Vec<[f64; MOST_CELLS]>,
+    /// Neighbours of each occupied cell, and which of its [occupations](Cells::occupations) they are of.
     neighbours: Vec<Neighbours<D>>,
+    occupations: Option<u64>,
 }
 
 impl<const D: usize> PatchRows<D> {
@@ -43,13 +48,12 @@ impl<const D: usize> PatchRows<D> {
     pub fn with_points(points: usize, cells: usize) -> Self {
         Self {
             first: vec![0; points],
-            weights: vec![0.0; points * Self::width()],
+            lines: vec![[LineRows::default(); D]; points.div_ceil(LANES)],
+            is_fitted: vec![false; points],
+            fitted: vec![[0.0; MOST_CELLS]; points],
             neighbours: vec![Neighbours::All; cells],
+            occupations: None,
         }
-    }
-
-    const fn width() -> usize {
-        power(BLOCK, D)
     }
 
     /// Fits the rows to the points' places and to the occupied cells.
@@ -60,70 +64,112 @@ impl<const D: usize> PatchRows<D> {
     /// direction are worked out for some points side by side as if all cells were there, and then those that are
     /// not.
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
-        for cell in cells.occupied() {
-            self.neighbours[cell] = Neighbours::of(grid, cells, cell);
+        wide!(self.build_lines(grid, cells));
+        if self.occupations.replace(cells.occupations()) != Some(cells.occupations()) {
+            for cell in cells.occupied() {
+                self.neighbours[cell] = Neighbours::of(grid, cells, cell);
+            }
         }
         let lowest: usize = grid.cell_stride().iter().sum();
-        let points = cells.of_point.chunks(LANES).zip(cells.place.chunks(LANES));
-        let out = self.first.chunks_mut(LANES).zip(self.weights.chunks_mut(LANES * Self::width()));
-        let mut lines = [LineRows::default(); D];
-        for ((homes, places), (firsts, weights)) in points.zip(out) {
-            for d in 0..D {
-                let place = lanes_of(places, d, GHOST_LAYERS as f64);
-                if D == 1 {
-                    for (cell, home) in lines[d].cells.iter_mut().zip(homes) {
-                        *cell = *home as f64;
-                    }
-                } else {
-                    for lane in 0..LANES {
-                        lines[d].cells[lane] = grid.line(d).cell_at(place[lane]);
-                    }
-                }
-                fill::<D>(&mut lines[d], &place);
-            }
-            let rows = weights.chunks_exact_mut(Self::width());
-            for (lane, (first, row)) in firsts.iter_mut().zip(rows).take(homes.len()).enumerate() {
-                let mut home = 0;
-                for d in 0..D {
-                    home += grid.cell_stride()[d] * index_of(lines[d].cells[lane]);
-                }
-                *first = home - lowest;
-                let neighbours =
-                    if cells.is_occupied(home) { self.neighbours[home] } else { Neighbours::Some };
-                match neighbours {
-                    Neighbours::Some => fit(grid, cells, home, &places[lane], row),
-                    Neighbours::All => combine(&lines, lane, row),
-                    Neighbours::Rectangle(sides) => {
-                        for d in 0..D {
-                            lines[d].cut(lane, sides[d]);
-                        }
-                        combine(&lines, lane, row);
-                    }
+        self.is_fitted.fill(false);
+        for (cell, points) in cells.runs() {
+            if self.neighbours[*cell] != Neighbours::All || cells.has_strays() {
+                for point in points.clone() {
+                    self.cut(grid, cells, point, self.first[point] + lowest);
                 }
             }
         }
     }
 
-    /// Value at a point of a field given at the cells.
-    #[inline]
-    pub fn value(&self, grid: &Grid<D>, point: usize, field: &[f64]) -> f64 {
-        let rows = self.weights[point * Self::width()..].chunks_exact(BLOCK);
-        let mut value = 0.0;
-        for (run, row) in rows.take(Self::width() / BLOCK).enumerate() {
-            let first = self.first[point] + if D > 1 { run * grid.cell_stride()[D - 1] } else { 0 };
-            for (weight, cell) in row.iter().zip(&field[first..first + BLOCK]) {
-                value += weight * cell;
+    /// The rows along each direction.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn build_lines(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
+        let lowest: usize = grid.cell_stride().iter().sum();
+        let points = cells.of_point.chunks(LANES).zip(cells.place.chunks(LANES));
+        let out = self.lines.iter_mut().zip(self.first.chunks_mut(LANES));
+        for ((homes, places), (lines, firsts)) in points.zip(out) {
+            let mut at = [0.0; LANES];
+            for d in 0..D {
+                let (line, stride) = (grid.line(d), grid.cell_stride()[d] as f64);
+                let place = lanes_of(places, d, GHOST_LAYERS as f64);
+                let mut along = place;
+                for along in &mut along {
+                    *along = line.cell_at(*along);
+                }
+                if D == 1 && cells.has_strays() {
+                    for (cell, home) in along.iter_mut().zip(homes) {
+                        *cell = *home as f64;
+                    }
+                }
+                for (at, along) in at.iter_mut().zip(&along) {
+                    *at += stride * along;
+                }
+                fill::<D>(&mut lines[d], &along, &place);
             }
+            for (first, at) in firsts.iter_mut().zip(&at) {
+                *first = index_of(*at) - lowest;
+            }
+        }
+    }
+
+    /// The row of a point of a cell that may have empty neighbours.
+    fn cut(&mut self, grid: &Grid<D>, cells: &Cells<D>, point: usize, home: usize) {
+        let neighbours = if cells.is_occupied(home) { self.neighbours[home] } else { Neighbours::Some };
+        match neighbours {
+            Neighbours::All => {}
+            Neighbours::Rectangle(sides) => {
+                for d in 0..D {
+                    self.lines[point / LANES][d].cut(point % LANES, sides[d]);
+                }
+            }
+            Neighbours::Some => {
+                self.is_fitted[point] = true;
+                fit(grid, cells, home, &cells.place[point], &mut self.fitted[point]);
+            }
+        }
+    }
+
+    /// Value at a point of a field given at the cells.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn value(&self, grid: &Grid<D>, point: usize, field: &[f64]) -> f64 {
+        let (lines, lane) = (&self.lines[point / LANES], point % LANES);
+        let first = self.first[point];
+        if self.is_fitted[point] {
+            let weights = self.fitted[point][..power(BLOCK, D)].iter().enumerate();
+            return weights.map(|(block, weight)| weight * field[block_cell(grid, first, block).0]).sum();
+        }
+        let line: [f64; BLOCK] = std::array::from_fn(|k| lines[0].line[k][lane]);
+        if D == 1 {
+            return product(&line, &field[first..first + BLOCK]);
+        }
+        let shares: [f64; BLOCK] = std::array::from_fn(|k| lines[0].shares[k][lane]);
+        let (up, stride) = (&lines[D - 1], grid.cell_stride()[D - 1]);
+        let mut value = 0.0;
+        for k in 0..BLOCK {
+            let (share, run) = (up.shares[k][lane], &field[first + k * stride..first + k * stride + BLOCK]);
+            value += share * product(&line, run) + (up.line[k][lane] - share) * product(&shares, run);
         }
         value
     }
 
     /// The cells of a point's patch with their weights.
     pub fn row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, f64)> {
-        let weights = self.weights[point * Self::width()..].iter();
-        let cells = (0..Self::width()).map(|block| block_cell(grid, self.first[point], block).0);
-        cells.zip(weights.copied()).collect()
+        let mut weights = self.fitted[point];
+        if !self.is_fitted[point] {
+            combine(&self.lines[point / LANES], point % LANES, &mut weights);
+        }
+        let cells = (0..power(BLOCK, D)).map(|block| block_cell(grid, self.first[point], block).0);
+        cells.zip(weights).collect()
     }
+}
+
+/// Sum of three cells' values with their weights.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn product(weights: &[f64; BLOCK], values: &[f64]) -> f64 {
+    weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
 }
 
 /// Flat cell of a place in a block, and its steps from the block's lowest cell.
@@ -180,10 +226,8 @@ impl<const D: usize> Neighbours<D> {
 }
 
 /// Lines fitted along one direction through the cells around some points, side by side, `[cell][point]`.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct LineRows {
-    /// Cell of each point, as a whole number.
-    cells: Lanes,
     /// How far above each point the centre of its cell lies, in cells.
     offsets: Lanes,
     /// Weights of the cells in the line's value at the point.
@@ -195,7 +239,7 @@ struct LineRows {
 impl Default for LineRows {
     fn default() -> Self {
         let zero = [0.0; LANES];
-        Self { cells: zero, offsets: zero, line: [[0.0; LANES]; BLOCK], shares: [[0.0; LANES]; BLOCK] }
+        Self { offsets: zero, line: [[0.0; LANES]; BLOCK], shares: [[0.0; LANES]; BLOCK] }
     }
 }
 
@@ -224,16 +268,22 @@ impl LineRows {
     }
 }
 
-/// The rows of points at places (in cells) where all cells are occupied, and in a plane the shares: the same fit as
-/// [`Patch`] in closed form. Moving points pay for it at every step.
+/// The rows of points in cells, whole numbers, at places (in cells) where all cells are occupied, and in a plane the
+/// shares: the same fit as [`Patch`] in closed form. Moving points pay for it at every step.
 ///
 /// The spline is the cubic B-spline, whose four values around a point have the moments 1, 0 and 1/3.
 /// The patch lacks the outermost, `u³/6` at the distance `2 − u` on the near side, `u = |offset|`,
 /// which gives its own moments, and the fit's weights from them.
 #[inline(never)]
-fn fill<const D: usize>(rows: &mut LineRows, place: &Lanes) {
+fn fill<const D: usize>(rows: &mut LineRows, cells: &Lanes, place: &Lanes) {
+    wide!(fill_lanes::<D>(rows, cells, place));
+}
+
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn fill_lanes<const D: usize>(rows: &mut LineRows, cells: &Lanes, place: &Lanes) {
     for lane in 0..LANES {
-        let offset = rows.cells[lane] + 0.5 - place[lane];
+        let offset = cells[lane] + 0.5 - place[lane];
         let u = offset.abs();
         let rest = 1.0 - u;
         let square = u * u;
@@ -270,8 +320,7 @@ fn fill<const D: usize>(rows: &mut LineRows, place: &Lanes) {
 }
 
 /// The row of a point from those of its directions.
-#[inline]
-fn combine<const D: usize>(lines: &[LineRows; D], lane: usize, row: &mut [f64]) {
+fn combine<const D: usize>(lines: &[LineRows; D], lane: usize, row: &mut [f64; MOST_CELLS]) {
     if D == 1 {
         for k in 0..BLOCK {
             row[k] = lines[0].line[k][lane];
@@ -440,10 +489,9 @@ mod tests {
         cells.locate(&grid, &points, 0.3);
         let mut rows = PatchRows::with_points(points.len(), grid.cell_count());
         rows.build(&grid, &cells);
-        let width = power(BLOCK, D);
-        let mut fitted = vec![0.0; width];
+        let mut fitted = vec![0.0; power(BLOCK, D)];
         fit(&grid, &cells, cells.of_point[point], &cells.place[point], &mut fitted);
-        [rows.weights[point * width..][..width].to_vec(), fitted]
+        [rows.row(&grid, point).into_iter().map(|entry| entry.1).collect(), fitted]
     }
 
     #[test]
