@@ -224,6 +224,8 @@ keys! {
         "Share of FLIP in the velocities of the points, 0 to 1"
     mapping_back in &["sweep", "integrator"], Kind::Flag, "", settings.mapping_back;
         "Whether stresses see velocities mapped back from the points"
+    affine in &["sweep", "integrator"], Kind::Flag, "", settings.affine;
+        "Whether moving points bring the slopes of their velocities to the nodes"
     formulation in &["sweep", "integrator"], word::<Formulation>(), "", formulation;
         "Accelerations that the balances keep"
     scheme in &["sweep", "integrator"], word::<Scheme>(), "", settings.scheme;
@@ -295,8 +297,8 @@ impl Key {
     /// Whether it says something of a case: what only this program's integrators take says nothing to an attached
     /// solver.
     pub fn counts_for(&self, case: &Case) -> bool {
-        const OF_INTEGRATORS: [&str; 6] =
-            ["integrator", "drag", "flip", "mapping_back", "formulation", "scheme"];
+        const OF_INTEGRATORS: [&str; 7] =
+            ["integrator", "drag", "flip", "mapping_back", "affine", "formulation", "scheme"];
         let is_rule = self.name == "time_step" && !matches!(case.time_step, TimeStepRule::Seconds(_));
         !case.is_attached() || !(is_rule || OF_INTEGRATORS.contains(&self.name))
     }

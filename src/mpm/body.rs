@@ -167,7 +167,8 @@ impl<const D: usize> Body<D> {
         let domains = Domains::of(method, configuration, &points);
         let strains_vertically =
             load_shape == LoadShape::Uniform && plate_load.is_none() && forcing.is_none();
-        let confined = strains_vertically
+        // Domains that turn have lengths of their own.
+        let confined = (strains_vertically && domains.is_none())
             .then(|| ConfinedPoints::of(&points, &material, method.domains_follow()))
             .flatten();
         let mut body = Self {

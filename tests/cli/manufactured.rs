@@ -59,6 +59,10 @@ fn what_a_motion_cannot_have_is_refused_in_sentences() {
         (&["manufactured-shear", "--set", "material.law=log-linear"], "not known in closed form"),
         (&["xie-leo", "--set", "material.law=neo-hookean"], "it belongs to the manufactured scenes"),
         (&["xie-leo", "--set", "manufactured.pressure=1.0"], "the scene has no [manufactured]"),
+        (
+            &["manufactured-box", "--method", "TL-GIMP-SRI-patch", "--set", "integrator.affine=true"],
+            "slopes of velocities go from points to nodes where points move",
+        ),
         (&["manufactured-box", "--integrator", "semi-implicit"], "at times of their own"),
         (&["manufactured-box", "--method", "GIMP-Bbar-patch"], "B-bar changes the strain of a point"),
         (&["manufactured-box", "--set", "material.conductivity_mean=chord"], "the chord mean is of a flux"),

@@ -165,3 +165,42 @@ fn domains_turn_with_a_step_and_carry_their_corners_along() {
     let got = body.basis.value(body.grid.node_stride(), 9, &kink)[0];
     assert!((got - mean).abs() < 1e-14, "{got} for {mean}");
 }
+
+#[test]
+fn points_that_bring_slopes_give_the_nodes_a_linear_field_wherever_they_are() {
+    let linear = |[x, y]: Vector<2>| [0.3 + 2.0 * x - y, 0.1 - x + 0.5 * y];
+    for method in ["GIMP-SRI-patch", "CPDI-SRI-patch", "uGIMP"] {
+        let mut body = body(method);
+        for point in 0..body.points.len() {
+            // Points that have moved, each to somewhere else in its cell.
+            let [x, y] = body.points.position[point];
+            body.points.position[point] = [x + 0.03 * (9.0 * x + y).sin(), y + 0.02 * (7.0 * y - x).cos()];
+        }
+        body.build_operators();
+        body.map_masses();
+        for node in 0..body.nodes.len() {
+            let velocity = linear(body.grid.node_position(node));
+            (body.nodes.solid_velocity[node], body.nodes.water_velocity[node]) = (velocity, velocity);
+        }
+        body.bring_slopes();
+        for point in 0..body.points.len() {
+            let velocity = linear(body.points.position[point]);
+            (body.points.solid_velocity[point], body.points.water_velocity[point]) = (velocity, velocity);
+        }
+        body.map_velocities();
+        let mut plain = body.clone();
+        plain.slopes = None;
+        plain.map_velocities();
+        let mut least: f64 = 1.0;
+        for &node in body.nodes.active() {
+            let exact = linear(body.grid.node_position(node));
+            for d in (0..2).filter(|d| body.nodes.free[node][*d] > 0.0) {
+                for got in [body.nodes.solid_velocity[node][d], body.nodes.water_velocity[node][d]] {
+                    assert!((got - exact[d]).abs() < 1e-12, "{method}: {got} for {}", exact[d]);
+                }
+                least = least.min((plain.nodes.solid_velocity[node][d] - exact[d]).abs());
+            }
+        }
+        assert!(least > 1e-9, "{method}: without slopes a node has it too");
+    }
+}

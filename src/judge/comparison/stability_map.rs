@@ -128,5 +128,6 @@ fn settings_of(case: &Case) -> String {
     let mapping = if settings.mapping_back { "" } else { ", no mapping back" };
     let scheme =
         if settings.scheme.is_paper() { String::new() } else { format!(", {}", settings.scheme.name()) };
-    format!("{} drag{mapping}{scheme}", settings.drag.name())
+    let slopes = if settings.affine { ", slopes of velocities" } else { "" };
+    format!("{} drag{mapping}{slopes}{scheme}", settings.drag.name())
 }

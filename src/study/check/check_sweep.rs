@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::case::keys::Key;
-use crate::mpm::run::integrator::Formulation;
+use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::study::check::checker::{Checker, Common};
@@ -54,6 +54,7 @@ impl Checker<'_> {
         if self.diagnostics.len() == before && self.can_be_multiplied_out(&span, &sweep) {
             self.rules_fit(table, &sweep, base);
             self.formulations_fit(table, &span, &sweep, base);
+            self.slopes_are_brought(table, &span, &sweep, base);
         }
         (self.diagnostics.len() == before).then_some(sweep)
     }
@@ -120,6 +121,25 @@ impl Checker<'_> {
                 place.unwrap_or(span.start..span.start + 1),
                 format!("the quasi-static formulation leaves out the waves that `{}` is about", scene.name()),
                 "take \"v-w\" or \"u-p\", or the scene \"terzaghi\"",
+            );
+        }
+    }
+
+    /// Complains where slopes of velocities are asked for and nothing brings them.
+    fn slopes_are_brought(&mut self, table: &SweepTable, span: &Range<usize>, sweep: &Sweep, base: &Case) {
+        let brings = |one: &Case| {
+            let configuration = one.method.configuration_or(one.scene.configuration());
+            one.integrator == IntegratorKind::Explicit
+                && configuration.moves_points()
+                && !one.column.points.has_two_layers()
+        };
+        if sweep.cases(base).any(|one| one.settings.affine && !brings(&one)) {
+            let place = table.typed("affine").map(Spanned::span);
+            self.complain(
+                place.unwrap_or(span.start..span.start + 1),
+                "slopes of velocities go from points to nodes where points move by explicit steps, in one layer: a \
+                 case of this sweep has no such points",
+                "leave `affine` out there, or give those methods and integrators a [[sweep]] block of their own",
             );
         }
     }
