@@ -361,6 +361,22 @@ mod tests {
     }
 
     #[test]
+    fn a_weight_adds_its_stress_and_changes_no_pressure() {
+        let light = ColumnParameters { height: 2.0, load: 1.0e4, ..ColumnParameters::default() };
+        let heavy = ColumnParameters { self_weight: true, ..light };
+        for kind in [ReferenceKind::Terzaghi, ReferenceKind::XieLeo] {
+            let [light, heavy] = [&light, &heavy].map(|column| Reference::new(kind, column, &[0.2]).unwrap());
+            for zeta in [0.0, 0.4, 1.0] {
+                let (light, heavy) = (light.fields(0.2, zeta).unwrap(), heavy.fields(0.2, zeta).unwrap());
+                // Under water grains of 2650 and water of 1000 kg/m³ at n = 0.3 weigh (1 − n)(ρ_s − ρ_w) g.
+                let weight = -0.7 * 1650.0 * 9.81 * 2.0 * zeta;
+                assert!((heavy.effective_stress - light.effective_stress - weight).abs() < 1e-9, "{kind}");
+                assert_eq!(heavy.pressure, light.pressure);
+            }
+        }
+    }
+
+    #[test]
     fn every_reference_agrees_with_itself() {
         let column = ColumnParameters { height: 2.0, load: 1.0e5, ..ColumnParameters::default() };
         let times = [0.05, 0.3, 1.0];

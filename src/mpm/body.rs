@@ -11,6 +11,7 @@ use crate::mpm::operators::strain_gradient::StrainOperator;
 use crate::mpm::operators::surface_load::{LoadShape, LoadedSurface};
 use crate::mpm::state::cell_memory::CellMemory;
 use crate::mpm::state::cells::Cells;
+use crate::mpm::state::confined_points::ConfinedPoints;
 use crate::mpm::state::domains::Domains;
 use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::{Nodes, Support};
@@ -164,6 +165,12 @@ impl<const D: usize> Body<D> {
             * material.grain_density;
         let sites = if method.pressure.is_by_cells() { grid.cell_count() } else { count };
         let domains = Domains::of(method, configuration, &points);
+        let strains_vertically =
+            load_shape == LoadShape::Uniform && plate_load.is_none() && forcing.is_none();
+        // Domains that turn have lengths of their own.
+        let confined = (strains_vertically && domains.is_none())
+            .then(|| ConfinedPoints::of(&points, &material, method.domains_follow()))
+            .flatten();
         let mut body = Self {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
             cells: Cells::new(&grid, count),
@@ -179,7 +186,7 @@ impl<const D: usize> Body<D> {
             domains,
             slopes: None,
             strain: StrainOperator::of(method.strain, count),
-            cell_memory: CellMemory::new(&grid),
+            cell_memory: CellMemory::new(&grid, confined),
             support,
             splines_end_at_surface: method.basis.is_spline() && configuration.moves_points(),
             recovery: RecoveryOperator::of(method, &grid, count),

@@ -6,7 +6,7 @@
 //! the step of Zheng et al. (2021); `assembled` is the same step as one banded map where nothing
 //! moves; `layers` puts the water into points of its own; `run` drives any of them from output to
 //! output; `forcing` is what acts on every point from outside, `forced_body` what that does to a body; `implicit` takes steps of any size on the same operators, with the linear systems of
-//! `direct_solver`.
+//! `direct_solver`. Loops over points and dense fronts run in the widest registers that `wide` finds.
 //!
 //! Nothing here knows of studies, references or reports.
 

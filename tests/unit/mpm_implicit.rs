@@ -474,3 +474,19 @@ fn the_semi_implicit_integrator_moves_points_too() {
     assert!(difference(&found.snapshots[0].points.pressure, &fine.points.pressure) < 0.02);
     assert!((found.snapshots[0].settlement / fine.settlement - 1.0).abs() < 0.02);
 }
+
+#[test]
+fn strains_that_round_off_all_but_hides_are_solved_without_smaller_steps() {
+    // Strains of 1e-9: volume ratios near one tell them to seven digits, and the iteration asks for eleven.
+    let soil = Material { law: Law::LogLinear, ..Material::default() };
+    let settlement = |load: f64| {
+        let column = Column { load, ..Column::default() };
+        let method = Method::named("TL-GIMP-SRI-patch").expect("a known method");
+        let problem = column_problem(SceneKind::XieLeo, &column, &soil, method, 8, 2).expect("a column");
+        let outcome = implicit(problem, 0.05, &[0.1]);
+        assert_eq!(outcome.counters.rejected_steps, 0, "under {load} Pa");
+        outcome.snapshots[0].settlement / load
+    };
+    let (tiny, small) = (settlement(1e-3), settlement(1.0));
+    assert!((tiny / small - 1.0).abs() < 1e-5, "{tiny} {small}");
+}

@@ -85,3 +85,18 @@ fn what_is_told_is_the_excess_and_a_settled_surface_lies_under_free_water() {
         }
     }
 }
+
+#[test]
+fn a_point_that_has_sunk_lies_under_more_water() {
+    for configuration in [Configuration::Updated, Configuration::Total] {
+        let column = Column { self_weight: true, ..Column::default() };
+        let soil = Material { law: Law::LogLinear, ..Material::default() };
+        let method = Method { configuration: Some(configuration), ..Method::named("GIMP").expect("known") };
+        let problem = column_problem::<1>(SceneKind::XieLeo, &column, &soil, method, 4, 2).expect("a column");
+        let mut body = Body::new(problem);
+        let before = body.hydrostatic_pressure(5);
+        body.points.position[5][0] -= 0.1;
+        body.points.displacement[5][0] -= 0.1;
+        assert!((body.hydrostatic_pressure(5) - before - 981.0).abs() < 1e-9, "{configuration:?}");
+    }
+}

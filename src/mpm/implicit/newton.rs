@@ -23,6 +23,8 @@ const MOST_HALVINGS: u32 = 10;
 const TOLERANCE: f64 = 1e-11;
 /// Ratio of an iteration's correction to the last one's beyond which the tangent is made anew.
 const SLOW: f64 = 0.1;
+/// The same beyond which a correction of the size of round-off no longer shrinks.
+const STALLED: f64 = 0.5;
 
 /// What a stage lasts for and where it ends, in steps, and the share of its increment in the start of the next
 /// one, or in the step.
@@ -44,6 +46,9 @@ pub struct NewtonStepper<const D: usize> {
     contraction: f64,
     /// Error that a stage may leave in the scaled unknowns.
     tolerance: f64,
+    /// Correction of the scaled unknowns that round-off makes: strains are differences of numbers near one, and a
+    /// displacement sums them up over as many cells.
+    round_off: f64,
     error_scales: ErrorScales,
     stages: &'static [Stage],
     start: StageStart<D>,
@@ -72,6 +77,7 @@ impl<const D: usize> NewtonStepper<D> {
         let pattern = Pattern::of(&trial.body, &trial.unknowns);
         let tangent = pattern.zeros();
         let scales = trial.unknowns.scales;
+        let cells = trial.body.grid.cells.iter().fold(0.0, |most: f64, count| most.max(*count as f64));
         let zero = vec![0.0; trial.unknowns.count];
         Self {
             lu: BorderedLu::of_shape(&tangent),
@@ -80,6 +86,7 @@ impl<const D: usize> NewtonStepper<D> {
             factored: None,
             contraction: SLOW,
             tolerance: TOLERANCE * plan.pressure_scale / scales.pressure,
+            round_off: f64::EPSILON * cells * cells,
             error_scales: ErrorScales::of(&scales, plan),
             stages,
             start: StageStart::default(),
@@ -217,6 +224,11 @@ impl<const D: usize> NewtonStepper<D> {
                 self.contraction = (size / last).max(1e-3);
             }
             if size * self.contraction <= self.tolerance * (1.0 - self.contraction) {
+                return Ok(());
+            }
+            if size <= self.round_off && size >= STALLED * last {
+                // What round-off leaves, neither a new tangent nor smaller steps take away.
+                self.contraction = SLOW;
                 return Ok(());
             }
             renew = self.contraction > SLOW;

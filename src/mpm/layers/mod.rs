@@ -6,6 +6,7 @@
 //!
 //! - `water_domains`: porosity, volume and domain of a water point, cut at the soil's surface,
 //! - `water_to_nodes`: mass, drag, momentum and pressure of the water on their way to the nodes,
+//! - `cell_forces`: the pressure's forces where a cell knows one rate of it,
 //! - `sliver_nodes`: nodes that the surface has all but left,
 //! - `water_pressure`: the continuity at the water points,
 //! - `samples`: what a snapshot tells of them,
@@ -13,6 +14,7 @@
 //!
 //! Momentum, kicks and the skeleton's strain are those of one layer, from where one layer takes them.
 
+pub mod cell_forces;
 pub mod samples;
 pub mod sliver_nodes;
 pub mod two_layer_stepper;

@@ -9,11 +9,14 @@ pub struct WaterSums<const D: usize> {
     pub masses: Vec<[f64; 4]>,
     /// Momentum, kg m/s.
     pub momenta: Vec<Vector<D>>,
+    /// What the water points give to each cell: volume times pressure, and volume, of its points and of the domains that
+    /// reach into it; m^D Pa and m^D.
+    pub cells: Vec<[f64; 4]>,
 }
 
 impl<const D: usize> WaterSums<D> {
-    /// Room for so many nodes.
-    pub fn with_nodes(count: usize) -> Self {
-        Self { masses: vec![[0.0; 4]; count], momenta: vec![[0.0; D]; count] }
+    /// Room for so many nodes and cells.
+    pub fn with_nodes(count: usize, cells: usize) -> Self {
+        Self { masses: vec![[0.0; 4]; count], momenta: vec![[0.0; D]; count], cells: vec![[0.0; 4]; cells] }
     }
 }

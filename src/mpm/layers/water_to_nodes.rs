@@ -64,6 +64,11 @@ impl<const D: usize> TwoLayers<D> {
     /// Adds the force of the water's pressure to those of the skeleton's stress: to the mixture and to the water.
     pub fn map_forces(&mut self) {
         self.body.map_forces();
+        if self.presses_by_cells {
+            self.map_cell_forces();
+            self.slivers.merge_forces(&mut self.body.nodes);
+            return;
+        }
         let stride = *self.body.grid.node_stride();
         let (water, nodes) = (&self.water, &mut self.body.nodes);
         let (mixture_force, water_force) = (&mut nodes.mixture_force, &mut nodes.water_force);

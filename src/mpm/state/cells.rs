@@ -319,6 +319,15 @@ impl<const D: usize> Cells<D> {
         divergence * share_of_corner(grid)
     }
 
+    /// Visits the nodes of a cell with the gradients of their linear shape functions at its centre, 1/m.
+    #[inline]
+    pub fn visit_centre(&self, grid: &Grid<D>, cell: usize, mut visitor: impl FnMut(usize, Vector<D>)) {
+        let share = share_of_corner(grid);
+        for (corner, node) in grid.corners(self.divergence_node[cell]).enumerate() {
+            visitor(node, std::array::from_fn(|d| side(corner, d) * share));
+        }
+    }
+
     /// Gradient of a nodal field at the centre of a cell, by the linear shape functions, `[component][direction]`,
     /// 1/m of the field.
     #[inline]

@@ -2,6 +2,7 @@
 
 pub mod cell_memory;
 pub mod cells;
+pub mod confined_points;
 pub mod domains;
 pub mod grid;
 pub mod lanes;
