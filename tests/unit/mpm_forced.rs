@@ -192,7 +192,7 @@ fn points_that_bring_slopes_give_the_nodes_a_linear_field_wherever_they_are() {
         plain.slopes = None;
         plain.map_velocities();
         let mut least: f64 = 1.0;
-        for &node in body.nodes.active() {
+        for node in body.nodes.runs.iter().cloned().flatten() {
             let exact = linear(body.grid.node_position(node));
             for d in (0..2).filter(|d| body.nodes.free[node][*d] > 0.0) {
                 for got in [body.nodes.solid_velocity[node][d], body.nodes.water_velocity[node][d]] {
