@@ -4,7 +4,7 @@
 use crate::exact::parameters::Base;
 use crate::mpm::body::Problem;
 use crate::mpm::explicit::{Drag, ExplicitSettings};
-use crate::mpm::method::{Basis, Method};
+use crate::mpm::method::{Basis, Memory, Method};
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::mpm::run::outcome::{Outcome, RunStatus};
 use crate::mpm::run::snapshot::Snapshot;
@@ -101,7 +101,9 @@ fn the_paper_s_grid_is_its_column_at_small_strain_whatever_the_method() {
 fn the_paper_s_grid_is_its_column_at_200_kpa_whatever_the_method() {
     for method in methods() {
         let (column, plane) = both(SceneKind::XieLeo, method, 2e5, 0.03, Drag::Implicit);
-        assert_same(&format!("xie-leo {method}"), &column, &plane, 1e-9);
+        // Domains that turn keep lengths of their own: what a column shares out (docs/theory.md, Eq. 31) they do not.
+        let turns = method.basis == Basis::Cpdi && method.memory == Memory::Cells;
+        assert_same(&format!("xie-leo {method}"), &column, &plane, if turns { 1e-3 } else { 1e-9 });
     }
 }
 
