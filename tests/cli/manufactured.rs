@@ -63,6 +63,10 @@ fn what_a_motion_cannot_have_is_refused_in_sentences() {
             &["manufactured-box", "--method", "TL-GIMP-SRI-patch", "--set", "integrator.affine=true"],
             "slopes of velocities go from points to nodes where points move",
         ),
+        (
+            &["xie-leo", "--integrator", "explicit", "--set", "integrator.affine=true"],
+            "the critical step with slopes of velocities is not predicted",
+        ),
         (&["manufactured-box", "--integrator", "semi-implicit"], "at times of their own"),
         (&["manufactured-box", "--method", "GIMP-Bbar-patch"], "B-bar changes the strain of a point"),
         (&["manufactured-box", "--set", "material.conductivity_mean=chord"], "the chord mean is of a flux"),

@@ -3,6 +3,7 @@
 use crate::case::Case;
 use crate::case::keys::Key;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::mpm::run::time_step_rule::TimeStepRule;
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::study::check::checker::{Checker, Common};
@@ -140,6 +141,17 @@ impl Checker<'_> {
                 "slopes of velocities go from points to nodes where points move by explicit steps, in one layer: a \
                  case of this sweep has no such points",
                 "leave `affine` out there, or give those methods and integrators a [[sweep]] block of their own",
+            );
+            return;
+        }
+        // Columns ended unstable at 0.8 of the limit that is predicted without slopes.
+        let by_limit = |one: &Case| matches!(one.time_step, TimeStepRule::Stable(_));
+        if sweep.cases(base).any(|one| one.settings.affine && by_limit(&one)) {
+            let place = table.typed("affine").map(Spanned::span);
+            self.complain(
+                place.unwrap_or(span.start..span.start + 1),
+                "the critical step with slopes of velocities is not predicted: no share of it can be taken",
+                "name the step: `time_step = [{ courant = 0.4 }]`, or in seconds",
             );
         }
     }
