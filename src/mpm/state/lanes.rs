@@ -15,6 +15,14 @@ pub type Lanes = [f64; LANES];
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 pub(crate) fn lanes_of<const D: usize>(vectors: &[Vector<D>], component: usize, instead: f64) -> Lanes {
     let mut lanes = [instead; LANES];
+    if D == 1
+        && let Some(whole) = vectors.first_chunk::<LANES>()
+    {
+        for lane in 0..LANES {
+            lanes[lane] = whole[lane][component];
+        }
+        return lanes;
+    }
     for (lane, vector) in lanes.iter_mut().zip(vectors) {
         *lane = vector[component];
     }
@@ -34,9 +42,12 @@ pub(crate) fn blocks_of(points: usize) -> impl Iterator<Item = Range<usize>> {
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 pub(crate) fn block_of<T: Copy>(field: &[T], points: &Range<usize>, instead: T) -> [T; LANES] {
     let field = &field[points.clone()];
-    if let Some(whole) = field.first_chunk() {
-        return *whole;
-    }
+    if let Some(whole) = field.first_chunk() { *whole } else { part_of(field, instead) }
+}
+
+/// The same of fewer points; on its own, so that the copy of the others keeps its known length.
+#[inline(never)]
+fn part_of<T: Copy>(field: &[T], instead: T) -> [T; LANES] {
     let mut block = [instead; LANES];
     block[..field.len()].copy_from_slice(field);
     block
@@ -49,10 +60,14 @@ pub(crate) fn put_block<T: Copy>(field: &mut [T], points: &Range<usize>, block: 
     let field = &mut field[points.clone()];
     if let Some(whole) = field.first_chunk_mut() {
         *whole = *block;
-        return;
+    } else {
+        put_part(field, block);
     }
-    let count = field.len();
-    field.copy_from_slice(&block[..count]);
+}
+
+#[inline(never)]
+fn put_part<T: Copy>(field: &mut [T], block: &[T; LANES]) {
+    field.copy_from_slice(&block[..field.len()]);
 }
 
 #[cfg(test)]

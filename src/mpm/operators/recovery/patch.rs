@@ -100,6 +100,7 @@ impl<const D: usize> PatchRows<D> {
         let points = cells.of_point.chunks(LANES).zip(cells.place.chunks(LANES));
         let out = self.lines.iter_mut().zip(self.first.chunks_mut(LANES));
         for ((homes, places), (lines, firsts)) in points.zip(out) {
+            // The cells that they lie in, which are not always those that they belong to.
             let mut at = [0.0; LANES];
             for d in 0..D {
                 let (line, stride) = (grid.line(d), grid.cell_stride()[d] as f64);
@@ -113,13 +114,20 @@ impl<const D: usize> PatchRows<D> {
                         *cell = *home as f64;
                     }
                 }
-                for (at, along) in at.iter_mut().zip(&along) {
-                    *at += stride * along;
+                if D > 1 && cells.has_strays() {
+                    for (at, along) in at.iter_mut().zip(&along) {
+                        *at += stride * along;
+                    }
                 }
                 fill::<D>(&mut lines[d], &along, &place);
             }
-            for (first, at) in firsts.iter_mut().zip(&at) {
-                *first = index_of(*at) - lowest;
+            for (first, home) in firsts.iter_mut().zip(homes) {
+                *first = home - lowest;
+            }
+            if D > 1 && cells.has_strays() {
+                for (first, at) in firsts.iter_mut().zip(&at) {
+                    *first = index_of(*at) - lowest;
+                }
             }
         }
     }
