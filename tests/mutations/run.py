@@ -251,7 +251,7 @@ class Tests:
     def build(self):
         """Builds what is needed, and gives each target its program."""
         targets = set(self.target.values())
-        command = ["cargo", "test", "--no-run", "--locked", "--message-format", "json", "--target-dir", "target/tests"]
+        command = ["cargo", "test", "--no-run", "--locked", "--message-format", "json-render-diagnostics", "--target-dir", "target/tests"]
         command += ["--lib"] if None in targets else []
         for target in sorted(target for target in targets if target):
             command += ["--test", target]
