@@ -4,7 +4,7 @@
 //! without registers of four, both are the same code and agree by themselves.
 
 use crate::mpm::body::{Body, Problem};
-use crate::mpm::critical_step::predicted::predicted_critical_step;
+use crate::mpm::critical_step::formula;
 use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::method::{Configuration, Method};
 use crate::mpm::wide::in_narrow_registers;
@@ -31,7 +31,7 @@ fn bits_after<const D: usize>(problem: &Problem<D>, dt: f64, steps: usize) -> Ve
     scalars.chain(vectors).chain(stresses).map(|number| number.to_bits()).collect()
 }
 
-/// A column under a load that carries its points across faces within the steps.
+/// A column under a load, whose points move apart and together.
 fn squeezed<const D: usize>(name: &str, points_per_cell: usize, law: Law) -> Problem<D> {
     let method = Method::named(name).expect("a known method");
     let method = Method { configuration: Some(Configuration::Updated), ..method };
@@ -39,7 +39,7 @@ fn squeezed<const D: usize>(name: &str, points_per_cell: usize, law: Law) -> Pro
     let column = Column { load: 8e5, dimensions: D, ..Column::default() };
     let mut problem = column_problem::<D>(SceneKind::XieLeo, &column, &soil, method, 8, points_per_cell)
         .expect("the column");
-    // A lattice that is pushed a little lets rows of points end anywhere in a register.
+    // Each point goes its own way, so that neighbours in a register differ.
     for (point, velocity) in problem.points.solid_velocity.iter_mut().enumerate() {
         velocity[D - 1] -= 10.0 * (0.5 + (point as f64).cos());
     }
@@ -50,8 +50,8 @@ fn assert_same_bits<const D: usize>(names: &[&str], per_cell: &[usize], law: Law
     for name in names {
         for points_per_cell in per_cell {
             let problem = squeezed::<D>(name, *points_per_cell, law);
-            let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
-            let dt = 0.3 * predicted_critical_step(&problem, &settings);
+            let (soil, cell_size) = (&problem.material, problem.grid.cell_size);
+            let dt = 0.5 * formula::combined_limit(soil, cell_size, Drag::Implicit);
             let wide = bits_after(&problem, dt, steps);
             let narrow = in_narrow_registers(|| bits_after(&problem, dt, steps));
             assert!(wide.iter().all(|bits| f64::from_bits(*bits).is_finite()), "{name} {D} runs");
@@ -66,13 +66,13 @@ fn assert_same_bits<const D: usize>(names: &[&str], per_cell: &[usize], law: Law
 fn a_column_steps_to_the_same_bits_in_registers_of_two_and_of_four() {
     let names =
         ["GC-SRI-patch", "GIMP", "CE-SRI-patch-cells", "MPM", "CPDI-SRI-patch", "VP", "GC-Bbar-patch"];
-    assert_same_bits::<1>(&names, &[2, 3, 4], Law::LogLinear, 40);
-    assert_same_bits::<1>(&names[..1], &[1, 4, 5], Law::PorosityDependent, 40);
+    assert_same_bits::<1>(&names, &[3], Law::LogLinear, 20);
+    assert_same_bits::<1>(&names[..1], &[1, 2, 4, 5], Law::PorosityDependent, 20);
 }
 
 #[test]
 fn a_plane_steps_to_the_same_bits_in_registers_of_two_and_of_four() {
     let names = ["GC-SRI-patch", "GIMP", "CE-SRI-patch", "CPDI-SRI-patch"];
-    assert_same_bits::<2>(&names, &[2, 3], Law::LogLinear, 20);
-    assert_same_bits::<2>(&names[..1], &[2], Law::NeoHookean, 20);
+    assert_same_bits::<2>(&names, &[2], Law::LogLinear, 10);
+    assert_same_bits::<2>(&names[..1], &[3], Law::PorosityDependent, 10);
 }

@@ -73,16 +73,18 @@ impl<const D: usize> Body<D> {
             let mut solid = block_of(&points.solid_velocity, &block, [0.0; D]);
             let mut water = block_of(&points.water_velocity, &block, [0.0; D]);
             for lane in 0..LANES {
+                let [_, _, solid_rate, water_rate] = &at_points[lane];
                 for d in 0..D {
-                    solid[lane][d] += kick * at_points[lane][2][d];
-                    water[lane][d] += kick * at_points[lane][3][d];
+                    solid[lane][d] += kick * solid_rate[d];
+                    water[lane][d] += kick * water_rate[d];
                 }
             }
             if flip < 1.0 {
                 for lane in 0..LANES {
+                    let [solid_there, water_there, ..] = &at_points[lane];
                     for d in 0..D {
-                        solid[lane][d] = flip * solid[lane][d] + pic * at_points[lane][0][d];
-                        water[lane][d] = flip * water[lane][d] + pic * at_points[lane][1][d];
+                        solid[lane][d] = flip * solid[lane][d] + pic * solid_there[d];
+                        water[lane][d] = flip * water[lane][d] + pic * water_there[d];
                     }
                 }
             }
@@ -96,16 +98,18 @@ impl<const D: usize> Body<D> {
             }
             let mut displacement = block_of(&points.displacement, &block, [0.0; D]);
             for lane in 0..LANES {
+                let [carrying, ..] = &at_points[lane];
                 for d in 0..D {
-                    displacement[lane][d] += dt * at_points[lane][0][d];
+                    displacement[lane][d] += dt * carrying[d];
                 }
             }
             put_block(&mut points.displacement, &block, &displacement);
             if moving {
                 let mut position = block_of(&points.position, &block, [0.0; D]);
                 for lane in 0..LANES {
+                    let [carrying, ..] = &at_points[lane];
                     for d in 0..D {
-                        position[lane][d] += dt * at_points[lane][0][d];
+                        position[lane][d] += dt * carrying[d];
                     }
                 }
                 put_block(&mut points.position, &block, &position);

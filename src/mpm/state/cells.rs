@@ -470,6 +470,39 @@ mod tests {
     }
 
     #[test]
+    fn cells_found_again_are_those_found_at_first() {
+        let grid = Grid::new(0.5, [4, 6]);
+        let mut points = Points::lattice(0.5, [4, 4], 2);
+        let mut again = Cells::new(&grid, points.len());
+        // Points sink and rise by halves of their domains, row by row; some are left out of the lowest cells' rows.
+        for step in 0..40 {
+            for (point, place) in points.position.iter_mut().enumerate() {
+                let along = 0.9 * (1.0 + (0.3 * f64::from(step) + 0.1 * (point / 8) as f64).sin());
+                place[1] = points.initial_position[point][1] * 0.8 + 0.5 * along;
+                place[0] = points.initial_position[point][0] * (1.0 - 0.004 * f64::from(step));
+                points.volume_ratio[point] = 1.0 - 0.01 * along;
+                points.half_length[point] = [0.125 * (1.0 - 0.004 * f64::from(step)), 0.1];
+            }
+            let mut first = Cells::new(&grid, points.len());
+            for cells in [&mut again, &mut first] {
+                cells.locate(&grid, &points, 0.3);
+                cells.find_reached(&grid, &points);
+            }
+            assert_eq!((&again.of_point, &again.runs), (&first.of_point, &first.runs), "step {step}");
+            assert_eq!((&again.point_count, &again.occupied), (&first.point_count, &first.occupied));
+            assert_eq!((&again.volume, &again.porosity), (&first.volume, &first.porosity), "step {step}");
+            assert_eq!(again.reached, first.reached, "step {step}");
+            for cell in first.occupied() {
+                assert_eq!(again.is_reached_around(cell), first.is_reached_around(cell), "step {step}");
+                let of_cell = (0..points.len()).filter(|point| first.of_point[*point] == cell);
+                let volume: f64 = of_cell.map(|point| points.volume(point)).sum();
+                assert!((again.volume(cell) / volume - 1.0).abs() < 1e-14, "step {step}");
+            }
+        }
+        assert!(again.occupations() > 3 && again.runs().len() > again.occupied().count(), "they crossed");
+    }
+
+    #[test]
     fn cells_know_their_points_and_porosity() {
         let grid = Grid::new(0.5, [4]);
         let mut points = Points::lattice(0.5, [2], 2);

@@ -406,6 +406,34 @@ mod tests {
     }
 
     #[test]
+    fn a_node_that_loses_its_mass_is_silent_and_free_again_with_it() {
+        let grid = Grid::new(0.1, [4]);
+        let (mut nodes, soil) = (Nodes::new(&grid, &Support::oedometer(), 1.0), Material::default());
+        for has_mass in [true, true, false, false, true] {
+            nodes.clear_sums(true, true, false);
+            for node in [3, 4, 6] {
+                let share = if node == 4 && !has_mass { 0.0 } else { 1.0 };
+                nodes.sums.masses[node] = [2.0 * share, share, 5.0 * share, 0.0];
+                nodes.sums.momenta[node] = [[6.0 * share], [4.0 * share]];
+            }
+            nodes.take_masses(&soil);
+            nodes.take_velocities(&soil);
+            assert_eq!(nodes.runs, if has_mass { vec![3..5, 6..7] } else { vec![3..4, 6..7] });
+            let of_node = [nodes.solid_velocity[4][0], nodes.water_velocity[4][0], nodes.porosity[4]];
+            let expected = if has_mass { [3.0, 4.0, 1.0 / 3.0] } else { [0.0; 3] };
+            for (got, expected) in of_node.iter().zip(expected) {
+                assert!((got - expected).abs() < 1e-14, "{got} for {expected}");
+            }
+            let whole = if has_mass { 1.0 } else { 0.0 };
+            assert_eq!((nodes.free[4], nodes.water_free[4]), ([whole], [whole]));
+            assert_eq!(
+                (nodes.volume[4], nodes.drag[4], nodes.water_mass[4] > 0.0),
+                (3.0 * whole, 5.0 * whole, has_mass)
+            );
+        }
+    }
+
+    #[test]
     fn a_node_with_a_ghost_of_mass_is_silent() {
         let grid = Grid::new(0.1, [4]);
         let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
