@@ -62,11 +62,11 @@ impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
         given: impl Fn(usize) -> ([f64; 4], [f64; 2], [f64; 2]),
     ) {
         let rows = &self.rows[0];
-        let (mut window, mut first) = (Window::<W>::default(), self.first[0]);
+        let (mut window, mut first) = (Window::<W>::EMPTY, self.first[0]);
         for (lane, own) in self.first.iter().enumerate().take(count) {
             if *own != first {
                 window.add_to(&mut sums, first);
-                (window, first) = (Window::default(), *own);
+                (window, first) = (Window::EMPTY, *own);
             }
             let (masses, momenta, forces) = given(lane);
             for k in 0..W {
@@ -98,14 +98,9 @@ struct Window<const W: usize> {
     forces: [[f64; 2]; W],
 }
 
-impl<const W: usize> Default for Window<W> {
-    #[inline(always)]
-    fn default() -> Self {
-        Self { masses: [[0.0; 4]; W], momenta: [[0.0; 2]; W], forces: [[0.0; 2]; W] }
-    }
-}
-
 impl<const W: usize> Window<W> {
+    const EMPTY: Self = Self { masses: [[0.0; 4]; W], momenta: [[0.0; 2]; W], forces: [[0.0; 2]; W] };
+
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     fn add_to(&self, sums: &mut LineSums<'_>, first: usize) {
