@@ -3,8 +3,9 @@
 //! A basis has its place here and in [`Basis`]: every stencil, load and displacement asks for its rows here.
 
 use crate::mpm::method::Basis;
+use crate::mpm::operators::block_rows::LaneRows;
 use crate::mpm::operators::row::Row;
-use crate::mpm::operators::stencil::{LaneRows, PointStencils, Stencils, visit_block};
+use crate::mpm::operators::stencil::{PointStencils, Stencils, visit_block};
 use crate::mpm::state::grid::{GHOST_LAYERS, Grid, Line, index_of, whole, whole_part};
 use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
 use crate::mpm::state::nodes::Support;

@@ -2,10 +2,21 @@
 //! time, and of a point run by run.
 
 use crate::mpm::operators::pairs::{add_weighted, weighted_sum};
-use crate::mpm::operators::stencil::RowBlock;
 use crate::mpm::state::grid::power;
-use crate::mpm::state::lanes::LANES;
+use crate::mpm::state::lanes::{LANES, Lanes};
 use crate::soil::tensor::{Tensor, Vector};
+
+/// Rows of some neighbouring points, `[direction]`.
+pub type RowBlock<const D: usize, const W: usize> = [LaneRows<W>; D];
+
+/// Rows of some neighbouring points along one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaneRows<const W: usize> {
+    /// Weights, `[node][point]`.
+    pub weights: [Lanes; W],
+    /// Gradients, 1/m, `[node][point]`.
+    pub gradients: [Lanes; W],
+}
 
 /// Stencils as slices: a loop that writes nodal fields reads their places once, and not anew after
 /// every store.

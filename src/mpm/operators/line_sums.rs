@@ -4,9 +4,8 @@
 //! the same, and then added to the nodes at once: a sum in memory would have to be stored and loaded again for every
 //! point.
 
-use crate::mpm::operators::block_rows::BlockRows;
+use crate::mpm::operators::block_rows::{BlockRows, LaneRows};
 use crate::mpm::operators::pairs::add_weighted;
-use crate::mpm::operators::stencil::LaneRows;
 use crate::mpm::state::lanes::Lanes;
 
 /// Weights of some rows.

@@ -1,6 +1,6 @@
 //! Sparse operators between points and nodes: one small tensor-product block of nodes a point.
 
-use crate::mpm::operators::block_rows::Blocks;
+use crate::mpm::operators::block_rows::{Blocks, LaneRows, RowBlock};
 use crate::mpm::operators::row::Row;
 use crate::mpm::state::grid::{GHOST_LAYERS, Grid, index_of, power};
 use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
@@ -18,18 +18,6 @@ pub struct Stencils<const D: usize, const W: usize> {
     rows: Vec<RowBlock<D, W>>,
     /// Blocks per point.
     parts: usize,
-}
-
-/// Rows of some neighbouring points, `[direction]`.
-pub type RowBlock<const D: usize, const W: usize> = [LaneRows<W>; D];
-
-/// Rows of some neighbouring points along one direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LaneRows<const W: usize> {
-    /// Weights, `[node][point]`.
-    pub weights: [Lanes; W],
-    /// Gradients, 1/m, `[node][point]`.
-    pub gradients: [Lanes; W],
 }
 
 impl<const D: usize, const W: usize> Stencils<D, W> {

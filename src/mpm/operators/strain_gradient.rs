@@ -6,9 +6,9 @@
 //! the ends of the point's domain.
 
 use crate::mpm::method::StrainGradient;
-use crate::mpm::operators::block_rows::Blocks;
+use crate::mpm::operators::block_rows::{Blocks, LaneRows};
 use crate::mpm::operators::row::Row;
-use crate::mpm::operators::stencil::{LaneRows, PointStencils, Stencils};
+use crate::mpm::operators::stencil::{PointStencils, Stencils};
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::{Grid, Line, SIXTH, cell_below};
 use crate::mpm::state::lanes::{LANES, Lanes};
