@@ -39,7 +39,7 @@ mod tests {
 
     const STUDY: &str = "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
         method = [\"MPM\", \"GIMP\", \"GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = [4, 8, 16]\n\
-        [[expect]]\nmethod = \"GC-SRI-patch\"\nquantity = \"pressure\"\ntime_factor = 0.1\noscillation_below = 0.5\n\
+        [[expect]]\nmethod = \"GC-SRI-patch\"\nquantity = \"pressure\"\ntime_factor = 0.1\noscillation = { below = 0.5 }\n\
         order = { value = 2.0, minus = 0.2, plus = 0.2 }\n\
         [[expect_case]]\nmethod = \"GIMP\"\ncells = 8\nwater_drift_below = 1e-6\n";
 
