@@ -8,7 +8,7 @@ pub mod quantity;
 pub mod shared;
 pub mod step_cost;
 pub mod tier;
-pub mod two_layers;
+pub mod two_layer_limits;
 pub mod work_estimate;
 
 use crate::case::shared::Shared;
@@ -248,7 +248,7 @@ pub fn step_label(rule: &TimeStepRule) -> String {
 mod tests {
     use super::*;
     use crate::exact::parameters::Base;
-    use crate::mpm::attached::Attached;
+    use crate::mpm::attached_method::Attached;
     use crate::mpm::explicit::Drag;
     use crate::mpm::explicit::scheme::Scheme;
     use crate::soil::conductivity_mean::ConductivityMean;

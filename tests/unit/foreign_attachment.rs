@@ -1,5 +1,5 @@
 use super::*;
-use crate::mpm::attached::Attached;
+use crate::mpm::attached_method::Attached;
 
 /// A solver in a folder by a command, with the convention's mapping.
 pub(crate) fn solver(folder: &Path, command: &[&str]) -> Solver {

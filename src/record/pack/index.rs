@@ -159,6 +159,8 @@ impl Index {
         let length = file.metadata()?.len();
         let mut at = self.ends[number as usize];
         let mut bytes = [0; HEADER];
+        // The length of the last member may be what is damaged, and lead past the beginning of others.
+        let mut last = None;
         while at < length {
             file.seek(SeekFrom::Start(at))?;
             let header = if length - at >= HEADER as u64 {
@@ -169,13 +171,15 @@ impl Index {
             };
             if let Some(header) = header.filter(|header| u64::from(header.length) <= length - at) {
                 self.note(Place { pack: number, offset: at, header });
+                last = Some(at);
                 at += u64::from(header.length);
                 continue;
             }
-            let next = next_header(&mut file, at + 1, length)?;
+            let last = last.take().unwrap_or(at);
+            let next = next_header(&mut file, last + 1, length)?;
             self.damages.push(Damage {
                 pack: path.clone(),
-                from: at,
+                from: if next.is_some_and(|next| next < at) { last } else { at },
                 to: next.unwrap_or(length),
                 is_cut: next.is_none(),
             });

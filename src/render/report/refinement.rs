@@ -7,7 +7,7 @@ use crate::exact::reference::ReferenceKind;
 use crate::judge::paths::{Path, SeriesSummary, first_norm};
 use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::page::{Block, Figure};
-use crate::render::report::drawn_paths::{DrawnPaths, drawn};
+use crate::render::report::figures::drawn_paths::{DrawnPaths, drawn};
 use crate::render::report::labels::first_measure;
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};

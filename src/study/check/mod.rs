@@ -1,6 +1,7 @@
 //! From what was typed to what will run: every value judged, every complaint at its place.
 
 pub mod check_case_expectation;
+pub mod check_layers;
 pub mod check_material;
 pub mod check_method;
 pub mod check_result;
@@ -12,7 +13,6 @@ pub mod default_integrator;
 pub mod distinct_labels;
 pub mod end_state;
 pub mod geometry;
-pub mod layers;
 pub mod matching;
 pub mod step_rule;
 pub mod value;
