@@ -65,7 +65,8 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Shared<T> {
 
 /// A value by whose numbers an equal one is found.
 pub trait Numbered: PartialEq + Clone {
-    /// Numbers that are the same for equal values; what they leave out makes a pool find less.
+    /// Numbers that are the same for equal values; what they leave out, as a new key, makes a pool find less and nothing
+    /// wrong.
     fn numbers(&self) -> impl Iterator<Item = u64>;
 }
 
@@ -89,6 +90,7 @@ impl Numbered for Material {
             gravity,
             continuity,
             conductivity_mean,
+            ..
         } = *self;
         let words = [law as u64, continuity as u64, conductivity_mean as u64];
         let soil = [youngs_modulus, poissons_ratio, porosity, grain_density];
@@ -107,8 +109,9 @@ impl Numbered for Column {
             base,
             loading_time,
             self_weight,
-            points: Arrangement { offset, jitter, filling, layers, water_per_cell },
-            motion: MotionParameters { amplitude_x, amplitude_y, amplitude, frequency },
+            points: Arrangement { offset, jitter, filling, layers, water_per_cell, .. },
+            motion: MotionParameters { amplitude_x, amplitude_y, amplitude, frequency, .. },
+            ..
         } = *self;
         let base = base.map_or(0, |base| 1 + base as u64);
         let counts = [dimensions as u64, base, u64::from(self_weight), layers as u64, water_per_cell as u64];
