@@ -38,7 +38,7 @@ mod runs {
         Case {
             method: Method::of_attached(solver.attached),
             cells: 2,
-            time_factors: vec![0.1],
+            time_factors: vec![0.1].into(),
             ..Case::seed(Task::Solve, SceneKind::Terzaghi)
         }
         .for_attached()

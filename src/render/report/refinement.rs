@@ -97,11 +97,8 @@ fn floors_of_model(results: &StudyResults<'_>) -> bool {
 }
 
 fn common_times(all: &[Path<'_>]) -> Vec<f64> {
-    let first = all[0].records[0].case.time_factors.clone();
-    first
-        .into_iter()
-        .filter(|time| all.iter().all(|path| path.records[0].case.time_factors.contains(time)))
-        .collect()
+    let first = all[0].records[0].case.time_factors.iter().copied();
+    first.filter(|time| all.iter().all(|path| path.records[0].case.time_factors.contains(time))).collect()
 }
 
 fn heading(axis: Axis) -> &'static str {

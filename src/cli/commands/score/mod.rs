@@ -164,7 +164,7 @@ pub fn study_of(asked: &Asked) -> anyhow::Result<(Study, Vec<f64>)> {
     let sweep = ["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned);
     let study = lines.study_for(Purpose::Theory, sweep)?;
     let requested = match study.planned.first() {
-        Some(planned) if is_requested => planned.case.time_factors.clone(),
+        Some(planned) if is_requested => planned.case.time_factors.to_vec(),
         _ => Vec::new(),
     };
     Ok((study, requested))
