@@ -1,10 +1,10 @@
-//! References and theory lines that were made before: a report asks for the same ones again and again, and one at large
-//! strain takes a march in time.
+//! References and theory lines that were made before: runs and reports ask for the same ones again and again, and one at
+//! large strain takes a march in time.
 
 use crate::case::Case;
 use crate::exact::exact_error::ExactError;
 use crate::exact::reference::{Reference, ReferenceKind};
-use crate::measure::exact_fields::reference_of;
+use crate::scene::column::column_parameters;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
 
@@ -41,8 +41,8 @@ pub(crate) fn known_or<T: Clone>(
     Ok(made)
 }
 
-/// A reference for the column and soil of a case at time factors, made once: the values are those of
-/// [`reference_of`], bit for bit.
+/// A reference for the column and soil of a case, prepared for time factors; made once where it has to be computed in
+/// advance, with the same bits as if it were made anew.
 ///
 /// # Errors
 /// When it refuses them.
@@ -52,7 +52,12 @@ pub fn known_reference(
     times: &[f64],
 ) -> Result<Arc<Reference>, ExactError> {
     static KNOWN: Known<Arc<Reference>> = LazyLock::new(Mutex::default);
-    known_or(&KNOWN, key_of(case, kind, times), || reference_of(case, kind, times).map(Arc::new))
+    let parameters = column_parameters(&case.column, &case.material);
+    let make = || Reference::new(kind, &parameters, times).map(Arc::new);
+    if !kind.is_prepared() {
+        return make();
+    }
+    known_or(&KNOWN, format!("{kind:?} {parameters:?} {times:?}"), make)
 }
 
 #[cfg(test)]
