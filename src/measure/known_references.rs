@@ -99,4 +99,23 @@ mod tests {
         assert!(known_or(&known, "key".to_owned(), refuse).is_err());
         assert_eq!(known_or(&known, "key".to_owned(), || Ok(2.0)).expect("made"), 2.0);
     }
+
+    #[test]
+    fn a_known_reference_is_that_of_the_soil_to_the_bit() {
+        let case = Case::seed(Task::Solve, SceneKind::Terzaghi);
+        let mut softer = case.clone();
+        softer.material.youngs_modulus *= 0.5;
+        let kind = ReferenceKind::DynamicSingleMode;
+        assert!(kind.is_prepared() && !ReferenceKind::Terzaghi.is_prepared());
+        // The second time all of them are known.
+        for case in [&case, &softer, &case, &softer] {
+            let parameters = column_parameters(&case.column, &case.material);
+            let known = known_reference(case, kind, &[0.1]).expect("the seed column");
+            let anew = Reference::new(kind, &parameters, &[0.1]).expect("the seed column");
+            assert_eq!(known.fields(0.1, 0.5), anew.fields(0.1, 0.5));
+        }
+        let again = known_reference(&case, kind, &[0.1]).expect("known");
+        assert!(Arc::ptr_eq(&again, &known_reference(&case, kind, &[0.1]).expect("known")));
+        assert!(!Arc::ptr_eq(&again, &known_reference(&softer, kind, &[0.1]).expect("known")));
+    }
 }

@@ -272,7 +272,8 @@ impl<'a, const D: usize> PointSlices<'a, D> {
             stressed_share: &points.stressed_share[..count],
             inverse_deformation: &points.inverse_deformation[..count],
             solid_velocity: &points.solid_velocity[..count],
-            water_velocity: &points.water_velocity[..count],
+            // None where the water has points of its own: nobody takes it from these then.
+            water_velocity: points.water_velocity.get(..count).unwrap_or_default(),
             effective_stress: &points.effective_stress[..count],
             pressure: &points.pressure[..count],
         }
