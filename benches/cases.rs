@@ -88,13 +88,13 @@ fn implicit_case(method: &str, scene: SceneKind, cells: usize) -> Case {
     Case {
         scene,
         method,
-        column: Column { load: if is_large { 2e5 } else { 1.0 }, ..Column::default() },
-        material: Material { law: scene.default_law(), ..Material::default() },
+        column: Column { load: if is_large { 2e5 } else { 1.0 }, ..Column::default() }.into(),
+        material: Material { law: scene.default_law(), ..Material::default() }.into(),
         integrator: IntegratorKind::Implicit,
         formulation: IntegratorKind::Implicit.default_formulation(),
         points_per_cell: if is_large { 4 } else { 2 },
         time_step: IntegratorKind::Implicit.default_rule(),
-        time_factors: vec![0.05, 0.2, 1.0],
+        time_factors: vec![0.05, 0.2, 1.0].into(),
         ..case("GC-SRI-patch", cells, Configuration::Frozen)
     }
 }
@@ -104,8 +104,8 @@ fn case(method: &str, cells: usize, configuration: Configuration) -> Case {
     Case {
         task: oedometer::Task::Solve,
         scene: SceneKind::Terzaghi,
-        column: Column::default(),
-        material: Material::default(),
+        column: Column::default().into(),
+        material: Material::default().into(),
         method: Method { configuration: Some(configuration), ..method },
         integrator: IntegratorKind::Explicit,
         formulation: IntegratorKind::Explicit.default_formulation(),
@@ -113,7 +113,7 @@ fn case(method: &str, cells: usize, configuration: Configuration) -> Case {
         cells,
         points_per_cell: 2,
         time_step: TimeStepRule::Stable(0.8),
-        time_factors: vec![0.05],
+        time_factors: vec![0.05].into(),
         swept: std::sync::Arc::default(),
     }
 }

@@ -40,7 +40,7 @@
 //! | 13 | Xie & Leo's column | `src/exact/xie_leo.rs:fields` |
 //! | 14 | modes of the dynamic column | `src/exact/dynamic_column/modes.rs:amplitude` |
 //! | 15 | large strain in general | `src/exact/large_strain/diffusion.rs:coefficients` |
-//! | 16 | Mandel's slab | `src/exact/mandel/series.rs:sum`, `src/exact/mandel/early.rs:ratios` |
+//! | 16 | Mandel's slab | `src/exact/mandel/eigenmode_series.rs:sum`, `src/exact/mandel/early.rs:ratios` |
 //! | 17 | chord mean of the conductivity | `src/mpm/operators/chord_mean.rs:take_chord_drag`, `src/soil/conductivity_mean.rs:flow_potential` |
 //! | 18 | rigid plate | `src/mpm/operators/rigid_plate.rs:tie`, `src/mpm/direct_solver/bordered.rs:solve` |
 //! | 19 | own weight, free water | `src/mpm/weighing_body.rs:add_weight` |
@@ -48,7 +48,7 @@
 //! | 21 | domains of water points | `src/mpm/layers/water_domains.rs:take_domains` |
 //! | 22 | balances of two layers | `src/mpm/layers/water_to_nodes.rs:map_water_masses`, `src/mpm/layers/water_to_nodes.rs:map_forces` |
 //! | 23 | pressure along the water | `src/mpm/layers/water_pressure.rs:update_pressure` |
-//! | 24, 25, 26, 27 | manufactured motions, and what acts on them | `src/exact/manufactured/motion.rs:place`, `src/exact/manufactured/state.rs:of`, `src/exact/manufactured/state.rs:body_forces`, `src/exact/manufactured/state.rs:source` |
+//! | 24, 25, 26, 27 | manufactured motions, and what acts on them | `src/exact/manufactured/motion.rs:place`, `src/exact/manufactured/motion_state.rs:of`, `src/exact/manufactured/motion_state.rs:body_forces`, `src/exact/manufactured/motion_state.rs:source` |
 //! | 28 | neo-Hookean stress | `src/soil/law.rs:neo_hookean_stress` |
 //! | 29 | the middle of a step | `src/mpm/forced_body.rs:update_forced_pressure`, `src/mpm/explicit/deformation.rs:middle_gradient` |
 //! | 30 | weights of domains that turn | `src/mpm/operators/corners.rs:build_corners`, `src/mpm/state/domains.rs:follow` |

@@ -1,5 +1,6 @@
 from typing import List, Optional, Sequence, Tuple
 
+__all__ = ["__version__", "convergence", "exact", "main", "score", "verdict"]
 __version__: str
 
 def exact(

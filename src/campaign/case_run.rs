@@ -14,7 +14,7 @@ use crate::mpm::critical_step::observed::Stopped;
 use crate::mpm::run::outcome::FailureKind;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::mpm::run::{Kernel, Schedule};
-use crate::record::machine::Machine;
+use crate::record::machines::Machine;
 use crate::record::{Record, Status, WallSample};
 use crate::scene::column::column_parameters;
 use crate::scene::problem::{SceneProblem, column_problem};

@@ -18,23 +18,28 @@ use std::sync::{Mutex, PoisonError};
 /// Work between two words about a case, ns: what a person sees move.
 const LONGEST_SILENCE: u64 = 100_000_000;
 
-/// One case to run.
+/// One case to run; of a million of them it is no more than that.
 #[derive(Clone, Copy)]
 struct Job<'a> {
     case: &'a Case,
     /// Number of its study.
     number: usize,
-    runner: &'a CaseRunner<'a>,
+}
+
+/// Who runs the cases of a study, and where their records are kept.
+struct Desk<'a> {
+    runner: CaseRunner<'a>,
     store: Option<&'a RecordStore>,
 }
 
-impl Job<'_> {
-    fn as_longest(&self) -> LongestCase {
-        LongestCase {
-            study: self.runner.study().name.clone(),
-            case: self.case.clone(),
-            case_seconds: self.runner.study().case_seconds,
-        }
+impl<'a> Desk<'a> {
+    fn of(selected: &Selected<'a>) -> Self {
+        Self { runner: CaseRunner::of(selected.study), store: selected.store }
+    }
+
+    fn longest(&self, case: &Case) -> LongestCase {
+        let study = self.runner.study();
+        LongestCase { study: study.name.clone(), case: case.clone(), case_seconds: study.case_seconds }
     }
 }
 
@@ -55,21 +60,30 @@ pub fn run_studies(
     options: &RunOptions,
     tell: &(dyn Fn(Progress) + Sync),
 ) -> Vec<RunReport> {
+    run_studies_thinned(studies, options, &|_, _| {}, tell)
+}
+
+/// The same; `thin` drops what is not to be held in the reports of the record of a study. What is on disk is whole.
+pub fn run_studies_thinned(
+    studies: &[Selected<'_>],
+    options: &RunOptions,
+    thin: &(dyn Fn(&Study, &mut Record) + Sync),
+    tell: &(dyn Fn(Progress) + Sync),
+) -> Vec<RunReport> {
     let selected = cases_of(studies, options);
     let found: Vec<Begun<'_>> =
         studies.iter().zip(selected).map(|(study, cases)| begun(study, cases, options)).collect();
-    let runners: Vec<CaseRunner<'_>> =
-        studies.iter().map(|selected| CaseRunner::of(selected.study)).collect();
-    let with_runners = studies.iter().zip(&runners).enumerate();
-    let missing = with_runners.zip(&found).flat_map(|((number, (selected, runner)), begun)| {
-        let without = begun.cases.iter().filter(|(_, found)| !matches!(found, Found::Finished(_)));
-        without.map(move |(case, _)| Job { case, number, runner, store: selected.store })
-    });
-    let jobs: Vec<Job<'_>> = missing.collect();
+    let desks: Vec<Desk<'_>> = studies.iter().map(Desk::of).collect();
+    let missing = |begun: &Begun<'_>| begun.cases.iter().filter(|(_, found)| !found.is_finished()).count();
+    let mut jobs: Vec<Job<'_>> = Vec::with_capacity(found.iter().map(missing).sum());
+    for (number, begun) in found.iter().enumerate() {
+        let without = begun.cases.iter().filter(|(_, found)| !found.is_finished());
+        jobs.extend(without.map(|(case, _)| Job { case, number }));
+    }
     let resumed = found.iter().map(|begun| begun.report.resumed).sum();
     let mut gathered = Gathered::of(studies.len());
     gathered.only_on_disk = options.only_on_disk;
-    let mut gathered = run_jobs(&jobs, resumed, options.jobs, gathered, tell);
+    let mut gathered = run_jobs(&desks, &jobs, resumed, options.jobs, gathered, &Listener { thin, tell });
     gathered.ended.sort_by_key(|(place, _)| *place);
     let mut results = gathered.ended.into_iter().peekable();
     let mut place = 0;
@@ -171,13 +185,19 @@ impl Gathered {
         Self { tallies: vec![Tally::default(); studies], ..Self::default() }
     }
 
-    fn take(&mut self, place: usize, job: &Job<'_>, result: Option<Result<Box<Record>, RunError>>) {
+    fn take(
+        &mut self,
+        place: usize,
+        job: Job<'_>,
+        study: &Study,
+        result: Option<Result<Box<Record>, RunError>>,
+    ) {
         let tally = &mut self.tallies[job.number];
         match result {
             None => tally.left += 1,
             Some(Err(error)) => self.ended.push((place, Err(error))),
             Some(Ok(record)) => {
-                tally.add(job.runner.study(), &record);
+                tally.add(study, &record);
                 if !self.only_on_disk {
                     self.ended.push((place, Ok(record)));
                 }
@@ -186,14 +206,21 @@ impl Gathered {
     }
 }
 
+/// Who hears of the cases as they run.
+struct Listener<'a> {
+    thin: &'a (dyn Fn(&Study, &mut Record) + Sync),
+    tell: &'a (dyn Fn(Progress) + Sync),
+}
+
 /// Runs jobs, the longest first so that the last ones to finish are short. The first result that cannot be kept ends
 /// them all, and so does a signal; a job without a result is one that had not come to its end by then.
 fn run_jobs(
+    desks: &[Desk<'_>],
     jobs: &[Job<'_>],
     resumed: usize,
     threads: usize,
     gathered: Gathered,
-    tell: &(dyn Fn(Progress) + Sync),
+    Listener { thin, tell }: &Listener<'_>,
 ) -> Gathered {
     let mut order: Vec<usize> = (0..jobs.len()).collect();
     order.sort_by_cached_key(|index| std::cmp::Reverse(estimated_work(jobs[*index].case)));
@@ -203,7 +230,7 @@ fn run_jobs(
         resumed,
         work: work_of(jobs.iter().map(|job| job.case)),
         jobs: threads,
-        longest: order.first().map(|index| Box::new(jobs[*index].as_longest())),
+        longest: order.first().map(|index| Box::new(desks[jobs[*index].number].longest(jobs[*index].case))),
     });
     let gathered = Mutex::new(gathered);
     let next = AtomicUsize::new(0);
@@ -212,11 +239,19 @@ fn run_jobs(
         for _ in 0..threads {
             scope.spawn(|| {
                 while let Some(index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let job = &jobs[*index];
+                    let job = jobs[*index];
+                    let desk = &desks[job.number];
                     let is_over = stopped.load(Ordering::Relaxed) || stop::is_asked();
-                    let result =
-                        if is_over { None } else { run_and_keep(*job, threads == 1, &stopped, tell) };
-                    gathered.lock().unwrap_or_else(PoisonError::into_inner).take(*index, job, result);
+                    let mut result = if is_over {
+                        None
+                    } else {
+                        run_and_keep(desk, job.case, threads == 1, &stopped, tell)
+                    };
+                    if let Some(Ok(record)) = &mut result {
+                        thin(desk.runner.study(), record);
+                    }
+                    let mut gathered = gathered.lock().unwrap_or_else(PoisonError::into_inner);
+                    gathered.take(*index, job, desk.runner.study(), result);
                 }
             });
         }
@@ -227,7 +262,8 @@ fn run_jobs(
 /// Runs a case and keeps its record. A record that cannot be kept stops every other case too; none where
 /// this one was stopped so.
 fn run_and_keep(
-    Job { case, runner, store, .. }: Job<'_>,
+    Desk { runner, store }: &Desk<'_>,
+    case: &Case,
     alone: bool,
     stopped: &AtomicBool,
     tell: &(dyn Fn(Progress) + Sync),
@@ -245,7 +281,7 @@ fn run_and_keep(
         !stopped.load(Ordering::Relaxed) && !stop::is_over()
     };
     let solved = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-        runner.run_within(case, store, alone, &observe)
+        runner.run_within(case, *store, alone, &observe)
     }));
     tell(Progress::Advanced(estimate - told.get()));
     let record = match solved {

@@ -3,12 +3,15 @@
 pub mod keys;
 pub mod label;
 pub mod norm;
+pub mod planned;
 pub mod quantity;
+pub mod shared;
 pub mod step_cost;
 pub mod tier;
-pub mod two_layers;
+pub mod two_layer_limits;
 pub mod work_estimate;
 
+use crate::case::shared::Shared;
 use crate::elementary;
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery, StrainGradient};
@@ -64,9 +67,11 @@ pub struct Case {
     /// Physical problem.
     pub scene: SceneKind,
     /// Geometry and load.
-    pub column: Column,
+    #[schemars(with = "Column")]
+    pub column: Shared<Column>,
     /// Soil.
-    pub material: Material,
+    #[schemars(with = "Material")]
+    pub material: Shared<Material>,
     /// Operators.
     pub method: Method,
     /// Integrator.
@@ -82,7 +87,8 @@ pub struct Case {
     /// Step size.
     pub time_step: TimeStepRule,
     /// Time factors of the outputs, ascending.
-    pub time_factors: Vec<f64>,
+    #[schemars(with = "Vec<f64>")]
+    pub time_factors: Shared<Vec<f64>>,
     /// Inputs by their keys that its label names, for other cases of the same study have all else in common. They are
     /// the study's business, neither part of the identity of a case nor kept in its record.
     #[serde(skip)]
@@ -96,8 +102,8 @@ impl Case {
         Self {
             task,
             scene,
-            column: scene.default_column(),
-            material: scene.default_material(),
+            column: scene.default_column().into(),
+            material: scene.default_material().into(),
             method: Method {
                 basis: Basis::Hat,
                 strain: StrainGradient::Standard,
@@ -113,7 +119,7 @@ impl Case {
             cells: 1,
             points_per_cell: USUAL_POINTS,
             time_step: integrator.default_rule(),
-            time_factors: Vec::new(),
+            time_factors: Shared::default(),
             swept: Arc::default(),
         }
     }
@@ -242,7 +248,7 @@ pub fn step_label(rule: &TimeStepRule) -> String {
 mod tests {
     use super::*;
     use crate::exact::parameters::Base;
-    use crate::mpm::attached::Attached;
+    use crate::mpm::attached_method::Attached;
     use crate::mpm::explicit::Drag;
     use crate::mpm::explicit::scheme::Scheme;
     use crate::soil::conductivity_mean::ConductivityMean;
@@ -254,7 +260,7 @@ mod tests {
             method: Method::named("GC-SRI-patch").expect("the paper's method"),
             cells: 10,
             time_step: TimeStepRule::Stable(0.5),
-            time_factors: vec![0.1],
+            time_factors: vec![0.1].into(),
             ..Case::seed(Task::Solve, SceneKind::Terzaghi)
         }
     }
@@ -352,8 +358,8 @@ mod tests {
             |case| case.time_step = TimeStepRule::Courant(0.5),
             |case| case.time_step = TimeStepRule::Seconds(0.5),
             |case| case.time_step = TimeStepRule::Growth(0.5),
-            |case| case.time_factors = vec![0.2],
-            |case| case.time_factors = vec![0.1, 0.2],
+            |case| case.time_factors = vec![0.2].into(),
+            |case| case.time_factors = vec![0.1, 0.2].into(),
         ];
         for change in changes {
             let mut other = seed();

@@ -6,7 +6,6 @@ use crate::cli::stream::say;
 use crate::record::Record;
 use crate::record::long_tables::{LongTable, columns_csv};
 use crate::record::machines_table::MachinesTable;
-use crate::record::packed_store::Entry;
 use crate::record::packed_table::{packed_rows, write_packed_table};
 use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;
@@ -147,17 +146,20 @@ pub fn write_machines(study: &Study, store: &RecordStore) -> anyhow::Result<()> 
 }
 
 fn compressed_table(study: &Study, store: &RecordStore, cases: &[&Case]) -> anyhow::Result<PathBuf> {
-    let by_number: HashMap<u64, &Case> = cases.iter().map(|case| (case.number(), *case)).collect();
     let own = Provenance::of_this_program();
-    let entries: Vec<Entry> = cases.iter().filter_map(|case| store.entry(case)).collect();
-    let foreign = entries.iter().filter(|entry| entry.program != own.program_tag()).count();
+    let mut foreign = 0;
+    let entries = cases.iter().filter_map(|case| {
+        let entry = store.entry(case)?;
+        foreign += usize::from(entry.program != own.program_tag());
+        Some((entry.rows(), *case))
+    });
     let table = store.folder().join(format!("{}.csv.gz", study.name));
     let mut rows_at_hand = store.take_rows_at_hand();
-    write_packed_table(&table, &tidy::header_line(), entries.iter().map(Entry::rows), |rows| {
+    write_packed_table(&table, &tidy::header_line(), entries, |rows, case| {
         if let Some(member) = rows_at_hand.as_mut().and_then(|at_hand| at_hand.packed(rows)) {
             return Some(Ok(member));
         }
-        let record = store.kept(by_number.get(&rows.case)?)?;
+        let record = store.kept(case)?;
         Some(packed_rows(rows, &tidy::rows_of(&study.name, &record)))
     })?;
     tell_of_foreign(study, foreign);

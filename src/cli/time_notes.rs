@@ -75,7 +75,7 @@ mod tests {
     fn longest(scene: SceneKind, integrator: IntegratorKind, conductivity: f64) -> LongestCase {
         let mut case = Case::seed(Task::Solve, scene);
         case.cells = 20;
-        case.time_factors = vec![1.0];
+        case.time_factors = vec![1.0].into();
         case.material.hydraulic_conductivity = conductivity;
         let key = Key::named("integrator", "sweep").expect("a key");
         key.set(&mut case, Value::Word(integrator.name()));

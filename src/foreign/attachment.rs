@@ -18,7 +18,7 @@ use crate::measure::attached_record::record_of_attached;
 use crate::mpm::run::outcome::Failure;
 use crate::mpm::run::snapshot::{PlaneSamples, Samples, Snapshot};
 use crate::record::attached_run::AttachedRun;
-use crate::record::machine::Machine;
+use crate::record::machines::Machine;
 use crate::record::{Record, Status, WallSample};
 use crate::study::solver::Solver;
 use regex_lite::Regex;

@@ -116,7 +116,7 @@ impl CaseFile {
                 dimensions: column.dimensions,
                 base: column.base.map(|base| base.name().to_owned()),
             },
-            material: *soil,
+            material: **soil,
             cells: case.cells,
             points_per_cell: case.points_per_cell,
             derived: Derived {
@@ -127,7 +127,7 @@ impl CaseFile {
                 cell_size: case.cell_size(),
                 final_settlement: parameters.final_settlement(),
             },
-            time_factors: case.time_factors.clone(),
+            time_factors: case.time_factors.to_vec(),
             times: case.time_factors.iter().map(|factor| parameters.time(*factor)).collect(),
             time_step: suggested_step(case),
             units: units(),
@@ -197,7 +197,11 @@ mod tests {
     use serde_json::Value;
 
     fn seed() -> Case {
-        Case { cells: 20, time_factors: vec![0.0, 0.05, 1.0], ..Case::seed(Task::Solve, SceneKind::Terzaghi) }
+        Case {
+            cells: 20,
+            time_factors: vec![0.0, 0.05, 1.0].into(),
+            ..Case::seed(Task::Solve, SceneKind::Terzaghi)
+        }
     }
 
     #[test]

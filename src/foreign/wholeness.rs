@@ -114,7 +114,11 @@ mod tests {
     use crate::scene::SceneKind;
 
     fn case() -> Case {
-        Case { cells: 10, time_factors: vec![0.05, 0.1], ..Case::seed(Task::Solve, SceneKind::Terzaghi) }
+        Case {
+            cells: 10,
+            time_factors: vec![0.05, 0.1].into(),
+            ..Case::seed(Task::Solve, SceneKind::Terzaghi)
+        }
     }
 
     /// States at the outputs with samples at heights.
@@ -157,7 +161,7 @@ mod tests {
     fn a_stretch_of_a_layers_length_that_is_missing_is_told_with_its_distances() {
         let case = Case {
             cells: 10,
-            time_factors: vec![0.05, 0.1],
+            time_factors: vec![0.05, 0.1].into(),
             ..Case::seed(Task::Solve, SceneKind::CosineLayer)
         };
         let nodes = lattice(11, 0.0, 0.1);

@@ -4,12 +4,12 @@
 //! the time; a mapping file declares all of these, and nothing is guessed from the numbers.
 
 pub mod convention;
-pub mod csv_table;
 pub mod formats;
 pub mod frame_rows;
 pub mod import_error;
 pub mod mapping;
 pub mod mapping_parts;
+pub mod opened_csv;
 pub mod preset;
 pub mod raw_row;
 pub mod rows;

@@ -1,8 +1,8 @@
 //! One file's rows in SI, with the signs of this program.
 
-use crate::import::csv_table::{CsvTable, line_of};
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
+use crate::import::opened_csv::{CsvTable, line_of};
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
 use crate::import::rows::Rows;
 use crate::import::step_times::declared_time;

@@ -1,9 +1,9 @@
 //! A settlement curve in a file of its own.
 
-use crate::import::csv_table::{CsvTable, line_of};
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::mapping_parts::SettlementSeries;
+use crate::import::opened_csv::{CsvTable, line_of};
 use crate::import::raw_row::SolvedBody;
 use crate::import::table::SampledState;
 use crate::import::units::VerticalSense;

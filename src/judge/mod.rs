@@ -16,4 +16,5 @@ pub mod scatter;
 pub mod score;
 pub mod soundness;
 pub mod study_check;
+pub mod thinned;
 pub mod verdict;

@@ -76,6 +76,8 @@ impl StudyCheck {
         let absent = Absent::among(records);
         let golden = golden.map(|golden| absent.without(golden));
         let slow = golden.as_ref().ok().and_then(|golden| slowness(golden, seconds_of(records)));
+        // Of a study without golden values none is compared.
+        let values = golden.as_ref().map_or_else(|_| BTreeMap::new(), |_| values_of(records));
         let notes = |of: &dyn Fn(&Record) -> Vec<String>| {
             let of_record = |record: &Record| {
                 let label = record.case.label();
@@ -97,7 +99,7 @@ impl StudyCheck {
             }),
             judgements: judge_study(study, records, tier),
             warnings: slow.into_iter().chain(absent.warnings()).chain(differing_repeats(records)).collect(),
-            ..Self::of_values(&study.name, &values_of(records), golden).with_places(records)
+            ..Self::of_values(&study.name, &values, golden).with_places(records)
         }
     }
 

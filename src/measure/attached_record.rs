@@ -32,7 +32,7 @@ pub fn record_of_attached(
     let parameters = column_parameters(&case.column, &case.material);
     let own_times: Vec<f64> =
         snapshots.iter().map(|snapshot| parameters.time_factor(snapshot.time)).collect();
-    let mut prepared = [case.time_factors.clone(), own_times.clone()].concat();
+    let mut prepared = [case.time_factors.to_vec(), own_times.clone()].concat();
     prepared.push(LONG_AFTER);
     let references: Vec<Arc<Reference>> = references
         .iter()

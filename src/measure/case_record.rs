@@ -149,7 +149,7 @@ pub fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse,
     let does_not_hold = inertia_rules(case, reference.kind());
     let mut entry =
         ReferenceUse { name: reference.name().to_owned(), terms: 0, tail_bound: 0.0, does_not_hold };
-    for time_factor in &case.time_factors {
+    for time_factor in case.time_factors.iter() {
         let accuracy = reference.accuracy(*time_factor)?;
         entry.terms = entry.terms.max(accuracy.terms);
         entry.tail_bound = entry.tail_bound.max(accuracy.tail_bound);

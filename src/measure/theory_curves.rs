@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn a_theory_line_begins_at_the_drained_surface_and_falls_with_time() {
-        let case = Case { time_factors: vec![0.05, 0.5], ..seed_case() };
+        let case = Case { time_factors: vec![0.05, 0.5].into(), ..seed_case() };
         let lines = theory_isochrones(&case, ReferenceKind::Terzaghi).expect("the seed column");
         let [early, late] = [0, 1].map(|place| &lines[place].line);
         assert!(lines[0].degree < lines[1].degree && lines[0].time_factor == 0.05);

@@ -358,11 +358,11 @@ impl<const D: usize> Body<D> {
     /// `v_s + n (v_w − v_s)` at the nodes, with the nodal porosity: what docs/theory.md, Eq. 4
     /// takes the divergence of.
     pub fn nodal_flux(&mut self) {
-        let nodes = &mut self.nodes;
+        let (count, nodes) = (self.nodes.len(), &mut self.nodes);
+        let (porosity, solid) = (&nodes.porosity[..count], &nodes.solid_velocity[..count]);
+        let (water, flux) = (&nodes.water_velocity[..count], &mut nodes.flux[..count]);
         for run in &nodes.runs {
-            let (porosity, solid) = (&nodes.porosity[run.clone()], &nodes.solid_velocity[run.clone()]);
-            let (water, flux) = (&nodes.water_velocity[run.clone()], &mut nodes.flux[run.clone()]);
-            for node in 0..run.len() {
+            for node in run.start..run.end.min(count) {
                 for d in 0..D {
                     flux[node][d] = solid[node][d] + porosity[node] * (water[node][d] - solid[node][d]);
                 }

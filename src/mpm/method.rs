@@ -1,6 +1,6 @@
 //! A method is a choice of four independent operators and of the configuration they live on.
 
-use crate::mpm::attached::{Attached, AttachedText};
+use crate::mpm::attached_method::{Attached, AttachedText};
 use crate::wording::words;
 use serde::{Deserialize, Serialize};
 use std::fmt;

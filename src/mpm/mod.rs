@@ -11,7 +11,7 @@
 //! Nothing here knows of studies, references or reports.
 
 pub mod assembled;
-pub mod attached;
+pub mod attached_method;
 pub mod body;
 pub mod critical_step;
 pub mod direct_solver;

@@ -6,14 +6,39 @@
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use fearless_simd::{Level, Simd};
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+use std::sync::LazyLock;
+
+/// What the processor has: asked once, for a step asks many times.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+static LEVEL: LazyLock<Level> = LazyLock::new(Level::new);
+
+#[cfg(test)]
+thread_local! {
+    static IS_NARROW: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+}
+
+/// Does a work of this thread in registers of two numbers, whatever the processor has: for the tests that hold both
+/// together.
+#[cfg(test)]
+pub(crate) fn in_narrow_registers<T>(work: impl FnOnce() -> T) -> T {
+    IS_NARROW.set(true);
+    let result = work();
+    IS_NARROW.set(false);
+    result
+}
 
 /// Does a work in registers of four numbers where there are such. What it calls must be inlined into it: a function
 /// of its own stays with two.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 pub(crate) fn in_wide_registers<T>(work: impl FnOnce() -> T) -> T {
+    #[cfg(test)]
+    if IS_NARROW.get() {
+        return work();
+    }
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    if let Some(four) = Level::new().as_avx2() {
+    if let Some(four) = LEVEL.as_avx2() {
         return four.vectorize(work);
     }
     work()

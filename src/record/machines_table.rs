@@ -1,6 +1,6 @@
 //! Which machines and builds the records of a study are of: what may differ between them, in one table.
 
-use crate::record::machine::Machine;
+use crate::record::machines::Machine;
 use crate::record::provenance::Provenance;
 use crate::record::{Record, WallSample};
 use std::collections::BTreeMap;

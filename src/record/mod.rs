@@ -5,7 +5,7 @@
 
 pub mod attached_run;
 pub mod long_tables;
-pub mod machine;
+pub mod machines;
 pub mod machines_table;
 pub mod origins;
 pub(crate) mod pack;
@@ -28,7 +28,7 @@ use crate::mpm::run::outcome::{Counters, Failure, FailureKind, StepSizes};
 pub use crate::mpm::run::profile::PhaseTime;
 use crate::mpm::run::snapshot::Snapshot;
 use crate::record::attached_run::AttachedRun;
-use crate::record::machine::Machine;
+use crate::record::machines::Machine;
 use crate::record::provenance::Provenance;
 use serde::{Deserialize, Serialize};
 

@@ -47,16 +47,16 @@ pub(crate) fn is_rows_of(member: &[u8], of: RowsOf) -> bool {
     Header::read(member).is_some_and(|header| header.kind == Kind::Rows && RowsOf::of(&header) == of)
 }
 
-/// Writes the table of cases in their order. `rows` makes those of a case, packed, none where its record cannot be
-/// read.
+/// Writes the table of cases in their order, each with which record its rows are made of. `rows` makes those of a
+/// case, packed, none where its record cannot be read.
 ///
 /// # Errors
 /// When the file system refuses.
-pub fn write_packed_table(
+pub fn write_packed_table<C>(
     path: &Path,
     columns: &str,
-    cases: impl Iterator<Item = RowsOf>,
-    mut rows: impl FnMut(RowsOf) -> Option<std::io::Result<Vec<u8>>>,
+    cases: impl Iterator<Item = (RowsOf, C)>,
+    mut rows: impl FnMut(RowsOf, C) -> Option<std::io::Result<Vec<u8>>>,
 ) -> Result<(), StoreError> {
     // The columns are a member of their own, whose tag says what they are.
     let tag = blake3::hash(columns.as_bytes()).as_bytes()[..8]
@@ -71,12 +71,12 @@ pub fn write_packed_table(
         let mut out = BufWriter::with_capacity(1 << 16, file);
         out.write_all(&packed(of_columns, columns.as_bytes())?)?;
         let mut reader = old.reader();
-        for case in cases {
-            let known = old.record(case.case).filter(|place| RowsOf::of(&place.header) == case);
+        for (of, case) in cases {
+            let known = old.record(of.case).filter(|place| RowsOf::of(&place.header) == of);
             match known.and_then(|place| reader.bytes(place).ok()) {
                 Some(member) => out.write_all(&member)?,
                 None => {
-                    if let Some(rows) = rows(case) {
+                    if let Some(rows) = rows(of, case) {
                         out.write_all(&rows?)?;
                     }
                 }
@@ -107,11 +107,12 @@ mod tests {
         let case = |case, generation| RowsOf { case, generation, program: 1, build: 2 };
         let write = |columns: &str, cases: &[RowsOf]| {
             made.set(0);
-            let rows = |one: RowsOf| {
+            let rows = |one: RowsOf, ()| {
                 made.set(made.get() + 1);
                 (one.case != 9).then(|| packed_rows(one, &format!("{},{}\n", one.case, one.generation)))
             };
-            write_packed_table(&path, columns, cases.iter().copied(), rows).expect("written");
+            let cases = cases.iter().map(|one| (*one, ()));
+            write_packed_table(&path, columns, cases, rows).expect("written");
             (text_of(&path), made.get())
         };
         let first = write("case,run\n", &[case(5, 1), case(3, 1), case(9, 1)]);

@@ -4,6 +4,7 @@
 //! The file has no name on systems that let it go, and is nobody's a day later on others: a run that is killed leaves
 //! nothing, and the next one makes the rows of its records.
 
+use crate::record::pack::member::{HEADER, Header};
 use crate::record::packed_table::{RowsOf, is_rows_of};
 use crate::record::whole_file::create_part;
 use std::collections::HashMap;
@@ -18,8 +19,8 @@ pub(crate) struct RowsAtHand {
     /// Its name, where the system would not let it go.
     path: Option<PathBuf>,
     end: u64,
-    /// Where the last rows of a case begin, and their length.
-    places: HashMap<u64, (u64, u32)>,
+    /// Where the last rows of a case begin; their header says how long they are.
+    places: HashMap<u64, u64>,
 }
 
 impl RowsAtHand {
@@ -41,18 +42,18 @@ impl RowsAtHand {
     pub fn keep(&mut self, of: RowsOf, member: &[u8]) -> io::Result<()> {
         self.file.seek(SeekFrom::Start(self.end))?;
         self.file.write_all(member)?;
-        let length = u32::try_from(member.len()).map_err(|_| io::ErrorKind::FileTooLarge)?;
-        self.places.insert(of.case, (self.end, length));
-        self.end += u64::from(length);
+        self.places.insert(of.case, self.end);
+        self.end += member.len() as u64;
         Ok(())
     }
 
     /// The rows of a record as they stand in the table, where they were kept.
     pub fn packed(&mut self, of: RowsOf) -> Option<Vec<u8>> {
-        let (from, length) = *self.places.get(&of.case)?;
-        self.file.seek(SeekFrom::Start(from)).ok()?;
-        let mut member = vec![0; length as usize];
+        self.file.seek(SeekFrom::Start(*self.places.get(&of.case)?)).ok()?;
+        let mut member = vec![0; HEADER];
         self.file.read_exact(&mut member).ok()?;
+        member.resize(Header::read(&member)?.length as usize, 0);
+        self.file.read_exact(&mut member[HEADER..]).ok()?;
         is_rows_of(&member, of).then_some(member)
     }
 }

@@ -27,6 +27,13 @@ pub enum Found {
     Finished(Box<Record>),
 }
 
+impl Found {
+    /// Whether there is nothing left to do.
+    pub fn is_finished(&self) -> bool {
+        matches!(self, Self::Finished(_))
+    }
+}
+
 /// The same, as far as it is known without reading a whole record.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Standing {

@@ -5,7 +5,7 @@ use crate::exact::exact_error::ExactError;
 use crate::exact::manufactured::Manufactured;
 use crate::exact::manufactured::model::ManufacturedModel;
 use crate::exact::manufactured::motion::{Motion, Spot};
-use crate::exact::manufactured::state::Inertia;
+use crate::exact::manufactured::motion_state::Inertia;
 use crate::exact::parameters::MotionParameters;
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::forcing::{BodyForces, Forcing};

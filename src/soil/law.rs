@@ -91,6 +91,15 @@ impl Law {
         }
     }
 
+    /// Hydraulic conductivities, m/s, at some volume ratios from the initial one: the law is asked once.
+    #[inline]
+    pub fn conductivities<const N: usize>(self, initial: f64, volume_ratios: &[f64; N]) -> [f64; N] {
+        match self {
+            Self::Linear => [initial; N],
+            law => volume_ratios.map(|ratio| law.conductivity(initial, ratio)),
+        }
+    }
+
     /// Hydraulic conductivity, m/s, at volume ratio `J` from the initial one.
     #[inline]
     pub fn conductivity(self, initial: f64, volume_ratio: f64) -> f64 {

@@ -1,6 +1,7 @@
 //! A study with the last digit of one input changed: what its results move by is round-off.
 
-use crate::study::check::{PlannedCase, Study};
+use crate::case::planned::PlannedCase;
+use crate::study::check::Study;
 use crate::wording::words;
 
 /// The input whose last digit changes. Every operator's entries follow, and with them every rounding.
@@ -32,7 +33,7 @@ impl Study {
     #[must_use]
     pub fn perturbed(&self, digit: LastDigit) -> Self {
         let planned = self.planned.iter().cloned().map(|mut planned: PlannedCase| {
-            let soil = &mut planned.case.material;
+            let soil = &mut *planned.case.material;
             digit.change(&mut soil.youngs_modulus, &mut soil.hydraulic_conductivity);
             planned
         });

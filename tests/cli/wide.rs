@@ -141,25 +141,32 @@ fn a_packed_record_with_any_damaged_part_is_run_again_and_no_other_is() {
     let starts = starts(&bytes);
     assert_eq!(starts.len(), CASES);
     let (start, end) = (starts[CASES / 2], starts[CASES / 2 + 1]);
-    for (part, place, from_disk) in [
+    // Its length by any bit: too short, past the next record and past many.
+    let lengths = (0..16).map(|bit| ("its length", start + 45 + bit / 8, 1 << (bit % 8), 71));
+    let parts = [
         ("its magic", start, 71),
         ("its kind", start + 16, 71),
         ("the hash of its case", start + 21, 71),
         ("the tag of its program", start + 29, 71),
-        ("its length", start + 45, 71),
         ("its packed text", usize::midpoint(start, end), 71),
         ("its checksum", end - 8, 71),
         ("the length of its text", end - 1, 71),
         // They say when and by which build it was made: it is the same record.
         ("the count of its run", start + 17, 72),
         ("the tag of its build", start + 37, 72),
-    ] {
+    ];
+    let parts = parts.map(|(part, place, from_disk)| (part, place, 0xff, from_disk));
+    for (part, place, flipped, from_disk) in parts.into_iter().chain(lengths) {
         let mut damaged = bytes.clone();
-        damaged[place] ^= 0xff;
+        damaged[place] ^= flipped;
         fs::write(&pack, &damaged).expect("written");
         let told = run(at, &["--resume"]);
         let expected = format!("72 cases ({from_disk} from disk, 0 failed)");
-        assert!(told.code == 0 && told.err.contains(&expected), "{part}: {}", told.err);
+        assert!(
+            told.code == 0 && told.err.contains(&expected),
+            "{part}, byte {place}, bits {flipped}: {}",
+            told.err
+        );
         assert_eq!(table(at, "out"), table_of_whole, "{part}");
     }
 }

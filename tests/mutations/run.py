@@ -20,6 +20,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -150,6 +151,19 @@ def stage(tree, faults):
         bring_up_to_date(staging, tree)
 
 
+def finished(command, folder, environment, seconds):
+    """What a command said, or None where it takes longer: then it ends with all that it started."""
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    process = subprocess.Popen(command, cwd=folder, env=environment, text=True, start_new_session=True, **pipes)
+    try:
+        out, errors = process.communicate(timeout=seconds)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        return None
+    return subprocess.CompletedProcess(command, process.returncode, out, errors)
+
+
 # ---- studies of `check` ----
 
 
@@ -177,11 +191,8 @@ class Studies:
             command += ["--references"] if study == "references" else []
             command += [f"studies/{self.by_cost[1] if study == 'references' else study}.toml"]
             environment = {**os.environ, "OEDOMETER_FAULT": str(number), "TMPDIR": out}
-            try:
-                done = subprocess.run(
-                    command, cwd=self.tree, env=environment, capture_output=True, text=True, timeout=LONGEST
-                )
-            except subprocess.TimeoutExpired:
+            done = finished(command, self.tree, environment, LONGEST)
+            if done is None:
                 return "hangs"
         if done.returncode == 0:
             return None
@@ -251,7 +262,7 @@ class Tests:
     def build(self):
         """Builds what is needed, and gives each target its program."""
         targets = set(self.target.values())
-        command = ["cargo", "test", "--no-run", "--locked", "--message-format", "json", "--target-dir", "target/tests"]
+        command = ["cargo", "test", "--no-run", "--locked", "--message-format", "json-render-diagnostics", "--target-dir", "target/tests"]
         command += ["--lib"] if None in targets else []
         for target in sorted(target for target in targets if target):
             command += ["--test", target]
@@ -269,11 +280,8 @@ class Tests:
         """What a test says with one fault on, or None where it passes."""
         environment = {**os.environ, "OEDOMETER_FAULT": str(number), "INSTA_UPDATE": "no", "RUST_BACKTRACE": "0"}
         command = [self.program[self.target[name]], name]
-        try:
-            done = subprocess.run(
-                command, cwd=self.tree, env=environment, capture_output=True, text=True, timeout=LONGEST_TEST
-            )
-        except subprocess.TimeoutExpired:
+        done = finished(command, self.tree, environment, LONGEST_TEST)
+        if done is None:
             return "hangs"
         if done.returncode == 0:
             ran = re.search(r"test result: ok\. (\d+) passed", done.stdout)
@@ -418,6 +426,8 @@ def main():
     parser.add_argument("--jobs", metavar="N", type=int, default=2, help="faults at a time (2)")
     parser.add_argument("--keep", metavar="DIR", type=pathlib.Path, help="build in this folder and keep it")
     arguments = parser.parse_args()
+    # A shell that starts this in the background has it ignored, and tests of Ctrl-C with it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     faults = load_faults()
     names = set(arguments.only.split(",")) if arguments.only else {fault["name"] for fault in faults}
     unknown = names - {fault["name"] for fault in faults}

@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::exact::manufactured::motion::Motion;
-use crate::exact::manufactured::state::Inertia;
+use crate::exact::manufactured::motion_state::Inertia;
 use crate::exact::parameters::MotionParameters;
 use crate::soil::law::Law;
 

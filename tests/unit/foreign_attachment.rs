@@ -1,5 +1,5 @@
 use super::*;
-use crate::mpm::attached::Attached;
+use crate::mpm::attached_method::Attached;
 
 /// A solver in a folder by a command, with the convention's mapping.
 pub(crate) fn solver(folder: &Path, command: &[&str]) -> Solver {
@@ -38,7 +38,7 @@ mod runs {
         Case {
             method: Method::of_attached(solver.attached),
             cells: 2,
-            time_factors: vec![0.1],
+            time_factors: vec![0.1].into(),
             ..Case::seed(Task::Solve, SceneKind::Terzaghi)
         }
         .for_attached()

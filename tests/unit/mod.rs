@@ -6,6 +6,7 @@ mod convergence_classes;
 mod documented_tables;
 mod judge_verdicts;
 mod mpm_invariants;
+mod mpm_registers;
 mod mpm_two_dimensions;
 mod option_pairs;
 mod runs_cosine_layer;

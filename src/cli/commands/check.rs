@@ -2,7 +2,7 @@
 
 use crate::campaign::run_options::{RunOptions, Selected};
 use crate::campaign::run_report::RunReport;
-use crate::campaign::runner::run_studies;
+use crate::campaign::runner::run_studies_thinned;
 use crate::case::tier::Tier;
 use crate::cli::commands::run::{jobs_of, load_or_shipped};
 use crate::cli::destination::{append, is_on, path_in, write_document};
@@ -18,11 +18,13 @@ use crate::golden::references::REFERENCES;
 use crate::golden::{GoldenError, GoldenFile};
 use crate::judge::judgement::Judgement;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
+use crate::judge::thinned::thin;
 use crate::record::Record;
 use crate::render::checks::annotations::annotations_of;
 use crate::render::checks::{junit, verdicts};
 use crate::study::check::Study;
 use crate::wording::count_of;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Folder of the golden values.
@@ -95,9 +97,19 @@ fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<Vec<Stu
     if arguments.references || arguments.studies.is_empty() {
         checks.push(StudyCheck::of_references(read(REFERENCES))?);
     }
-    for (study, report) in studies.iter().zip(&run_all(studies, jobs_of(arguments.jobs))?) {
+    let golden: Vec<_> = studies.iter().map(|study| read(&study.name)).collect();
+    // Where no golden value is compared, a record is held as far as its verdicts go.
+    let is_alone = studies.iter().zip(&golden).filter(|(_, golden)| golden.is_err());
+    let alone: BTreeSet<&str> = is_alone.map(|(study, _)| study.name.as_str()).collect();
+    let thin_alone = |study: &Study, record: &mut Record| {
+        if alone.contains(study.name.as_str()) {
+            thin(study, record);
+        }
+    };
+    let reports = run_all(studies, jobs_of(arguments.jobs), &thin_alone)?;
+    for ((study, golden), report) in studies.iter().zip(golden).zip(&reports) {
         if !(report.records.is_empty() && report.errors.is_empty()) {
-            let check = StudyCheck::new(study, &report.records, Tier::Ci, read(&study.name));
+            let check = StudyCheck::new(study, &report.records, Tier::Ci, golden);
             checks.push(check.with_errors(&report.errors));
         }
     }
@@ -125,11 +137,15 @@ pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Rec
         Some(error) => Err(anyhow::Error::from(error).context(study.name.clone())),
         None => Ok(report.records),
     };
-    studies.iter().zip(run_all(studies, jobs)?).map(of_study).collect()
+    studies.iter().zip(run_all(studies, jobs, &|_, _| {})?).map(of_study).collect()
 }
 
 /// The same with what went wrong in each study.
-fn run_all(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<RunReport>> {
+fn run_all(
+    studies: &[Study],
+    jobs: usize,
+    thin: &(dyn Fn(&Study, &mut Record) + Sync),
+) -> anyhow::Result<Vec<RunReport>> {
     let name = match studies {
         [study] => study.name.as_str(),
         _ => "check",
@@ -137,7 +153,7 @@ fn run_all(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<RunReport>> {
     let bar = StudyBar::new(name);
     let selected: Vec<Selected<'_>> = studies.iter().map(|study| Selected { study, store: None }).collect();
     let options = RunOptions::whole(Tier::Ci, jobs);
-    let reports = run_studies(&selected, &options, &|progress| bar.tell(progress));
+    let reports = run_studies_thinned(&selected, &options, thin, &|progress| bar.tell(progress));
     bar.finish();
     refuse_unfinished(&reports)?;
     Ok(reports)

@@ -8,8 +8,8 @@
 //! `early` is the closed form of short times, `series` the sum over the roots of `tan α/α = 1/κ`.
 
 mod early;
+mod eigenmode_series;
 mod ratios;
-mod series;
 
 use crate::elementary;
 use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor};
@@ -60,7 +60,7 @@ impl Mandel {
         if time < SERIES_FROM {
             return Ok(early::ratios(&self.groups, time, distance));
         }
-        Ok(series::ratios(&self.groups, time, distance))
+        Ok(eigenmode_series::ratios(&self.groups, time, distance))
     }
 
     /// Shear modulus `G`, Pa.
@@ -114,7 +114,7 @@ impl Mandel {
     /// it never rises: a skeleton that keeps its volume, or water that carries nothing.
     pub fn middle_peak(&self) -> Option<(f64, f64)> {
         let height = |time: f64| {
-            let ratios = if time < SERIES_FROM { early::ratios } else { series::ratios };
+            let ratios = if time < SERIES_FROM { early::ratios } else { eigenmode_series::ratios };
             ratios(&self.groups, time, 0.0).pressure
         };
         // One peak between the diffusion's first touch of the middle and its end: the golden section of ln T.
@@ -143,8 +143,8 @@ impl Mandel {
         if time < SERIES_FROM {
             return Ok(Accuracy { terms: 0, tail_bound: early::bound(&self.groups, time) });
         }
-        let terms = series::terms(time);
-        Ok(Accuracy { terms, tail_bound: series::bound(time, terms) })
+        let terms = eigenmode_series::terms(time);
+        Ok(Accuracy { terms, tail_bound: eigenmode_series::bound(time, terms) })
     }
 }
 

@@ -11,13 +11,13 @@
 pub mod jet;
 pub mod model;
 pub mod motion;
-pub mod state;
+pub mod motion_state;
 
 use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
 use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::manufactured::model::ManufacturedModel;
 use crate::exact::manufactured::motion::{Moment, Spot};
-use crate::exact::manufactured::state::{Soil, State};
+use crate::exact::manufactured::motion_state::{Soil, State};
 use crate::exact::parameters::ColumnParameters;
 use std::f64::consts::PI;
 

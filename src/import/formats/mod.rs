@@ -1,5 +1,6 @@
 //! Files of other programs: recognised by their content, each format read by its own file into one form.
 
+pub mod appended;
 pub mod bytes;
 pub mod collections;
 pub mod frame;

@@ -243,7 +243,7 @@ pub fn frame_of(step: &Step, wanted: Wanted) -> Result<Frame, ImportError> {
     let path = step.file.as_path();
     let refused = |why: String| ImportError::table(path, why);
     match step.kind {
-        Kind::Vtu => vtu::read(&read(path)?, wanted).map_err(refused),
+        Kind::Vtu => vtu::read_file(path, wanted).map_err(refused),
         Kind::LegacyVtk => legacy_vtk::read(&read(path)?, wanted).map_err(refused),
         Kind::Npz => numpy::read_npz(&read(path)?, wanted).map_err(refused),
         Kind::Npy => {

@@ -1,5 +1,6 @@
 //! The payload of one `DataArray` of VTK's XML files: text, base64, appended, packed or not.
 
+use crate::import::formats::appended::{Appended, Raw};
 use crate::import::formats::bytes::{Budget, Scalar, base64, counts, decode_text_as, unzlib};
 use std::borrow::Cow;
 
@@ -12,8 +13,8 @@ pub struct Payloads<'a> {
     pub header: Scalar,
     /// Whether blocks are packed by zlib.
     pub is_packed: bool,
-    /// What stands behind the underscore of `AppendedData`, and whether it is raw.
-    pub appended: Option<(&'a [u8], bool)>,
+    /// What stands behind the underscore of `AppendedData`.
+    pub appended: Option<Appended<'a>>,
 }
 
 /// Where the numbers of an array stand.
@@ -69,14 +70,17 @@ impl Payloads<'_> {
             Place::Ascii(text) => Ok(text.into()),
             Place::Inline(text) => Ok(self.of_base64(text.trim_ascii(), budget)?.into()),
             Place::Appended(offset) => {
-                let (data, is_raw) = self.appended.ok_or("its data are appended, and nothing is")?;
-                let data = data.get(offset..).ok_or_else(|| {
-                    format!(
-                        "an array begins at the byte {offset} of {} appended ones: the file is cut",
-                        data.len()
-                    )
-                })?;
-                if is_raw { self.of_raw(data, budget) } else { Ok(self.of_base64(data, budget)?.into()) }
+                let beyond = |there: usize| {
+                    format!("an array begins at the byte {offset} of {there} appended ones: the file is cut")
+                };
+                match self.appended.ok_or("its data are appended, and nothing is")? {
+                    Appended::Raw(data) if offset <= data.len() => self.of_raw(data, offset, budget),
+                    Appended::Raw(data) => Err(beyond(data.len())),
+                    Appended::Base64(data) => {
+                        let data = data.get(offset..).ok_or_else(|| beyond(data.len()))?;
+                        Ok(self.of_base64(data, budget)?.into())
+                    }
+                }
             }
         }
     }
@@ -86,24 +90,16 @@ impl Payloads<'_> {
     }
 
     /// Bytes behind the header with which raw ones begin, unpacked.
-    fn of_raw<'b>(&self, data: &'b [u8], budget: &mut Budget) -> Result<Cow<'b, [u8]>, String> {
+    fn of_raw<'b>(&self, data: Raw<'b>, offset: usize, budget: &mut Budget) -> Result<Cow<'b, [u8]>, String> {
         let width = self.header.size();
-        let part = |from: usize, length: usize| {
-            from.checked_add(length).and_then(|end| data.get(from..end)).ok_or_else(|| {
-                format!(
-                    "{length} bytes are declared and {} are there: the file is cut",
-                    data.len().saturating_sub(from)
-                )
-            })
-        };
-        let first = self.sizes(part(0, width)?)?[0];
+        let first = self.sizes(&data.part(offset, width)?)?[0];
         if !self.is_packed {
-            return Ok(part(width, first)?.into());
+            return data.part(offset + width, first);
         }
-        let head = packed_head(first, width, data.len())?;
-        let header = self.sizes(part(0, head)?)?;
-        let packed = part(head, blocks_of(&header)?)?;
-        Ok(unpacked(&header, packed, budget)?.into())
+        let head = packed_head(first, width, data.len() - offset)?;
+        let header = self.sizes(&data.part(offset, head)?)?;
+        let packed = data.part(offset + head, blocks_of(&header)?)?;
+        Ok(unpacked(&header, &packed, budget)?.into())
     }
 
     /// Bytes of base64 that begins with a header, unpacked.

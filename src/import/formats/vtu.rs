@@ -3,6 +3,9 @@
 //! Format: "VTK XML Formats", docs.vtk.org. Text, base64 inline or appended, raw appended; packed by zlib or not;
 //! headers of 32 and 64 bits; both byte orders.
 
+#[cfg(test)]
+use crate::import::formats::appended::parted;
+use crate::import::formats::appended::{Appended, Opened};
 use crate::import::formats::bytes::{Budget, Scalar, as_count, count};
 use crate::import::formats::frame::{Array, Association, Cells, Frame, Wanted};
 use crate::import::formats::vtk_data::{Payloads, Place};
@@ -10,6 +13,7 @@ use crate::import::formats::xml::attributes_of;
 use quick_xml::Reader;
 use quick_xml::events::Event;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Elements that hold arrays.
 const SECTIONS: [&str; 9] =
@@ -42,9 +46,28 @@ struct Head<'a> {
 ///
 /// # Errors
 /// What is damaged, cut or claims too much.
+pub fn read_file(path: &Path, wanted: Wanted) -> Result<Frame, String> {
+    let opened = Opened::open(path).map_err(|error| format!("it cannot be read: {error}"))?;
+    frame_of(opened.parted()?, opened.size(), wanted)
+}
+
+/// The same of a file in memory, as tests make it.
+///
+/// # Errors
+/// As above.
+#[cfg(test)]
 pub fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
-    let mut budget = Budget::of_file(bytes.len());
-    let head = head_of(bytes)?;
+    frame_of(parted(bytes)?, bytes.len(), wanted)
+}
+
+/// The frame of a text with what is appended to it, of a file of a size.
+fn frame_of(
+    (text, appended): (&[u8], Option<Appended>),
+    size: usize,
+    wanted: Wanted,
+) -> Result<Frame, String> {
+    let mut budget = Budget::of_file(size);
+    let head = head_of(text, appended)?;
     let mut frame = Frame::default();
     if head.pieces.is_empty() {
         return Err("it has no piece with points".to_owned());
@@ -229,8 +252,7 @@ fn components_of(declared: &Declared) -> Result<usize, String> {
 }
 
 /// The head of a file, with the places of its data.
-fn head_of(bytes: &[u8]) -> Result<Head<'_>, String> {
-    let (text, appended) = parted(bytes)?;
+fn head_of<'a>(text: &'a [u8], appended: Option<Appended<'a>>) -> Result<Head<'a>, String> {
     let mut reader = Reader::from_reader(text);
     let payloads = Payloads { is_little: true, header: Scalar::U32, is_packed: false, appended };
     let mut head = Head { kind: String::new(), payloads, whole: Vec::new(), pieces: Vec::new() };
@@ -325,21 +347,4 @@ impl<'a> Head<'a> {
             _ => self.whole.push(declared),
         }
     }
-}
-
-/// A text and the data appended to it, with whether these are raw.
-type Parted<'a> = (&'a [u8], Option<(&'a [u8], bool)>);
-
-/// Parts a file at its appended data, which are no XML.
-fn parted(bytes: &[u8]) -> Result<Parted<'_>, String> {
-    let mark = b"<AppendedData";
-    let Some(start) = bytes.windows(mark.len()).position(|window| window == mark) else {
-        return Ok((bytes, None));
-    };
-    let rest = &bytes[start..];
-    let cut = || "its appended data are cut off".to_owned();
-    let tag = rest.iter().position(|symbol| *symbol == b'>').ok_or_else(cut)?;
-    let is_raw = rest[..tag].windows(3).any(|window| window == b"raw");
-    let underscore = rest[tag..].iter().position(|symbol| *symbol == b'_').ok_or_else(cut)?;
-    Ok((&bytes[..start], Some((&rest[tag + underscore + 1..], is_raw))))
 }

@@ -128,7 +128,7 @@ impl StiffnessSweep {
             return Ok(None);
         }
         let methods = methods_of(alike.iter().copied());
-        let time_factors = hardest.case.time_factors.clone();
+        let time_factors = hardest.case.time_factors.to_vec();
         let reference = study.references[0].name();
         let mut rows = Vec::new();
         for time_factor in &time_factors {

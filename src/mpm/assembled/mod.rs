@@ -13,9 +13,9 @@
 //! hold the two together to round-off. `operators` takes the maps from a body, `rows` stores them and
 //! `step` goes through time.
 
+pub mod assembled_state;
 pub mod operators;
 pub mod rows;
-pub mod state;
 pub mod step;
 pub mod step_operator;
 pub mod stiffness;

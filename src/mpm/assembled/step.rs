@@ -1,10 +1,12 @@
 //! The frozen step: accelerations, kick and drift.
 
+use crate::mpm::assembled::assembled_state::{
+    FrozenState, LANES, Lanes, MARGIN, SOLID, WATER, lanes, set_lanes,
+};
 use crate::mpm::assembled::operators::{FrozenOperators, NodeConstants};
 use crate::mpm::assembled::rows::RowStorage;
 use crate::mpm::assembled::rows::banded_rows::{BandsWithin, REACH};
 use crate::mpm::assembled::rows::block_products::Rows;
-use crate::mpm::assembled::state::{FrozenState, LANES, Lanes, MARGIN, SOLID, WATER, lanes, set_lanes};
 use crate::mpm::assembled::tied_rows::TiedRows;
 use crate::mpm::body::Body;
 use crate::mpm::explicit::ExplicitSettings;

@@ -1,6 +1,6 @@
 //! What a frozen step makes of states without loads, for stability analysis.
 
-use crate::mpm::assembled::state::{FIELDS, LANES, MARGIN, SOLID, WATER};
+use crate::mpm::assembled::assembled_state::{FIELDS, LANES, MARGIN, SOLID, WATER};
 use crate::mpm::assembled::step::AssembledStep;
 use crate::mpm::explicit::ExplicitSettings;
 use nalgebra::DMatrix;

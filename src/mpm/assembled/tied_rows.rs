@@ -1,7 +1,7 @@
 //! Rows of an assembled step that go together under a rigid plate: the constraint of
 //! `operators::rigid_plate` on grid arrays.
 
-use crate::mpm::assembled::state::{FrozenState, MARGIN, SOLID, WATER};
+use crate::mpm::assembled::assembled_state::{FrozenState, MARGIN, SOLID, WATER};
 use crate::mpm::body::Body;
 use crate::mpm::operators::rigid_plate::NORMAL;
 use crate::soil::tensor::Vector;

@@ -81,19 +81,18 @@ impl<const D: usize> Body<D> {
         drag_level: Drag,
         water_inertia: impl Fn(f64, usize) -> f64,
     ) {
-        let nodes = &mut self.nodes;
+        let (count, nodes) = (self.nodes.len(), &mut self.nodes);
+        let (volume, drags) = (&nodes.volume[..count], &nodes.drag[..count]);
+        let (water_mass, per_solid_mass) = (&nodes.water_mass[..count], &nodes.per_solid_mass[..count]);
+        let (free, water_free) = (&nodes.free[..count], &nodes.water_free[..count]);
+        let (mixture, water) = (&nodes.mixture_force[..count], &nodes.water_force[..count]);
+        let (solid_velocity, water_velocity) =
+            (&nodes.solid_velocity[..count], &nodes.water_velocity[..count]);
+        let solid_acceleration = &mut nodes.solid_acceleration[..count];
+        let water_acceleration = &mut nodes.water_acceleration[..count];
         for run in &nodes.runs {
-            let (volume, drags) = (&nodes.volume[run.clone()], &nodes.drag[run.clone()]);
-            let (water_mass, per_solid_mass) =
-                (&nodes.water_mass[run.clone()], &nodes.per_solid_mass[run.clone()]);
-            let (free, water_free) = (&nodes.free[run.clone()], &nodes.water_free[run.clone()]);
-            let (mixture, water) = (&nodes.mixture_force[run.clone()], &nodes.water_force[run.clone()]);
-            let (solid_velocity, water_velocity) =
-                (&nodes.solid_velocity[run.clone()], &nodes.water_velocity[run.clone()]);
-            let solid_acceleration = &mut nodes.solid_acceleration[run.clone()];
-            let water_acceleration = &mut nodes.water_acceleration[run.clone()];
-            for node in 0..run.len() {
-                let (water_inertia, drag) = (water_inertia(volume[node], run.start + node), drags[node]);
+            for node in run.start..run.end.min(count) {
+                let (water_inertia, drag) = (water_inertia(volume[node], node), drags[node]);
                 let whole_share = water_mass[node] * per_solid_mass[node];
                 let implicit_drag = implicit_drag(drag_level, kick, drag, whole_share, water_inertia);
                 for d in 0..D {
@@ -121,14 +120,13 @@ impl<const D: usize> Body<D> {
 
     /// Step 3: nodal velocities by forward Euler.
     pub(crate) fn nodal_velocities(&mut self, kick: f64, dt: f64) {
-        let nodes = &mut self.nodes;
+        let (count, nodes) = (self.nodes.len(), &mut self.nodes);
+        let (solid_rate, water_rate) =
+            (&nodes.solid_acceleration[..count], &nodes.water_acceleration[..count]);
+        let (solid, water) = (&mut nodes.solid_velocity[..count], &mut nodes.water_velocity[..count]);
+        let displacement = &mut nodes.displacement[..count];
         for run in &nodes.runs {
-            let (solid_rate, water_rate) =
-                (&nodes.solid_acceleration[run.clone()], &nodes.water_acceleration[run.clone()]);
-            let (solid, water) =
-                (&mut nodes.solid_velocity[run.clone()], &mut nodes.water_velocity[run.clone()]);
-            let displacement = &mut nodes.displacement[run.clone()];
-            for node in 0..run.len() {
+            for node in run.start..run.end.min(count) {
                 for d in 0..D {
                     solid[node][d] += kick * solid_rate[node][d];
                     water[node][d] += kick * water_rate[node][d];

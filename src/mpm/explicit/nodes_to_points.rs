@@ -4,10 +4,11 @@
 //! are in registers.
 
 use crate::mpm::body::Body;
-use crate::mpm::explicit::points_to_nodes::{add_momenta, add_momenta_in_line, momenta_of, volumes_of};
-use crate::mpm::operators::stencil::{Blocks, with_stencils};
+use crate::mpm::explicit::points_to_nodes::{add_momenta, momenta_of, volumes_of};
+use crate::mpm::operators::block_rows::Blocks;
+use crate::mpm::operators::stencil::with_stencils;
 use crate::mpm::run::profile::{Phase, enter};
-use crate::mpm::state::lanes::LANES;
+use crate::mpm::state::lanes::{LANES, block_of, blocks_of, put_block};
 use crate::mpm::state::nodes::Nodes;
 use crate::mpm::wide::wide;
 
@@ -62,65 +63,72 @@ impl<const D: usize> Body<D> {
             momenta.fill([[0.0; D]; 2]);
         }
         let points = &mut self.points;
-        let count = points.len();
-        let (solid_velocity, water_velocity) =
-            (&mut points.solid_velocity[..count], &mut points.water_velocity[..count]);
-        let (displacement, position) = (&mut points.displacement[..count], &mut points.position[..count]);
-        let (initial_volume, volume_ratio) = (&points.initial_volume[..count], &points.volume_ratio[..count]);
-        let (mut motions, mut given) = ([[[0.0; D]; 4]; LANES], [[[0.0; D]; 2]; LANES]);
-        for first in (0..count).step_by(LANES) {
-            let block = first..count.min(first + LANES);
-            for (at_point, point) in motions.iter_mut().zip(block.clone()) {
-                *at_point = basis.values(&stride, point, motion);
+        for block in blocks_of(points.len()) {
+            let (rows, count) = (basis.block(block.start / LANES), block.len().min(LANES));
+            // Velocities of skeleton and water and their rates at the nodes.
+            let mut at_points = [[[0.0; D]; 4]; LANES];
+            for lane in 0..count {
+                at_points[lane] = rows.values(&stride, lane, motion);
             }
-            for ([_, _, solid_rate, water_rate], point) in motions.iter().zip(block.clone()) {
+            let mut solid = block_of(&points.solid_velocity, &block, [0.0; D]);
+            let mut water = block_of(&points.water_velocity, &block, [0.0; D]);
+            for lane in 0..LANES {
+                let [_, _, solid_rate, water_rate] = &at_points[lane];
                 for d in 0..D {
-                    solid_velocity[point][d] += kick * solid_rate[d];
-                    water_velocity[point][d] += kick * water_rate[d];
+                    solid[lane][d] += kick * solid_rate[d];
+                    water[lane][d] += kick * water_rate[d];
                 }
             }
             if flip < 1.0 {
-                for ([solid, water, ..], point) in motions.iter().zip(block.clone()) {
+                for lane in 0..LANES {
+                    let [solid_there, water_there, ..] = &at_points[lane];
                     for d in 0..D {
-                        solid_velocity[point][d] = flip * solid_velocity[point][d] + pic * solid[d];
-                        water_velocity[point][d] = flip * water_velocity[point][d] + pic * water[d];
+                        solid[lane][d] = flip * solid[lane][d] + pic * solid_there[d];
+                        water[lane][d] = flip * water[lane][d] + pic * water_there[d];
                     }
                 }
             }
+            put_block(&mut points.solid_velocity, &block, &solid);
+            put_block(&mut points.water_velocity, &block, &water);
             if let Some(ends) = carrier {
-                for (at_point, point) in motions.iter_mut().zip(block.clone()) {
-                    at_point[0] = ends.value(&stride, point, solid_field);
+                let ends = ends.block(block.start / LANES);
+                for lane in 0..count {
+                    at_points[lane][0] = ends.value(&stride, lane, solid_field);
                 }
             }
-            for ([carrying, ..], displacement) in motions.iter().zip(&mut displacement[block.clone()]) {
+            let mut displacement = block_of(&points.displacement, &block, [0.0; D]);
+            for lane in 0..LANES {
+                let [carrying, ..] = &at_points[lane];
                 for d in 0..D {
-                    displacement[d] += dt * carrying[d];
+                    displacement[lane][d] += dt * carrying[d];
                 }
             }
+            put_block(&mut points.displacement, &block, &displacement);
             if moving {
-                for ([carrying, ..], position) in motions.iter().zip(&mut position[block.clone()]) {
+                let mut position = block_of(&points.position, &block, [0.0; D]);
+                for lane in 0..LANES {
+                    let [carrying, ..] = &at_points[lane];
                     for d in 0..D {
-                        position[d] += dt * carrying[d];
+                        position[lane][d] += dt * carrying[d];
                     }
                 }
+                put_block(&mut points.position, &block, &position);
             }
             if BACK {
-                for (given, point) in given.iter_mut().zip(block.clone()) {
-                    let volumes = volumes_of(initial_volume[point], volume_ratio[point], solid_fraction);
-                    *given = momenta_of(volumes, &solid_velocity[point], &water_velocity[point]);
+                let initial = block_of(&points.initial_volume, &block, 0.0);
+                let ratio = block_of(&points.volume_ratio, &block, 1.0);
+                let [mut grains, mut pores] = [[0.0; LANES]; 2];
+                for lane in 0..LANES {
+                    [grains[lane], pores[lane]] = volumes_of(initial[lane], ratio[lane], solid_fraction);
                 }
-                if D == 1 {
-                    add_momenta_in_line(basis, block, momenta, &given);
-                    continue;
-                }
-                for (given, point) in given.iter().zip(block) {
-                    basis.visit_runs(
-                        &stride,
-                        point,
-                        #[inline(always)]
-                        |run| add_momenta(momenta, run, given),
-                    );
-                }
+                add_momenta(
+                    rows,
+                    &stride,
+                    count,
+                    momenta,
+                    #[inline(always)]
+                    |lane| momenta_of([grains[lane], pores[lane]], &solid[lane], &water[lane]),
+                );
             }
         }
     }

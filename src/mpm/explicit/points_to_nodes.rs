@@ -5,13 +5,15 @@
 //! takes what belongs across the run into what the point gives, and sums side by side what belongs to one node.
 
 use crate::mpm::body::Body;
-use crate::mpm::operators::line_sums::{gradients_of, weights_of};
+use crate::mpm::operators::block_rows::{BlockRows, Blocks, Run};
+use crate::mpm::operators::line_sums::{LineSums, gradients_of, weights_of};
 use crate::mpm::operators::pairs::add_weighted;
-use crate::mpm::operators::stencil::{Blocks, Run, with_stencils};
-use crate::mpm::state::lanes::LANES;
+use crate::mpm::operators::stencil::with_stencils;
+use crate::mpm::state::lanes::{LANES, Lanes, block_of, blocks_of};
 use crate::mpm::state::points::Points;
 use crate::mpm::wide::wide;
 use crate::soil::conductivity_mean::ConductivityMean;
+use crate::soil::material::Material;
 use crate::soil::tensor::{Tensor, Vector, product_with_transpose};
 use std::ops::Range;
 
@@ -80,73 +82,78 @@ impl<const D: usize> Body<D> {
         basis: Blocks<'_, D, W>,
     ) {
         self.nodes.clear_sums(MASSES, VELOCITIES, FORCES);
-        let (soil, sums) = (&self.material, &mut self.nodes.sums);
+        let (soil, sums, points) = (&self.material, &mut self.nodes.sums, &self.points);
         let (masses, momenta, forces) = (&mut sums.masses[..], &mut sums.momenta[..], &mut sums.forces[..]);
-        let (solid_fraction, unit_weight) = (1.0 - soil.porosity, soil.unit_weight_of_water());
-        // Slices of one length: the bounds of all are checked here and not at every point.
-        let count = self.points.len();
-        let points = PointSlices::of(&self.points, count);
         let (stride, is_total) = (*self.grid.node_stride(), self.is_pushed_forward);
-        let (mut given_masses, mut given_momenta) = ([[0.0; 4]; LANES], [[[0.0; D]; 2]; LANES]);
-        let mut given_stresses = [[[[0.0; D]; 2]; D]; LANES];
-        for first in (0..count).step_by(LANES) {
-            let block = first..count.min(first + LANES);
-            for (lane, point) in block.clone().enumerate().take(LANES) {
-                let (initial, ratio) = (points.initial_volume[point], points.volume_ratio[point]);
-                let volumes = volumes_of(initial, ratio, solid_fraction);
-                if MASSES {
-                    let [grain_volume, pore_volume] = volumes;
-                    let drag = pore_volume * unit_weight / soil.hydraulic_conductivity_at(ratio);
-                    given_masses[lane] = [grain_volume, pore_volume, drag, 0.0];
-                }
-                if VELOCITIES {
-                    given_momenta[lane] =
-                        momenta_of(volumes, &points.solid_velocity[point], &points.water_velocity[point]);
-                }
-                if FORCES {
-                    given_stresses[lane] = points.stresses(point, is_total);
-                }
+        for block in blocks_of(points.len()) {
+            let (rows, count) = (basis.block(block.start / LANES), block.len().min(LANES));
+            let given = Given::of(soil, points, &block, is_total);
+            if D == 1 && MASSES && VELOCITIES && FORCES {
+                let sums = LineSums {
+                    masses,
+                    momenta: momenta.as_flattened_mut().as_flattened_mut().as_chunks_mut().0,
+                    forces: forces.as_flattened_mut().as_flattened_mut().as_chunks_mut().0,
+                };
+                rows.add_all_in_line(
+                    count,
+                    sums,
+                    #[inline(always)]
+                    |lane| {
+                        let [momenta, stresses] = [given.momenta(lane), given.stresses(lane)[0]];
+                        (given.masses(lane), of_line(&momenta), of_line(&stresses))
+                    },
+                );
+                continue;
             }
             if D == 1 {
-                // The same, summed over neighbours first.
                 if MASSES {
-                    basis.add_in_line(
-                        block.clone(),
-                        masses.as_flattened_mut(),
+                    let masses = masses.as_flattened_mut();
+                    rows.add_in_line(
+                        count,
+                        masses,
                         weights_of,
                         #[inline(always)]
-                        |lane| given_masses[lane],
+                        |lane| given.masses(lane),
                     );
                 }
                 if VELOCITIES {
-                    add_momenta_in_line(basis, block.clone(), momenta, &given_momenta);
+                    add_momenta(
+                        rows,
+                        &stride,
+                        count,
+                        momenta,
+                        #[inline(always)]
+                        |lane| given.momenta(lane),
+                    );
                 }
                 if FORCES {
                     let forces = forces.as_flattened_mut().as_flattened_mut();
-                    basis.add_in_line(
-                        block,
+                    rows.add_in_line(
+                        count,
                         forces,
                         gradients_of,
                         #[inline(always)]
-                        |lane| [given_stresses[lane][0][0][0], given_stresses[lane][0][1][0]],
+                        |lane| of_line(&given.stresses(lane)[0]),
                     );
                 }
                 continue;
             }
-            for (lane, point) in block.enumerate().take(LANES) {
-                basis.visit_runs(
+            for lane in 0..count {
+                let (masses_of_point, momenta_of_point, stresses_of_point) =
+                    (given.masses(lane), given.momenta(lane), given.stresses(lane));
+                rows.visit_filled_runs(
                     &stride,
-                    point,
+                    lane,
                     #[inline(always)]
                     |run| {
                         if MASSES {
-                            add_masses(masses, run, &given_masses[lane]);
+                            add_masses_to_run(masses, run, &masses_of_point);
                         }
                         if VELOCITIES {
-                            add_momenta(momenta, run, &given_momenta[lane]);
+                            add_momenta_to_run(momenta, run, &momenta_of_point);
                         }
                         if FORCES {
-                            add_forces(forces, run, &given_stresses[lane]);
+                            add_forces_to_run(forces, run, &stresses_of_point);
                         }
                     },
                 );
@@ -176,14 +183,111 @@ pub(crate) fn momenta_of<const D: usize>(
     ]
 }
 
+/// What some neighbouring points give to the nodes.
+struct Given<'a, const D: usize> {
+    /// Volumes of grains and pores, and those that the stresses fill, m^D.
+    grains: Lanes,
+    pores: Lanes,
+    stressed: Lanes,
+    /// Drag, N s/m.
+    drag: Lanes,
+    solid_velocity: &'a [Vector<D>],
+    water_velocity: &'a [Vector<D>],
+    effective_stress: &'a [Tensor<D>],
+    pressure: &'a [f64],
+    /// Inverse deformations where gradients are those of the initial configuration.
+    inverse: Option<&'a [Tensor<D>]>,
+}
+
+impl<'a, const D: usize> Given<'a, D> {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn of(soil: &Material, points: &'a Points<D>, block: &Range<usize>, is_total: bool) -> Self {
+        let initial = block_of(&points.initial_volume, block, 0.0);
+        let ratio = block_of(&points.volume_ratio, block, 1.0);
+        let share = block_of(&points.stressed_share, block, 1.0);
+        let conductivity = soil.law.conductivities(soil.hydraulic_conductivity, &ratio);
+        let (solid_fraction, unit_weight) = (1.0 - soil.porosity, soil.unit_weight_of_water());
+        let [mut grains, mut pores, mut stressed, mut drag] = [[0.0; LANES]; 4];
+        for lane in 0..LANES {
+            [grains[lane], pores[lane]] = volumes_of(initial[lane], ratio[lane], solid_fraction);
+        }
+        for lane in 0..LANES {
+            stressed[lane] = initial[lane] * ratio[lane] * share[lane];
+        }
+        for lane in 0..LANES {
+            drag[lane] = pores[lane] * unit_weight / conductivity[lane];
+        }
+        Self {
+            grains,
+            pores,
+            stressed,
+            drag,
+            solid_velocity: &points.solid_velocity[block.clone()],
+            // None where the water has points of its own: nobody takes it from these then.
+            water_velocity: points.water_velocity.get(block.clone()).unwrap_or_default(),
+            effective_stress: &points.effective_stress[block.clone()],
+            pressure: &points.pressure[block.clone()],
+            inverse: is_total.then(|| &points.inverse_deformation[block.clone()]),
+        }
+    }
+
+    /// Volumes of grains and pores, m^D, and drag, N s/m, of one of them.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn masses(&self, lane: usize) -> [f64; 4] {
+        [self.grains[lane], self.pores[lane], self.drag[lane], 0.0]
+    }
+
+    /// Volume times velocity of its phases.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn momenta(&self, lane: usize) -> [Vector<D>; 2] {
+        let volumes = [self.grains[lane], self.pores[lane]];
+        momenta_of(volumes, &self.solid_velocity[lane], &self.water_velocity[lane])
+    }
+
+    /// What each unit of gradient gives to the mixture, `(p I − σ') V`, and to the water, `p V I`,
+    /// `[direction][phase][component]`.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn stresses(&self, lane: usize) -> [[Vector<D>; 2]; D] {
+        let volume = self.stressed[lane];
+        let pressure = volume * self.pressure[lane];
+        let mut mixture = self.effective_stress[lane].map(|row| row.map(|stress| -(volume * stress)));
+        let mut water = [[0.0; D]; D];
+        for d in 0..D {
+            mixture[d][d] += pressure;
+            water[d][d] = pressure;
+        }
+        if let Some(inverse) = self.inverse {
+            // Gradients on the initial configuration meet `σ F⁻ᵀ`.
+            (mixture, water) = (
+                product_with_transpose(&mixture, &inverse[lane]),
+                product_with_transpose(&water, &inverse[lane]),
+            );
+        }
+        let along = |stress: &Tensor<D>, e: usize| std::array::from_fn(|d| stress[d][e]);
+        std::array::from_fn(|e| [along(&mixture, e), along(&water, e)])
+    }
+}
+
+/// What a point of a line has of both phases.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn of_line<const D: usize>([one, two]: &[Vector<D>; 2]) -> [f64; 2] {
+    [one[0], two[0]]
+}
+
 /// Adds a point's volumes and drag to a run of nodes.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn add_masses<const D: usize, const W: usize>(masses: &mut [[f64; 4]], run: &Run<D, W>, given: &[f64; 4]) {
-    let mut given = *given;
-    for mass in &mut given {
-        *mass *= run.across[0];
-    }
+fn add_masses_to_run<const D: usize, const W: usize>(
+    masses: &mut [[f64; 4]],
+    run: &Run<D, W>,
+    given: &[f64; 4],
+) {
+    let given = given.map(|mass| mass * run.across[0]);
     for (node, weight) in masses[run.first..run.first + W].iter_mut().zip(&run.weights) {
         add_weighted(node, *weight, &given);
     }
@@ -192,44 +296,22 @@ fn add_masses<const D: usize, const W: usize>(masses: &mut [[f64; 4]], run: &Run
 /// Adds a point's momenta to a run of nodes.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub(crate) fn add_momenta<const D: usize, const W: usize>(
+fn add_momenta_to_run<const D: usize, const W: usize>(
     momenta: &mut [[Vector<D>; 2]],
     run: &Run<D, W>,
     given: &[Vector<D>; 2],
 ) {
-    let mut given = *given;
-    for momentum in given.as_flattened_mut() {
-        *momentum *= run.across[0];
-    }
+    let given = given.map(|momentum| momentum.map(|component| component * run.across[0]));
     for (node, weight) in momenta[run.first..run.first + W].iter_mut().zip(&run.weights) {
         add_weighted(node.as_flattened_mut(), *weight, given.as_flattened());
     }
-}
-
-/// Adds the momenta of the points of a block of a line to their nodes.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub(crate) fn add_momenta_in_line<const D: usize, const W: usize>(
-    basis: Blocks<'_, D, W>,
-    block: Range<usize>,
-    momenta: &mut [[Vector<D>; 2]],
-    given: &[[Vector<D>; 2]; LANES],
-) {
-    let momenta = momenta.as_flattened_mut().as_flattened_mut();
-    basis.add_in_line(
-        block,
-        momenta,
-        weights_of,
-        #[inline(always)]
-        |lane| [given[lane][0][0], given[lane][1][0]],
-    );
 }
 
 /// Adds the forces of what each unit of gradient gives to the mixture and to the water, `[direction][phase][component]`,
 /// to a run of nodes.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn add_forces<const D: usize, const W: usize>(
+fn add_forces_to_run<const D: usize, const W: usize>(
     forces: &mut [[Vector<D>; 2]],
     run: &Run<D, W>,
     given: &[[Vector<D>; 2]; D],
@@ -250,55 +332,33 @@ fn add_forces<const D: usize, const W: usize>(
     }
 }
 
-/// What the points give to the nodes, slices of one length.
-struct PointSlices<'a, const D: usize> {
-    initial_volume: &'a [f64],
-    volume_ratio: &'a [f64],
-    stressed_share: &'a [f64],
-    inverse_deformation: &'a [Tensor<D>],
-    solid_velocity: &'a [Vector<D>],
-    water_velocity: &'a [Vector<D>],
-    effective_stress: &'a [Tensor<D>],
-    pressure: &'a [f64],
-}
-
-impl<'a, const D: usize> PointSlices<'a, D> {
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    fn of(points: &'a Points<D>, count: usize) -> Self {
-        Self {
-            initial_volume: &points.initial_volume[..count],
-            volume_ratio: &points.volume_ratio[..count],
-            stressed_share: &points.stressed_share[..count],
-            inverse_deformation: &points.inverse_deformation[..count],
-            solid_velocity: &points.solid_velocity[..count],
-            // None where the water has points of its own: nobody takes it from these then.
-            water_velocity: points.water_velocity.get(..count).unwrap_or_default(),
-            effective_stress: &points.effective_stress[..count],
-            pressure: &points.pressure[..count],
-        }
+/// Adds the momenta of some points to their nodes.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn add_momenta<const D: usize, const W: usize>(
+    rows: BlockRows<'_, D, W>,
+    stride: &[usize; D],
+    count: usize,
+    momenta: &mut [[Vector<D>; 2]],
+    given: impl Fn(usize) -> [Vector<D>; 2],
+) {
+    if D == 1 {
+        rows.add_in_line(
+            count,
+            momenta.as_flattened_mut().as_flattened_mut(),
+            weights_of,
+            #[inline(always)]
+            |lane| of_line(&given(lane)),
+        );
+        return;
     }
-
-    /// What each unit of gradient gives to the mixture, `(p I − σ') V`, and to the water, `p V I`,
-    /// `[direction][phase][component]`.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    fn stresses(&self, point: usize, is_total: bool) -> [[Vector<D>; 2]; D] {
-        let volume = self.initial_volume[point] * self.volume_ratio[point] * self.stressed_share[point];
-        let pressure = volume * self.pressure[point];
-        let mut mixture = self.effective_stress[point].map(|row| row.map(|stress| -(volume * stress)));
-        let mut water = [[0.0; D]; D];
-        for d in 0..D {
-            mixture[d][d] += pressure;
-            water[d][d] = pressure;
-        }
-        if is_total {
-            // Gradients on the initial configuration meet `σ F⁻ᵀ`.
-            let inverse = &self.inverse_deformation[point];
-            (mixture, water) =
-                (product_with_transpose(&mixture, inverse), product_with_transpose(&water, inverse));
-        }
-        let along = |stress: &Tensor<D>, e: usize| std::array::from_fn(|d| stress[d][e]);
-        std::array::from_fn(|e| [along(&mixture, e), along(&water, e)])
+    for lane in 0..count {
+        let given = given(lane);
+        rows.visit_filled_runs(
+            stride,
+            lane,
+            #[inline(always)]
+            |run| add_momenta_to_run(momenta, run, &given),
+        );
     }
 }

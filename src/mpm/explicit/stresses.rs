@@ -8,9 +8,10 @@ use crate::mpm::explicit::deformation::{
     Following, middle_gradient, relaxed, rotated, stretch_of, stretches_of,
 };
 use crate::mpm::method::Configuration;
-use crate::mpm::operators::stencil::{Blocks, with_stencils};
+use crate::mpm::operators::block_rows::Blocks;
+use crate::mpm::operators::stencil::with_stencils;
 use crate::mpm::operators::strain_gradient::StrainOperator;
-use crate::mpm::state::lanes::LANES;
+use crate::mpm::state::lanes::{LANES, Lanes, block_of, blocks_of, put_block};
 use crate::mpm::state::points::Points;
 use crate::mpm::wide::wide;
 use crate::soil::law::{Law, Stiffness};
@@ -55,16 +56,16 @@ impl<const D: usize> Body<D> {
             law: self.material.law,
             stiffness: self.stiffness,
         };
-        let count = self.points.len();
-        let mut gradients = [[[0.0; D]; D]; LANES];
-        for first in (0..count).step_by(LANES) {
-            let block = first..count.min(first + LANES);
-            for (gradient, point) in gradients.iter_mut().zip(block.clone()) {
-                *gradient = stencils.gradient(&stride, point, field);
+        for block in blocks_of(self.points.len()) {
+            let (rows, count) = (stencils.block(block.start / LANES), block.len().min(LANES));
+            let mut gradients = [[[0.0; D]; D]; LANES];
+            for lane in 0..count {
+                gradients[lane] = rows.gradient(&stride, lane, field);
             }
             if is_total {
-                for (gradient, point) in gradients.iter_mut().zip(block.clone()) {
-                    *gradient = product(gradient, &self.points.inverse_deformation[point]);
+                let inverse = block_of(&self.points.inverse_deformation, &block, [[0.0; D]; D]);
+                for lane in 0..LANES {
+                    gradients[lane] = product(&gradients[lane], &inverse[lane]);
                 }
             }
             if is_at_middle {
@@ -78,16 +79,14 @@ impl<const D: usize> Body<D> {
             }
             let mut dilations = None;
             if let Some(rates) = dilation_rates {
-                let mut of_points = [0.0; LANES];
-                for ((dilation, gradient), rate) in
-                    of_points.iter_mut().zip(&gradients).zip(&rates[block.clone()])
-                {
-                    let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
-                    *dilation = dt * (rate - trace);
+                let mut of_points = block_of(rates, &block, 0.0);
+                for lane in 0..LANES {
+                    let trace: f64 = (0..D).map(|d| gradients[lane][d][d]).sum();
+                    of_points[lane] = dt * (of_points[lane] - trace);
                 }
                 dilations = Some(of_points);
             }
-            update.apply(&mut self.points, block, increments, dilations);
+            update.apply(&mut self.points, &block, increments, dilations);
         }
     }
 
@@ -95,8 +94,10 @@ impl<const D: usize> Body<D> {
     pub(crate) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
         let mut increments = [[[0.0; D]; D]; LANES];
         increments[0] = *increment;
-        let following = self.following();
-        deform(&mut self.points, point..point + 1, following, &increments);
+        let (following, block) = (self.following(), point..point + 1);
+        let mut ratios = block_of(&self.points.volume_ratio, &block, 1.0);
+        deform(&mut self.points, &block, following, &increments, &mut ratios);
+        put_block(&mut self.points.volume_ratio, &block, &ratios);
     }
 
     #[inline]
@@ -131,17 +132,18 @@ impl StressUpdate {
     fn apply<const D: usize>(
         &self,
         points: &mut Points<D>,
-        block: Range<usize>,
+        block: &Range<usize>,
         mut increments: [Tensor<D>; LANES],
         dilations: Option<[f64; LANES]>,
     ) {
-        let mut before = [1.0; LANES];
-        before[..block.len()].copy_from_slice(&points.volume_ratio[block.clone()]);
+        let before = block_of(&points.volume_ratio, block, 1.0);
+        let mut ratios = before;
         if self.deforms {
-            deform(points, block.clone(), self.following, &increments);
+            deform(points, block, self.following, &increments, &mut ratios);
         }
         if self.law.is_hyperelastic() {
-            for point in block {
+            put_block(&mut points.volume_ratio, block, &ratios);
+            for point in block.clone() {
                 let deformation = inverse(&points.inverse_deformation[point]).0;
                 points.effective_stress[point] =
                     self.stiffness.neo_hookean_stress(&deformation, points.volume_ratio[point]);
@@ -156,11 +158,12 @@ impl StressUpdate {
                 }
             }
             if self.deforms {
-                for (ratio, dilation) in points.volume_ratio[block.clone()].iter_mut().zip(&dilations) {
+                for (ratio, dilation) in ratios.iter_mut().zip(&dilations) {
                     *ratio *= stretch_of(*dilation);
                 }
             }
         }
+        put_block(&mut points.volume_ratio, block, &ratios);
         let mut changes = increments;
         for change in &mut changes {
             *change = self.stiffness.stress(change);
@@ -173,21 +176,21 @@ impl StressUpdate {
                 }
             }
         }
-        let (ratios, stresses) = (&points.volume_ratio[block.clone()], &mut points.effective_stress[block]);
+        let mut stresses = block_of(&points.effective_stress, block, [[0.0; D]; D]);
         if self.deforms && D > 1 {
             for (stress, increment) in stresses.iter_mut().zip(&increments) {
                 *stress = rotated(stress, increment);
             }
         }
-        let after = ratios.iter().zip(&before);
-        for ((stress, change), (ratio, before)) in stresses.iter_mut().zip(&changes).zip(after) {
-            let modulus = self.law.modulus_ratio(*before, *ratio);
+        for lane in 0..LANES {
+            let modulus = self.law.modulus_ratio(before[lane], ratios[lane]);
             for d in 0..D {
                 for e in 0..D {
-                    stress[d][e] += modulus * change[d][e];
+                    stresses[lane][d][e] += modulus * changes[lane][d][e];
                 }
             }
         }
+        put_block(&mut points.effective_stress, block, &stresses);
     }
 }
 
@@ -196,9 +199,10 @@ impl StressUpdate {
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 fn deform<const D: usize>(
     points: &mut Points<D>,
-    block: Range<usize>,
+    block: &Range<usize>,
     following: Following,
     increments: &[Tensor<D>; LANES],
+    ratios: &mut Lanes,
 ) {
     let mut strains = [[0.0; D]; LANES];
     for (strain, increment) in strains.iter_mut().zip(increments) {
@@ -208,18 +212,20 @@ fn deform<const D: usize>(
     }
     let stretches = stretches_of(&strains);
     if following.takes_domain() {
-        for (half_length, stretch) in points.half_length[block.clone()].iter_mut().zip(&stretches) {
+        let mut half_lengths = block_of(&points.half_length, block, [0.0; D]);
+        for (half_length, stretch) in half_lengths.iter_mut().zip(&stretches) {
             for d in 0..D {
                 half_length[d] *= stretch[d];
             }
         }
+        put_block(&mut points.half_length, block, &half_lengths);
     }
     if following.takes_inverse() {
         for (inverse, increment) in points.inverse_deformation[block.clone()].iter_mut().zip(increments) {
             *inverse = relaxed(inverse, increment);
         }
     }
-    for (ratio, stretch) in points.volume_ratio[block].iter_mut().zip(&stretches) {
+    for (ratio, stretch) in ratios.iter_mut().zip(&stretches) {
         *ratio *= stretch.iter().product::<f64>();
     }
 }

@@ -4,10 +4,10 @@
 //! the same, and then added to the nodes at once: a sum in memory would have to be stored and loaded again for every
 //! point.
 
+use crate::mpm::operators::block_rows::BlockRows;
 use crate::mpm::operators::pairs::add_weighted;
-use crate::mpm::operators::stencil::{Blocks, LaneRows};
-use crate::mpm::state::lanes::{LANES, Lanes};
-use std::ops::Range;
+use crate::mpm::operators::stencil::LaneRows;
+use crate::mpm::state::lanes::Lanes;
 
 /// Weights of some rows.
 #[inline(always)]
@@ -23,29 +23,23 @@ pub fn gradients_of<const W: usize>(rows: &LaneRows<W>) -> &[Lanes; W] {
     &rows.gradients
 }
 
-impl<const D: usize, const W: usize> Blocks<'_, D, W> {
-    /// Adds what each point of a block gives, by its place in the block, to its nodes, `N` numbers a node: times the
+impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
+    /// Adds what each of so many points of the block gives, by its place in it, to its nodes, `N` numbers a node: times the
     /// weights or the gradients of its rows. Of one dimension alone.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn add_in_line<const N: usize>(
         &self,
-        block: Range<usize>,
+        count: usize,
         sums: &mut [f64],
         rows_of: impl Fn(&LaneRows<W>) -> &[Lanes; W],
         given: impl Fn(usize) -> [f64; N],
     ) {
         let nodes = sums.as_chunks_mut::<N>().0;
-        let rows = rows_of(&self.rows[block.start / LANES][0]);
-        let mut add = |first: usize, window: &[[f64; N]; W]| {
-            for (node, sum) in nodes[first..first + W].iter_mut().zip(window) {
-                for i in 0..N {
-                    node[i] += sum[i];
-                }
-            }
-        };
-        let (mut window, mut first) = ([[0.0; N]; W], self.first[block.start]);
-        for (lane, own) in self.first[block].iter().enumerate().take(LANES) {
+        let rows = rows_of(&self.rows[0]);
+        let mut add = |first: usize, window: &[[f64; N]; W]| add_nodes(&mut nodes[first..first + W], window);
+        let (mut window, mut first) = ([[0.0; N]; W], self.first[0]);
+        for (lane, own) in self.first.iter().enumerate().take(count) {
             if *own != first {
                 add(first, &window);
                 (window, first) = ([[0.0; N]; W], *own);
@@ -57,14 +51,88 @@ impl<const D: usize, const W: usize> Blocks<'_, D, W> {
         }
         add(first, &window);
     }
+
+    /// The same of masses, momenta and forces in one walk along the block: those of the forces times the gradients.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn add_all_in_line(
+        &self,
+        count: usize,
+        mut sums: LineSums<'_>,
+        given: impl Fn(usize) -> ([f64; 4], [f64; 2], [f64; 2]),
+    ) {
+        let rows = &self.rows[0];
+        let (mut window, mut first) = (Window::<W>::default(), self.first[0]);
+        for (lane, own) in self.first.iter().enumerate().take(count) {
+            if *own != first {
+                window.add_to(&mut sums, first);
+                (window, first) = (Window::default(), *own);
+            }
+            let (masses, momenta, forces) = given(lane);
+            for k in 0..W {
+                let (weight, gradient) = (rows.weights[k][lane], rows.gradients[k][lane]);
+                add_weighted(&mut window.masses[k], weight, &masses);
+                add_weighted(&mut window.momenta[k], weight, &momenta);
+                add_weighted(&mut window.forces[k], gradient, &forces);
+            }
+        }
+        window.add_to(&mut sums, first);
+    }
+}
+
+/// What the points of a line give to its nodes, `[node]`.
+pub struct LineSums<'a> {
+    /// As [`NodalSums::masses`](crate::mpm::state::nodes::NodalSums::masses).
+    pub masses: &'a mut [[f64; 4]],
+    /// Momenta of both phases.
+    pub momenta: &'a mut [[f64; 2]],
+    /// Forces on the mixture and on the water.
+    pub forces: &'a mut [[f64; 2]],
+}
+
+/// The same of the few nodes that neighbouring points give to.
+#[derive(Clone, Copy)]
+struct Window<const W: usize> {
+    masses: [[f64; 4]; W],
+    momenta: [[f64; 2]; W],
+    forces: [[f64; 2]; W],
+}
+
+impl<const W: usize> Default for Window<W> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self { masses: [[0.0; 4]; W], momenta: [[0.0; 2]; W], forces: [[0.0; 2]; W] }
+    }
+}
+
+impl<const W: usize> Window<W> {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn add_to(&self, sums: &mut LineSums<'_>, first: usize) {
+        add_nodes(&mut sums.masses[first..first + W], &self.masses);
+        add_nodes(&mut sums.momenta[first..first + W], &self.momenta);
+        add_nodes(&mut sums.forces[first..first + W], &self.forces);
+    }
+}
+
+/// Adds the numbers of some nodes to others.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn add_nodes<const N: usize>(nodes: &mut [[f64; N]], window: &[[f64; N]]) {
+    for (node, sum) in nodes.iter_mut().zip(window) {
+        for i in 0..N {
+            node[i] += sum[i];
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::LineSums;
     use crate::mpm::operators::row::Row;
     use crate::mpm::operators::stencil::Stencils;
     use crate::mpm::state::grid::Grid;
-    use crate::mpm::state::lanes::LANES;
+    use crate::mpm::state::lanes::{LANES, blocks_of};
 
     #[test]
     fn every_point_gives_to_its_own_nodes() {
@@ -77,6 +145,8 @@ mod tests {
             stencils.set(&grid, point, &[row]);
         }
         let mut expected = vec![[0.0; 2]; grid.node_count()];
+        let mut masses = vec![[0.0; 4]; grid.node_count()];
+        let (mut momenta, mut forces) = (vec![0.0; 2 * grid.node_count()], vec![0.0; 2 * grid.node_count()]);
         let (mut sums, mut slopes) = (vec![0.0; 2 * grid.node_count()], vec![0.0; 2 * grid.node_count()]);
         for point in 0..count {
             for (k, weight) in [0.25, 0.5, 0.25 + point as f64].into_iter().enumerate() {
@@ -85,11 +155,23 @@ mod tests {
             }
         }
         let blocks = stencils.blocks();
-        for start in (0..count).step_by(LANES) {
-            let block = start..count.min(start + LANES);
-            let given = |lane: usize| [(start + lane) as f64, 1.0];
-            blocks.add_in_line(block.clone(), &mut sums, super::weights_of, given);
-            blocks.add_in_line(block, &mut slopes, super::gradients_of, given);
+        for block in blocks_of(count) {
+            let rows = blocks.block(block.start / LANES);
+            let given = |lane: usize| [(block.start + lane) as f64, 1.0];
+            rows.add_in_line(block.len(), &mut sums, super::weights_of, given);
+            rows.add_in_line(block.len(), &mut slopes, super::gradients_of, given);
+            let all = LineSums {
+                masses: &mut masses,
+                momenta: momenta.as_chunks_mut().0,
+                forces: forces.as_chunks_mut().0,
+            };
+            rows.add_all_in_line(block.len(), all, |lane| {
+                ([given(lane)[0], 2.0, 0.0, 0.0], given(lane), given(lane))
+            });
+        }
+        assert_eq!((&sums, &slopes), (&momenta, &forces), "in one walk or in several");
+        for (masses, sums) in masses.iter().zip(sums.as_chunks::<2>().0) {
+            assert_eq!(*masses, [sums[0], 2.0 * sums[1], 0.0, 0.0]);
         }
         for (got, expected) in sums.iter().zip(expected.as_flattened()) {
             assert!((got - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{got} for {expected}");

@@ -2,6 +2,7 @@
 //! divergence, recovery, surface load, rigid plate, self-weight.
 
 pub mod basis;
+pub mod block_rows;
 pub mod chord_mean;
 pub mod corners;
 pub mod line_sums;

@@ -1,6 +1,6 @@
 //! Sparse operators between points and nodes: one small tensor-product block of nodes a point.
 
-use crate::mpm::operators::pairs::{add_weighted, weighted_sum};
+use crate::mpm::operators::block_rows::Blocks;
 use crate::mpm::operators::row::Row;
 use crate::mpm::state::grid::{GHOST_LAYERS, Grid, index_of, power};
 use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
@@ -13,7 +13,7 @@ use crate::soil::tensor::{Tensor, Vector};
 /// are no product has several blocks, of which they are the sum.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stencils<const D: usize, const W: usize> {
-    /// Flat index of the lowest node of each point's block, or of each of its blocks.
+    /// Flat index of the lowest node of each point's block, or of each of its blocks; as many as there are rows.
     pub first: Vec<usize>,
     rows: Vec<RowBlock<D, W>>,
     /// Blocks per point.
@@ -41,8 +41,8 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Room for `points` points of so many blocks each, all rows zero; of one on a line.
     pub fn with_parts(points: usize, parts: usize) -> Self {
         let empty = LaneRows { weights: [[0.0; LANES]; W], gradients: [[0.0; LANES]; W] };
-        let blocks = points * parts;
-        Self { first: vec![0; blocks], rows: vec![[empty; D]; blocks.div_ceil(LANES)], parts }
+        let rows = vec![[empty; D]; (points * parts).div_ceil(LANES)];
+        Self { first: vec![0; LANES * rows.len()], rows, parts }
     }
 
     /// Sets the block of a point from one row a direction.
@@ -82,9 +82,9 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         places: &[Vector<D>],
         mut fill: impl FnMut(usize, usize, &Lanes, &mut LaneRows<W>) -> Lanes,
     ) {
-        let firsts = self.first.chunks_mut(LANES);
+        let firsts = self.first.as_chunks_mut::<LANES>().0;
         for (block, (rows, (firsts, places))) in
-            self.rows.iter_mut().zip(firsts.zip(places.chunks(LANES))).enumerate()
+            self.rows.iter_mut().zip(firsts.iter_mut().zip(places.chunks(LANES))).enumerate()
         {
             firsts.fill(0);
             for direction in 0..D {
@@ -101,7 +101,7 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     /// The blocks of all points, borrowed once for a loop over them.
     #[inline]
     pub fn blocks(&self) -> Blocks<'_, D, W> {
-        Blocks { first: &self.first, rows: &self.rows, parts: self.parts }
+        Blocks::of(self.first.as_chunks().0, &self.rows, self.parts)
     }
 
     /// Visits the nodes of a point's block with weight and gradient (1/m).
@@ -211,132 +211,6 @@ impl<const D: usize> PointStencils<D> {
         });
         row
     }
-}
-
-/// [`Stencils`] as slices: a loop that writes nodal fields reads their places once, and not anew after
-/// every store.
-#[derive(Clone, Copy, Debug)]
-pub struct Blocks<'a, const D: usize, const W: usize> {
-    /// Flat index of the lowest node of each point's block.
-    pub first: &'a [usize],
-    /// Rows of the points, some neighbours side by side.
-    pub rows: &'a [RowBlock<D, W>],
-    parts: usize,
-}
-
-impl<const D: usize, const W: usize> Blocks<'_, D, W> {
-    /// Visits a point's block run by run. A run is one slice of a nodal field, so that its bounds are checked once.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn visit_runs(&self, stride: &[usize; D], point: usize, mut run_visitor: impl FnMut(&Run<D, W>)) {
-        // On a line a point has one block, and the compiler knows.
-        if D == 1 {
-            self.visit_block(stride, point, &mut run_visitor);
-            return;
-        }
-        for block in point * self.parts..(point + 1) * self.parts {
-            self.visit_block(stride, block, &mut run_visitor);
-        }
-    }
-
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    fn visit_block(&self, stride: &[usize; D], block: usize, run_visitor: &mut impl FnMut(&Run<D, W>)) {
-        let (rows, lane) = (&self.rows[block / LANES], block % LANES);
-        let mut run = Run { first: 0, weights: [0.0; W], gradients: [0.0; W], across: [1.0; D] };
-        for k in 0..W {
-            run.weights[k] = rows[0].weights[k][lane];
-            run.gradients[k] = rows[0].gradients[k][lane];
-        }
-        for number in 0..power(W, D - 1) {
-            let mut rest = number;
-            run.first = self.first[block];
-            run.across = [1.0; D];
-            for direction in 1..D {
-                let k = rest % W;
-                rest /= W;
-                run.first += k * stride[direction];
-                let (weight, gradient) =
-                    (rows[direction].weights[k][lane], rows[direction].gradients[k][lane]);
-                for component in 0..D {
-                    run.across[component] *= if component == direction { gradient } else { weight };
-                }
-            }
-            run_visitor(&run);
-        }
-    }
-
-    /// Sum of a nodal vector field with the weights: its value at the point.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
-        let [value] = self.values(stride, point, field.as_chunks().0);
-        value
-    }
-
-    /// The same of several vectors that lie side by side at each node.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn values<const M: usize>(
-        &self,
-        stride: &[usize; D],
-        point: usize,
-        fields: &[[Vector<D>; M]],
-    ) -> [Vector<D>; M] {
-        let mut values = [[0.0; D]; M];
-        self.visit_runs(
-            stride,
-            point,
-            #[inline(always)]
-            |run| {
-                let sum = weighted_sum(&run.weights, &fields[run.first..run.first + W]);
-                add_weighted(values.as_flattened_mut(), run.across[0], sum.as_flattened());
-            },
-        );
-        values
-    }
-
-    /// Gradient of a nodal vector field at the point, `[component][direction]`.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        let nodes = field.as_chunks::<1>().0;
-        // `[direction][component]`: components lie side by side at the nodes.
-        let mut slopes = [[0.0; D]; D];
-        self.visit_runs(
-            stride,
-            point,
-            #[inline(always)]
-            |run| {
-                let nodes = &nodes[run.first..run.first + W];
-                let [slope] = weighted_sum(&run.gradients, nodes);
-                add_weighted(&mut slopes[0], run.across[0], &slope);
-                if D > 1 {
-                    // All directions but the first have the same sum along the run.
-                    let [value] = weighted_sum(&run.weights, nodes);
-                    for direction in 1..D {
-                        add_weighted(&mut slopes[direction], run.across[direction], &value);
-                    }
-                }
-            },
-        );
-        std::array::from_fn(|component| std::array::from_fn(|direction| slopes[direction][component]))
-    }
-}
-
-/// `W` neighbouring nodes along the first direction in the block of a point, whose weights and gradients are products
-/// of what is along the run and what is across it: sums over the nodes are taken along first.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Run<const D: usize, const W: usize> {
-    /// The first of the nodes.
-    pub first: usize,
-    /// Weights along the run.
-    pub weights: [f64; W],
-    /// Gradients along the run, 1/m.
-    pub gradients: [f64; W],
-    /// What the other directions give: to the weights and to the first component of the gradients, and to each of the
-    /// others, 1/m.
-    pub across: Vector<D>,
 }
 
 /// Visits the nodes of a tensor product of rows with their weights.

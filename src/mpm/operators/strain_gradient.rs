@@ -6,8 +6,9 @@
 //! the ends of the point's domain.
 
 use crate::mpm::method::StrainGradient;
+use crate::mpm::operators::block_rows::Blocks;
 use crate::mpm::operators::row::Row;
-use crate::mpm::operators::stencil::{Blocks, LaneRows, PointStencils, Stencils};
+use crate::mpm::operators::stencil::{LaneRows, PointStencils, Stencils};
 use crate::mpm::state::cells::Cells;
 use crate::mpm::state::grid::{Grid, Line, SIXTH, cell_below};
 use crate::mpm::state::lanes::{LANES, Lanes};
@@ -59,7 +60,7 @@ impl<const D: usize> StrainOperator<D> {
                 // Where a neighbour is missing, the polynomial is of a lower degree.
                 let cut = cells.runs().iter().filter(|(home, _)| !cells.is_reached_around(*home));
                 for (home, points) in cut.cloned() {
-                    let cell = grid.cell_index(home);
+                    let cell = grid.cell_at(&cells.place[points.start]);
                     for d in 0..D {
                         let stride = grid.cell_stride()[d];
                         let sides = (cells.is_reached(home - stride), cells.is_reached(home + stride));

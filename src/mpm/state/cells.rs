@@ -25,17 +25,25 @@ pub struct Cells<const D: usize> {
     point_count: Vec<usize>,
     /// Runs of neighbouring points that share a cell, with it.
     runs: Vec<(usize, Range<usize>)>,
+    /// Whether the runs and the counts are those of the points' cells as they stand.
+    are_counted: bool,
     /// Whether points may belong to another cell than the one that they lie in.
     has_strays: bool,
     /// Whether a point's domain reaches into each cell.
     reached: Vec<bool>,
     /// Whether a domain reaches into both neighbours of each cell in every direction.
     reached_around: Vec<bool>,
-    /// Whether each cell is occupied and has an empty neighbour.
+    /// Whether each cell is occupied, and whether it has an empty neighbour in the grid besides.
+    holds: Vec<bool>,
     at_edge: Vec<bool>,
+    /// The cells that domains reach into while they are looked for, and which of the occupations they were found of.
+    reached_now: Vec<bool>,
+    reached_of: Option<u64>,
     /// Occupied cells in index order, and how often they have changed.
     occupied: Vec<usize>,
     occupations: u64,
+    /// Which of the occupations the volumes of empty cells are zero of.
+    volumes_of: Option<u64>,
     /// Current volume of each cell's points, m^D.
     volume: Vec<f64>,
     /// Volume-weighted mean porosity of each occupied cell's points.
@@ -64,12 +72,17 @@ impl<const D: usize> Cells<D> {
             first_node,
             point_count: vec![0; count],
             runs: Vec::with_capacity(points),
+            are_counted: false,
             has_strays: false,
             reached: vec![false; count],
             reached_around: vec![false; count],
+            holds: vec![false; count],
             at_edge: vec![false; count],
+            reached_now: vec![false; count],
+            reached_of: None,
             occupied: Vec::with_capacity(count),
             occupations: 0,
+            volumes_of: None,
             volume: vec![0.0; count],
             porosity: vec![0.0; count],
             inverse_deformation: vec![[[0.0; D]; D]; count],
@@ -78,31 +91,38 @@ impl<const D: usize> Cells<D> {
 
     /// Finds the cell of every point and sums volumes over each cell's points.
     pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, initial_porosity: f64) {
-        wide!(self.find_places(grid, &points.position));
-        self.find_runs();
-        self.point_count.fill(0);
-        for (cell, run) in &self.runs {
-            self.point_count[*cell] += run.len();
+        let have_crossed = wide!(self.find_places(grid, &points.position));
+        if have_crossed || !self.are_counted {
+            self.find_runs();
+            self.point_count.fill(0);
+            for (cell, run) in &self.runs {
+                self.point_count[*cell] += run.len();
+            }
+            self.list_occupied();
+            self.are_counted = true;
         }
-        self.list_occupied();
         self.sum_volumes(points, initial_porosity);
     }
 
-    /// Place and cell of every point.
+    /// Place and cell of every point; whether one has another cell than before.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    fn find_places(&mut self, grid: &Grid<D>, positions: &[Vector<D>]) {
+    fn find_places(&mut self, grid: &Grid<D>, positions: &[Vector<D>]) -> bool {
         let lines: [Line; D] = std::array::from_fn(|direction| grid.line(direction));
         let strides = grid.cell_stride().map(|stride| stride as f64);
         let found = self.of_point.iter_mut().zip(&mut self.place);
+        let mut have_crossed = false;
         for (position, (of_point, place)) in positions.iter().zip(found) {
             let mut cell = 0.0;
             for d in 0..D {
                 place[d] = lines[d].held_in_cells(position[d]);
                 cell += strides[d] * lines[d].cell_at(place[d]);
             }
-            *of_point = index_of(cell);
+            let cell = index_of(cell);
+            have_crossed |= cell != *of_point;
+            *of_point = cell;
         }
+        have_crossed
     }
 
     /// Finds the runs of neighbouring points that share a cell: the points of a cell follow each other, but where rows
@@ -161,12 +181,14 @@ impl<const D: usize> Cells<D> {
         }
         self.find_runs();
         self.has_strays = true;
+        (self.are_counted, self.volumes_of) = (false, None);
         self.list_occupied();
     }
 
     /// Keeps of the cells those in which points were located, with the volumes of these, m^D: `volumes` times
     /// `shares`.
     pub fn keep_located(&mut self, volumes: &[f64], shares: &[f64]) {
+        (self.are_counted, self.volumes_of) = (false, None);
         self.point_count.fill(0);
         self.volume.fill(0.0);
         for (cell, (volume, share)) in self.of_point.iter().zip(volumes.iter().zip(shares)) {
@@ -178,35 +200,43 @@ impl<const D: usize> Cells<D> {
 
     /// Sums volumes over each cell's points.
     pub fn sum_volumes(&mut self, points: &Points<D>, initial_porosity: f64) {
-        self.volume.fill(0.0);
-        self.porosity.fill(0.0);
+        let solid_fraction = 1.0 - initial_porosity;
+        let (initial_volume, ratios) = (&points.initial_volume[..], &points.volume_ratio[..points.len()]);
+        // Where each cell has one run, its sums begin with it.
+        let is_at_once = self.runs.len() == self.occupied.len();
+        if !is_at_once || self.volumes_of != Some(self.occupations) {
+            self.volume.fill(0.0);
+            self.porosity.fill(0.0);
+            self.volumes_of = Some(self.occupations);
+        }
         for (cell, run) in &self.runs {
-            let (mut volume, mut pores) = (self.volume[*cell], self.porosity[*cell]);
-            let state = points.initial_volume[run.clone()].iter().zip(&points.volume_ratio[run.clone()]);
-            for (initial, ratio) in state {
+            let (mut volume, mut pores) =
+                if is_at_once { (0.0, 0.0) } else { (self.volume[*cell], self.porosity[*cell]) };
+            for (initial, ratio) in initial_volume[run.clone()].iter().zip(&ratios[run.clone()]) {
                 volume += initial * ratio;
                 // n V = (J − (1 − n_0)) V_0
-                pores += initial * (ratio - (1.0 - initial_porosity));
+                pores += initial * (ratio - solid_fraction);
             }
-            (self.volume[*cell], self.porosity[*cell]) = (volume, pores);
+            (self.volume[*cell], self.porosity[*cell]) =
+                (volume, if is_at_once { pores / volume } else { pores });
         }
-        for cell in &self.occupied {
-            self.porosity[*cell] /= self.volume[*cell];
+        if !is_at_once {
+            for cell in &self.occupied {
+                self.porosity[*cell] /= self.volume[*cell];
+            }
         }
     }
 
     /// Finds the cells that the points' domains reach into: a cell may have lost its last point and
     /// still carry the edge of the material.
     pub fn find_reached(&mut self, grid: &Grid<D>, points: &Points<D>) {
-        self.reached.fill(false);
-        for cell in &self.occupied {
-            self.reached[*cell] = true;
-            let is_alone =
-                |stride: &usize| self.point_count[cell - stride] == 0 || self.point_count[cell + stride] == 0;
-            self.at_edge[*cell] = grid.cell_stride().iter().any(is_alone);
+        let have_changed = self.reached_of.replace(self.occupations) != Some(self.occupations);
+        if have_changed {
+            self.find_edges(grid);
         }
+        self.reached_now.copy_from_slice(&self.holds);
         let per_cell = grid.inverse_cell_size();
-        let (reached, at_edge, places) = (&mut self.reached, &self.at_edge, &self.place);
+        let (reached, at_edge, places) = (&mut self.reached_now, &self.at_edge, &self.place);
         for (home, run) in self.runs.iter().filter(|(home, _)| at_edge[*home]) {
             for (place, half_length) in places[run.clone()].iter().zip(&points.half_length[run.clone()]) {
                 let cell = grid.cell_at(place);
@@ -224,9 +254,30 @@ impl<const D: usize> Cells<D> {
                 }
             }
         }
+        if !have_changed && self.reached_now == self.reached {
+            return;
+        }
+        std::mem::swap(&mut self.reached, &mut self.reached_now);
         for cell in &self.occupied {
             let is_between = |stride: &usize| self.reached[cell - stride] && self.reached[cell + stride];
             self.reached_around[*cell] = grid.cell_stride().iter().all(is_between);
+        }
+    }
+
+    /// Finds the occupied cells that have an empty neighbour in the grid.
+    fn find_edges(&mut self, grid: &Grid<D>) {
+        for (holds, count) in self.holds.iter_mut().zip(&self.point_count) {
+            *holds = *count > 0;
+        }
+        for cell in &self.occupied {
+            let index = grid.cell_index(*cell);
+            self.at_edge[*cell] = (0..D).any(|d| {
+                let stride = grid.cell_stride()[d];
+                let is_alone_below = index[d] > GHOST_LAYERS && !self.holds[cell - stride];
+                let is_alone_above =
+                    index[d] + 1 < grid.cells[d] + GHOST_LAYERS && !self.holds[cell + stride];
+                is_alone_below || is_alone_above
+            });
         }
     }
 
@@ -416,6 +467,39 @@ mod tests {
         cells.of_point.clear();
         cells.find_runs();
         assert_eq!(cells.runs(), []);
+    }
+
+    #[test]
+    fn cells_found_again_are_those_found_at_first() {
+        let grid = Grid::new(0.5, [4, 6]);
+        let mut points = Points::lattice(0.5, [4, 4], 2);
+        let mut again = Cells::new(&grid, points.len());
+        // Points sink and rise by halves of their domains, row by row; some are left out of the lowest cells' rows.
+        for step in 0..40 {
+            for (point, place) in points.position.iter_mut().enumerate() {
+                let along = 0.9 * (1.0 + (0.3 * f64::from(step) + 0.1 * (point / 8) as f64).sin());
+                place[1] = points.initial_position[point][1] * 0.8 + 0.5 * along;
+                place[0] = points.initial_position[point][0] * (1.0 - 0.004 * f64::from(step));
+                points.volume_ratio[point] = 1.0 - 0.01 * along;
+                points.half_length[point] = [0.125 * (1.0 - 0.004 * f64::from(step)), 0.1];
+            }
+            let mut first = Cells::new(&grid, points.len());
+            for cells in [&mut again, &mut first] {
+                cells.locate(&grid, &points, 0.3);
+                cells.find_reached(&grid, &points);
+            }
+            assert_eq!((&again.of_point, &again.runs), (&first.of_point, &first.runs), "step {step}");
+            assert_eq!((&again.point_count, &again.occupied), (&first.point_count, &first.occupied));
+            assert_eq!((&again.volume, &again.porosity), (&first.volume, &first.porosity), "step {step}");
+            assert_eq!(again.reached, first.reached, "step {step}");
+            for cell in first.occupied() {
+                assert_eq!(again.is_reached_around(cell), first.is_reached_around(cell), "step {step}");
+                let of_cell = (0..points.len()).filter(|point| first.of_point[*point] == cell);
+                let volume: f64 = of_cell.map(|point| points.volume(point)).sum();
+                assert!((again.volume(cell) / volume - 1.0).abs() < 1e-14, "step {step}");
+            }
+        }
+        assert!(again.occupations() > 3 && again.runs().len() > again.occupied().count(), "they crossed");
     }
 
     #[test]

@@ -203,6 +203,8 @@ mod tests {
         let cells = cells_of(&grid, &points);
         points.volume_ratio[2] = 20.0;
         points.stressed_share[2] = 1.0 / 20.0;
+        // Just below a face, where the whole way would lead across it.
+        points.position[3][0] = 0.49;
         confined.share_out(&grid, &cells, &mut points);
         for (place, cell) in points.position.iter().zip(cells) {
             assert_eq!(grid.flat_cell(&grid.cell_of(place)), cell, "{place:?}");

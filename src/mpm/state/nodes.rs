@@ -60,6 +60,10 @@ pub struct Nodes<const D: usize> {
     /// Runs of neighbouring nodes that carry mass, in index order; of a narrow column's nodes many are ghosts. A
     /// loop over the nodes of a run takes its slices of the fields, whose bounds are checked once.
     pub runs: Vec<Range<usize>>,
+    /// Whether each node carries mass: what the runs were found from.
+    carries: Vec<bool>,
+    /// Whether the fields of masses are zero between the runs.
+    is_empty_between: bool,
     mass_cut_off: f64,
 }
 
@@ -192,6 +196,8 @@ impl<const D: usize> Nodes<D> {
             supports,
             water_supports,
             runs: Vec::with_capacity(count.div_ceil(2)),
+            carries: vec![false; count],
+            is_empty_between: false,
             mass_cut_off: MASS_CUT_OFF * cell_mass,
         }
     }
@@ -222,45 +228,61 @@ impl<const D: usize> Nodes<D> {
         }
     }
 
-    /// Turns the points' [`sums`](Self::sums) into masses, volumes and drag of the soil.
+    /// Turns the points' [`sums`](Self::sums) into masses, volumes, porosities and drag of the soil.
     pub fn take_masses(&mut self, soil: &Material) {
-        for (solid_mass, [grain_volume, ..]) in self.solid_mass.iter_mut().zip(&self.sums.masses) {
-            *solid_mass = soil.grain_density * grain_volume;
+        self.take_grains(soil.grain_density);
+        let count = self.len();
+        let masses = &self.sums.masses[..count];
+        let (solid_mass, per_solid_mass) = (&self.solid_mass[..count], &mut self.per_solid_mass[..count]);
+        let (water_mass, per_water_mass) = (&mut self.water_mass[..count], &mut self.per_water_mass[..count]);
+        let (volumes, porosity) = (&mut self.volume[..count], &mut self.porosity[..count]);
+        let drags = &mut self.drag[..count];
+        for run in &self.runs {
+            for node in run.start..run.end.min(count) {
+                let [grain_volume, pore_volume, drag, _] = masses[node];
+                let (water, volume) = (soil.water_density * pore_volume, grain_volume + pore_volume);
+                // The divisions side by side: one takes as long as all of them.
+                let [n, per_solid, per_water] =
+                    [[pore_volume, volume], [1.0, solid_mass[node]], [1.0, water]]
+                        .map(|[over, under]| over / under);
+                (water_mass[node], volumes[node], drags[node]) = (water, volume, drag);
+                (porosity[node], per_solid_mass[node], per_water_mass[node]) = (n, per_solid, per_water);
+            }
+        }
+    }
+
+    /// Mass of the grains, and the runs of the nodes that carry some: found anew only where they have changed.
+    fn take_grains(&mut self, grain_density: f64) {
+        let mut stand = self.is_empty_between;
+        let found = self.solid_mass.iter_mut().zip(&self.sums.masses).zip(&self.carries);
+        for ((solid_mass, [grain_volume, ..]), carries) in found {
+            *solid_mass = grain_density * grain_volume;
+            stand &= (*solid_mass > self.mass_cut_off) == *carries;
+        }
+        if stand {
+            return;
         }
         self.find_runs();
-        let mut end = 0;
-        let runs = self.runs.iter().cloned();
-        for run in runs.chain(std::iter::once(self.solid_mass.len()..0)) {
-            for field in [&mut self.water_mass, &mut self.volume, &mut self.drag] {
-                field[end..run.start].fill(0.0);
-            }
-            end = run.end;
-        }
-        for run in &self.runs {
-            let masses = &self.sums.masses[run.clone()];
-            let (water_mass, volume) = (&mut self.water_mass[run.clone()], &mut self.volume[run.clone()]);
-            let (porosity, drags) = (&mut self.porosity[run.clone()], &mut self.drag[run.clone()]);
-            for node in 0..run.len() {
-                let [grain_volume, pore_volume, drag, _] = masses[node];
-                water_mass[node] = soil.water_density * pore_volume;
-                volume[node] = grain_volume + pore_volume;
-                porosity[node] = pore_volume;
-                drags[node] = drag;
+        for field in [&mut self.water_mass, &mut self.volume, &mut self.drag] {
+            for (mass, carries) in field.iter_mut().zip(&self.carries) {
+                if !carries {
+                    *mass = 0.0;
+                }
             }
         }
-        self.take_reciprocals();
+        self.is_empty_between = true;
     }
 
     /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held or empty.
     pub fn take_velocities(&mut self, soil: &Material) {
+        let count = self.len();
+        let momenta = &self.sums.momenta[..count];
+        let (per_solid_mass, free) = (&self.per_solid_mass[..count], &self.free[..count]);
+        let (per_water_mass, water_free) = (&self.per_water_mass[..count], &self.water_free[..count]);
+        let (solid_velocity, water_velocity) =
+            (&mut self.solid_velocity[..count], &mut self.water_velocity[..count]);
         for run in &self.runs {
-            let momenta = &self.sums.momenta[run.clone()];
-            let (per_solid_mass, free) = (&self.per_solid_mass[run.clone()], &self.free[run.clone()]);
-            let (per_water_mass, water_free) =
-                (&self.per_water_mass[run.clone()], &self.water_free[run.clone()]);
-            let solid_velocity = &mut self.solid_velocity[run.clone()];
-            let water_velocity = &mut self.water_velocity[run.clone()];
-            for node in 0..run.len() {
+            for node in run.start..run.end.min(count) {
                 let [solid, water] = momenta[node];
                 let per_grain_volume = soil.grain_density * per_solid_mass[node];
                 let per_pore_volume = soil.water_density * per_water_mass[node];
@@ -274,11 +296,12 @@ impl<const D: usize> Nodes<D> {
 
     /// Forces from the points' [`sums`](Self::sums).
     pub fn take_forces(&mut self) {
+        let count = self.len();
+        let sums = &self.sums.forces[..count];
+        let (mixture, water) = (&mut self.mixture_force[..count], &mut self.water_force[..count]);
         for run in &self.runs {
-            let (mixture, water) = (&mut self.mixture_force[run.clone()], &mut self.water_force[run.clone()]);
-            for ((mixture, water), sums) in mixture.iter_mut().zip(water).zip(&self.sums.forces[run.clone()])
-            {
-                [*mixture, *water] = *sums;
+            for node in run.start..run.end.min(count) {
+                [mixture[node], water[node]] = sums[node];
             }
         }
     }
@@ -286,12 +309,12 @@ impl<const D: usize> Nodes<D> {
     /// Velocities of skeleton and water and their accelerations, `[node]`, side by side for the points that take all of
     /// them.
     pub fn gather_motion(&mut self) {
+        let count = self.len();
+        let (solid, water) = (&self.solid_velocity[..count], &self.water_velocity[..count]);
+        let (solid_rate, water_rate) = (&self.solid_acceleration[..count], &self.water_acceleration[..count]);
+        let motion = &mut self.motion[..count];
         for run in &self.runs {
-            let motion = &mut self.motion[run.clone()];
-            let (solid, water) = (&self.solid_velocity[run.clone()], &self.water_velocity[run.clone()]);
-            let (solid_rate, water_rate) =
-                (&self.solid_acceleration[run.clone()], &self.water_acceleration[run.clone()]);
-            for node in 0..run.len() {
+            for node in run.start..run.end.min(count) {
                 motion[node] = [solid[node], water[node], solid_rate[node], water_rate[node]];
             }
         }
@@ -301,51 +324,33 @@ impl<const D: usize> Nodes<D> {
     /// are silenced: what they had would otherwise reach the points.
     pub fn finish_masses(&mut self) {
         self.find_runs();
-        self.take_reciprocals();
-    }
-
-    fn take_reciprocals(&mut self) {
-        for run in &self.runs {
-            let (volume, porosity) = (&self.volume[run.clone()], &mut self.porosity[run.clone()]);
-            let (solid_mass, per_solid_mass) =
-                (&self.solid_mass[run.clone()], &mut self.per_solid_mass[run.clone()]);
-            let (water_mass, per_water_mass) =
-                (&self.water_mass[run.clone()], &mut self.per_water_mass[run.clone()]);
-            for node in 0..run.len() {
-                porosity[node] /= volume[node];
-                per_solid_mass[node] = 1.0 / solid_mass[node];
-                per_water_mass[node] = 1.0 / water_mass[node];
-            }
-            self.free[run.clone()].copy_from_slice(&self.supports[run.clone()]);
-            self.water_free[run.clone()].copy_from_slice(&self.water_supports[run.clone()]);
+        self.is_empty_between = false;
+        for node in self.runs.iter().cloned().flatten() {
+            self.porosity[node] /= self.volume[node];
+            self.per_solid_mass[node] = 1.0 / self.solid_mass[node];
+            self.per_water_mass[node] = 1.0 / self.water_mass[node];
         }
     }
 
-    /// Finds the runs of nodes that carry mass, and silences the others.
+    /// Finds the runs of nodes that carry mass and frees what no support holds of them; silences the others.
     fn find_runs(&mut self) {
         self.runs.clear();
-        let count = self.len();
-        let mut node = 0;
-        while node < count {
-            let start = node;
-            while node < count && self.is_active(node) {
-                node += 1;
+        for node in 0..self.len() {
+            let carries = self.is_active(node);
+            self.carries[node] = carries;
+            if !carries {
+                self.silence(node);
+                continue;
             }
-            if start < node {
-                self.runs.push(start..node);
-            }
-            while node < count && !self.is_active(node) {
-                let is_free = self.free[node] != [0.0; D] || self.water_free[node] != [0.0; D];
-                if is_free || self.porosity[node] != 0.0 {
-                    self.silence(node);
-                }
-                node += 1;
+            (self.free[node], self.water_free[node]) = (self.supports[node], self.water_supports[node]);
+            match self.runs.last_mut().filter(|run| run.end == node) {
+                Some(run) => run.end = node + 1,
+                None => self.runs.push(node..node + 1),
             }
         }
     }
 
     /// Takes everything from a node that has lost its mass.
-    #[cold]
     fn silence(&mut self, node: usize) {
         for field in [&mut self.porosity, &mut self.per_solid_mass, &mut self.per_water_mass] {
             field[node] = 0.0;
@@ -398,6 +403,34 @@ mod tests {
         assert_eq!((nodes.free[base], nodes.water_free[base]), ([0.0, 0.0], [1.0, 0.0]));
         let above = grid.flat_node(&[3, 3]);
         assert_eq!(nodes.free[above], [1.0, 1.0]);
+    }
+
+    #[test]
+    fn a_node_that_loses_its_mass_is_silent_and_free_again_with_it() {
+        let grid = Grid::new(0.1, [4]);
+        let (mut nodes, soil) = (Nodes::new(&grid, &Support::oedometer(), 1.0), Material::default());
+        for has_mass in [true, true, false, false, true] {
+            nodes.clear_sums(true, true, false);
+            for node in [3, 4, 6] {
+                let share = if node == 4 && !has_mass { 0.0 } else { 1.0 };
+                nodes.sums.masses[node] = [2.0 * share, share, 5.0 * share, 0.0];
+                nodes.sums.momenta[node] = [[6.0 * share], [4.0 * share]];
+            }
+            nodes.take_masses(&soil);
+            nodes.take_velocities(&soil);
+            assert_eq!(nodes.runs, if has_mass { vec![3..5, 6..7] } else { vec![3..4, 6..7] });
+            let of_node = [nodes.solid_velocity[4][0], nodes.water_velocity[4][0], nodes.porosity[4]];
+            let expected = if has_mass { [3.0, 4.0, 1.0 / 3.0] } else { [0.0; 3] };
+            for (got, expected) in of_node.iter().zip(expected) {
+                assert!((got - expected).abs() < 1e-14, "{got} for {expected}");
+            }
+            let whole = if has_mass { 1.0 } else { 0.0 };
+            assert_eq!((nodes.free[4], nodes.water_free[4]), ([whole], [whole]));
+            assert_eq!(
+                (nodes.volume[4], nodes.drag[4], nodes.water_mass[4] > 0.0),
+                (3.0 * whole, 5.0 * whole, has_mass)
+            );
+        }
     }
 
     #[test]

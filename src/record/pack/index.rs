@@ -23,15 +23,22 @@ pub(crate) struct Place {
     pub header: Header,
 }
 
-/// The same as it is kept of a million: programs and builds are few.
+/// The same as it is kept of a million: what wrote them is a few.
 #[derive(Clone, Copy, Debug)]
 struct Kept {
     offset: u64,
     length: u32,
-    generation: u32,
+    /// Its place among the sources.
+    source: u32,
+}
+
+/// What the members that one run of a program wrote to one pack have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Source {
     pack: u32,
-    /// Its place among the makers.
-    maker: u32,
+    generation: u32,
+    program: u64,
+    build: u64,
     kind: Kind,
 }
 
@@ -71,9 +78,9 @@ pub(crate) struct Index {
     ends: Vec<u64>,
     records: HashMap<u64, Kept>,
     walls: HashMap<u64, Kept>,
-    /// Tags of program and build, each pair once.
-    makers: Vec<(u64, u64)>,
-    numbers: HashMap<(u64, u64), u32>,
+    /// Each once.
+    sources: Vec<Source>,
+    numbers: HashMap<Source, u32>,
     columns: Option<Place>,
     damages: Vec<Damage>,
     newest: u32,
@@ -152,6 +159,8 @@ impl Index {
         let length = file.metadata()?.len();
         let mut at = self.ends[number as usize];
         let mut bytes = [0; HEADER];
+        // The length of the last member may be what is damaged, and lead past the beginning of others.
+        let mut last = None;
         while at < length {
             file.seek(SeekFrom::Start(at))?;
             let header = if length - at >= HEADER as u64 {
@@ -162,13 +171,15 @@ impl Index {
             };
             if let Some(header) = header.filter(|header| u64::from(header.length) <= length - at) {
                 self.note(Place { pack: number, offset: at, header });
+                last = Some(at);
                 at += u64::from(header.length);
                 continue;
             }
-            let next = next_header(&mut file, at + 1, length)?;
+            let last = last.take().unwrap_or(at);
+            let next = next_header(&mut file, last + 1, length)?;
             self.damages.push(Damage {
                 pack: path.clone(),
-                from: at,
+                from: if next.is_some_and(|next| next < at) { last } else { at },
                 to: next.unwrap_or(length),
                 is_cut: next.is_none(),
             });
@@ -200,7 +211,7 @@ impl Index {
             _ => &mut self.records,
         };
         let known = of_kind.entry(place.header.case).or_insert(kept);
-        if kept.generation >= known.generation {
+        if place.header.generation >= self.sources[known.source as usize].generation {
             *known = kept;
         }
         self.newest = self.newest.max(place.header.generation);
@@ -211,18 +222,23 @@ impl Index {
 
     fn kept(&mut self, place: &Place) -> Kept {
         let Header { kind, generation, program, build, length, .. } = place.header;
-        let makers = &mut self.makers;
-        let maker = *self.numbers.entry((program, build)).or_insert_with(|| {
-            makers.push((program, build));
-            u32::try_from(makers.len() - 1).unwrap_or(u32::MAX)
+        let (sources, source) =
+            (&mut self.sources, Source { pack: place.pack, generation, program, build, kind });
+        let source = *self.numbers.entry(source).or_insert_with(|| {
+            sources.push(source);
+            u32::try_from(sources.len() - 1).unwrap_or(u32::MAX)
         });
-        Kept { offset: place.offset, length, generation, pack: place.pack, maker, kind }
+        Kept { offset: place.offset, length, source }
     }
 
     fn place(&self, case: u64, kept: Kept) -> Place {
-        let Kept { offset, length, generation, pack, maker, kind } = kept;
-        let (program, build) = self.makers[maker as usize];
+        let Kept { offset, length, source } = kept;
+        let Source { pack, generation, program, build, kind } = self.sources[source as usize];
         Place { pack, offset, header: Header { kind, generation, case, program, build, length } }
+    }
+
+    fn generation_of(&self, kept: Kept) -> u32 {
+        self.sources[kept.source as usize].generation
     }
 
     /// The newest record of a case.
@@ -233,7 +249,7 @@ impl Index {
     /// The wall times of a case that were written alone, where they are newer than its record.
     pub fn wall(&self, case: u64) -> Option<Place> {
         let (wall, record) = (self.walls.get(&case)?, self.records.get(&case)?);
-        (wall.generation >= record.generation).then(|| self.place(case, *wall))
+        (self.generation_of(*wall) >= self.generation_of(*record)).then(|| self.place(case, *wall))
     }
 
     /// Every case with a record.

@@ -15,7 +15,7 @@ const TRAILER: usize = 8;
 const MOST_TEXT: u32 = 1 << 30;
 
 /// What a member holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Kind {
     /// A record of a case that came to its end, and its wall times.
     Record,

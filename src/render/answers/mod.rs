@@ -8,9 +8,9 @@ pub mod changes;
 pub mod choice;
 pub mod converges;
 pub mod cost;
-pub mod layers;
 pub mod making;
 pub mod matrix;
+pub mod one_layer_or_two;
 pub mod paper;
 pub mod question;
 pub mod regime;
@@ -60,7 +60,7 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
         cost::answer(results, links),
         matrix::answer(answers.ends, links, answers.situations),
         audit::answer(results, links),
-        layers::answer(results, links),
+        one_layer_or_two::answer(results, links),
         changes::answer(answers.changes),
     ];
     let mut sections = Vec::new();

@@ -8,8 +8,9 @@ use crate::render::answers::regime::{PAPERS, QUOTED_CELLS};
 use crate::render::chart::describe::{Size, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
+use crate::render::report::StudyResults;
+use crate::render::report::figures::theory_lines;
 use crate::render::report::labels::{self, first_measure};
-use crate::render::report::{StudyResults, theory_lines};
 
 /// The question.
 pub const QUESTION: Question = Question { heading: "Does it reproduce the paper?", id: "paper" };

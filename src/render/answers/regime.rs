@@ -121,7 +121,7 @@ fn value_of_most(all: &[MethodPath<'_>], values_of: &dyn Fn(&MethodPath<'_>) -> 
 fn time_of_most(all: &[MethodPath<'_>]) -> Option<f64> {
     value_of_most(all, &|one| {
         let records = &one.path.records;
-        let times = records.iter().flat_map(|record| &record.case.time_factors).copied();
+        let times = records.iter().flat_map(|record| record.case.time_factors.iter()).copied();
         let asked =
             |time: &f64| records.iter().filter(|record| record.case.time_factors.contains(time)).count();
         times.filter(|time| *time > 0.0 && asked(time) >= WINDOW).collect()

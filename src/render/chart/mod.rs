@@ -3,12 +3,12 @@
 //! One type serves every picture of a report: convergence, isochrones, work and precision, maps.
 //! Nothing is hidden silently: what cannot be drawn is counted below the figure.
 
+pub mod axis_numbers;
 pub mod canvas;
 pub mod data;
 pub mod describe;
 pub mod draw;
 pub mod field;
-pub mod label;
 pub mod layout;
 pub mod palette;
 pub mod parts;

@@ -1,22 +1,16 @@
 //! The pages behind the answers: one a study over its records, and the list of all.
 
 pub mod appendix;
-pub mod cheapest_method_map;
-pub mod critical_step_maps;
-pub mod drawn_paths;
-pub mod error_over_time;
-pub mod error_over_work;
+pub mod figures;
 pub mod findings;
 pub mod labels;
 pub mod other_measures;
 pub mod pages;
-pub mod plane_fields;
 pub mod refinement;
 pub mod situations;
 pub mod stiffness_sweeps;
 pub mod study_page;
 pub mod survival;
-pub mod theory_lines;
 pub mod worst_checks;
 
 use crate::case::tier::Tier;

@@ -7,7 +7,7 @@ use crate::exact::reference::ReferenceKind;
 use crate::judge::paths::{Path, SeriesSummary, first_norm};
 use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::page::{Block, Figure};
-use crate::render::report::drawn_paths::{DrawnPaths, drawn};
+use crate::render::report::figures::drawn_paths::{DrawnPaths, drawn};
 use crate::render::report::labels::first_measure;
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
@@ -97,11 +97,8 @@ fn floors_of_model(results: &StudyResults<'_>) -> bool {
 }
 
 fn common_times(all: &[Path<'_>]) -> Vec<f64> {
-    let first = all[0].records[0].case.time_factors.clone();
-    first
-        .into_iter()
-        .filter(|time| all.iter().all(|path| path.records[0].case.time_factors.contains(time)))
-        .collect()
+    let first = all[0].records[0].case.time_factors.iter().copied();
+    first.filter(|time| all.iter().all(|path| path.records[0].case.time_factors.contains(time))).collect()
 }
 
 fn heading(axis: Axis) -> &'static str {

@@ -4,10 +4,10 @@ use crate::exact::exact_error::ExactError;
 use crate::judge::judgement::Judgement;
 use crate::render::checks::verdicts::judgements_table;
 use crate::render::page::{Block, Callout, Page, Section, slug};
-use crate::render::report::{
-    StudyResults, cheapest_method_map, critical_step_maps, error_over_time, error_over_work, findings,
-    other_measures, plane_fields, refinement, survival, theory_lines, worst_checks,
+use crate::render::report::figures::{
+    cheapest_method_map, critical_step_maps, error_over_time, error_over_work, plane_fields, theory_lines,
 };
+use crate::render::report::{StudyResults, findings, other_measures, refinement, survival, worst_checks};
 use crate::render::table::Mood;
 use crate::render::tables::{attached_runs, uncertainties};
 use crate::study::expectation::Axis;

@@ -5,7 +5,7 @@ use crate::judge::explanation::{Carrier, Explanation, LevelSeries};
 use crate::record::{Record, Status};
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
-use crate::render::tables::attached;
+use crate::render::tables::attached_run_table;
 use crate::render::tables::golden_changes::differences_table;
 
 /// Carriers, levels and changes of a case.
@@ -76,7 +76,7 @@ fn carriers_table(record: &Record, carriers: &[Carrier]) -> Table {
         "relative errors against {reference}, the largest first; settlement as s/s_exact − 1; share of the \
              squared L2 error; values in Pa and m"
     ));
-    table.notes(attached::notes_of(record))
+    table.notes(attached_run_table::notes_of(record))
 }
 
 fn levels_table(first: &Carrier, series: &LevelSeries) -> Table {

@@ -1,6 +1,6 @@
 //! Tables of records, scores, golden values and measured times, for every command that shows them.
 
-pub mod attached;
+pub mod attached_run_table;
 pub mod attached_runs;
 pub mod critical_steps;
 pub mod explanation;

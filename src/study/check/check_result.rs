@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::case::keys::MOST_CELLS;
 use crate::case::tier::Tier;
-use crate::mpm::attached::{Attached, DIGEST_DIGITS};
+use crate::mpm::attached_method::{Attached, DIGEST_DIGITS};
 use crate::mpm::method::Method;
 use crate::study::check::check_solver::{digest_of_file, folder_of};
 use crate::study::check::checker::Checker;

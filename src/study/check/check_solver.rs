@@ -1,7 +1,7 @@
 //! Checks of attached solvers: names, commands, placeholders, files; and the digest that identifies them.
 
 use crate::case::{Case, Task};
-use crate::mpm::attached::{Attached, DIGEST_DIGITS};
+use crate::mpm::attached_method::{Attached, DIGEST_DIGITS};
 use crate::mpm::method::Method;
 use crate::study::check::checker::Checker;
 use crate::study::choice_tables::{Placed, TypedList};

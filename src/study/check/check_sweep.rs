@@ -173,7 +173,7 @@ impl Checker<'_> {
     pub(crate) fn cells_fill_the_width(&mut self, table: &SweepTable, cases: impl Iterator<Item = Case>) {
         let gaps = cases.filter(|case| case.column.cells_across(case.cells).is_none());
         let gaps: HashMap<usize, (Column, SceneKind)> =
-            gaps.map(|case| (case.cells, (case.column, case.scene))).collect();
+            gaps.map(|case| (case.cells, (*case.column, case.scene))).collect();
         for typed in table.typed("cells").into_iter().flat_map(Spanned::get_ref) {
             let TypedInput::Count(cells) = typed.get_ref() else { continue };
             let cells = usize::try_from(*cells).unwrap_or(0);

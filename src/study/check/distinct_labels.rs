@@ -2,34 +2,38 @@
 
 use crate::case::Case;
 use crate::case::keys::Key;
-use crate::study::check::PlannedCase;
+use crate::case::planned::PlannedCase;
 use crate::study::check::checker::Checker;
 use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 
 impl Checker<'_> {
     /// Makes every case name the inputs that only tell some of them apart by their hashes. Golden values, tables and
     /// `explain` know a case by its label.
     pub(crate) fn tell_apart(planned: &mut [PlannedCase]) {
-        let mut first_with: HashMap<String, usize> = HashMap::new();
-        let mut alike: Vec<(usize, usize)> = Vec::new();
-        for (place, planned) in planned.iter().enumerate() {
-            let first = *first_with.entry(planned.case.label()).or_insert(place);
+        // By the hash of its label: that two labels have one makes a name longer and no case another.
+        let mut first_with: HashMap<u64, usize> = HashMap::new();
+        let mut alike_so_far: Vec<&Key> = Key::of("sweep").collect();
+        for (place, PlannedCase { case, .. }) in planned.iter().enumerate() {
+            let first = *first_with.entry(hash_of(&case.label())).or_insert(place);
             if first != place {
-                alike.push((first, place));
+                alike_so_far.retain(|key| key.get(&planned[first].case) == key.get(case));
             }
         }
-        let differ = |key: &&Key| {
-            alike
-                .iter()
-                .any(|(first, other)| key.get(&planned[*first].case) != key.get(&planned[*other].case))
-        };
+        let differ = |key: &&Key| !alike_so_far.contains(key);
         let keys = Key::of("sweep").filter(differ).map(|key| key.name);
         let names: Arc<[&'static str]> = keys.filter(|name| is_of_the_scene(name, planned)).collect();
         for planned in planned {
             planned.case.swept = Arc::clone(&names);
         }
     }
+}
+
+fn hash_of(label: &str) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    hasher.write(label.as_bytes());
+    hasher.finish()
 }
 
 /// Whether a key is what its scene calls the input: a column has a width where a layer has a length, and a load where a

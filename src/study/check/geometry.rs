@@ -1,13 +1,13 @@
 //! Checks of where the soil is and what loads it: the tables `[column]` and `[layer]`.
 
 use crate::case::keys::{Key, Value};
+use crate::case::planned::PlannedCase;
 use crate::case::{Case, Task};
 use crate::elementary;
 use crate::exact::exact_error::ExactError;
 use crate::exact::xie_leo::XieLeo;
 use crate::scene::SceneKind;
 use crate::scene::column::column_parameters;
-use crate::study::check::PlannedCase;
 use crate::study::check::checker::Checker;
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::{StudyFile, SweepTable};

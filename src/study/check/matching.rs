@@ -1,8 +1,8 @@
 //! Whether there is anything for an expectation to judge: cases that it names, with its time and its levels.
 
+use crate::case::planned::PlannedCase;
 use crate::case::{Case, Task};
 use crate::study::case_expectation::CaseExpectation;
-use crate::study::check::PlannedCase;
 use crate::study::check::checker::{Checker, Purpose};
 use crate::study::expectation::{Axis, Selection, SeriesExpectation};
 use crate::study::file::{ExpectCaseTable, ExpectTable};
@@ -92,7 +92,8 @@ impl Checker<'_> {
     fn time_is_kept(&mut self, cases: &[&Case], time_factor: f64, place: Range<usize>) {
         let is_kept = |case: &&Case| case.task == Task::Stability || case.time_factors.contains(&time_factor);
         if !cases.iter().any(is_kept) {
-            let factors = listed(cases.iter().flat_map(|case| &case.time_factors).map(ToString::to_string));
+            let factors =
+                listed(cases.iter().flat_map(|case| case.time_factors.iter()).map(ToString::to_string));
             self.complain(
                 place,
                 format!("no case keeps its state at T_v = {time_factor}"),

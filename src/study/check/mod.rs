@@ -1,6 +1,7 @@
 //! From what was typed to what will run: every value judged, every complaint at its place.
 
 pub mod check_case_expectation;
+pub mod check_layers;
 pub mod check_material;
 pub mod check_method;
 pub mod check_result;
@@ -12,12 +13,13 @@ pub mod default_integrator;
 pub mod distinct_labels;
 pub mod end_state;
 pub mod geometry;
-pub mod layers;
 pub mod matching;
 pub mod step_rule;
 pub mod value;
 
 use crate::case::keys::{Key, Value};
+use crate::case::planned::{PlannedCase, Planner};
+use crate::case::shared::Shared;
 use crate::case::tier::Tier;
 use crate::case::{Case, Task};
 use crate::exact::reference::ReferenceKind;
@@ -34,8 +36,6 @@ use crate::study::expectation::SeriesExpectation;
 use crate::study::file::{OutputTable, StudyFile, StudySource};
 use crate::study::name::name_of;
 use crate::study::solver::Solver;
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use toml::Spanned;
 
 /// Time factors where a study names none.
@@ -44,15 +44,6 @@ const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
 const LEAST_TIME_FACTOR: f64 = 1e-15;
 /// Longest wall time of a case, s, where a study names none.
 const DEFAULT_CASE_SECONDS: f64 = 3600.0;
-/// A case with the tier from which on it runs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlannedCase {
-    /// What to run.
-    pub case: Case,
-    /// Smallest tier that includes it.
-    pub tier: Tier,
-}
-
 /// A study that can run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
@@ -130,20 +121,6 @@ impl Study {
     }
 }
 
-/// Puts a case among those that are planned: each once, in the smallest tier that has it.
-fn put(case: Case, tier: Tier, planned: &mut Vec<PlannedCase>, places: &mut HashMap<u64, usize>) {
-    match places.entry(case.number()) {
-        Entry::Occupied(place) => {
-            let other = &mut planned[*place.get()];
-            other.tier = other.tier.min(tier);
-        }
-        Entry::Vacant(place) => {
-            place.insert(planned.len());
-            planned.push(PlannedCase { case, tier });
-        }
-    }
-}
-
 /// The height that all cases have, or that of the study where there are none; none where they have several.
 fn common_height(planned: &[PlannedCase], of_the_study: f64) -> Option<f64> {
     let height = planned.first().map_or(of_the_study, |planned| planned.case.column.height);
@@ -165,19 +142,18 @@ impl Checker<'_> {
             base.column.load = load_of(strain, &base);
         }
         self.porosity_at_the_end(file, &base);
-        let time_factors = match &file.output.time_factors {
+        let time_factors = Shared::from(match &file.output.time_factors {
             Some(list) => self.time_factors(list),
             None => DEFAULT_TIME_FACTORS.to_vec(),
-        };
+        });
         let references = self.references(&file.output, scene, &base.column);
         let given = self.results(file);
         self.sweep_is_there(file);
-        let mut planned: Vec<PlannedCase> = Vec::new();
-        let mut places: HashMap<u64, usize> = HashMap::new();
+        let mut planner = Planner::default();
         for block in &file.sweep {
             let table = block.get_ref();
             base.time_factors = match &table.time_factors {
-                Some(list) => self.time_factors(list),
+                Some(list) => self.time_factors(list).into(),
                 None => time_factors.clone(),
             };
             let Some(mut sweep) = self.sweep(table, block.span(), &common, &base) else { continue };
@@ -199,17 +175,18 @@ impl Checker<'_> {
             let start = block.span().start;
             self.attached_are_solved(start, sweep.cases(&base));
             self.pores_stay_open(start..start + 1, sweep.cases(&base).map(loaded));
-            planned.reserve_exact(sweep.count().unwrap_or(0));
+            planner.reserve(sweep.count().unwrap_or(0));
             for case in sweep.cases(&base).map(loaded) {
-                put(case, tier, &mut planned, &mut places);
+                planner.put(case, tier);
             }
         }
         base.time_factors = time_factors;
         for meshes in given {
             for case in meshes.cases(&base) {
-                put(case, meshes.tier, &mut planned, &mut places);
+                planner.put(case, meshes.tier);
             }
         }
+        let mut planned = planner.into_cases();
         Self::tell_apart(&mut planned);
         self.large_for_small_strain(file, &planned);
         self.column_height = common_height(&planned, base.column.height);

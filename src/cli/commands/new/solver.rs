@@ -2,7 +2,7 @@
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
-use crate::mpm::attached::{Attached, DIGEST_DIGITS};
+use crate::mpm::attached_method::{Attached, DIGEST_DIGITS};
 use crate::mpm::method::Method;
 use crate::study::name::{name_of, refused_name};
 use clap::ValueEnum;

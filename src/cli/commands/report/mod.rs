@@ -1,7 +1,7 @@
 //! `oedometer report`: run what is missing, render everything.
 
 mod files;
-mod machine;
+mod report_origin;
 
 use crate::campaign::run_options::RunOptions;
 use crate::campaign::run_report::RunReport;
@@ -65,9 +65,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         StudyResults::new(study, &report.records, tier_of(study, report)).from_file(file)
     });
     let making = Making {
-        date: machine::today(),
-        processor: machine::processor(),
-        command: machine::command(),
+        date: report_origin::today(),
+        processor: report_origin::processor(),
+        command: report_origin::command(),
         seconds: 0.0,
         cases_run: reports.iter().map(|report| report.records.len() - report.resumed).sum(),
         left_out: results.iter().map(StudyResults::left_out).sum(),

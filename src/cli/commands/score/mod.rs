@@ -1,12 +1,12 @@
 //! `oedometer score`: hold an external result against the references of a scene.
 
 pub mod gate;
-pub mod inputs;
 pub mod results;
+pub mod scored_files;
 
 use crate::case::Case;
-use crate::cli::commands::score::inputs::Typed;
 use crate::cli::commands::score::results::{Held, Results};
+use crate::cli::commands::score::scored_files::Typed;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, csv_of, json_of, print_tables};
 use crate::cli::overrides;
@@ -107,7 +107,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         mapping: arguments.mapping.as_deref(),
         time_step: arguments.set_time_step,
     };
-    let (mapping, runs) = inputs::of(&typed, case)?;
+    let (mapping, runs) = scored_files::of(&typed, case)?;
     let names: Vec<PathBuf> = runs.iter().filter_map(|run| run.files.first().cloned()).collect();
     let held = Held {
         case,
@@ -164,7 +164,7 @@ pub fn study_of(asked: &Asked) -> anyhow::Result<(Study, Vec<f64>)> {
     let sweep = ["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned);
     let study = lines.study_for(Purpose::Theory, sweep)?;
     let requested = match study.planned.first() {
-        Some(planned) if is_requested => planned.case.time_factors.clone(),
+        Some(planned) if is_requested => planned.case.time_factors.to_vec(),
         _ => Vec::new(),
     };
     Ok((study, requested))

@@ -1,9 +1,9 @@
 //! Rows as bands, several rows side by side: what a block reads of a neighbour lies beside what the next
 //! row reads of its own, and the compiler makes one instruction of what is done to each.
 
+use crate::mpm::assembled::assembled_state::{FrozenState, LANES, Lanes, MARGIN};
 use crate::mpm::assembled::operators::FrozenOperators;
 use crate::mpm::assembled::rows::block_products::Rows;
-use crate::mpm::assembled::state::{FrozenState, LANES, Lanes, MARGIN};
 use crate::mpm::assembled::stiffness::pressure_stiffness;
 use crate::soil::tensor::{Tensor, Vector};
 

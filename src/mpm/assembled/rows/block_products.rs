@@ -1,6 +1,6 @@
 //! What a step asks of rows, block by block.
 
-use crate::mpm::assembled::state::{FrozenState, Lanes};
+use crate::mpm::assembled::assembled_state::{FrozenState, Lanes};
 use crate::soil::tensor::Vector;
 
 /// What a step multiplies grid arrays with. Arrays hold `[MARGIN + row][component]`.

@@ -3,9 +3,9 @@
 //! The pressure stays in two factors, `D` to the sites and `Q R` back to the nodes: their product would
 //! be five times as long in a plane.
 
+use crate::mpm::assembled::assembled_state::{FrozenState, LANES, Lanes, MARGIN};
 use crate::mpm::assembled::operators::FrozenOperators;
 use crate::mpm::assembled::rows::block_products::Rows;
-use crate::mpm::assembled::state::{FrozenState, LANES, Lanes, MARGIN};
 use crate::mpm::operators::sparse_rows::SparseRows;
 use crate::soil::tensor::{Tensor, Vector};
 

@@ -71,12 +71,7 @@ impl<const D: usize> RecoveryOperator<D> {
             Self::Own => each(out, put, |point| sites[point]),
             Self::Constant => each(out, put, |point| constant::value(at, point, sites)),
             Self::Patch(rows) => {
-                wide!(each(
-                    out,
-                    put,
-                    #[inline(always)]
-                    |point| rows.value(at.grid, point, sites),
-                ));
+                wide!(rows.recover(at.grid, sites, out, put));
             }
             Self::Nodal(means) => {
                 means.fit(at, sites);

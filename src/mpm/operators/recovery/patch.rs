@@ -10,6 +10,7 @@ use crate::mpm::state::grid::{GHOST_LAYERS, Grid, SIXTH, index_of, power};
 use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
 use crate::mpm::wide::wide;
 use crate::soil::tensor::{Vector, solve_symmetric};
+use std::ops::Range;
 
 /// Cells along one direction of a patch.
 const BLOCK: usize = 3;
@@ -38,6 +39,8 @@ pub struct PatchRows<const D: usize> {
     /// Whether each point's row is no product of lines, and its weights then.
     is_fitted: Vec<bool>,
     fitted: Vec<[f64; MOST_CELLS]>,
+    /// Whether any row is fitted so.
+    has_fitted: bool,
     /// Neighbours of each occupied cell, and which of its [occupations](Cells::occupations) they are of.
     neighbours: Vec<Neighbours<D>>,
     occupations: Option<u64>,
@@ -51,6 +54,7 @@ impl<const D: usize> PatchRows<D> {
             lines: vec![[LineRows::default(); D]; points.div_ceil(LANES)],
             is_fitted: vec![false; points],
             fitted: vec![[0.0; MOST_CELLS]; points],
+            has_fitted: false,
             neighbours: vec![Neighbours::All; cells],
             occupations: None,
         }
@@ -71,12 +75,19 @@ impl<const D: usize> PatchRows<D> {
             }
         }
         let lowest: usize = grid.cell_stride().iter().sum();
-        self.is_fitted.fill(false);
+        if std::mem::take(&mut self.has_fitted) {
+            self.is_fitted.fill(false);
+        }
         for (cell, points) in cells.runs() {
-            if self.neighbours[*cell] != Neighbours::All || cells.has_strays() {
+            if cells.has_strays() {
                 for point in points.clone() {
-                    self.cut(grid, cells, point, self.first[point] + lowest);
+                    let home = self.first[point] + lowest;
+                    let neighbours =
+                        if cells.is_occupied(home) { self.neighbours[home] } else { Neighbours::Some };
+                    self.cut(grid, cells, point..point + 1, home, neighbours);
                 }
+            } else if self.neighbours[*cell] != Neighbours::All {
+                self.cut(grid, cells, points.clone(), *cell, self.neighbours[*cell]);
             }
         }
     }
@@ -89,6 +100,7 @@ impl<const D: usize> PatchRows<D> {
         let points = cells.of_point.chunks(LANES).zip(cells.place.chunks(LANES));
         let out = self.lines.iter_mut().zip(self.first.chunks_mut(LANES));
         for ((homes, places), (lines, firsts)) in points.zip(out) {
+            // The cells that they lie in, which are not always those that they belong to.
             let mut at = [0.0; LANES];
             for d in 0..D {
                 let (line, stride) = (grid.line(d), grid.cell_stride()[d] as f64);
@@ -102,30 +114,68 @@ impl<const D: usize> PatchRows<D> {
                         *cell = *home as f64;
                     }
                 }
-                for (at, along) in at.iter_mut().zip(&along) {
-                    *at += stride * along;
+                if D > 1 && cells.has_strays() {
+                    for (at, along) in at.iter_mut().zip(&along) {
+                        *at += stride * along;
+                    }
                 }
                 fill::<D>(&mut lines[d], &along, &place);
             }
-            for (first, at) in firsts.iter_mut().zip(&at) {
-                *first = index_of(*at) - lowest;
+            for (first, home) in firsts.iter_mut().zip(homes) {
+                *first = home - lowest;
+            }
+            if D > 1 && cells.has_strays() {
+                for (first, at) in firsts.iter_mut().zip(&at) {
+                    *first = index_of(*at) - lowest;
+                }
             }
         }
     }
 
-    /// The row of a point of a cell that may have empty neighbours.
-    fn cut(&mut self, grid: &Grid<D>, cells: &Cells<D>, point: usize, home: usize) {
-        let neighbours = if cells.is_occupied(home) { self.neighbours[home] } else { Neighbours::Some };
+    /// The rows of points of a cell with such neighbours.
+    fn cut(
+        &mut self,
+        grid: &Grid<D>,
+        cells: &Cells<D>,
+        points: Range<usize>,
+        home: usize,
+        neighbours: Neighbours<D>,
+    ) {
         match neighbours {
             Neighbours::All => {}
             Neighbours::Rectangle(sides) => {
-                for d in 0..D {
-                    self.lines[point / LANES][d].cut(point % LANES, sides[d]);
+                for d in (0..D).filter(|d| sides[*d] != (true, true)) {
+                    for point in points.clone() {
+                        self.lines[point / LANES][d].cut(point % LANES, sides[d]);
+                    }
                 }
             }
             Neighbours::Some => {
-                self.is_fitted[point] = true;
-                fit(grid, cells, home, &cells.place[point], &mut self.fitted[point]);
+                self.has_fitted = true;
+                for point in points {
+                    self.is_fitted[point] = true;
+                    fit(grid, cells, home, &cells.place[point], &mut self.fitted[point]);
+                }
+            }
+        }
+    }
+
+    /// Values at the points of a field given at the cells, each put into its place.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn recover(&self, grid: &Grid<D>, field: &[f64], out: &mut [f64], put: impl Fn(&mut f64, f64)) {
+        if D > 1 || self.has_fitted {
+            for (point, place) in out.iter_mut().enumerate() {
+                put(place, self.value(grid, point, field));
+            }
+            return;
+        }
+        let blocks = self.lines.iter().zip(self.first.chunks(LANES)).zip(out.chunks_mut(LANES));
+        for ((lines, firsts), places) in blocks {
+            let line = &lines[0];
+            for (lane, (first, place)) in firsts.iter().zip(places).enumerate().take(LANES) {
+                let weights = std::array::from_fn(|k| line.line[k][lane]);
+                put(place, product(&weights, &field[*first..first + BLOCK]));
             }
         }
     }

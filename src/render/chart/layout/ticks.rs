@@ -1,6 +1,6 @@
 //! Where an axis has ticks and what they say.
 use crate::elementary;
-use crate::render::chart::label::{decimals, power, whole};
+use crate::render::chart::axis_numbers::{decimals, power, whole};
 use crate::render::chart::layout::scale::{Ruler, Scale, Span, drawable};
 use crate::render::number::minus;
 use crate::render::script::{exponent, width};

@@ -5,7 +5,7 @@ use crate::measure::wall_times::median;
 use crate::record::{Record, Status};
 use crate::render::chart::describe::{Chart, ChartAxis, Series};
 use crate::render::page::Block;
-use crate::render::report::drawn_paths::{DrawnPaths, drawn};
+use crate::render::report::figures::drawn_paths::{DrawnPaths, drawn};
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, columns};
 use crate::study::expectation::{Axis, Measure};

@@ -1,0 +1,221 @@
+//! [`Stencils`](crate::mpm::operators::stencil::Stencils) as loops take them: rows of some neighbouring points at a
+//! time, and of a point run by run.
+
+use crate::mpm::operators::pairs::{add_weighted, weighted_sum};
+use crate::mpm::operators::stencil::RowBlock;
+use crate::mpm::state::grid::power;
+use crate::mpm::state::lanes::LANES;
+use crate::soil::tensor::{Tensor, Vector};
+
+/// Stencils as slices: a loop that writes nodal fields reads their places once, and not anew after
+/// every store.
+#[derive(Clone, Copy, Debug)]
+pub struct Blocks<'a, const D: usize, const W: usize> {
+    first: &'a [[usize; LANES]],
+    rows: &'a [RowBlock<D, W>],
+    parts: usize,
+}
+
+impl<'a, const D: usize, const W: usize> Blocks<'a, D, W> {
+    /// Of the lowest nodes of the points' blocks, of their rows, and of how many blocks a point has.
+    #[inline]
+    pub fn of(first: &'a [[usize; LANES]], rows: &'a [RowBlock<D, W>], parts: usize) -> Self {
+        Self { first, rows, parts }
+    }
+
+    /// Rows of the points of one block of [`LANES`].
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn block(&self, number: usize) -> BlockRows<'a, D, W> {
+        BlockRows { all: *self, rows: &self.rows[number], first: &self.first[number], start: number * LANES }
+    }
+
+    /// Visits a point's block run by run. A run is one slice of a nodal field, so that its bounds are checked once.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn visit_runs(&self, stride: &[usize; D], point: usize, run_visitor: impl FnMut(&Run<D, W>)) {
+        self.block(point / LANES).visit_runs(stride, point % LANES, run_visitor);
+    }
+
+    /// Sum of a nodal vector field with the weights: its value at the point.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
+        self.block(point / LANES).value(stride, point % LANES, field)
+    }
+
+    /// Gradient of a nodal vector field at the point, `[component][direction]`.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
+        self.block(point / LANES).gradient(stride, point % LANES, field)
+    }
+}
+
+/// Rows of some neighbouring points, by their places among them; what is beyond the last point is of no matter.
+#[derive(Clone, Copy, Debug)]
+pub struct BlockRows<'a, const D: usize, const W: usize> {
+    all: Blocks<'a, D, W>,
+    /// Rows of the points, but of those with several blocks.
+    pub rows: &'a RowBlock<D, W>,
+    /// Flat index of the lowest node of each of their blocks.
+    pub first: &'a [usize; LANES],
+    start: usize,
+}
+
+impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
+    /// Visits the blocks of a point run by run.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn visit_runs(&self, stride: &[usize; D], lane: usize, mut run_visitor: impl FnMut(&Run<D, W>)) {
+        // On a line a point has one block, and the compiler knows.
+        if D == 1 || self.all.parts == 1 {
+            visit_rows(stride, self.rows, self.first[lane], lane, &mut run_visitor);
+            return;
+        }
+        let point = self.start + lane;
+        for block in point * self.all.parts..(point + 1) * self.all.parts {
+            let (number, lane) = (block / LANES, block % LANES);
+            visit_rows(stride, &self.all.rows[number], self.all.first[number][lane], lane, &mut run_visitor);
+        }
+    }
+
+    /// The same, but for runs whose weights and gradients are all zero: those beyond a domain that lies within a cell.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn visit_filled_runs(
+        &self,
+        stride: &[usize; D],
+        lane: usize,
+        mut run_visitor: impl FnMut(&Run<D, W>),
+    ) {
+        self.visit_runs(
+            stride,
+            lane,
+            #[inline(always)]
+            |run| {
+                if run.across != [0.0; D] {
+                    run_visitor(run);
+                }
+            },
+        );
+    }
+
+    /// Sum of a nodal vector field with the weights: its value at the point.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn value(&self, stride: &[usize; D], lane: usize, field: &[Vector<D>]) -> Vector<D> {
+        let [value] = self.values(stride, lane, field.as_chunks().0);
+        value
+    }
+
+    /// The same of several vectors that lie side by side at each node.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn values<const M: usize>(
+        &self,
+        stride: &[usize; D],
+        lane: usize,
+        fields: &[[Vector<D>; M]],
+    ) -> [Vector<D>; M] {
+        let mut values = [[0.0; D]; M];
+        self.visit_filled_runs(
+            stride,
+            lane,
+            #[inline(always)]
+            |run| {
+                let sum = weighted_sum(&run.weights, &fields[run.first..run.first + W]);
+                if D == 1 {
+                    values = sum;
+                } else {
+                    add_weighted(values.as_flattened_mut(), run.across[0], sum.as_flattened());
+                }
+            },
+        );
+        values
+    }
+
+    /// Gradient of a nodal vector field at the point, `[component][direction]`.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn gradient(&self, stride: &[usize; D], lane: usize, field: &[Vector<D>]) -> Tensor<D> {
+        // `[direction][component]`: components lie side by side at the nodes.
+        let mut slopes = [[0.0; D]; D];
+        self.visit_runs(
+            stride,
+            lane,
+            #[inline(always)]
+            |run| {
+                let nodes = &field[run.first..run.first + W];
+                if D == 1 {
+                    [slopes[0]] = weighted_sum(&run.gradients, nodes.as_chunks().0);
+                    return;
+                }
+                // The slope along the run, and the value for all directions but the first, side by side.
+                let mut sums = [[0.0; D]; 2];
+                for k in 0..W {
+                    let along = [run.gradients[k], run.weights[k]];
+                    for (sum, along) in sums.iter_mut().zip(along) {
+                        for d in 0..D {
+                            sum[d] += along * nodes[k][d];
+                        }
+                    }
+                }
+                for direction in 0..D {
+                    let sum = sums[direction.min(1)];
+                    for d in 0..D {
+                        slopes[direction][d] += run.across[direction] * sum[d];
+                    }
+                }
+            },
+        );
+        std::array::from_fn(|component| std::array::from_fn(|direction| slopes[direction][component]))
+    }
+}
+
+/// `W` neighbouring nodes along the first direction in the block of a point, whose weights and gradients are products
+/// of what is along the run and what is across it: sums over the nodes are taken along first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run<const D: usize, const W: usize> {
+    /// The first of the nodes.
+    pub first: usize,
+    /// Weights along the run.
+    pub weights: [f64; W],
+    /// Gradients along the run, 1/m.
+    pub gradients: [f64; W],
+    /// What the other directions give: to the weights and to the first component of the gradients, and to each of the
+    /// others, 1/m.
+    pub across: Vector<D>,
+}
+
+/// Visits the runs of one block of nodes from its lowest, with the rows of a place among some points.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn visit_rows<const D: usize, const W: usize>(
+    stride: &[usize; D],
+    rows: &RowBlock<D, W>,
+    lowest: usize,
+    lane: usize,
+    run_visitor: &mut impl FnMut(&Run<D, W>),
+) {
+    let mut run = Run { first: 0, weights: [0.0; W], gradients: [0.0; W], across: [1.0; D] };
+    for k in 0..W {
+        run.weights[k] = rows[0].weights[k][lane];
+        run.gradients[k] = rows[0].gradients[k][lane];
+    }
+    for number in 0..power(W, D - 1) {
+        let mut rest = number;
+        run.first = lowest;
+        run.across = [1.0; D];
+        for direction in 1..D {
+            let k = rest % W;
+            rest /= W;
+            run.first += k * stride[direction];
+            let (weight, gradient) = (rows[direction].weights[k][lane], rows[direction].gradients[k][lane]);
+            for component in 0..D {
+                run.across[component] *= if component == direction { gradient } else { weight };
+            }
+        }
+        run_visitor(&run);
+    }
+}
