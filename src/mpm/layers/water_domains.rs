@@ -104,6 +104,35 @@ mod tests {
     use crate::soil::law::Law;
     use crate::soil::material::Material;
 
+    #[test]
+    fn a_water_point_is_as_large_as_the_pores_it_fills_where_it_is() {
+        let arrangement = Arrangement { layers: 2, water_per_cell: 2, ..Arrangement::default() };
+        let column = Column { points: arrangement, ..Column::default() };
+        let soil = Material { law: Law::LogLinear, ..Material::default() };
+        let method = Method::named("GIMP").expect("a known method");
+        let mut problem =
+            column_problem::<1>(SceneKind::XieLeo, &column, &soil, method, 5, 2).expect("a column");
+        let lattice = problem.water.take().expect("a layer of water");
+        let gradient = problem.initial_gradient;
+        let mut layers = TwoLayers::new(Body::new(problem), &lattice, &gradient);
+        // Soil that lost a sixth of its pores below, and none of them on top.
+        let height = layers.body.grid.cell_size * 5.0;
+        let porosity = |place: f64| soil.porosity * (1.0 + 0.2 * (place / height - 1.0));
+        for node in 0..layers.body.nodes.len() {
+            layers.body.nodes.porosity[node] = porosity(layers.body.grid.node_position(node)[0]);
+        }
+        layers.follow_water();
+        let water = &layers.water;
+        for point in 0..water.len() {
+            // Constant density: the pressure of the start is that of the load, a part in ten thousand of K_w.
+            let pores = water.mass[point] / soil.water_density;
+            let volume = pores / porosity(water.position[point][0]);
+            assert!((water.volume[point] / volume - 1.0).abs() < 1e-2, "{point}: {}", water.volume[point]);
+            assert!((2.0 * water.half_length[point][0] / volume - 1.0).abs() < 1e-2);
+        }
+        assert!(water.volume[0] / water.volume[9] > 1.15, "{:?}", water.volume);
+    }
+
     /// Water domains keep their axes. That is right where those of the skeleton do: in the only scene in which two
     /// layers move, a column.
     #[test]
@@ -139,47 +168,5 @@ mod tests {
         for (width, [along, _]) in widths.zip(&domains.half_edges) {
             assert!((width / along[0] - 1.0).abs() < 1e-12, "{width} {along:?}");
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::mpm::body::Body;
-    use crate::mpm::layers::two_layers::TwoLayers;
-    use crate::mpm::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::arrangement::Arrangement;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
-    use crate::soil::law::Law;
-    use crate::soil::material::Material;
-
-    #[test]
-    fn a_water_point_is_as_large_as_the_pores_it_fills_where_it_is() {
-        let arrangement = Arrangement { layers: 2, water_per_cell: 2, ..Arrangement::default() };
-        let column = Column { points: arrangement, ..Column::default() };
-        let soil = Material { law: Law::LogLinear, ..Material::default() };
-        let method = Method::named("GIMP").expect("a known method");
-        let mut problem =
-            column_problem::<1>(SceneKind::XieLeo, &column, &soil, method, 5, 2).expect("a column");
-        let lattice = problem.water.take().expect("a layer of water");
-        let gradient = problem.initial_gradient;
-        let mut layers = TwoLayers::new(Body::new(problem), &lattice, &gradient);
-        // Soil that lost a sixth of its pores below, and none of them on top.
-        let height = layers.body.grid.cell_size * 5.0;
-        let porosity = |place: f64| soil.porosity * (1.0 + 0.2 * (place / height - 1.0));
-        for node in 0..layers.body.nodes.len() {
-            layers.body.nodes.porosity[node] = porosity(layers.body.grid.node_position(node)[0]);
-        }
-        layers.follow_water();
-        let water = &layers.water;
-        for point in 0..water.len() {
-            // Constant density: the pressure of the start is that of the load, a part in ten thousand of K_w.
-            let pores = water.mass[point] / soil.water_density;
-            let volume = pores / porosity(water.position[point][0]);
-            assert!((water.volume[point] / volume - 1.0).abs() < 1e-2, "{point}: {}", water.volume[point]);
-            assert!((2.0 * water.half_length[point][0] / volume - 1.0).abs() < 1e-2);
-        }
-        assert!(water.volume[0] / water.volume[9] > 1.15, "{:?}", water.volume);
     }
 }
