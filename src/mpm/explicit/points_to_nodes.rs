@@ -139,8 +139,8 @@ impl<const D: usize> Body<D> {
                 continue;
             }
             for lane in 0..count {
-                let (masses_of_point, momenta_of_point, stresses_of_point) =
-                    (given.masses(lane), given.momenta(lane), given.stresses(lane));
+                let (masses_of_point, stresses_of_point) = (given.masses(lane), given.stresses(lane));
+                let momenta_of_point = if VELOCITIES { given.momenta(lane) } else { [[0.0; D]; 2] };
                 rows.visit_filled_runs(
                     &stride,
                     lane,

@@ -63,7 +63,7 @@ impl<const D: usize> TwoLayers<D> {
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use crate::mpm::body::Body;
     use crate::mpm::layers::two_layers::TwoLayers;
     use crate::mpm::method::Method;
@@ -76,7 +76,7 @@ pub(crate) mod tests {
     use crate::soil::material::Material;
 
     /// Two layers of a column whose water points all lie somewhat higher than their lattice.
-    pub(crate) fn shifted(method: &str) -> TwoLayers<1> {
+    fn shifted(method: &str) -> TwoLayers<1> {
         let arrangement = Arrangement { layers: 2, water_per_cell: 3, ..Arrangement::default() };
         let column = Column { load: 2e5, points: arrangement, ..Column::default() };
         let soil = Material { law: Law::LogLinear, ..Material::default() };
@@ -148,5 +148,54 @@ pub(crate) mod tests {
             / volume;
         let found = work(&field, &layers);
         assert!((found / mean - 1.0).abs() < 1e-9, "{found} for {mean}: a full cell dilates by its face");
+    }
+
+    #[test]
+    fn a_line_of_pressures_presses_with_its_value_in_the_middle() {
+        let mut layers = shifted("GIMP-SRI-patch");
+        assert!(layers.keeps_cell_rates);
+        for (pressure, place) in layers.water.pressure.iter_mut().zip(&layers.water.place) {
+            *pressure = 1e4 + 2e4 * place[0];
+        }
+        layers.sum_cell_pressures(0);
+        let cell = layers.cells.of_point[7];
+        let [pressed, weight, ..] = layers.sums.cells[cell];
+        // The third cell of five of a column of a metre.
+        assert!((pressed / weight - (1e4 + 2e4 * 0.5)).abs() < 1e-6, "{}", pressed / weight);
+        let plain: f64 = (0..layers.water.len())
+            .filter(|point| layers.cells.of_point[*point] == cell)
+            .map(|point| layers.water.volume_inside(point))
+            .sum();
+        assert!((weight / plain - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_cell_takes_its_own_rate_and_its_points_the_slope_of_their_patch() {
+        let mut layers = shifted("GIMP-SRI-patch");
+        // A flux whose divergence grows with the height.
+        let grid = &layers.body.grid;
+        let heights: Vec<f64> =
+            (0..layers.body.nodes.len()).map(|node| grid.node_position(node)[0]).collect();
+        for (node, height) in heights.iter().enumerate() {
+            let velocity = [-1e-9 * height * height];
+            (layers.body.nodes.solid_velocity[node], layers.body.nodes.water_velocity[node]) =
+                (velocity, velocity);
+        }
+        layers.sum_cell_pressures(0);
+        let before = layers.sums.cells.clone();
+        let pressures = layers.water.pressure.clone();
+        layers.update_pressure(1e-3);
+        layers.sum_cell_pressures(0);
+        for cell in layers.cells.of_point.clone() {
+            let ([one, weight, ..], [two, ..]) = (before[cell], layers.sums.cells[cell]);
+            let (found, rate) = ((two - one) / weight, layers.site_values[cell]);
+            assert!(rate > 0.0 && (found / rate - 1.0).abs() < 1e-6, "{found} for {rate}");
+        }
+        // −Δt (K_w/n) ∇·v has the slope 2e-9 Δt K_w/n over the height, at n = 0.3.
+        let of = |point: usize| layers.water.pressure[point] - pressures[point];
+        let (low, high) = (6, 8);
+        assert_eq!(layers.cells.of_point[low], layers.cells.of_point[high]);
+        let slope = (of(high) - of(low)) / (layers.water.place[high][0] - layers.water.place[low][0]);
+        assert!((slope / 0.014_667 - 1.0).abs() < 0.01, "{slope}");
     }
 }

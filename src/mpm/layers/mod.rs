@@ -5,6 +5,7 @@
 //! does has its file:
 //!
 //! - `water_domains`: porosity, volume and domain of a water point, cut at the soil's surface,
+//! - `motion`: how far a step takes points,
 //! - `phases`: what the points of either phase and the nodes give each other,
 //! - `water_to_nodes`: mass, drag and pressure of the water on their way to the nodes,
 //! - `cell_forces`: the pressure's forces where a cell knows one rate of it,
@@ -18,6 +19,7 @@
 
 pub mod cell_forces;
 pub mod cell_pressures;
+pub mod motion;
 pub mod phases;
 pub mod samples;
 pub mod sliver_nodes;

@@ -1,41 +1,11 @@
 //! What the points of a phase and the nodes give each other in a step: each layer carries one phase, and takes and
 //! gives that one alone.
 
+use crate::mpm::layers::motion::Motion;
 use crate::mpm::layers::two_layers::TwoLayers;
 use crate::mpm::operators::stencil::PointStencils;
 use crate::mpm::state::nodes::Nodes;
 use crate::soil::tensor::Vector;
-
-/// Durations and shares of a step, for the points.
-#[derive(Clone, Copy, Debug)]
-pub struct Motion {
-    /// How long velocities advance, s.
-    pub kick: f64,
-    /// How long places and displacements do, s.
-    pub dt: f64,
-    /// Share of the acceleration update in the velocities.
-    pub flip: f64,
-}
-
-impl Motion {
-    /// Takes a point's velocity through the step, m/s: by the acceleration that the nodes have there, and for what is
-    /// not `flip`, to the velocity that carries it.
-    fn accelerate<const D: usize>(self, velocity: &mut Vector<D>, rate: &Vector<D>, carrying: &Vector<D>) {
-        for d in 0..D {
-            velocity[d] += self.kick * rate[d];
-            if self.flip < 1.0 {
-                velocity[d] = self.flip * velocity[d] + (1.0 - self.flip) * carrying[d];
-            }
-        }
-    }
-
-    /// Takes a place or a displacement through the step, m.
-    fn carry<const D: usize>(self, place: &mut Vector<D>, carrying: &Vector<D>) {
-        for d in 0..D {
-            place[d] += self.dt * carrying[d];
-        }
-    }
-}
 
 /// Sums the momenta of points to the nodes, `[node][component]`.
 fn sum_momenta<const D: usize>(

@@ -2,7 +2,7 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::explicit::ExplicitSettings;
-use crate::mpm::layers::phases::Motion;
+use crate::mpm::layers::motion::Motion;
 use crate::mpm::layers::sliver_nodes::SliverNodes;
 use crate::mpm::layers::water_sums::WaterSums;
 use crate::mpm::method::{PressureIntegration, Recovery};
