@@ -53,7 +53,7 @@
 //! | 29 | the middle of a step | `src/mpm/forced_body.rs:update_forced_pressure`, `src/mpm/explicit/deformation.rs:middle_gradient` |
 //! | 30 | weights of domains that turn | `src/mpm/operators/corners.rs:build_corners`, `src/mpm/state/domains.rs:follow` |
 //! | 31 | cells that remember a confined soil | `src/mpm/state/confined_points.rs:share_out`, `src/mpm/state/cell_memory.rs:spread_over_points` |
-//! | 32 | forces of cells with one rate | `src/mpm/layers/cell_forces.rs:map_cell_forces` |
+//! | 32 | forces of cells with one rate | `src/mpm/layers/cell_forces.rs:map_cell_forces`, `src/mpm/layers/cell_pressures.rs:keep_cell_rates` |
 //! | 33 | slopes of velocities | `src/mpm/explicit/affine.rs:add_slopes` |
 //!
 //! # The step

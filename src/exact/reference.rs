@@ -96,6 +96,14 @@ impl ReferenceKind {
         matches!(self, Self::Manufactured(_))
     }
 
+    /// Whether it is computed in advance for the times that it is asked at, which costs.
+    pub const fn is_prepared(self) -> bool {
+        matches!(
+            self,
+            Self::LargeStrain(_) | Self::DynamicColumn | Self::DynamicSingleMode | Self::StandingWave
+        )
+    }
+
     /// The reference as it holds for a soil: large strain takes the soil's own law and continuity, and is of
     /// the equations that the solver solves; a motion takes the law.
     #[must_use]

@@ -3,7 +3,8 @@
 use crate::exact::exact_error::ExactError;
 use crate::exact::reference::ReferenceKind;
 use crate::measure::error_contributions::largest_contribution;
-use crate::measure::exact_fields::{exact_samples, reference_of};
+use crate::measure::exact_fields::exact_samples;
+use crate::measure::known_references::known_reference;
 use crate::record::{ErrorRow, Record};
 use crate::wording::{short, typed};
 
@@ -30,7 +31,7 @@ pub fn place_of(record: &Record, row: &ErrorRow) -> Result<Option<ErrorPlace>, E
     let (Some(samples), Ok(kind)) = (samples, row.reference.parse::<ReferenceKind>()) else {
         return Ok(None);
     };
-    let reference = reference_of(case, kind.of_soil(&case.material), &[row.time_factor])?;
+    let reference = known_reference(case, kind.of_soil(&case.material), &[row.time_factor])?;
     let exact = exact_samples(case, &reference, row.time_factor, samples)?;
     let fields = row.quantity.field(samples).zip(row.quantity.field(&exact));
     Ok(fields.and_then(|(computed, exact)| {

@@ -6,6 +6,7 @@ use crate::exact::reference::{Reference, ReferenceKind};
 use crate::measure::case_record::reference_use;
 use crate::measure::dimensionless_groups::groups;
 use crate::measure::field_errors::{LONG_AFTER, snapshot_errors};
+use crate::measure::known_references::known_reference;
 use crate::measure::other_measures::measures_of;
 use crate::mpm::run::outcome::{Counters, StepSizes};
 use crate::mpm::run::snapshot::Snapshot;
@@ -13,6 +14,7 @@ use crate::record::attached_run::AttachedRun;
 use crate::record::provenance::Provenance;
 use crate::record::{HistoryRow, Record, SCHEMA, Status};
 use crate::scene::column::column_parameters;
+use std::sync::Arc;
 
 /// The record of a case whose states at its outputs, one an output, came from outside; none where it failed. Each
 /// state is held against the solution at its own time. Wall times are added by who measured them.
@@ -32,9 +34,9 @@ pub fn record_of_attached(
         snapshots.iter().map(|snapshot| parameters.time_factor(snapshot.time)).collect();
     let mut prepared = [case.time_factors.to_vec(), own_times.clone()].concat();
     prepared.push(LONG_AFTER);
-    let references: Vec<Reference> = references
+    let references: Vec<Arc<Reference>> = references
         .iter()
-        .map(|kind| Reference::new(kind.of_soil(&case.material), &parameters, &prepared))
+        .map(|kind| known_reference(case, kind.of_soil(&case.material), &prepared))
         .collect::<Result<_, _>>()?;
     let mut errors = Vec::new();
     for ((asked, own), snapshot) in case.time_factors.iter().zip(&own_times).zip(&snapshots) {
@@ -64,7 +66,7 @@ pub fn record_of_attached(
         start: None,
         balance: Vec::new(),
         errors,
-        measures: measures_of(case, references.first(), &[], &snapshots),
+        measures: measures_of(case, references.first().map(|own| &**own), &[], &snapshots),
         history: degrees.filter(|row| row.degree_of_consolidation.is_finite()).collect(),
         references: references.iter().map(|one| reference_use(case, one)).collect::<Result<_, _>>()?,
         snapshots,

@@ -11,10 +11,10 @@ use crate::scene::column::column_parameters;
 /// The start against what the scene expects of it.
 ///
 /// # Errors
-/// When the scene's own reference, the first, refuses a depth.
+/// When the scene's own reference refuses a depth.
 pub fn start_checks(
     case: &Case,
-    references: &[Reference],
+    own: Option<&Reference>,
     start: &Snapshot,
 ) -> Result<StartChecks, ExactError> {
     let soil = &case.material;
@@ -23,7 +23,7 @@ pub fn start_checks(
     let found = samples.water.as_ref().map_or((&*samples.initial_height, &*samples.pressure), |water| {
         (&*water.initial_height, &*water.pressure)
     });
-    let expected = case.scene.expected_start_pressures(&case.column, soil, references.first(), found)?;
+    let expected = case.scene.expected_start_pressures(&case.column, soil, own, found)?;
     let off = found.1.iter().zip(&expected).map(|(pressure, expected)| (pressure - expected).abs() / load);
     Ok(StartChecks {
         points: samples.pressure.len() + samples.water.as_ref().map_or(0, |water| water.pressure.len()),

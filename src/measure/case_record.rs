@@ -6,12 +6,14 @@ use crate::exact::reference::{Reference, ReferenceKind};
 use crate::measure::balances::{balance, curve_gap, start_checks};
 use crate::measure::dimensionless_groups::{groups, inertia_rules};
 use crate::measure::field_errors::{LONG_AFTER, snapshot_errors};
+use crate::measure::known_references::known_reference;
 use crate::measure::other_measures::measures_of;
 use crate::mpm::critical_step::observed::CriticalStep;
 use crate::mpm::run::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, HistoryRow, Record, ReferenceUse, SCHEMA, Status};
 use crate::scene::column::column_parameters;
+use std::sync::Arc;
 
 /// The record of a run; wall times are added by who measured them.
 ///
@@ -21,9 +23,9 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
     let parameters = column_parameters(&case.column, &case.material);
     let mut prepared = case.time_factors.clone();
     prepared.push(LONG_AFTER);
-    let references: Vec<Reference> = references
+    let references: Vec<Arc<Reference>> = references
         .iter()
-        .map(|kind| Reference::new(kind.of_soil(&case.material), &parameters, &prepared))
+        .map(|kind| known_reference(case, kind.of_soil(&case.material), &prepared))
         .collect::<Result<_, _>>()?;
     let mut errors = Vec::new();
     for (time_factor, snapshot) in case.time_factors.iter().zip(&outcome.snapshots) {
@@ -32,7 +34,8 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
             errors.extend(snapshot_errors(case, reference, *time_factor, snapshot)?);
         }
     }
-    let final_settlement = match references.first() {
+    let own = references.first().map(|own| &**own);
+    let final_settlement = match own {
         None => f64::NAN,
         // What a load of the scale would make, where nothing settles.
         Some(own) if own.kind() == ReferenceKind::AtRest || own.kind().is_manufactured() => {
@@ -70,8 +73,8 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
         wall: Vec::new(),
         stability: None,
         groups: groups(case, outcome.step_sizes.largest / outcome.step_sizes.predicted_critical),
-        start: Some(start_checks(case, &references, &outcome.start)?),
-        measures: measures_of(case, references.first(), &balance, &outcome.snapshots),
+        start: Some(start_checks(case, own, &outcome.start)?),
+        measures: measures_of(case, own, &balance, &outcome.snapshots),
         balance,
         errors,
         history,

@@ -5,9 +5,8 @@ use crate::exact::cosine_layer::{LayerFields, LayerState};
 use crate::exact::exact_error::ExactError;
 use crate::exact::field_values::FieldValues;
 use crate::exact::manufactured::Manufactured;
-use crate::exact::reference::{Reference, ReferenceKind};
+use crate::exact::reference::Reference;
 use crate::mpm::run::snapshot::{PlaneSamples, Samples, WaterSamples};
-use crate::scene::column::column_parameters;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -172,14 +171,6 @@ impl HeightFields<'_> {
     }
 }
 
-/// A reference for the column and soil of a case, prepared for time factors.
-///
-/// # Errors
-/// When it refuses them.
-pub fn reference_of(case: &Case, kind: ReferenceKind, times: &[f64]) -> Result<Reference, ExactError> {
-    Reference::new(kind, &column_parameters(&case.column, &case.material), times)
-}
-
 /// The exact fields at the Lagrangian places of a run's samples.
 ///
 /// # Errors
@@ -233,6 +224,7 @@ pub fn exact_samples(
 mod tests {
     use super::*;
     use crate::exact::parameters::ColumnParameters;
+    use crate::exact::reference::ReferenceKind;
 
     #[test]
     fn many_samples_in_any_order_have_the_values_of_single_ones_to_the_bit() {

@@ -1,10 +1,10 @@
-//! References and theory lines that were made before: a report asks for the same ones again and again, and one at large
-//! strain takes a march in time.
+//! References and theory lines that were made before: runs and reports ask for the same ones again and again, and one at
+//! large strain takes a march in time.
 
 use crate::case::Case;
 use crate::exact::exact_error::ExactError;
 use crate::exact::reference::{Reference, ReferenceKind};
-use crate::measure::exact_fields::reference_of;
+use crate::scene::column::column_parameters;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
 
@@ -41,8 +41,8 @@ pub(crate) fn known_or<T: Clone>(
     Ok(made)
 }
 
-/// A reference for the column and soil of a case at time factors, made once: the values are those of
-/// [`reference_of`], bit for bit.
+/// A reference for the column and soil of a case, prepared for time factors; made once where it has to be computed in
+/// advance, with the same bits as if it were made anew.
 ///
 /// # Errors
 /// When it refuses them.
@@ -52,7 +52,12 @@ pub fn known_reference(
     times: &[f64],
 ) -> Result<Arc<Reference>, ExactError> {
     static KNOWN: Known<Arc<Reference>> = LazyLock::new(Mutex::default);
-    known_or(&KNOWN, key_of(case, kind, times), || reference_of(case, kind, times).map(Arc::new))
+    let parameters = column_parameters(&case.column, &case.material);
+    let make = || Reference::new(kind, &parameters, times).map(Arc::new);
+    if !kind.is_prepared() {
+        return make();
+    }
+    known_or(&KNOWN, format!("{kind:?} {parameters:?} {times:?}"), make)
 }
 
 #[cfg(test)]
@@ -93,5 +98,24 @@ mod tests {
         let refuse = || Err(ExactError::UnknownReference("none".to_owned()));
         assert!(known_or(&known, "key".to_owned(), refuse).is_err());
         assert_eq!(known_or(&known, "key".to_owned(), || Ok(2.0)).expect("made"), 2.0);
+    }
+
+    #[test]
+    fn a_known_reference_is_that_of_the_soil_to_the_bit() {
+        let case = Case::seed(Task::Solve, SceneKind::Terzaghi);
+        let mut softer = case.clone();
+        softer.material.youngs_modulus *= 0.5;
+        let kind = ReferenceKind::DynamicSingleMode;
+        assert!(kind.is_prepared() && !ReferenceKind::Terzaghi.is_prepared());
+        // The second time all of them are known.
+        for case in [&case, &softer, &case, &softer] {
+            let parameters = column_parameters(&case.column, &case.material);
+            let known = known_reference(case, kind, &[0.1]).expect("the seed column");
+            let anew = Reference::new(kind, &parameters, &[0.1]).expect("the seed column");
+            assert_eq!(known.fields(0.1, 0.5), anew.fields(0.1, 0.5));
+        }
+        let again = known_reference(&case, kind, &[0.1]).expect("known");
+        assert!(Arc::ptr_eq(&again, &known_reference(&case, kind, &[0.1]).expect("known")));
+        assert!(!Arc::ptr_eq(&again, &known_reference(&softer, kind, &[0.1]).expect("known")));
     }
 }

@@ -35,15 +35,11 @@ pub fn derivative(order: usize) -> DMatrix<f64> {
 pub fn coefficients(values: &[f64]) -> Vec<f64> {
     let order = values.len() - 1;
     let halved = |j: usize| if j == 0 || j == order { 0.5 } else { 1.0 };
+    let cosines: Vec<f64> = (0..2 * order).map(|m| elementary::cos(PI * m as f64 / order as f64)).collect();
     (0..=order)
         .map(|k| {
-            let sum: f64 = values
-                .iter()
-                .enumerate()
-                .map(|(j, value)| {
-                    halved(j) * value * elementary::cos(PI * ((k * j) % (2 * order)) as f64 / order as f64)
-                })
-                .sum();
+            let term = |(j, value): (usize, &f64)| halved(j) * value * cosines[(k * j) % (2 * order)];
+            let sum: f64 = values.iter().enumerate().map(term).sum();
             2.0 / order as f64 * halved(k) * sum
         })
         .collect()
@@ -85,14 +81,22 @@ pub fn integral_to_one(coefficients: &[f64], x: f64) -> f64 {
 pub fn even_integral_from_zero(coefficients: &[f64], x: f64) -> f64 {
     // T_n(x) = ± sin(n asin x) for odd n, exact at 0.
     let angle = elementary::asin(x.clamp(-1.0, 1.0));
-    let odd = |k: f64, sign: f64| sign * elementary::sin((2.0 * k + 1.0) * angle) / (2.0 * k + 1.0);
+    let size = |k: usize| elementary::sin((2.0 * k as f64 + 1.0) * angle) / (2.0 * k as f64 + 1.0);
+    // T_{2k+1}/(2k+1), from the last down: what stands above a coefficient stood below the one before.
+    let mut above = size(coefficients.len().saturating_sub(1));
     coefficients
         .iter()
         .enumerate()
         .rev()
         .map(|(k, coefficient)| {
             let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
-            coefficient * if k == 0 { x } else { 0.5 * (odd(k as f64, sign) - odd(k as f64 - 1.0, -sign)) }
+            if k == 0 {
+                return coefficient * x;
+            }
+            let below = size(k - 1);
+            let integral = 0.5 * (sign * above - -sign * below);
+            above = below;
+            coefficient * integral
         })
         .sum()
 }

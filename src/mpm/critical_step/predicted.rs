@@ -5,6 +5,7 @@ use crate::mpm::body::{Body, Problem};
 use crate::mpm::critical_step::spectral_radius::GROWTH_TOLERANCE;
 use crate::mpm::critical_step::{formula, spectral_radius};
 use crate::mpm::explicit::ExplicitSettings;
+use crate::mpm::method::{PressureIntegration, Recovery};
 use crate::mpm::state::grid::Grid;
 
 /// Cells of the column on which the critical step of a run is computed.
@@ -58,11 +59,16 @@ pub fn predict<const D: usize>(
 }
 
 /// The problem in one layer, with as many points as the layer that has more of them: layers of equal points have the
-/// limit of one, and unequal ones a limit between those of one layer with the points of either.
+/// limit of one, and unequal ones a limit between those of one layer with the points of either. Where points move, cells
+/// press with what takes their one rate, and have its limit.
 fn one_layer<const D: usize>(problem: &Problem<D>) -> Problem<D> {
     let mut one = problem.clone();
     // What acts from outside moves no limit.
     one.forcing = None;
+    let moves = one.configuration.moves_points();
+    if one.water.is_some() && moves && one.method.pressure == PressureIntegration::Sri {
+        one.method.recovery = Recovery::Constant;
+    }
     if let Some(water) = one.water.take().filter(|water| water.len() > one.points.len()) {
         one.points = water;
     }
@@ -140,5 +146,24 @@ mod tests {
             let cut = predict(&problem, &settings, FEW_CELLS).critical_step;
             assert!((cut / whole - 1.0).abs() < 0.01, "{name} {filling}: {cut} for {whole}");
         }
+    }
+
+    #[test]
+    fn cells_that_press_with_one_rate_step_by_its_limit() {
+        let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
+        let limit = |name: &str, scene: SceneKind, layers: usize| {
+            let points = Arrangement { layers, ..Arrangement::default() };
+            let column = Column { points, load: 2e5, ..Column::default() };
+            let law = scene.default_law();
+            let soil = Material { law, ..Material::default() };
+            let method = Method::named(name).expect("a known method");
+            let problem = column_problem::<1>(scene, &column, &soil, method, 8, 4).expect("a column");
+            predicted_critical_step(&problem, &settings)
+        };
+        let moving = |name, layers| limit(name, SceneKind::XieLeo, layers);
+        assert_eq!(moving("GIMP-SRI-patch", 2), moving("GIMP-SRI", 1));
+        assert!(moving("GIMP-SRI-patch", 1) > 1.04 * moving("GIMP-SRI", 1));
+        let frozen = |name, layers| limit(name, SceneKind::Terzaghi, layers);
+        assert_eq!(frozen("GIMP-SRI-patch", 2), frozen("GIMP-SRI-patch", 1));
     }
 }

@@ -224,7 +224,8 @@ impl<'a, const D: usize> Given<'a, D> {
             stressed,
             drag,
             solid_velocity: &points.solid_velocity[block.clone()],
-            water_velocity: &points.water_velocity[block.clone()],
+            // None where the water has points of its own: nobody takes it from these then.
+            water_velocity: points.water_velocity.get(block.clone()).unwrap_or_default(),
             effective_stress: &points.effective_stress[block.clone()],
             pressure: &points.pressure[block.clone()],
             inverse: is_total.then(|| &points.inverse_deformation[block.clone()]),

@@ -5,16 +5,20 @@
 //! does has its file:
 //!
 //! - `water_domains`: porosity, volume and domain of a water point, cut at the soil's surface,
-//! - `water_to_nodes`: mass, drag, momentum and pressure of the water on their way to the nodes,
+//! - `phases`: what the points of either phase and the nodes give each other,
+//! - `water_to_nodes`: mass, drag and pressure of the water on their way to the nodes,
 //! - `cell_forces`: the pressure's forces where a cell knows one rate of it,
+//! - `cell_pressures`: the pressure that a cell presses with, which takes that rate,
 //! - `sliver_nodes`: nodes that the surface has all but left,
 //! - `water_pressure`: the continuity at the water points,
 //! - `samples`: what a snapshot tells of them,
 //! - `two_layer_stepper`: the driver's view of it.
 //!
-//! Momentum, kicks and the skeleton's strain are those of one layer, from where one layer takes them.
+//! Balances of momentum, kicks and the skeleton's strain are those of one layer, from where one layer takes them.
 
 pub mod cell_forces;
+pub mod cell_pressures;
+pub mod phases;
 pub mod samples;
 pub mod sliver_nodes;
 pub mod two_layer_stepper;

@@ -81,6 +81,16 @@ impl<const D: usize> TwoLayers<D> {
 
     /// Adds to the pressures what is recovered from the sites.
     fn recover_pressure(&mut self) {
+        if self.keeps_cell_rates {
+            self.sum_cell_pressures(0);
+        }
+        self.recover_increments();
+        if self.keeps_cell_rates {
+            self.keep_cell_rates();
+        }
+    }
+
+    fn recover_increments(&mut self) {
         let (body, water) = (&self.body, &mut self.water);
         let at = PointsInCells {
             grid: &body.grid,

@@ -9,8 +9,8 @@ pub struct WaterSums<const D: usize> {
     pub masses: Vec<[f64; 4]>,
     /// Momentum, kg m/s.
     pub momenta: Vec<Vector<D>>,
-    /// What the water points give to each cell: volume times pressure, and volume, of its points and of the domains that
-    /// reach into it; m^D Pa and m^D.
+    /// What the water points give to each cell: weight times pressure, and weight, of its points, and the same of the
+    /// domains that reach into it, or of its points a second time; m^D Pa and m^D.
     pub cells: Vec<[f64; 4]>,
 }
 

@@ -1,4 +1,4 @@
-//! From the water points to the nodes: mass, inertia, drag, momentum, and the force of the pressure.
+//! From the water points to the nodes: mass, inertia, drag, and the force of the pressure.
 //!
 //! ```text
 //! M_w = Σ_w N_iw m_w      A_i = Σ_w N_iw m_w/n_w      D_i = Σ_w N_iw (n_w γ_w/k) V_w      f_i = Σ_w ∇N_iw p_w V_w
@@ -32,32 +32,6 @@ impl<const D: usize> TwoLayers<D> {
             nodes.drag[node] = if is_wet { *drag } else { 0.0 };
             // A node without water has no say in it: any inertia will do.
             self.inertia[node] = if is_wet { *inertia } else { soil.water_density * nodes.volume[node] };
-        }
-    }
-
-    /// Maps the velocity of the water to the nodes, weighted with mass; water that no soil holds goes with the soil.
-    pub fn map_water_velocities(&mut self) {
-        let stride = *self.body.grid.node_stride();
-        let (water, sums) = (&self.water, &mut self.sums.momenta);
-        sums.fill([0.0; D]);
-        for (point, velocity) in water.velocity.iter().enumerate() {
-            let mass = water.mass_inside(point);
-            let momentum = velocity.map(|component| mass * component);
-            self.basis.visit(&stride, point, |node, weight, _| {
-                for d in 0..D {
-                    sums[node][d] += weight * momentum[d];
-                }
-            });
-        }
-        let nodes = &mut self.body.nodes;
-        for (node, momentum) in sums.iter().enumerate() {
-            for d in 0..D {
-                nodes.water_velocity[node][d] = if nodes.water_mass[node] > 0.0 {
-                    momentum[d] * (nodes.water_free[node][d] * nodes.per_water_mass[node])
-                } else {
-                    nodes.solid_velocity[node][d]
-                };
-            }
         }
     }
 

@@ -3,6 +3,7 @@
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::exact_error::ExactError;
+use crate::exact::reference::ReferenceKind;
 use crate::measure::theory_curves::{
     TheoryIsochrone, computed_consolidation, computed_isochrone, constant_recovery_error,
     theory_consolidation, theory_isochrones,
@@ -86,6 +87,15 @@ fn isochrone_name(results: &StudyResults<'_>, theory: &TheoryIsochrone) -> Strin
     }
 }
 
+/// What stands at the axis of the depth: water leaves a slab between plates at its side.
+fn depth_name(own: ReferenceKind) -> &'static str {
+    if own == ReferenceKind::Mandel {
+        "distance from the drained side (a − x)/a (–)"
+    } else {
+        "depth below the surface (H − Y)/H (–)"
+    }
+}
+
 /// The paper's Figs 3a and 4a: `p/q` against depth.
 pub fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure, ExactError> {
     let own = results.study.references[0];
@@ -96,7 +106,7 @@ pub fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure,
         } else {
             ChartAxis::linear("excess pore pressure p/q (–)").between(0.0, 1.05)
         },
-        ChartAxis::linear("depth below the surface (H − Y)/H (–)").between(0.0, 1.0).inverted(),
+        ChartAxis::linear(depth_name(own)).between(0.0, 1.0).inverted(),
     );
     chart.size = Size::PANEL;
     for (slot, theory) in theory_isochrones(&record.case, own)?.into_iter().enumerate() {
@@ -118,7 +128,8 @@ pub fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure,
 pub fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Figure, ExactError> {
     let own = results.study.references[0];
     let case = &shown[0].case;
-    let end = case.time_factors.last().copied().unwrap_or(1.0);
+    let ends = shown.iter().filter_map(|record| record.case.time_factors.last());
+    let end = ends.copied().reduce(f64::max).unwrap_or(1.0);
     let mut chart = Chart::new(
         "Degree of consolidation",
         ChartAxis::log10("time factor T_v (–)"),

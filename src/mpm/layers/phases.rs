@@ -1,0 +1,129 @@
+//! What the points of a phase and the nodes give each other in a step: each layer carries one phase, and takes and
+//! gives that one alone.
+
+use crate::mpm::layers::two_layers::TwoLayers;
+use crate::mpm::operators::stencil::PointStencils;
+use crate::mpm::state::nodes::Nodes;
+use crate::soil::tensor::Vector;
+
+/// Durations and shares of a step, for the points.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// How long velocities advance, s.
+    pub kick: f64,
+    /// How long places and displacements do, s.
+    pub dt: f64,
+    /// Share of the acceleration update in the velocities.
+    pub flip: f64,
+}
+
+impl Motion {
+    /// Takes a point's velocity through the step, m/s: by the acceleration that the nodes have there, and for what is
+    /// not `flip`, to the velocity that carries it.
+    fn accelerate<const D: usize>(self, velocity: &mut Vector<D>, rate: &Vector<D>, carrying: &Vector<D>) {
+        for d in 0..D {
+            velocity[d] += self.kick * rate[d];
+            if self.flip < 1.0 {
+                velocity[d] = self.flip * velocity[d] + (1.0 - self.flip) * carrying[d];
+            }
+        }
+    }
+
+    /// Takes a place or a displacement through the step, m.
+    fn carry<const D: usize>(self, place: &mut Vector<D>, carrying: &Vector<D>) {
+        for d in 0..D {
+            place[d] += self.dt * carrying[d];
+        }
+    }
+}
+
+/// Sums the momenta of points to the nodes, `[node][component]`.
+fn sum_momenta<const D: usize>(
+    basis: &PointStencils<D>,
+    stride: &[usize; D],
+    momenta: impl Iterator<Item = Vector<D>>,
+    sums: &mut [Vector<D>],
+) {
+    sums.fill([0.0; D]);
+    for (point, momentum) in momenta.enumerate() {
+        basis.visit(stride, point, |node, weight, _| {
+            for d in 0..D {
+                sums[node][d] += weight * momentum[d];
+            }
+        });
+    }
+}
+
+impl<const D: usize> TwoLayers<D> {
+    /// Step 4 of the skeleton: velocities, displacements and places of its points.
+    pub(crate) fn advance_skeleton(&mut self, motion: Motion) {
+        let body = &mut self.body;
+        let (stride, moves) = (*body.grid.node_stride(), body.configuration.moves_points());
+        for point in 0..body.points.len() {
+            let (velocities, rates) = (&body.nodes.solid_velocity, &body.nodes.solid_acceleration);
+            let rate = body.basis.value(&stride, point, rates);
+            let of_basis = body.basis.value(&stride, point, velocities);
+            let carrying = body.carrying(point, velocities, of_basis);
+            let points = &mut body.points;
+            motion.accelerate(&mut points.solid_velocity[point], &rate, &of_basis);
+            motion.carry(&mut points.displacement[point], &carrying);
+            if moves {
+                motion.carry(&mut points.position[point], &carrying);
+            }
+        }
+    }
+
+    /// Step 4 of the water: velocities and places of its points.
+    pub(crate) fn advance_water(&mut self, motion: Motion) {
+        let moves = self.body.configuration.moves_points();
+        let (stride, nodes) = (*self.body.grid.node_stride(), &self.body.nodes);
+        for point in 0..self.water.len() {
+            let rate = self.basis.value(&stride, point, &nodes.water_acceleration);
+            let carrying = if moves || motion.flip < 1.0 {
+                self.basis.value(&stride, point, &nodes.water_velocity)
+            } else {
+                [0.0; D]
+            };
+            motion.accelerate(&mut self.water.velocity[point], &rate, &carrying);
+            if moves {
+                motion.carry(&mut self.water.position[point], &carrying);
+            }
+        }
+    }
+
+    /// Maps the velocity of the skeleton to the nodes, weighted with mass.
+    pub(crate) fn map_skeleton_velocities(&mut self) {
+        let body = &mut self.body;
+        let (points, solid_fraction) = (&body.points, 1.0 - body.material.porosity);
+        let momenta = points.solid_velocity.iter().zip(&points.initial_volume);
+        let momenta =
+            momenta.map(|(velocity, initial)| velocity.map(|component| initial * solid_fraction * component));
+        sum_momenta(&body.basis, body.grid.node_stride(), momenta, &mut self.sums.momenta);
+        let Nodes { runs, solid_velocity, per_solid_mass, free, .. } = &mut body.nodes;
+        for node in runs.iter().cloned().flatten() {
+            let per_grain_volume = body.material.grain_density * per_solid_mass[node];
+            for d in 0..D {
+                solid_velocity[node][d] = self.sums.momenta[node][d] * (free[node][d] * per_grain_volume);
+            }
+        }
+    }
+
+    /// Maps the velocity of the water to the nodes, weighted with mass; water that no soil holds goes with the soil.
+    pub(crate) fn map_water_velocities(&mut self) {
+        let water = &self.water;
+        let momenta = water.velocity.iter().enumerate();
+        let momenta =
+            momenta.map(|(point, velocity)| velocity.map(|component| water.mass_inside(point) * component));
+        sum_momenta(&self.basis, self.body.grid.node_stride(), momenta, &mut self.sums.momenta);
+        let nodes = &mut self.body.nodes;
+        for (node, momentum) in self.sums.momenta.iter().enumerate() {
+            for d in 0..D {
+                nodes.water_velocity[node][d] = if nodes.water_mass[node] > 0.0 {
+                    momentum[d] * (nodes.water_free[node][d] * nodes.per_water_mass[node])
+                } else {
+                    nodes.solid_velocity[node][d]
+                };
+            }
+        }
+    }
+}
