@@ -33,11 +33,13 @@ impl<const D: usize> Body<D> {
             for (point, forces) in forced.forces().iter().enumerate() {
                 let volume = points.volume(point);
                 let [mixture, water] = forces.map(|force| force.map(|component| volume * component));
-                blocks.visit_runs(&stride, point, |run| {
-                    for (k, weight) in run.weights.iter().enumerate() {
-                        let (node, weight) = (run.first + k, run.across[0] * weight);
-                        add_weighted(&mut nodes.mixture_force[node], weight, &mixture);
-                        add_weighted(&mut nodes.water_force[node], weight, &water);
+                blocks.visit_filled_runs(&stride, point, |run| {
+                    let places = run.first..run.first + run.weights.len();
+                    let forces = nodes.mixture_force[places.clone()].iter_mut().zip(&mut nodes.water_force[places]);
+                    for (weight, (on_mixture, on_water)) in run.weights.iter().zip(forces) {
+                        let weight = run.across[0] * weight;
+                        add_weighted(on_mixture, weight, &mixture);
+                        add_weighted(on_water, weight, &water);
                     }
                 });
             }

@@ -15,19 +15,39 @@ pub fn identity<const D: usize>() -> Tensor<D> {
 /// `a b`.
 #[inline]
 pub fn product<const D: usize>(a: &Tensor<D>, b: &Tensor<D>) -> Tensor<D> {
-    std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| a[i][k] * b[k][j]).sum()))
+    let mut product = [[0.0; D]; D];
+    for i in 0..D {
+        for j in 0..D {
+            for k in 0..D {
+                product[i][j] += a[i][k] * b[k][j];
+            }
+        }
+    }
+    product
 }
 
 /// `a bᵀ`.
 #[inline]
 pub fn product_with_transpose<const D: usize>(a: &Tensor<D>, b: &Tensor<D>) -> Tensor<D> {
-    std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| a[i][k] * b[j][k]).sum()))
+    let mut product = [[0.0; D]; D];
+    for i in 0..D {
+        for j in 0..D {
+            for k in 0..D {
+                product[i][j] += a[i][k] * b[j][k];
+            }
+        }
+    }
+    product
 }
 
 /// `a · b`.
 #[inline]
 pub fn dot<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> f64 {
-    (0..D).map(|d| a[d] * b[d]).sum()
+    let mut sum = 0.0;
+    for d in 0..D {
+        sum += a[d] * b[d];
+    }
+    sum
 }
 
 /// Solution `x` of `A x = b` for a symmetric matrix that is not indefinite, by elimination without
@@ -100,6 +120,9 @@ pub fn inverse<const D: usize>(tensor: &Tensor<D>) -> (Tensor<D>, f64) {
 /// volume ratio. In one dimension it is the logarithmic strain.
 #[inline]
 pub fn strain_between<const D: usize>(before: &Tensor<D>, after: &Tensor<D>, log_volume: f64) -> Tensor<D> {
+    if D == 1 {
+        return [[log_volume; D]; D];
+    }
     let difference = std::array::from_fn(|i| std::array::from_fn(|j| after[i][j] - before[i][j]));
     let mean = std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (after[i][j] + before[i][j])));
     let mut strain = product(&difference, &inverse(&mean).0);

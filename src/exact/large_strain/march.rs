@@ -8,6 +8,7 @@ use crate::exact::large_strain::graded_grid::EvenGrid;
 use crate::exact::large_strain::loading::{LoadAt, Loading};
 use crate::exact::large_strain::radau::{POINTS, STAGES, weights};
 use crate::exact::large_strain::similarity::{Front, with_slopes};
+use crate::exact::large_strain::stage_modes::{StageFactors, StageModes};
 
 /// Simplified Newton iterations before a step is halved.
 const MOST_ITERATIONS: usize = 40;
@@ -34,6 +35,7 @@ pub struct March {
     loading: Loading,
     grid: EvenGrid,
     weights: [[f64; STAGES]; STAGES],
+    modes: StageModes,
     /// Longest step over the time that has passed.
     growth: f64,
 }
@@ -66,7 +68,9 @@ impl Profile {
 impl March {
     /// A march on `order` points with steps of up to `growth` times the time that has passed.
     pub fn new(diffusion: Diffusion, loading: Loading, order: usize, growth: f64) -> Self {
-        Self { diffusion, loading, grid: EvenGrid::new(order), weights: weights(), growth }
+        let weights = weights();
+        let modes = StageModes::of(&weights);
+        Self { diffusion, loading, grid: EvenGrid::new(order), weights, modes, growth }
     }
 
     /// Before any load: no pressure at all.
@@ -173,14 +177,7 @@ impl March {
         let order = ratio.len();
         let loads = POINTS.map(|point| self.loading.within_step(now.time_factor, point * step));
         let jacobian = self.jacobian(ratio, self.loading.within_step(now.time_factor, 0.0));
-        let mut system = DMatrix::identity(STAGES * order, STAGES * order);
-        for (i, row) in self.weights.iter().enumerate() {
-            for (j, weight) in row.iter().enumerate() {
-                let mut block = system.view_mut((i * order, j * order), (order, order));
-                block -= &jacobian * (step * weight);
-            }
-        }
-        let factors = system.lu();
+        let factors = StageFactors::of(&self.modes, &jacobian, step);
         let mut increments = DVector::zeros(STAGES * order);
         let mut last = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {

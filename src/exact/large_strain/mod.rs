@@ -7,6 +7,7 @@ pub(crate) mod loading;
 pub(crate) mod march;
 pub(crate) mod radau;
 pub(crate) mod similarity;
+pub(crate) mod stage_modes;
 
 pub use crate::exact::large_strain::diffusion::{LargeStrainModel, Water};
 

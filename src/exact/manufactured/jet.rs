@@ -90,6 +90,13 @@ impl Slope {
         self.chain([elementary::ln(self.value), 1.0 / self.value])
     }
 
+    /// The slopes of the natural logarithm alone, about a value of zero: where only they are asked for, the logarithm
+    /// need not be taken.
+    #[inline]
+    pub fn ln_slopes(self) -> Self {
+        self.chain([0.0, 1.0 / self.value])
+    }
+
     /// One over it.
     #[inline]
     pub fn recip(self) -> Self {

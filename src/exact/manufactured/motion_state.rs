@@ -143,9 +143,10 @@ impl State {
         both(|i| self.position[i].along(TIME) + self.flux[i] * per_porosity)
     }
 
-    /// Effective stress of the law from the deformation gradient.
+    /// Effective stress of the law from the deformation gradient; `logarithm` is that of a stretch, whose value counts
+    /// in the stress and not in its slopes.
     #[inline]
-    fn stress(&self) -> [[Slope; 2]; 2] {
+    fn stress(&self, logarithm: impl Fn(Slope) -> Slope) -> [[Slope; 2]; 2] {
         let (soil, deformation) = (&self.soil, &self.deformation);
         if self.law == Law::NeoHookean {
             // [μ (F Fᵀ − I) + λ ln J I]/J
@@ -160,7 +161,7 @@ impl State {
             });
         }
         // Without shear or spin: 2μ ln F_ii + λ ln J, and J = F_xx F_yy.
-        let logarithms = both(|i| deformation[i][i].ln());
+        let logarithms = both(|i| logarithm(deformation[i][i]));
         let volumetric = (logarithms[0] + logarithms[1]) * soil.lame;
         both(|i| {
             both(
@@ -197,7 +198,7 @@ impl State {
 
     /// Effective Cauchy stress, Pa, tension positive.
     pub fn effective_stress(&self) -> [[f64; 2]; 2] {
-        self.stress().map(|row| row.map(|component| component.value))
+        self.stress(Slope::ln).map(|row| row.map(|component| component.value))
     }
 
     /// Velocity of the skeleton, m/s.
@@ -225,7 +226,7 @@ impl State {
             Inertia::Skeleton => [of_skeleton(); 2],
             Inertia::None => [still; 2],
         };
-        let stress = self.stress();
+        let stress = self.stress(Slope::ln_slopes);
         let water = of_water.map(|acceleration| soil.water_density * acceleration);
         let mixture = both(|i| {
             let grains = (1.0 - porosity) * soil.grain_density * of_grains[i];

@@ -66,7 +66,8 @@ impl<const D: usize> FrozenState<D> {
 }
 
 /// One component of a field at the rows of a block.
-#[inline]
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 pub fn lanes<const D: usize>(field: &[Vector<D>], block: usize, component: usize) -> Lanes {
     let first = block * LANES + MARGIN;
     let some = &field[first..first + LANES];
@@ -74,7 +75,8 @@ pub fn lanes<const D: usize>(field: &[Vector<D>], block: usize, component: usize
 }
 
 /// Sets one component of a field at the rows of a block.
-#[inline]
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 pub fn set_lanes<const D: usize>(field: &mut [Vector<D>], block: usize, component: usize, values: Lanes) {
     let first = block * LANES + MARGIN;
     for (vector, value) in field[first..first + LANES].iter_mut().zip(values) {

@@ -6,13 +6,14 @@ use crate::mpm::assembled::assembled_state::{
 use crate::mpm::assembled::operators::{FrozenOperators, NodeConstants};
 use crate::mpm::assembled::rows::RowStorage;
 use crate::mpm::assembled::rows::banded_rows::{BandsWithin, REACH};
-use crate::mpm::assembled::rows::block_products::Rows;
+use crate::mpm::assembled::rows::block_products::{Displacements, Rows};
 use crate::mpm::assembled::tied_rows::TiedRows;
 use crate::mpm::body::Body;
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::momentum::{NodalBalance, implicit_drag, per_water_inertia};
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::wide::wide;
 use crate::soil::tensor::{Vector, dot};
 
 /// A frozen body with its step assembled.
@@ -143,6 +144,12 @@ impl<const D: usize> AssembledStep<D> {
 
     /// One step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
+        wide!(self.kick_and_drift_by_rows(kick, dt, settings));
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+    fn kick_and_drift_by_rows(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         let Self { rows, constants, state, tied, .. } = self;
         match rows {
             RowStorage::Banded(bands) => {
@@ -248,7 +255,8 @@ impl<const D: usize> BlockConstants<D> {
     }
 
     /// The balance of a component of a row, for the kick and drag last set.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
     fn balance(&self, d: usize, i: usize) -> NodalBalance {
         NodalBalance {
             per_solid_mass: self.per_solid_mass[d][i],
@@ -278,17 +286,27 @@ impl<const D: usize> BlockConstants<D> {
 }
 
 /// Accelerations of skeleton and water, and the velocities that they lead to within `kick` seconds.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 fn accelerate<const D: usize>(
     rows: &impl Rows<D>,
     constants: &[BlockConstants<D>],
     state: &mut FrozenState<D>,
     kick: f64,
 ) {
+    let displacements = Displacements {
+        strained: &state.strain_displacement,
+        flux: &state.flux_displacement,
+        dilation: &state.dilation,
+    };
+    let [solid_velocity, water_velocity] = state.velocity.each_ref().map(|field| &field[..]);
+    let [solid_acceleration, water_acceleration] = state.acceleration.each_mut().map(|field| &mut field[..]);
+    let [solid_after, water_after] = state.trial.each_mut().map(|field| &mut field[..]);
     for (block, nodes) in constants.iter().enumerate() {
-        let [pressure, skeleton] = rows.forces(block, state);
+        let [pressure, skeleton] = rows.forces(block, displacements);
         for d in 0..D {
-            let solid = lanes(&state.velocity[SOLID], block, d);
-            let water = lanes(&state.velocity[WATER], block, d);
+            let solid = lanes(solid_velocity, block, d);
+            let water = lanes(water_velocity, block, d);
             let (mut solid_rate, mut water_rate) = ([0.0; LANES], [0.0; LANES]);
             let (mut solid_trial, mut water_trial) = ([0.0; LANES], [0.0; LANES]);
             for i in 0..LANES {
@@ -300,15 +318,17 @@ fn accelerate<const D: usize>(
                 solid_trial[i] = solid[i] + kick * solid_rate[i];
                 water_trial[i] = water[i] + kick * water_rate[i];
             }
-            set_lanes(&mut state.acceleration[SOLID], block, d, solid_rate);
-            set_lanes(&mut state.acceleration[WATER], block, d, water_rate);
-            set_lanes(&mut state.trial[SOLID], block, d, solid_trial);
-            set_lanes(&mut state.trial[WATER], block, d, water_trial);
+            set_lanes(solid_acceleration, block, d, solid_rate);
+            set_lanes(water_acceleration, block, d, water_rate);
+            set_lanes(solid_after, block, d, solid_trial);
+            set_lanes(water_after, block, d, water_trial);
         }
     }
 }
 
 /// Velocities mapped back after a kick, and the displacements that they make in a drift, both s.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 fn advance<const D: usize>(
     rows: &impl Rows<D>,
     constants: &[BlockConstants<D>],
@@ -317,18 +337,23 @@ fn advance<const D: usize>(
     settings: &ExplicitSettings,
 ) {
     let (flip, pic) = (settings.flip, 1.0 - settings.flip);
+    let velocity = state.velocity.each_mut().map(|field| &mut field[..]);
+    let acceleration = state.acceleration.each_ref().map(|field| &field[..]);
+    let trial = state.trial.each_ref().map(|field| &field[..]);
+    let (strained, flux) = (&mut state.strain_displacement[..], &mut state.flux_displacement[..]);
+    let moved = &mut state.displacement[..];
     for (block, nodes) in constants.iter().enumerate() {
-        let mut mapped = rows.projected(block, &state.acceleration);
+        let mut mapped = rows.projected(block, acceleration);
         for phase in [SOLID, WATER] {
             for d in 0..D {
-                let before = lanes(&state.velocity[phase], block, d);
+                let before = lanes(velocity[phase], block, d);
                 for i in 0..LANES {
                     mapped[phase][d][i] = flip * (before[i] + kick * mapped[phase][d][i]);
                 }
             }
         }
         if pic > 0.0 {
-            let interpolated = rows.projected(block, &state.trial);
+            let interpolated = rows.projected(block, trial);
             for phase in [SOLID, WATER] {
                 for d in 0..D {
                     for i in 0..LANES {
@@ -339,21 +364,21 @@ fn advance<const D: usize>(
         }
         for d in 0..D {
             let mapped = [mapped[SOLID][d], mapped[WATER][d]];
-            let trial = [lanes(&state.trial[SOLID], block, d), lanes(&state.trial[WATER], block, d)];
-            let [solid, water] = if settings.mapping_back { mapped } else { trial };
-            let mut strain_displacement = lanes(&state.strain_displacement, block, d);
-            let mut flux_displacement = lanes(&state.flux_displacement, block, d);
-            let mut displacement = lanes(&state.displacement, block, d);
+            let kicked = trial.map(|field| lanes(field, block, d));
+            let [solid, water] = if settings.mapping_back { mapped } else { kicked };
+            let mut strain_displacement = lanes(strained, block, d);
+            let mut flux_displacement = lanes(flux, block, d);
+            let mut displacement = lanes(moved, block, d);
             for i in 0..LANES {
                 strain_displacement[i] += dt * solid[i];
                 flux_displacement[i] += dt * (solid[i] + nodes.porosity[i] * (water[i] - solid[i]));
-                displacement[i] += dt * trial[SOLID][i];
+                displacement[i] += dt * kicked[SOLID][i];
             }
-            set_lanes(&mut state.velocity[SOLID], block, d, mapped[SOLID]);
-            set_lanes(&mut state.velocity[WATER], block, d, mapped[WATER]);
-            set_lanes(&mut state.strain_displacement, block, d, strain_displacement);
-            set_lanes(&mut state.flux_displacement, block, d, flux_displacement);
-            set_lanes(&mut state.displacement, block, d, displacement);
+            set_lanes(velocity[SOLID], block, d, mapped[SOLID]);
+            set_lanes(velocity[WATER], block, d, mapped[WATER]);
+            set_lanes(strained, block, d, strain_displacement);
+            set_lanes(flux, block, d, flux_displacement);
+            set_lanes(moved, block, d, displacement);
         }
     }
 }

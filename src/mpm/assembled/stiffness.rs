@@ -2,7 +2,7 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::operators::volumetric::{VectorRow, VolumetricRows};
-use crate::soil::tensor::{Tensor, Vector};
+use crate::soil::tensor::{Tensor, Vector, dot};
 
 /// A sparse matrix of `D × D` blocks between nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -110,7 +110,8 @@ impl<const D: usize> Body<D> {
             let volume = self.points.volume(point);
             let forces = self.basis.gradient_row(&self.grid, point);
             for entry in self.strain_row(point, rows) {
-                for e in 0..D {
+                // Stress of a unit displacement of the node along each direction.
+                let stresses: [Tensor<D>; D] = std::array::from_fn(|e| {
                     let (mut displaced, mut unit) = ([[0.0; D]; D], [0.0; D]);
                     unit[e] = 1.0;
                     entry.add_to(&mut displaced, &unit);
@@ -118,10 +119,13 @@ impl<const D: usize> Body<D> {
                     for d in 0..D {
                         stress[d][d] += self.stiffness.shared_dilation_stress::<D>(entry.dilation[e]);
                     }
-                    for (row, force) in &forces {
-                        let block = blocks.block(*row, entry.node);
-                        for d in 0..D {
-                            block[d][e] += volume * (0..D).map(|f| stress[d][f] * force[f]).sum::<f64>();
+                    stress
+                });
+                for (row, force) in &forces {
+                    let block = blocks.block(*row, entry.node);
+                    for d in 0..D {
+                        for e in 0..D {
+                            block[d][e] += volume * dot(&stresses[e][d], force);
                         }
                     }
                 }

@@ -4,6 +4,7 @@
 //! and solving are linear in the number of cells (Golub & Van Loan 2013, algorithm 4.3.1).
 
 use crate::mpm::direct_solver::singular::Singular;
+use crate::mpm::wide::wide;
 
 /// A square matrix whose entries lie within `lower` diagonals below and `upper` above the main
 /// one, row by row.
@@ -59,8 +60,16 @@ impl Banded {
 pub struct BandedLu {
     /// The upper factor.
     factors: Banded,
-    /// The lower factor, column by column, for that is how a right-hand side goes through it.
+    /// The lower factor, column by column, for that is how a right-hand side goes through it; each column filled up
+    /// with zeros to whole [`GROUP`]s.
     multipliers: Vec<f64>,
+    /// The same of the upper factor above its diagonal, each column filled up on top, where the band is narrow: rows
+    /// of a few entries would wait for every addition. Else none.
+    upper_columns: Vec<f64>,
+    /// Entries of such columns of both factors.
+    column_lengths: [usize; 2],
+    /// A right-hand side on its way, with room for whole columns before and behind it.
+    padded: Vec<f64>,
     /// Row that took the place of each row.
     pivots: Vec<usize>,
     /// One over the diagonal of the upper factor.
@@ -73,9 +82,15 @@ pub struct BandedLu {
 impl BandedLu {
     /// Factors of the unit matrix, with room for those of matrices of a shape.
     pub fn of_shape(shape: &Banded) -> Self {
+        let reach = shape.lower + shape.upper;
+        let [below, above] = [shape.lower, reach].map(|entries| entries.next_multiple_of(GROUP));
+        let above = if reach < SHORT_ROW { above } else { 0 };
         Self {
             factors: shape.clone(),
-            multipliers: vec![0.0; shape.size * shape.lower],
+            multipliers: vec![0.0; shape.size * below],
+            upper_columns: vec![0.0; shape.size * above],
+            column_lengths: [below, above],
+            padded: vec![0.0; above + shape.size + below],
             pivots: vec![0; shape.size],
             per_diagonal: vec![1.0; shape.size],
             ends: (1..=shape.size).collect(),
@@ -142,7 +157,7 @@ impl BandedLu {
             for row in column + 1..=last {
                 let start = (row - column - 1) * width + column + lower - row;
                 let multiplier = below[start] * per_value;
-                self.multipliers[column * lower + row - column - 1] = multiplier;
+                self.multipliers[column * self.column_lengths[0] + row - column - 1] = multiplier;
                 if multiplier != 0.0 {
                     ends[row] = ends[row].max(column + reach);
                     for (entry, above) in below[start + 1..start + reach].iter_mut().zip(pivot_row) {
@@ -151,24 +166,73 @@ impl BandedLu {
                 }
             }
         }
+        self.turn_upper();
         Ok(())
     }
 
-    /// Replaces a right-hand side by the solution; nothing is allocated.
-    pub fn solve(&self, values: &mut [f64]) {
+    /// Writes the upper factor down by columns, where they are wanted.
+    fn turn_upper(&mut self) {
         let Banded { size, lower, width, ref entries, .. } = self.factors;
-        for column in 0..size {
-            values.swap(column, self.pivots[column]);
-            let (above, below) = values.split_at_mut(column + 1);
-            let value = above[column];
-            let multipliers = &self.multipliers[column * lower..][..lower];
-            for (entry, multiplier) in below.iter_mut().zip(multipliers) {
-                *entry -= multiplier * value;
+        let length = self.column_lengths[1];
+        if length == 0 {
+            return;
+        }
+        self.upper_columns.fill(0.0);
+        for row in 0..size {
+            let entries = &entries[row * width + lower..][1..self.ends[row] - row];
+            for (before, entry) in entries.iter().enumerate() {
+                self.upper_columns[(row + 1 + before) * length + length - 1 - before] = *entry;
             }
         }
-        for row in (0..size).rev() {
-            let upper = &entries[row * width + lower..][1..self.ends[row] - row];
-            values[row] = less_products(values[row], upper, &values[row + 1..]) * self.per_diagonal[row];
+    }
+
+    /// Replaces a right-hand side by the solution; nothing is allocated.
+    pub fn solve(&mut self, values: &mut [f64]) {
+        wide!(self.substitute(values));
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+    fn substitute(&mut self, values: &mut [f64]) {
+        let Banded { size, lower, width, ref entries, .. } = self.factors;
+        let [below, above] = self.column_lengths;
+        let padded = &mut self.padded[..];
+        padded[above..above + size].copy_from_slice(values);
+        for column in 0..size {
+            let place = above + column;
+            padded.swap(place, above + self.pivots[column]);
+            let value = padded[place];
+            let multipliers = &self.multipliers[column * below..][..below];
+            take_products(&mut padded[place + 1..][..below], multipliers, value);
+        }
+        if above > 0 {
+            for column in (0..size).rev() {
+                let value = padded[above + column] * self.per_diagonal[column];
+                padded[above + column] = value;
+                let entries = &self.upper_columns[column * above..][..above];
+                take_products(&mut padded[column..][..above], entries, value);
+            }
+        } else {
+            for row in (0..size).rev() {
+                let upper = &entries[row * width + lower..][1..self.ends[row] - row];
+                padded[row] =
+                    less_products(padded[row], upper, &padded[row + 1..size]) * self.per_diagonal[row];
+            }
+        }
+        values.copy_from_slice(&padded[above..above + size]);
+    }
+}
+
+/// Entries of a column that are taken at once.
+const GROUP: usize = 4;
+
+/// `rest ← rest − factor · entries`, of whole groups.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+fn take_products(rest: &mut [f64], entries: &[f64], factor: f64) {
+    for (rest, entries) in rest.as_chunks_mut::<GROUP>().0.iter_mut().zip(entries.as_chunks::<GROUP>().0) {
+        for (rest, entry) in rest.iter_mut().zip(entries) {
+            *rest -= entry * factor;
         }
     }
 }

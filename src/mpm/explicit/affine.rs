@@ -11,6 +11,7 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::explicit::points_to_nodes::volumes_of;
+use crate::mpm::operators::pairs::add_weighted;
 use crate::mpm::operators::stencil::with_stencils;
 use crate::mpm::state::grid::GHOST_LAYERS;
 use crate::mpm::state::velocity_slopes::VelocitySlopes;
@@ -50,17 +51,24 @@ impl<const D: usize> Body<D> {
                     std::array::from_fn(|d| (in_cells[d] - GHOST_LAYERS as f64) * cell_size);
                 let volumes =
                     volumes_of(points.initial_volume[point], points.volume_ratio[point], solid_fraction);
-                blocks.visit_runs(&stride, point, |run| {
-                    for (k, weight) in run.weights.iter().enumerate() {
-                        let node = run.first + k;
-                        let apart: Vector<D> = std::array::from_fn(|d| nodes[node][d] - place[d]);
-                        for phase in 0..2 {
-                            let given = run.across[0] * weight * volumes[phase];
-                            for d in 0..D {
-                                let faster: f64 = (0..D).map(|e| slopes[phase][d][e] * apart[e]).sum();
-                                momenta[node][phase][d] += given * faster;
-                            }
-                        }
+                // What either phase brings per distance from the point, `[direction][phase][component]`.
+                let brought: [[Vector<D>; 2]; D] = std::array::from_fn(|e| {
+                    std::array::from_fn(|phase| std::array::from_fn(|d| volumes[phase] * slopes[phase][d][e]))
+                });
+                blocks.visit_filled_runs(&stride, point, |run| {
+                    let places = &nodes[run.first..run.first + run.weights.len()];
+                    let sums = &mut momenta[run.first..run.first + run.weights.len()];
+                    // Across the run all its nodes are as far from the point.
+                    let mut across = [[0.0; D]; 2];
+                    for e in 1..D {
+                        let apart = run.across[0] * (places[0][e] - place[e]);
+                        add_weighted(across.as_flattened_mut(), apart, brought[e].as_flattened());
+                    }
+                    for ((weight, at), sum) in run.weights.iter().zip(places).zip(sums) {
+                        let mut given = across;
+                        let apart = run.across[0] * (at[0] - place[0]);
+                        add_weighted(given.as_flattened_mut(), apart, brought[0].as_flattened());
+                        add_weighted(sum.as_flattened_mut(), *weight, given.as_flattened());
                     }
                 });
             }

@@ -253,9 +253,14 @@ impl<const D: usize> LinearSystem<D> {
             visit(&mut |(row, column, _, _)| visitor(row, column));
         });
         let mut proportional = fixed.clone();
+        // Each entry belongs to one of them: a zero is not worth looking for its place.
         visit(&mut |(row, column, constant, rate)| {
-            fixed.add(row, column, constant);
-            proportional.add(row, column, rate);
+            if constant != 0.0 {
+                fixed.add(row, column, constant);
+            }
+            if rate != 0.0 {
+                proportional.add(row, column, rate);
+            }
         });
         let (surface_outflow, start_outflow) = operators.outflow();
         Self {

@@ -5,10 +5,11 @@
 //! - `linear_system`: the frozen body as `C ẋ + K x = g`; `linear`: SDIRK2 on it, one
 //!   factorisation per step size,
 //! - `trial`: a moving or inertial body at a trial state; `residual`: what its balances leave there;
-//!   `tangent`: the residual's differences; `newton`: SDIRK2 with Newton's iteration on it,
+//!   `tangent`: the residual's differences; `guess`: where a stage's iteration begins; `newton`: SDIRK2 with Newton's iteration on it,
 //!
 //! The systems are solved by `direct_solver`.
 
+pub mod guess;
 pub mod linear;
 pub mod linear_system;
 pub mod newton;

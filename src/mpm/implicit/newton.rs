@@ -1,7 +1,9 @@
 //! A Newton iteration a stage: for finite strain, and for bodies with inertia.
 
+use crate::elementary;
 use crate::mpm::body::Body;
 use crate::mpm::direct_solver::bordered::{Bordered, BorderedLu};
+use crate::mpm::implicit::guess::StageGuess;
 use crate::mpm::implicit::residual::StageStart;
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::mpm::implicit::tangent::Pattern;
@@ -21,10 +23,14 @@ const MOST_ITERATIONS: usize = 16;
 const MOST_HALVINGS: u32 = 10;
 /// Error that an iteration may leave, over the size of the problem's strains.
 const TOLERANCE: f64 = 1e-11;
-/// Ratio of an iteration's correction to the last one's beyond which the tangent is made anew.
+/// Ratio of an iteration's correction to the last one's that is taken for granted where none is known.
 const SLOW: f64 = 0.1;
-/// The same beyond which a correction of the size of round-off no longer shrinks.
-const STALLED: f64 = 0.5;
+/// The same beyond which the tangent is made anew, whatever is left.
+const TOO_SLOW: f64 = 0.5;
+/// Iterations with the tangent that there is which are worth a new one: that costs a residual for each of its groups.
+const PATIENCE: f64 = 6.0;
+/// What a contraction is taken to grow by in a stage that ends without a second correction to tell it.
+const UNSEEN_GROWTH: f64 = 2.0;
 
 /// What a stage lasts for and where it ends, in steps, and the share of its increment in the start of the next
 /// one, or in the step.
@@ -52,6 +58,7 @@ pub struct NewtonStepper<const D: usize> {
     error_scales: ErrorScales,
     stages: &'static [Stage],
     start: StageStart<D>,
+    guess: StageGuess,
     /// Rate of the scaled unknowns at the end of the last step, 1/s.
     rate: Vec<f64>,
     state: Vec<f64>,
@@ -90,6 +97,7 @@ impl<const D: usize> NewtonStepper<D> {
             error_scales: ErrorScales::of(&scales, plan),
             stages,
             start: StageStart::default(),
+            guess: StageGuess::of(zero.len()),
             rate: zero.clone(),
             state: zero.clone(),
             residual: zero.clone(),
@@ -119,7 +127,7 @@ impl<const D: usize> NewtonStepper<D> {
         let mut flux = 0.0;
         let mut first = true;
         self.trial.begin_step(self.time);
-        for (duration, end, share) in self.stages {
+        for (number, (duration, end, share)) in self.stages.iter().enumerate() {
             let stage = duration * dt;
             if first {
                 self.start_step(stage);
@@ -127,7 +135,8 @@ impl<const D: usize> NewtonStepper<D> {
             }
             self.load_at(self.time + end * dt);
             self.trial.act_later(end * dt);
-            self.solve_stage()?;
+            self.solve_stage(number)?;
+            self.guess.keep(number, &self.rate, &self.start.unknowns, &self.state);
             flux += share * stage * self.trial.outflow();
             if *share != 1.0 {
                 self.start_second_stage();
@@ -146,6 +155,7 @@ impl<const D: usize> NewtonStepper<D> {
         enter(Phase::BuildWeights);
         self.trial.end_step(&self.state, flux);
         self.time += dt;
+        self.guess.end_step();
         self.follow_structure();
         Ok(error)
     }
@@ -168,7 +178,7 @@ impl<const D: usize> NewtonStepper<D> {
         }
     }
 
-    /// The first stage starts where the last step ended, and is guessed to have its rates.
+    /// The first stage starts where the last step ended.
     fn start_step(&mut self, stage: f64) {
         self.start.duration = stage;
         self.start.unknowns.clear();
@@ -176,12 +186,10 @@ impl<const D: usize> NewtonStepper<D> {
         let [solid, water] = &self.trial.velocity;
         self.start.solid_velocity.clone_from(solid);
         self.start.water_velocity.clone_from(water);
-        for (state, rate) in self.state.iter_mut().zip(&self.rate) {
-            *state = stage * rate;
-        }
+        self.guess.begin_step(stage);
     }
 
-    /// The second stage starts where the first one's rates lead, and is guessed to have the same.
+    /// The second stage starts where the first one's rates lead.
     fn start_second_stage(&mut self) {
         let nodes = &self.trial.body.nodes;
         for (start, now) in [
@@ -192,14 +200,30 @@ impl<const D: usize> NewtonStepper<D> {
                 *start += SECOND_STAGE * (now - *start);
             }
         }
-        for (start, state) in self.start.unknowns.iter_mut().zip(&mut self.state) {
-            *start = SECOND_STAGE * *state;
-            *state += *start;
+        for (start, state) in self.start.unknowns.iter_mut().zip(&self.state) {
+            *start = SECOND_STAGE * state;
+        }
+    }
+
+    /// Solves a stage from its guess; where that leads nowhere and was a bold one, or the tangent is that of points in
+    /// other cells, once more without either.
+    fn solve_stage(&mut self, number: usize) -> Result<(), StepFailure> {
+        self.guess.guess(number, &self.rate, &self.start.unknowns, &mut self.state);
+        let is_bold = !self.guess.is_plain(number)
+            || (self.factored.is_some() && !self.pattern.is_of(&self.trial.body, &self.trial.unknowns));
+        match self.iterate() {
+            Err(_) if is_bold => {
+                self.guess.make_plain(number);
+                self.guess.guess(number, &self.rate, &self.start.unknowns, &mut self.state);
+                self.factored = None;
+                self.iterate()
+            }
+            done => done,
         }
     }
 
     /// Newton's iteration, with the tangent of an earlier state as long as it contracts well.
-    fn solve_stage(&mut self) -> Result<(), StepFailure> {
+    fn iterate(&mut self) -> Result<(), StepFailure> {
         let mut last = f64::INFINITY;
         let mut renew = self.factored != Some(self.start.duration);
         for _ in 0..MOST_ITERATIONS {
@@ -224,14 +248,19 @@ impl<const D: usize> NewtonStepper<D> {
                 self.contraction = (size / last).max(1e-3);
             }
             if size * self.contraction <= self.tolerance * (1.0 - self.contraction) {
+                if last.is_infinite() {
+                    self.contraction = (UNSEEN_GROWTH * self.contraction).min(SLOW);
+                }
                 return Ok(());
             }
-            if size <= self.round_off && size >= STALLED * last {
+            if size <= self.round_off && size >= SLOW * last {
                 // What round-off leaves, neither a new tangent nor smaller steps take away.
                 self.contraction = SLOW;
                 return Ok(());
             }
-            renew = self.contraction > SLOW;
+            let is_told = last.is_finite();
+            let left = elementary::ln(self.tolerance / size) / elementary::ln(self.contraction);
+            renew = self.contraction > TOO_SLOW || is_told && left > PATIENCE;
             last = size;
         }
         Err(StepFailure {
@@ -245,6 +274,9 @@ impl<const D: usize> NewtonStepper<D> {
 
     fn renew_tangent(&mut self) -> Result<(), StepFailure> {
         enter(Phase::Assembly);
+        if !self.pattern.is_of(&self.trial.body, &self.trial.unknowns) {
+            self.renew_pattern();
+        }
         let (trial, start) = (&mut self.trial, &self.start);
         self.pattern.differentiate(
             &mut self.state,
@@ -286,22 +318,34 @@ impl<const D: usize> NewtonStepper<D> {
         StepFailure { kind, reason: format!("{reason}; {remedy}") }
     }
 
-    /// Points that went on to other cells change which balances feel which unknowns.
+    /// Points that went on to other cells change which balances feel which unknowns. The factors that there are serve
+    /// on while they contract well, unless the unknowns themselves are others.
     fn follow_structure(&mut self) {
-        if self.pattern.is_of(&self.trial.body, &self.trial.unknowns) {
+        let (body, unknowns) = (&self.trial.body, &self.trial.unknowns);
+        if self.pattern.is_of(body, unknowns) {
             return;
         }
-        self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
-        self.tangent = self.pattern.zeros();
-        self.lu = BorderedLu::of_shape(&self.tangent);
-        self.factored = None;
+        self.contraction = self.contraction.max(SLOW);
+        if self.pattern.has_unknowns(unknowns) {
+            return;
+        }
+        self.renew_pattern();
         let count = self.trial.unknowns.count;
+        self.guess = StageGuess::of(count);
         if count != self.state.len() {
             for vector in [&mut self.rate, &mut self.state, &mut self.residual, &mut self.scratch] {
                 vector.clear();
                 vector.resize(count, 0.0);
             }
         }
+    }
+
+    /// Makes the pattern anew, with room for its factors.
+    fn renew_pattern(&mut self) {
+        self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
+        self.tangent = self.pattern.zeros();
+        self.lu = BorderedLu::of_shape(&self.tangent);
+        self.factored = None;
     }
 }
 

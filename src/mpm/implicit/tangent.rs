@@ -24,6 +24,9 @@ struct Structure {
     last_node: Option<usize>,
     /// A domain that touches a face reaches the node beyond it without its row beginning elsewhere.
     numbers: Vec<Option<usize>>,
+    /// Places of the pressures and their numbers.
+    sites: Vec<usize>,
+    pressures: Vec<usize>,
 }
 
 impl Structure {
@@ -34,6 +37,8 @@ impl Structure {
             cells: body.cells.of_point.clone(),
             last_node: body.last_spline_node(),
             numbers: unknowns.displacement.as_flattened().to_vec(),
+            sites: unknowns.rows.sites.clone(),
+            pressures: unknowns.pressure.clone(),
         }
     }
 }
@@ -78,7 +83,15 @@ impl Pattern {
             && known.strain == body.strain.first()
             && known.cells == body.cells.of_point
             && known.last_node == body.last_spline_node()
-            && known.numbers == unknowns.displacement.as_flattened()
+            && self.has_unknowns(unknowns)
+    }
+
+    /// Whether its rows and columns still are those unknowns, whatever they feel.
+    pub fn has_unknowns<const D: usize>(&self, unknowns: &Unknowns<D>) -> bool {
+        let known = &self.structure;
+        known.numbers == unknowns.displacement.as_flattened()
+            && known.sites == unknowns.rows.sites
+            && known.pressures == unknowns.pressure
     }
 
     /// Zeros in the shape of the tangent.

@@ -7,6 +7,7 @@ use crate::elementary;
 use crate::mpm::body::Body;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::Memory;
+use crate::mpm::operators::recovery::points_in_cells::points_in_cells;
 use crate::mpm::run::integrator::Formulation;
 use crate::mpm::state::points::Points;
 use crate::soil::tensor::{Tensor, Vector, dot, identity, inverse, product, strain_between};
@@ -147,16 +148,34 @@ impl<const D: usize> Trial<D> {
                 }
             }
             self.strain_point(point, &gradient, dilation);
-            let mut change = 0.0;
-            for (site, weight) in &self.unknowns.rows.recovery[point] {
-                change += weight * increments[self.unknowns.pressure[*site]];
-            }
-            self.body.points.pressure[point] =
-                self.anchor.pressure[point] + self.unknowns.scales.pressure * change;
         }
+        self.take_pressures(increments);
         if self.body.configuration.deforms() {
             self.body.follow_points();
         }
+    }
+
+    /// Pressures of the points from those at the sites: in place, and by the rows of a recovery that would have to
+    /// fit its fields anew.
+    fn take_pressures(&mut self, increments: &[f64]) {
+        let (unknowns, scale) = (&self.unknowns, self.unknowns.scales.pressure);
+        self.body.points.pressure.copy_from_slice(&self.anchor.pressure);
+        if !self.body.recovery.is_local() {
+            for (pressure, row) in self.body.points.pressure.iter_mut().zip(&unknowns.rows.recovery) {
+                let change = |(site, weight): &(usize, f64)| weight * increments[unknowns.pressure[*site]];
+                *pressure += scale * row.iter().map(change).sum::<f64>();
+            }
+            return;
+        }
+        let body = &mut self.body;
+        body.site_values.fill(0.0);
+        for (place, number) in unknowns.rows.sites.iter().zip(&unknowns.pressure) {
+            body.site_values[*place] = increments[*number];
+        }
+        let at = points_in_cells!(body);
+        body.recovery.recover(&at, &body.site_values, &mut body.points.pressure, |pressure, change| {
+            *pressure += scale * change;
+        });
     }
 
     /// Deformation and effective stress of a point under a displacement gradient since the anchor.

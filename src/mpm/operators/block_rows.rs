@@ -48,6 +48,13 @@ impl<'a, const D: usize, const W: usize> Blocks<'a, D, W> {
         self.block(point / LANES).visit_runs(stride, point % LANES, run_visitor);
     }
 
+    /// The same, but for runs whose weights and gradients are all zero.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn visit_filled_runs(&self, stride: &[usize; D], point: usize, run_visitor: impl FnMut(&Run<D, W>)) {
+        self.block(point / LANES).visit_filled_runs(stride, point % LANES, run_visitor);
+    }
+
     /// Sum of a nodal vector field with the weights: its value at the point.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]

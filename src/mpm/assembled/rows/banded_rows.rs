@@ -1,9 +1,9 @@
 //! Rows as bands, several rows side by side: what a block reads of a neighbour lies beside what the next
 //! row reads of its own, and the compiler makes one instruction of what is done to each.
 
-use crate::mpm::assembled::assembled_state::{FrozenState, LANES, Lanes, MARGIN};
+use crate::mpm::assembled::assembled_state::{LANES, Lanes, MARGIN};
 use crate::mpm::assembled::operators::FrozenOperators;
-use crate::mpm::assembled::rows::block_products::Rows;
+use crate::mpm::assembled::rows::block_products::{Displacements, Rows};
 use crate::mpm::assembled::stiffness::pressure_stiffness;
 use crate::soil::tensor::{Tensor, Vector};
 
@@ -93,20 +93,22 @@ fn put_tensor<const D: usize>(bands: &mut [[Band; D]; D], k: usize, i: usize, en
 }
 
 impl<const D: usize, const R: usize> Rows<D> for BandsWithin<'_, D, R> {
-    #[inline]
-    fn forces(&self, block: usize, state: &FrozenState<D>) -> [[Lanes; D]; 2] {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+    fn forces(&self, block: usize, displacements: Displacements<'_, D>) -> [[Lanes; D]; 2] {
         let rows = &self.0.blocks[block];
         [
-            forces::<D, R>(&rows.pressure_stiffness, &state.flux_displacement, block),
-            forces::<D, R>(&rows.skeleton_stiffness, &state.strain_displacement, block),
+            forces::<D, R>(&rows.pressure_stiffness, displacements.flux, block),
+            forces::<D, R>(&rows.skeleton_stiffness, displacements.strained, block),
         ]
     }
 
-    #[inline]
-    fn projected(&self, block: usize, fields: &[Vec<Vector<D>>; 2]) -> [[Lanes; D]; 2] {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+    fn projected(&self, block: usize, fields: [&[Vector<D>]; 2]) -> [[Lanes; D]; 2] {
         let band = &self.0.blocks[block].projection;
         std::array::from_fn(|phase| {
-            let window = window::<D, R>(&fields[phase], block);
+            let window = window::<D, R>(fields[phase], block);
             let mut sums = [[0.0; LANES]; D];
             for (d, sums) in sums.iter_mut().enumerate() {
                 for k in 0..=2 * R {
@@ -121,14 +123,16 @@ impl<const D: usize, const R: usize> Rows<D> for BandsWithin<'_, D, R> {
 }
 
 /// What the rows of a block reach of a field.
-#[inline]
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 fn window<const D: usize, const R: usize>(field: &[Vector<D>], block: usize) -> &[Vector<D>] {
     let first = block * LANES + MARGIN - R;
     &field[first..first + 2 * R + LANES]
 }
 
 /// Products of bands that are zero beyond `R` with a field.
-#[inline]
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 fn forces<const D: usize, const R: usize>(
     bands: &[[Band; D]; D],
     field: &[Vector<D>],

@@ -3,9 +3,9 @@
 //! The pressure stays in two factors, `D` to the sites and `Q R` back to the nodes: their product would
 //! be five times as long in a plane.
 
-use crate::mpm::assembled::assembled_state::{FrozenState, LANES, Lanes, MARGIN};
+use crate::mpm::assembled::assembled_state::{LANES, Lanes, MARGIN};
 use crate::mpm::assembled::operators::FrozenOperators;
-use crate::mpm::assembled::rows::block_products::Rows;
+use crate::mpm::assembled::rows::block_products::{Displacements, Rows};
 use crate::mpm::operators::sparse_rows::SparseRows;
 use crate::soil::tensor::{Tensor, Vector};
 
@@ -43,6 +43,8 @@ impl<const D: usize> SparseStorage<D> {
     }
 
     /// Dilation at the sites, `D U_f`.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
     pub fn dilate(&self, flux_displacement: &[Vector<D>], dilation: &mut [f64]) {
         for (site, dilation) in dilation.iter_mut().enumerate() {
             let mut sum = 0.0;
@@ -73,19 +75,20 @@ impl<const D: usize> SparseStorage<D> {
 }
 
 impl<const D: usize> Rows<D> for SparseStorage<D> {
-    #[inline]
-    fn forces(&self, block: usize, state: &FrozenState<D>) -> [[Lanes; D]; 2] {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+    fn forces(&self, block: usize, displacements: Displacements<'_, D>) -> [[Lanes; D]; 2] {
         let (mut pressures, mut skeletons) = ([[0.0; LANES]; D], [[0.0; LANES]; D]);
         for i in 0..LANES {
             let (mut pressure, mut skeleton) = ([0.0; D], [0.0; D]);
             for (site, force) in self.pressure_force.row(block * LANES + i) {
-                let dilation = state.dilation[*site as usize];
+                let dilation = displacements.dilation[*site as usize];
                 for d in 0..D {
                     pressure[d] += force[d] * dilation;
                 }
             }
             for (column, stiffness) in self.skeleton_force.row(block * LANES + i) {
-                let moved = &state.strain_displacement[*column as usize];
+                let moved = &displacements.strained[*column as usize];
                 for d in 0..D {
                     for e in 0..D {
                         skeleton[d] += stiffness[d][e] * moved[e];
@@ -100,8 +103,9 @@ impl<const D: usize> Rows<D> for SparseStorage<D> {
         [pressures, skeletons]
     }
 
-    #[inline]
-    fn projected(&self, block: usize, fields: &[Vec<Vector<D>>; 2]) -> [[Lanes; D]; 2] {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+    fn projected(&self, block: usize, fields: [&[Vector<D>]; 2]) -> [[Lanes; D]; 2] {
         let [solid, water] = fields;
         // Of one length, so that one check of a place serves both.
         let water = &water[..solid.len()];

@@ -88,6 +88,14 @@ impl<const D: usize> RecoveryOperator<D> {
         }
     }
 
+    /// Whether a point's value is that of a few sites around it, and nothing is fitted first.
+    pub fn is_local(&self) -> bool {
+        match self {
+            Self::Own | Self::Constant | Self::Patch(_) => true,
+            Self::Nodal(_) | Self::NodalField(_) | Self::NullSpace(_) => false,
+        }
+    }
+
     /// The same as rows, `[point][entry]` of site and weight.
     pub fn rows(&self, at: &PointsInCells<'_, D>) -> Vec<Vec<(usize, f64)>> {
         let points = 0..at.positions.len();
