@@ -2,16 +2,16 @@
 
 use crate::case::keys::Choice;
 use crate::mpm::method::{Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient};
+use crate::study::reading::toml_tree;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;
 use std::marker::PhantomData;
 use std::ops::Deref;
 use toml::Spanned;
 
 /// A value with its place in the text.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(transparent)]
+#[derive(Clone, Debug)]
 pub struct Placed<T>(Spanned<T>);
 
 /// A word that names one of the choices of a type; judged later, at its place.
@@ -24,10 +24,23 @@ pub type Typed<T> = Option<Placed<T>>;
 /// A typed list with the places of its values.
 pub type TypedList<T> = Option<Placed<Vec<Placed<T>>>>;
 
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Placed<T> {
+    fn deserialize<D: Deserializer<'de>>(tree: D) -> Result<Self, D::Error> {
+        toml_tree::with_place(tree).map(Self)
+    }
+}
+
 impl<T> Deref for Placed<T> {
     type Target = Spanned<T>;
     fn deref(&self) -> &Spanned<T> {
         &self.0
+    }
+}
+
+impl<T> Placed<T> {
+    /// The value without its place.
+    pub fn into_inner(self) -> T {
+        self.0.into_inner()
     }
 }
 

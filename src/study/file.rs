@@ -12,9 +12,8 @@ use crate::scene::SceneKind;
 use crate::study::choice_tables::{Named, Placed, Typed, TypedList};
 use crate::study::diagnostic::{Diagnostic, StudyError, nearest};
 use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
-use crate::study::grammar;
 use crate::study::inputs::{InputTable, List, One, OwnKeys};
-use crate::study::mistakes;
+use crate::study::reading::{grammar, mistakes, toml_tree};
 use crate::study::result_table::ResultTable;
 use crate::study::solver_table::SolverTable;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -336,7 +335,7 @@ impl StudySource {
     /// # Errors
     /// What the parser refuses, with the nearest key.
     pub fn read<T: serde::de::DeserializeOwned>(&self) -> Result<T, StudyError> {
-        toml::from_str(&self.text).map_err(|error| self.error(vec![explained(&error, &self.text)]))
+        toml_tree::read(&self.text).map_err(|refusal| self.error(vec![explained(refusal, &self.text)]))
     }
 
     /// One complaint about the whole text.
@@ -350,10 +349,10 @@ impl StudySource {
     }
 }
 
-/// A parser's error with the nearest key, where the key is unknown.
-fn explained(error: &toml::de::Error, text: &str) -> Diagnostic {
-    let message = error.message().trim().replace('\n', "; ");
-    let span = error.span();
+/// A refusal with the nearest key, where the key is unknown.
+fn explained(refusal: toml_tree::Refusal, text: &str) -> Diagnostic {
+    let message = refusal.message.trim().replace('\n', "; ");
+    let span = refusal.place;
     if let Some((message, help)) = mistakes::explained(&message, span.as_ref(), text) {
         return Diagnostic { message, span, help: Some(help) };
     }

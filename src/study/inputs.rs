@@ -4,7 +4,7 @@
 
 use crate::case::keys::{Key, Kind};
 use crate::mpm::method::Method;
-use crate::study::choice_tables::{MethodTable, TimeStepTable};
+use crate::study::choice_tables::{MethodTable, Placed, TimeStepTable};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, Visitor};
@@ -82,7 +82,7 @@ impl<V, Own> InputTable<V, Own> {
     }
 }
 
-fn placed<T>(value: Spanned<T>, typed: fn(T) -> TypedInput) -> One {
+fn placed<T>(value: Placed<T>, typed: fn(T) -> TypedInput) -> One {
     Spanned::new(value.span(), typed(value.into_inner()))
 }
 
@@ -103,7 +103,7 @@ impl HeldKey for List {
         map: &mut A,
         typed: fn(T) -> TypedInput,
     ) -> Result<Self, A::Error> {
-        let list: Spanned<Vec<Spanned<T>>> = map.next_value()?;
+        let list: Placed<Vec<Placed<T>>> = map.next_value()?;
         let span = list.span();
         Ok(Spanned::new(span, list.into_inner().into_iter().map(|one| placed(one, typed)).collect()))
     }
