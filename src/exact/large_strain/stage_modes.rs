@@ -47,8 +47,8 @@ impl StageModes {
         let matrix = StageMatrix::from_fn(|i, j| Complex::from(weights[i][j]));
         Self(EIGENVALUES.map(|(real, imaginary)| {
             let value = Complex::new(real, imaginary);
-            let right = vector_of(matrix, value);
-            let left = vector_of(matrix.transpose(), value);
+            let right = vector_of(&matrix, value);
+            let left = vector_of(&matrix.transpose(), value);
             let count = if imaginary == 0.0 { 1.0 } else { 2.0 };
             Mode { value, right, left: left * (Complex::from(count) / left.dot(&right)) }
         }))
@@ -56,7 +56,7 @@ impl StageModes {
 }
 
 /// The right eigenvector of a matrix by inverse iteration.
-fn vector_of(matrix: StageMatrix, value: Complex<f64>) -> StageVector {
+fn vector_of(matrix: &StageMatrix, value: Complex<f64>) -> StageVector {
     let factors = (matrix - StageMatrix::identity() * (value * (1.0 + MISSED))).lu();
     let mut vector = StageVector::from_element(Complex::from(1.0));
     for _ in 0..ITERATIONS {

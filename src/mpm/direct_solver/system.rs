@@ -65,7 +65,7 @@ impl SystemMatrix {
 #[derive(Clone, Debug)]
 pub enum Factors {
     /// Of a band.
-    Banded(BandedLu),
+    Banded(Box<BandedLu>),
     /// Of a sparse matrix.
     Frontal(Box<FrontalLu>),
 }
@@ -74,7 +74,7 @@ impl Factors {
     /// Room for the factors of matrices of a shape.
     pub fn of_shape(shape: &SystemMatrix) -> Self {
         match shape {
-            SystemMatrix::Banded(matrix) => Self::Banded(BandedLu::of_shape(matrix)),
+            SystemMatrix::Banded(matrix) => Self::Banded(Box::new(BandedLu::of_shape(matrix))),
             SystemMatrix::Sparse(matrix) => Self::Frontal(Box::new(FrontalLu::of_shape(matrix))),
         }
     }

@@ -75,7 +75,7 @@ impl StageGuess {
             let mut off: f64 = 0.0;
             let rates = &self.rates[stage][0];
             self.continued(stage, order, before, |unknown, rate| {
-                off = off.max((rates[unknown] - rate).abs())
+                off = off.max((rates[unknown] - rate).abs());
             });
             if off < nearest.0 {
                 nearest = (off, order);
