@@ -41,10 +41,25 @@ fn text_of_changes(check: &StudyCheck) -> String {
     if !check.groups.is_empty() {
         let groups = check.groups.iter().map(|group| wrapped(&summary(group), "  ", "    "));
         sections.push(format!("\ngolden values that differ\n{}", groups.collect::<String>()));
-        sections.push(section("the worst of them", check.differences().iter().map(difference).collect()));
-        sections.push(section("accuracy and cost together", check.changes.iter().map(case_change).collect()));
+        let (differences, cases) = worth_naming(check.differences(), &check.changes);
+        sections.push(section("the worst of them", differences.into_iter().map(difference).collect()));
+        sections.push(section("accuracy and cost together", cases.into_iter().map(case_change).collect()));
     }
     sections.concat()
+}
+
+/// Values and cases that are named one by one. Many values without a partner are those of an input that changed, which
+/// their kind has told already: then only what moved is named.
+fn worth_naming<'a>(
+    differences: &'a [Difference],
+    cases: &'a [CaseChange],
+) -> (Vec<&'a Difference>, Vec<&'a CaseChange>) {
+    let has_partner = |one: &&Difference| one.golden.is_some() && one.found.is_some();
+    if differences.len() <= MOST + differences.iter().filter(has_partner).count() {
+        return (differences.iter().collect(), cases.iter().collect());
+    }
+    let moved = cases.iter().filter(|case| case.worse + case.better > 0).collect();
+    (differences.iter().filter(has_partner).collect(), moved)
 }
 
 /// A list under its title; nothing where it is empty.
@@ -98,6 +113,37 @@ fn case_change(one: &CaseChange) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::convergence::pareto::ParetoChange;
+    use crate::golden::compare::Change;
+
+    #[test]
+    fn values_of_an_input_that_changed_are_told_by_their_kind_and_hide_nothing_that_moved() {
+        let difference = |golden: Option<f64>, found: Option<f64>| Difference {
+            name: "MPM | pressure".to_owned(),
+            change: if golden.is_some() && found.is_some() { Change::Moved } else { Change::Missing },
+            golden,
+            found,
+            tolerance: 1e-9,
+        };
+        let case = |worse: usize| CaseChange {
+            case: "MPM".to_owned(),
+            change: ParetoChange::NotComparable,
+            cost_ratio: 1.0,
+            worse,
+            better: 0,
+            unpaired: 1,
+        };
+        let named = |missing: usize| {
+            let mut differences = vec![difference(Some(1.0), None); missing];
+            differences.insert(missing / 2, difference(Some(1.0), Some(2.0)));
+            let cases = [case(0), case(1)];
+            let (values, cases) = worth_naming(&differences, &cases);
+            assert!(values.contains(&&differences[missing / 2]), "what moved is always named");
+            (values.len(), cases.len())
+        };
+        assert_eq!(named(MOST), (MOST + 1, 2));
+        assert_eq!(named(MOST + 1), (1, 1));
+    }
 
     #[test]
     fn a_long_list_is_cut_and_counted() {
