@@ -11,30 +11,20 @@
 use crate::mpm::layers::two_layers::TwoLayers;
 
 impl<const D: usize> TwoLayers<D> {
-    /// What the line of a point's pressure says in the middle of its cell, Pa; `surface` is the lowest height of the
-    /// soil's surface, m.
-    #[inline]
-    fn pressure_in_the_middle(&self, point: usize, surface: f64) -> f64 {
-        let (water, middle) = (&self.water, self.middle_of(self.cells.of_point[point], surface));
-        let along = |d: usize| water.slope[point][d] * (middle[d] - water.place[point][d]);
-        water.pressure[point] + (0..D).map(along).sum::<f64>()
-    }
-
     /// Sums the volumes of the points of each cell, and with them what their lines say in its middle, into the cell's
     /// sums from a place on.
     pub(crate) fn sum_cell_pressures(&mut self, place: usize) {
-        let surface = self.body.surface.lowest(&self.body.points);
-        for sum in &mut self.sums.cells {
+        let (water, sums) = (&self.water, &mut self.sums);
+        for sum in &mut sums.cells {
             sum[place..place + 2].fill(0.0);
         }
-        for point in 0..self.water.len() {
-            let volume = self.water.volume_inside(point);
-            let pressure = if self.keeps_cell_rates {
-                self.pressure_in_the_middle(point, surface)
-            } else {
-                self.water.pressure[point]
-            };
-            let sum = &mut self.sums.cells[self.cells.of_point[point]];
+        for (point, cell) in self.cells.of_point.iter().enumerate() {
+            let mut pressure = water.pressure[point];
+            if self.keeps_cell_rates {
+                let (slope, middle) = (&water.slope[point], &sums.middles[*cell]);
+                pressure += (0..D).map(|d| slope[d] * (middle[d] - water.place[point][d])).sum::<f64>();
+            }
+            let (volume, sum) = (water.volume_inside(point), &mut sums.cells[*cell]);
             sum[place] += volume * pressure;
             sum[place + 1] += volume;
         }
@@ -43,19 +33,16 @@ impl<const D: usize> TwoLayers<D> {
     /// Gives the points of every cell the slope of the rates around it, and what its pressure then lacks of the cell's
     /// own increment: the sums of before stand at the first places of a cell's.
     pub(crate) fn keep_cell_rates(&mut self) {
-        let surface = self.body.surface.lowest(&self.body.points);
-        for point in 0..self.water.len() {
-            let rate = |cell: usize| self.cells.is_occupied(cell).then(|| self.site_values[cell]);
-            let slope = self.slope_over_cells(self.cells.of_point[point], surface, rate);
+        self.take_slopes(|layers, cell| layers.cells.is_occupied(cell).then(|| layers.site_values[cell]));
+        for (slope, cell) in self.water.slope.iter_mut().zip(&self.cells.of_point) {
             for d in 0..D {
-                self.water.slope[point][d] += slope[d];
+                slope[d] += self.sums.slopes[*cell][d];
             }
         }
         self.sum_cell_pressures(2);
-        for (point, pressure) in self.water.pressure.iter_mut().enumerate() {
-            let cell = self.cells.of_point[point];
-            let [before, volume, after, _] = self.sums.cells[cell];
-            *pressure += self.site_values[cell] + (before - after) / volume;
+        for (pressure, cell) in self.water.pressure.iter_mut().zip(&self.cells.of_point) {
+            let [before, volume, after, _] = self.sums.cells[*cell];
+            *pressure += self.site_values[*cell] + (before - after) / volume;
         }
     }
 }

@@ -9,7 +9,7 @@
 //! `e²` a cell, and only as it does. What cells press with stays as it is, and so does the energy.
 
 use crate::mpm::layers::two_layers::TwoLayers;
-use crate::mpm::state::grid::GHOST_LAYERS;
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid};
 use crate::soil::tensor::Vector;
 
 /// How often what a point carries beyond its cell's line falls by a factor `e` while the water goes through a cell.
@@ -17,57 +17,49 @@ use crate::soil::tensor::Vector;
 const FADINGS_PER_CELL: f64 = 2.0;
 
 impl<const D: usize> TwoLayers<D> {
-    /// Middle of what the soil fills of a cell, m; `surface` is the lowest height of its surface, m.
-    #[inline]
-    pub(crate) fn middle_of(&self, cell: usize, surface: f64) -> Vector<D> {
-        let (grid, up) = (&self.body.grid, D - 1);
-        let index = grid.cell_index(cell);
-        let base = |d: usize| (index[d] as f64 - GHOST_LAYERS as f64) * grid.cell_size;
-        std::array::from_fn(|d| {
-            let top = base(d) + grid.cell_size;
-            0.5 * (base(d) + if d == up { surface.min(top) } else { top })
-        })
+    /// Takes the middles of what the soil fills of the cells with water points.
+    pub(crate) fn take_middles(&mut self) {
+        let surface = self.body.surface.lowest(&self.body.points);
+        for cell in self.cells.occupied() {
+            self.sums.middles[cell] = middle_of(&self.body.grid, cell, surface);
+        }
     }
 
-    /// Slope over a cell of values that it and some of its neighbours have, per m: between the neighbours, or to the
-    /// only one, along each direction.
-    #[inline]
-    pub(crate) fn slope_over_cells(
-        &self,
-        cell: usize,
-        surface: f64,
-        value: impl Fn(usize) -> Option<f64>,
-    ) -> Vector<D> {
-        let Some(own) = value(cell) else { return [0.0; D] };
-        std::array::from_fn(|d| {
-            let stride = self.body.grid.cell_stride()[d];
-            let or_own = |other: usize| value(other).map_or((cell, own), |value| (other, value));
-            let ((lower, low), (upper, high)) = (or_own(cell - stride), or_own(cell + stride));
-            if lower == upper {
-                return 0.0;
-            }
-            (high - low) / (self.middle_of(upper, surface)[d] - self.middle_of(lower, surface)[d])
-        })
+    /// Takes the slope over each cell with water points of values that it and some of its neighbours have, per m:
+    /// between the neighbours, or to the only one, along each direction.
+    pub(crate) fn take_slopes(&mut self, value: impl Fn(&Self, usize) -> Option<f64>) {
+        let mut slopes = std::mem::take(&mut self.sums.slopes);
+        let (stride, middles) = (*self.body.grid.cell_stride(), &self.sums.middles);
+        for cell in self.cells.occupied() {
+            let own = value(self, cell);
+            slopes[cell] = std::array::from_fn(|d| {
+                let Some(own) = own else { return 0.0 };
+                let or_own = |other: usize| value(self, other).map_or((cell, own), |value| (other, value));
+                let ((lower, low), (upper, high)) = (or_own(cell - stride[d]), or_own(cell + stride[d]));
+                if lower == upper { 0.0 } else { (high - low) / (middles[upper][d] - middles[lower][d]) }
+            });
+        }
+        self.sums.slopes = slopes;
     }
 
     /// Lets fade what points carry beyond the lines of their cells' pressures, in a step of so many seconds.
     pub(crate) fn fade_beyond_lines(&mut self, dt: f64) {
         self.sum_cell_pressures(0);
-        let surface = self.body.surface.lowest(&self.body.points);
-        let per_cell = FADINGS_PER_CELL * dt / self.body.grid.cell_size;
-        for point in 0..self.water.len() {
-            let cell = self.cells.of_point[point];
-            let pressure = |cell: usize| {
-                let [pressed, volume, ..] = self.sums.cells[cell];
-                (volume > 0.0).then(|| pressed / volume)
-            };
-            let Some(own) = pressure(cell) else { continue };
-            let slope = self.slope_over_cells(cell, surface, pressure);
-            let share = (per_cell * self.speed_of_water(cell)).min(1.0);
-            let middle = self.middle_of(cell, surface);
-            let water = &mut self.water;
+        for cell in self.cells.occupied() {
+            let share = self.fading_share(cell, dt);
+            let [pressed, volume, pressure, fading] = &mut self.sums.cells[cell];
+            (*pressure, *fading) = (*pressed / *volume, share);
+        }
+        self.take_slopes(|layers, cell| {
+            let [_, volume, pressure, _] = layers.sums.cells[cell];
+            (volume > 0.0).then_some(pressure)
+        });
+        let (water, sums) = (&mut self.water, &self.sums);
+        for (point, cell) in self.cells.of_point.iter().enumerate() {
+            let [.., pressure, share] = sums.cells[*cell];
+            let (slope, middle) = (&sums.slopes[*cell], &sums.middles[*cell]);
             let along = |d: usize| slope[d] * (water.place[point][d] - middle[d]);
-            let line = own + (0..D).map(along).sum::<f64>();
+            let line = pressure + (0..D).map(along).sum::<f64>();
             water.pressure[point] += share * (line - water.pressure[point]);
             for d in 0..D {
                 water.slope[point][d] += share * (slope[d] - water.slope[point][d]);
@@ -75,22 +67,30 @@ impl<const D: usize> TwoLayers<D> {
         }
     }
 
-    /// Speed of the water in the middle of a cell, m/s.
-    #[inline]
-    fn speed_of_water(&self, cell: usize) -> f64 {
-        let mut sum = [0.0; D];
-        for node in self.body.grid.corners(self.cells.first_node(cell)) {
-            for d in 0..D {
-                sum[d] += self.body.nodes.water_velocity[node][d];
-            }
-        }
-        let corners = (1_usize << D) as f64;
-        (sum.iter().map(|component| component * component).sum::<f64>()).sqrt() / corners
+    /// Share of it that fades in a step of so many seconds, by the speed of the water in the middle of a cell.
+    fn fading_share(&self, cell: usize, dt: f64) -> f64 {
+        let (grid, velocity) = (&self.body.grid, &self.body.nodes.water_velocity);
+        let corners = grid.corners(self.cells.first_node(cell));
+        let sum = corners
+            .fold([0.0; D], |sum: Vector<D>, node| std::array::from_fn(|d| sum[d] + velocity[node][d]));
+        let speed = sum.iter().map(|along| along * along).sum::<f64>().sqrt() / (1_usize << D) as f64;
+        (FADINGS_PER_CELL * speed * dt / grid.cell_size).min(1.0)
     }
+}
+
+/// Middle of what the soil fills of a cell, m; `surface` is the lowest height of its surface, m.
+fn middle_of<const D: usize>(grid: &Grid<D>, cell: usize, surface: f64) -> Vector<D> {
+    let (index, up) = (grid.cell_index(cell), D - 1);
+    let base = |d: usize| (index[d] as f64 - GHOST_LAYERS as f64) * grid.cell_size;
+    std::array::from_fn(|d| {
+        let top = base(d) + grid.cell_size;
+        0.5 * (base(d) + if d == up { surface.min(top) } else { top })
+    })
 }
 
 #[cfg(test)]
 mod tests {
+    use super::middle_of;
     use crate::tests::two_layer_columns::with_water_shifted;
 
     #[test]
@@ -134,17 +134,21 @@ mod tests {
 
     #[test]
     fn a_surface_ends_the_middle_of_its_cell_and_the_lines_through_it() {
-        let layers = with_water_shifted("GIMP-SRI-patch", 3);
+        let mut layers = with_water_shifted("GIMP-SRI-patch", 3);
         let top = *layers.cells.of_point.last().expect("points");
-        let surface = 0.9;
-        assert!((layers.middle_of(top, surface)[0] - 0.85).abs() < 1e-12);
-        assert!((layers.middle_of(top - 1, surface)[0] - 0.7).abs() < 1e-12);
+        let (grid, surface) = (layers.body.grid.clone(), 0.9);
+        assert!((middle_of(&grid, top, surface)[0] - 0.85).abs() < 1e-12);
+        assert!((middle_of(&grid, top - 1, surface)[0] - 0.7).abs() < 1e-12);
         // Values that lie on a line in those middles, and no value above.
-        let value = |cell: usize| (cell <= top).then(|| 3.0 * layers.middle_of(cell, surface)[0]);
+        for cell in layers.cells.occupied() {
+            layers.sums.middles[cell] = middle_of(&grid, cell, surface);
+        }
+        layers.take_slopes(|_, cell| (cell <= top).then(|| 3.0 * middle_of(&grid, cell, surface)[0]));
         for cell in [top, top - 1, top - 2] {
-            let [slope] = layers.slope_over_cells(cell, surface, value);
+            let [slope] = layers.sums.slopes[cell];
             assert!((slope - 3.0).abs() < 1e-9, "{slope}");
         }
-        assert_eq!(layers.slope_over_cells(top, surface, |cell| (cell == top).then_some(1.0)), [0.0]);
+        layers.take_slopes(|_, cell| (cell == top).then_some(1.0));
+        assert_eq!(layers.sums.slopes[top], [0.0]);
     }
 }

@@ -86,6 +86,9 @@ impl<const D: usize> TwoLayers<D> {
         let places = [&self.cells.place[..], &water.reach[..]];
         body.method.basis.build(&mut self.basis, &body.grid, &body.support(), places);
         self.recovery.build(&body.grid, &self.cells);
+        if self.keeps_cell_rates {
+            self.take_middles();
+        }
     }
 }
 
