@@ -197,6 +197,8 @@ pub use mpm::run::{
     run_plan::Plan,
     stepper::{EqualSteps, Stepper},
 };
+#[doc(hidden)]
+pub use scene::stepped_column::SteppedColumn;
 
 #[cfg(test)]
 #[path = "../tests/unit/mod.rs"]

@@ -307,6 +307,14 @@ pub struct Record {
 }
 
 impl Record {
+    /// The record of a text, its seal with it.
+    ///
+    /// # Errors
+    /// What the text does not have of a record.
+    pub fn from_json(text: &str) -> serde_json::Result<Self> {
+        serde_json::from_str(text)
+    }
+
     /// The error of a quantity, where it was measured.
     pub fn error(
         &self,

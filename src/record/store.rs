@@ -269,7 +269,7 @@ impl RecordStore {
         let single =
             || Some((single_files::text(&self.folder, hash)?, single_files::wall(&self.folder, hash)));
         let (text, wall) = self.packs.text_and_wall(number_of(hash)).or_else(single)?;
-        let mut record: Record = serde_json::from_str(&text).ok()?;
+        let mut record = Record::from_json(&text).ok()?;
         record.wall = wall;
         record.digest.clear();
         (record.schema == SCHEMA).then_some(record)

@@ -14,6 +14,7 @@ mod manufactured;
 pub mod problem;
 mod single_mode;
 mod standing_wave;
+pub mod stepped_column;
 mod terzaghi;
 mod xie_leo;
 

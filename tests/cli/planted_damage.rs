@@ -274,7 +274,7 @@ fn any_damage_to_a_record_leaves_it_whole_or_unread() {
     use oedometer::RecordStore;
     let (folder, file, sound) = one_record();
     let text = String::from_utf8(sound.clone()).expect("words");
-    let mut record: oedometer::Record = serde_json::from_str(&text).expect("a record");
+    let mut record = oedometer::Record::from_json(&text).expect("a record");
     record.digest.clear();
     let store = RecordStore::new(&folder.path().join("out"), "short");
     let mut seed = 7_u64;

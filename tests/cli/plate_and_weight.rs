@@ -1,7 +1,7 @@
 //! Mandel's slab, own weight and rest, as a user asks for them.
 
 use crate::program::call;
-use oedometer::{Record, RunOptions, Study, StudySource, Tier, run_study};
+use oedometer::{Norm, Quantity, Record, RunOptions, Sample, Study, StudySource, Tier, run_study};
 use std::path::Path;
 
 /// Exit code, standard output and standard error.
@@ -81,13 +81,10 @@ fn errors_of(study: &str) -> Vec<(String, f64)> {
     let records = run_study(&study, &RunOptions::whole(Tier::Ci, 2), None, &|_| {}).records;
     assert!(!records.is_empty());
     let of_pressure = |record: &Record| {
-        let json = serde_json::to_value(record).expect("JSON");
-        let rows: Vec<serde_json::Value> = json["errors"].as_array().expect("errors").clone();
-        let is = |row: &serde_json::Value, key: &str, word: &str| row[key] == word;
-        let found = rows.iter().rfind(|row| {
-            is(row, "quantity", "pressure") && is(row, "sample", "points") && is(row, "norm", "l2")
+        let found = record.errors.iter().rfind(|row| {
+            row.quantity == Quantity::Pressure && row.sample == Sample::Points && row.norm == Norm::L2
         });
-        found.and_then(|row| row["value"].as_f64()).unwrap_or(f64::NAN)
+        found.map_or(f64::NAN, |row| row.value)
     };
     records.iter().map(|record| (weightless(&record.case.label()), of_pressure(record))).collect()
 }

@@ -86,7 +86,7 @@ fn many_cases_are_few_files_and_every_record_is_a_line_that_anyone_can_read() {
     assert_eq!(firsts, planned);
     // A single record on request.
     let told = call(at, &["records", "out/short", &planned[7]]);
-    let record: Record = serde_json::from_str(&told.out).expect("one record");
+    let record = Record::from_json(&told.out).expect("one record");
     // What a study sweeps is its own business, and no part of a record.
     let case = Case { swept: std::sync::Arc::default(), ..study().planned[7].case.clone() };
     assert_eq!((told.code, &record.hash, &record.case), (0, &planned[7], &case));

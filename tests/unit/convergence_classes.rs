@@ -382,7 +382,7 @@ fn never_wrong(found: &Classification, levels: &[SeriesLevel]) -> Result<(), Tes
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(400))]
     #[test]
     fn any_numbers_get_a_class_and_none_passes_wrongly(
         errors in prop::collection::vec(any_error(), 0..7),

@@ -64,7 +64,9 @@ fn the_undrained_start_has_the_errors_of_the_oracle() {
         ("GC-SRI-patch", 1e6, [[4.1e-3, 2.0e-2, 1.8e-2], [8.7e-4, 5.5e-3, 5.2e-3], [2.0e-4, 1.4e-3, 1.4e-3]]),
     ];
     for (method, ratio, levels) in oracle {
-        for (cells, expected) in [8, 16, 32].into_iter().zip(levels) {
+        // The finest mesh with the stiffness of water alone: the others show it on two.
+        let meshes = if ratio == 2200.0 { 3 } else { 2 };
+        for (cells, expected) in [8, 16, 32].into_iter().zip(levels).take(meshes) {
             let got = three(&start(method, cells, ratio, ""));
             for (got, expected) in got.into_iter().zip(expected) {
                 let off = (got / expected - 1.0).abs();
