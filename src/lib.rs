@@ -55,6 +55,7 @@
 //! | 31 | cells that remember a confined soil | `src/mpm/state/confined_points.rs:share_out`, `src/mpm/state/cell_memory.rs:spread_over_points` |
 //! | 32 | forces of cells with one rate | `src/mpm/layers/cell_forces.rs:map_cell_forces`, `src/mpm/layers/cell_pressures.rs:keep_cell_rates` |
 //! | 33 | slopes of velocities | `src/mpm/explicit/affine.rs:add_slopes` |
+//! | 34 | lines that pressures fade to | `src/mpm/layers/pressure_lines.rs:fade_beyond_lines` |
 //!
 //! # The step
 //!

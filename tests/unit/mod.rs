@@ -13,3 +13,4 @@ mod runs_cosine_layer;
 mod runs_large_strain;
 mod runs_manufactured;
 mod runs_profile;
+pub(crate) mod two_layer_columns;

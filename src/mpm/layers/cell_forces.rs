@@ -1,13 +1,13 @@
 //! Forces of a pressure that cells know one rate of: the adjoint of that rate.
 //!
 //! ```text
-//! f_i = Σ_c V_c p̄_c ∇N_i(x_c),   p̄_c = Σ_w ω_w p_w/Σ_w ω_w over the points of the cell,   V_c = |cell ∩ domains|
+//! f_i = Σ_c V_c p̄_c ∇N_i(x_c),   p̄_c of the points of the cell (`cell_pressures`),   V_c = |cell ∩ domains|
 //! ```
 //!
-//! A cell has one rate of the pressure, which what it presses with takes (`cell_pressures`). Forces of each point by its own weights are then no
-//! adjoint of rates once points are off the middle of their cells: the wave operator is not symmetric, and waves grow
-//! at any step. With the mean of the cell at its centre, where its divergence is taken, they do not. A uniform pressure
-//! presses as before: what of a cell the domains fill is counted where it lies.
+//! A cell has one rate of the pressure, which what it presses with takes. Forces of each point by its own weights are
+//! then no adjoint of rates once points are off the middle of their cells: the wave operator is not symmetric, and waves
+//! grow at any step. With the cell's pressure at its centre, where its divergence is taken, they do not. A uniform
+//! pressure presses as before: what of a cell the domains fill is counted where it lies.
 
 use crate::mpm::layers::two_layers::TwoLayers;
 
@@ -16,12 +16,12 @@ impl<const D: usize> TwoLayers<D> {
     pub(crate) fn map_cell_forces(&mut self) {
         self.sum_cells();
         let (grid, nodes) = (&self.body.grid, &mut self.body.nodes);
-        for (cell, [of_points, weight, of_domains, filled]) in self.sums.cells.iter().enumerate() {
+        for (cell, [of_points, volume, of_domains, filled]) in self.sums.cells.iter().enumerate() {
             if !self.cells.is_occupied(cell) || *filled <= 0.0 {
                 continue;
             }
             // A cell that only edges reach into has the pressure of their points.
-            let mean = if *weight > 0.0 { of_points / weight } else { of_domains / filled };
+            let mean = if *volume > 0.0 { of_points / volume } else { of_domains / filled };
             self.cells.visit_centre(grid, cell, |node, gradient| {
                 for d in 0..D {
                     let force = filled * mean * gradient[d];
@@ -33,13 +33,13 @@ impl<const D: usize> TwoLayers<D> {
     }
 
     fn sum_cells(&mut self) {
+        self.sum_cell_pressures(0);
         let (grid, water, sums) = (&self.body.grid, &self.water, &mut self.sums.cells);
         let cell_volume: f64 = (0..D).map(|_| grid.cell_size).product();
-        sums.fill([0.0; 4]);
+        for sum in &mut *sums {
+            sum[2..].fill(0.0);
+        }
         for (point, pressure) in water.pressure.iter().enumerate() {
-            let [of_points, of_weights, ..] = &mut sums[self.cells.of_point[point]];
-            *of_points += self.weights[point] * pressure;
-            *of_weights += self.weights[point];
             let end = |side: f64| {
                 let reach = |d: usize| water.place[point][d] + side * water.reach[point][d];
                 grid.held_in_cells(&std::array::from_fn(reach))
@@ -64,44 +64,13 @@ impl<const D: usize> TwoLayers<D> {
 
 #[cfg(test)]
 mod tests {
-    use crate::mpm::body::Body;
     use crate::mpm::layers::two_layers::TwoLayers;
-    use crate::mpm::method::Method;
-    use crate::mpm::state::points::Points;
-    use crate::scene::SceneKind;
-    use crate::scene::arrangement::Arrangement;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
-    use crate::soil::law::Law;
-    use crate::soil::material::Material;
-
-    /// Two layers of a column whose water points all lie somewhat higher than their lattice.
-    fn shifted(method: &str) -> TwoLayers<1> {
-        let arrangement = Arrangement { layers: 2, water_per_cell: 3, ..Arrangement::default() };
-        let column = Column { load: 2e5, points: arrangement, ..Column::default() };
-        let soil = Material { law: Law::LogLinear, ..Material::default() };
-        let method = Method::named(method).expect("a known method");
-        let mut problem =
-            column_problem::<1>(SceneKind::XieLeo, &column, &soil, method, 5, 4).expect("a column");
-        let lattice: Points<1> = problem.water.take().expect("a layer of water");
-        let gradient = problem.initial_gradient;
-        let mut layers = TwoLayers::new(Body::new(problem), &lattice, &gradient);
-        let count = layers.water.len();
-        for place in &mut layers.water.place[..count - 1] {
-            place[0] += 0.02;
-        }
-        // The topmost domain holds what is left of the column.
-        layers.water.place[count - 1][0] += 0.01;
-        layers.water.reach[count - 1][0] -= 0.01;
-        layers.water.share[count - 1] = 1.0 - 0.02 / (0.2 / 3.0);
-        layers.build_water_operators();
-        layers
-    }
+    use crate::tests::two_layer_columns::with_water_shifted;
 
     #[test]
     fn a_uniform_pressure_presses_by_cells_as_by_points() {
         for method in ["GIMP-SRI", "GIMP-SRI-patch"] {
-            let mut layers = shifted(method);
+            let mut layers = with_water_shifted(method, 3);
             assert!(layers.presses_by_cells);
             layers.water.pressure.fill(3e4);
             layers.map_forces();
@@ -118,7 +87,7 @@ mod tests {
 
     #[test]
     fn forces_are_the_adjoint_of_the_one_rate_of_a_cell() {
-        let mut layers = shifted("GIMP-SRI");
+        let mut layers = with_water_shifted("GIMP-SRI", 3);
         for (point, pressure) in layers.water.pressure.iter_mut().enumerate() {
             *pressure = 1e4 * (1.0 + point as f64 * point as f64);
         }
@@ -148,54 +117,5 @@ mod tests {
             / volume;
         let found = work(&field, &layers);
         assert!((found / mean - 1.0).abs() < 1e-9, "{found} for {mean}: a full cell dilates by its face");
-    }
-
-    #[test]
-    fn a_line_of_pressures_presses_with_its_value_in_the_middle() {
-        let mut layers = shifted("GIMP-SRI-patch");
-        assert!(layers.keeps_cell_rates);
-        for (pressure, place) in layers.water.pressure.iter_mut().zip(&layers.water.place) {
-            *pressure = 1e4 + 2e4 * place[0];
-        }
-        layers.sum_cell_pressures(0);
-        let cell = layers.cells.of_point[7];
-        let [pressed, weight, ..] = layers.sums.cells[cell];
-        // The third cell of five of a column of a metre.
-        assert!((pressed / weight - (1e4 + 2e4 * 0.5)).abs() < 1e-6, "{}", pressed / weight);
-        let plain: f64 = (0..layers.water.len())
-            .filter(|point| layers.cells.of_point[*point] == cell)
-            .map(|point| layers.water.volume_inside(point))
-            .sum();
-        assert!((weight / plain - 1.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_cell_takes_its_own_rate_and_its_points_the_slope_of_their_patch() {
-        let mut layers = shifted("GIMP-SRI-patch");
-        // A flux whose divergence grows with the height.
-        let grid = &layers.body.grid;
-        let heights: Vec<f64> =
-            (0..layers.body.nodes.len()).map(|node| grid.node_position(node)[0]).collect();
-        for (node, height) in heights.iter().enumerate() {
-            let velocity = [-1e-9 * height * height];
-            (layers.body.nodes.solid_velocity[node], layers.body.nodes.water_velocity[node]) =
-                (velocity, velocity);
-        }
-        layers.sum_cell_pressures(0);
-        let before = layers.sums.cells.clone();
-        let pressures = layers.water.pressure.clone();
-        layers.update_pressure(1e-3);
-        layers.sum_cell_pressures(0);
-        for cell in layers.cells.of_point.clone() {
-            let ([one, weight, ..], [two, ..]) = (before[cell], layers.sums.cells[cell]);
-            let (found, rate) = ((two - one) / weight, layers.site_values[cell]);
-            assert!(rate > 0.0 && (found / rate - 1.0).abs() < 1e-6, "{found} for {rate}");
-        }
-        // −Δt (K_w/n) ∇·v has the slope 2e-9 Δt K_w/n over the height, at n = 0.3.
-        let of = |point: usize| layers.water.pressure[point] - pressures[point];
-        let (low, high) = (6, 8);
-        assert_eq!(layers.cells.of_point[low], layers.cells.of_point[high]);
-        let slope = (of(high) - of(low)) / (layers.water.place[high][0] - layers.water.place[low][0]);
-        assert!((slope / 0.014_667 - 1.0).abs() < 0.01, "{slope}");
     }
 }

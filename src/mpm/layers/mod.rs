@@ -10,6 +10,7 @@
 //! - `water_to_nodes`: mass, drag and pressure of the water on their way to the nodes,
 //! - `cell_forces`: the pressure's forces where a cell knows one rate of it,
 //! - `cell_pressures`: the pressure that a cell presses with, which takes that rate,
+//! - `pressure_lines`: lines through those pressures, and how what points carry beyond them fades,
 //! - `sliver_nodes`: nodes that the surface has all but left,
 //! - `water_pressure`: the continuity at the water points,
 //! - `samples`: what a snapshot tells of them,
@@ -21,6 +22,7 @@ pub mod cell_forces;
 pub mod cell_pressures;
 pub mod motion;
 pub mod phases;
+pub mod pressure_lines;
 pub mod samples;
 pub mod sliver_nodes;
 pub mod two_layer_stepper;

@@ -41,8 +41,6 @@ pub struct TwoLayers<const D: usize> {
     pub presses_by_cells: bool,
     /// Whether what a cell presses with takes the cell's own rate, while its points are given more than that.
     pub keeps_cell_rates: bool,
-    /// Weight of each water point in what its cell presses with, m^D.
-    pub weights: Vec<f64>,
     /// Mass of the water at the start, kg.
     pub initial_mass: f64,
 }
@@ -78,7 +76,6 @@ impl<const D: usize> TwoLayers<D> {
             takes_means: method.pressure == PressureIntegration::Mean,
             presses_by_cells,
             keeps_cell_rates: presses_by_cells && method.recovery != Recovery::Constant,
-            weights: Vec::with_capacity(count),
             initial_mass: water.mass.iter().sum(),
             water,
             body,

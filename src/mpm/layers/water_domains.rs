@@ -51,7 +51,8 @@ impl<const D: usize> TwoLayers<D> {
             let across: f64 = water.half_length[point][..up].iter().map(|half| 2.0 * half).product();
             let half = 0.5 * volume / across;
             water.volume[point] = volume;
-            // An oedometer strains vertically only, and so does its water.
+            // An oedometer strains vertically only, and so does its water; a slope stretches with the domain.
+            water.slope[point][up] *= water.half_length[point][up] / half;
             water.half_length[point][up] = half;
             water.place[point] = water.position[point];
             water.reach[point] = water.half_length[point];
@@ -85,36 +86,24 @@ impl<const D: usize> TwoLayers<D> {
         let places = [&self.cells.place[..], &water.reach[..]];
         body.method.basis.build(&mut self.basis, &body.grid, &body.support(), places);
         self.recovery.build(&body.grid, &self.cells);
-        if self.presses_by_cells {
-            self.weigh_points();
+        if self.keeps_cell_rates {
+            self.take_middles();
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::mpm::body::Body;
     use crate::mpm::explicit::{Drag, ExplicitSettings};
-    use crate::mpm::layers::two_layers::TwoLayers;
-    use crate::mpm::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::arrangement::Arrangement;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
-    use crate::soil::law::Law;
     use crate::soil::material::Material;
+    use crate::tests::two_layer_columns::moving_column;
 
     #[test]
     fn a_water_point_is_as_large_as_the_pores_it_fills_where_it_is() {
-        let arrangement = Arrangement { layers: 2, water_per_cell: 2, ..Arrangement::default() };
-        let column = Column { points: arrangement, ..Column::default() };
-        let soil = Material { law: Law::LogLinear, ..Material::default() };
-        let method = Method::named("GIMP").expect("a known method");
-        let mut problem =
-            column_problem::<1>(SceneKind::XieLeo, &column, &soil, method, 5, 2).expect("a column");
-        let lattice = problem.water.take().expect("a layer of water");
-        let gradient = problem.initial_gradient;
-        let mut layers = TwoLayers::new(Body::new(problem), &lattice, &gradient);
+        let soil = Material::default();
+        let mut layers = moving_column::<1>("GIMP", [2, 2], 1.0, &soil);
+        layers.water.slope.fill([3e4]);
+        let halves = layers.water.half_length.clone();
         // Soil that lost a sixth of its pores below, and none of them on top.
         let height = layers.body.grid.cell_size * 5.0;
         let porosity = |place: f64| soil.porosity * (1.0 + 0.2 * (place / height - 1.0));
@@ -129,6 +118,9 @@ mod tests {
             let volume = pores / porosity(water.position[point][0]);
             assert!((water.volume[point] / volume - 1.0).abs() < 1e-2, "{point}: {}", water.volume[point]);
             assert!((2.0 * water.half_length[point][0] / volume - 1.0).abs() < 1e-2);
+            // What a pressure changes by over its domain stays as the domain stretches.
+            let change = water.slope[point][0] * water.half_length[point][0];
+            assert!((change / (3e4 * halves[point][0]) - 1.0).abs() < 1e-12, "{change}");
         }
         assert!(water.volume[0] / water.volume[9] > 1.15, "{:?}", water.volume);
     }
@@ -137,21 +129,8 @@ mod tests {
     /// layers move, a column.
     #[test]
     fn nothing_turns_where_two_layers_move_in_the_plane() {
-        let arrangement = Arrangement { layers: 2, water_per_cell: 2, ..Arrangement::default() };
-        let column = Column {
-            load: 2e5,
-            points: arrangement,
-            dimensions: 2,
-            horizontal_extent: 0.4,
-            ..Column::default()
-        };
-        let soil = Material { law: Law::LogLinear, hydraulic_conductivity: 1e-3, ..Material::default() };
-        let method = Method::named("CPDI-SRI-patch").expect("a known method");
-        let mut problem =
-            column_problem::<2>(SceneKind::XieLeo, &column, &soil, method, 5, 2).expect("a column");
-        let lattice = problem.water.take().expect("a layer of water");
-        let gradient = problem.initial_gradient;
-        let mut layers = TwoLayers::new(Body::new(problem), &lattice, &gradient);
+        let soil = Material { hydraulic_conductivity: 1e-3, ..Material::default() };
+        let mut layers = moving_column::<2>("CPDI-SRI-patch", [2, 2], 2e5, &soil);
         let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
         for _ in 0..300 {
             layers.kick_and_drift(4e-5, 4e-5, &settings);

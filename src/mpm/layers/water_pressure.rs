@@ -25,6 +25,9 @@ impl<const D: usize> TwoLayers<D> {
             -dt * bulk_modulus / porosity * rate
         });
         self.recover_pressure();
+        if self.keeps_cell_rates {
+            self.fade_beyond_lines(dt);
+        }
     }
 
     /// Compresses the water by a displacement of skeleton and water together, m, `[node][component]`.

@@ -17,6 +17,8 @@ pub struct WaterPoints<const D: usize> {
     pub velocity: Vec<Vector<D>>,
     /// Excess pore pressure, Pa, compression positive.
     pub pressure: Vec<f64>,
+    /// Slope of the pressure over the domain, Pa/m; zero where points know no more than their cell's pressure.
+    pub slope: Vec<Vector<D>>,
     /// Porosity of the soil there.
     pub porosity: Vec<f64>,
     /// Volume of soil whose pores the water fills, of the whole domain, m^D.
@@ -52,6 +54,7 @@ impl<const D: usize> WaterPoints<D> {
             mass: initial.iter().map(|volume| soil.porosity * soil.water_density * volume).collect(),
             velocity: lattice.water_velocity.clone(),
             pressure: lattice.pressure.clone(),
+            slope: vec![[0.0; D]; lattice.len()],
             porosity: vec![soil.porosity_at(stretch); lattice.len()],
             volume: initial.iter().map(|volume| stretch * volume).collect(),
             share: vec![1.0; lattice.len()],
@@ -75,7 +78,7 @@ impl<const D: usize> WaterPoints<D> {
         for field in [&mut self.position, &mut self.half_length, &mut self.velocity] {
             field.remove(point);
         }
-        for field in [&mut self.place, &mut self.reach] {
+        for field in [&mut self.place, &mut self.reach, &mut self.slope] {
             field.remove(point);
         }
         for field in [&mut self.pressure, &mut self.porosity, &mut self.volume, &mut self.share] {
