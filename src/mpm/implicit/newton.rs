@@ -22,7 +22,7 @@ const MOST_ITERATIONS: usize = 16;
 /// Times that a step is halved before the run is given up.
 const MOST_HALVINGS: u32 = 10;
 /// Error that an iteration may leave, over the size of the problem's strains.
-const TOLERANCE: f64 = 1e-11;
+const TOLERANCE: f64 = 1e-12;
 /// Ratio of an iteration's correction to the last one's that is taken for granted where none is known.
 const SLOW: f64 = 0.1;
 /// The same beyond which the tangent is made anew, whatever is left.
