@@ -53,6 +53,11 @@ fn folder() -> TempDir {
 
 fn start(at: &Path, arguments: &[&str]) -> Child {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin("oedometer"));
+    if ignores_interrupts() {
+        // Whoever begins the tests in the background of a script has them ignore Ctrl-C, and the program inherits that.
+        command = Command::new("env");
+        command.arg("--default-signal=INT").arg(assert_cmd::cargo::cargo_bin("oedometer"));
+    }
     for name in OF_A_CI {
         command.env_remove(name);
     }
@@ -63,6 +68,13 @@ fn start(at: &Path, arguments: &[&str]) -> Child {
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
     command.spawn().expect("it starts")
+}
+
+/// Whether this process was begun so that Ctrl-C passes it by: the second bit of the mask.
+fn ignores_interrupts() -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask & 2 != 0)
 }
 
 /// Waits until something is so.
