@@ -1,5 +1,5 @@
-//! A column that takes single steps: for tests and benches outside of this crate, which would compile the step anew for
-//! themselves if they named its number of dimensions.
+//! A column that takes single steps: for tests outside of this crate, which would compile the step anew for themselves if
+//! they named its number of dimensions.
 
 use crate::exact::exact_error::ExactError;
 use crate::mpm::assembled::step::AssembledStep;
