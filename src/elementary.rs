@@ -26,6 +26,56 @@ pub fn powi(x: f64, n: i32) -> f64 {
     if n < 0 { 1.0 / power } else { power }
 }
 
+/// [`ln`] of some numbers side by side, to the same bits: where all are positive and normal, without a branch for each.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+pub fn ln_of_each<const N: usize>(numbers: &[f64; N]) -> [f64; N] {
+    let is_normal = |x: &f64| (*x >= f64::MIN_POSITIVE) & (*x < f64::INFINITY);
+    if !numbers.iter().fold(true, |all, x| all & is_normal(x)) {
+        return numbers.map(ln);
+    }
+    let mut logarithms = *numbers;
+    for x in &mut logarithms {
+        *x = ln_of_normal(*x);
+    }
+    logarithms
+}
+
+/// The logarithm of a positive normal number, operation by operation as `libm` has it (Sun Microsystems 1993,
+/// `e_log.c`): `x = 2ᵏ m` with `m` between `√½` and `√2`, and a polynomial in `s = f/(2 + f)`, `f = m − 1`.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+fn ln_of_normal(x: f64) -> f64 {
+    const LN2: [f64; 2] = [f64::from_bits(0x3fe6_2e42_fee0_0000), f64::from_bits(0x3dea_39ef_3579_3c76)];
+    const ODD: [f64; 4] = [
+        f64::from_bits(0x3fe5_5555_5555_5593),
+        f64::from_bits(0x3fd2_4924_9422_9359),
+        f64::from_bits(0x3fc7_4664_96cb_03de),
+        f64::from_bits(0x3fc2_f112_df3e_5244),
+    ];
+    const EVEN: [f64; 3] = [
+        f64::from_bits(0x3fd9_9999_9997_fa04),
+        f64::from_bits(0x3fcc_71c5_1d8e_78af),
+        f64::from_bits(0x3fc3_9a09_d078_c69f),
+    ];
+    /// High half of `√½`, and what takes it to that of one.
+    const ROOT_HALF: u64 = 0x3fe6_a09e_0000_0000;
+    const TO_ONE: u64 = 0x3ff0_0000_0000_0000 - ROOT_HALF;
+    /// `2⁵²`, whose last bits count in ones.
+    const COUNTER: u64 = 0x4330_0000_0000_0000;
+    let shifted = x.to_bits().wrapping_add(TO_ONE);
+    let k = f64::from_bits(COUNTER | (shifted >> 52)) - (f64::from_bits(COUNTER) + 1023.0);
+    let mantissa = (shifted & 0x000f_ffff_ffff_ffff).wrapping_add(ROOT_HALF);
+    let f = f64::from_bits(mantissa) - 1.0;
+    let half_square = 0.5 * f * f;
+    let s = f / (2.0 + f);
+    let z = s * s;
+    let w = z * z;
+    let even = w * (EVEN[0] + w * (EVEN[1] + w * EVEN[2]));
+    let odd = z * (ODD[0] + w * (ODD[1] + w * (ODD[2] + w * ODD[3])));
+    s * (half_square + (odd + even)) + k * LN2[1] - half_square + f + k * LN2[0]
+}
+
 /// `|z|`.
 pub fn modulus(z: Complex<f64>) -> f64 {
     hypot(z.re, z.im)
@@ -77,7 +127,32 @@ mod tests {
         assert_eq!(powi(0.1, 3), 0.1 * (0.1 * 0.1), "the smallest bit first");
     }
 
+    #[test]
+    fn logarithms_side_by_side_are_those_one_by_one_to_the_bit() {
+        let special = [1.0, 0.0, -0.0, -1.0, 5e-324, f64::MIN_POSITIVE, f64::MAX, f64::INFINITY, f64::NAN];
+        for x in special {
+            let [a, b] = ln_of_each(&[x, 0.7]);
+            assert!(a.to_bits() == ln(x).to_bits() || (a.is_nan() && ln(x).is_nan()), "{x}");
+            assert_eq!(b.to_bits(), ln(0.7).to_bits());
+        }
+        let near_one = (-40..40).map(|i| 1.0 + f64::from(i) * f64::EPSILON);
+        let powers =
+            (-1022..1024).flat_map(|k| [powi(2.0, k), 1.414_213_562_373_095 * powi(2.0, k.min(1022))]);
+        let volumes = (1..20_000).map(|i| f64::from(i) * 1.003_7e-4);
+        for x in near_one.chain(powers).chain(volumes) {
+            assert_eq!(ln_of_each(&[x])[0].to_bits(), ln(x).to_bits(), "{x:e}");
+        }
+    }
+
     proptest! {
+        #[test]
+        fn any_logarithm_side_by_side_is_that_of_one(bits in any::<[u64; 8]>()) {
+            let numbers = bits.map(|bits| f64::from_bits(bits >> 1));
+            for (x, got) in numbers.iter().zip(ln_of_each(&numbers)) {
+                prop_assert!(got.to_bits() == ln(*x).to_bits() || got.is_nan() && x.is_nan(), "{:e}", x);
+            }
+        }
+
         #[test]
         fn complex_functions_keep_their_identities(re in -20.0..20.0_f64, im in -20.0..20.0_f64) {
             let z = Complex::new(re, im);

@@ -105,7 +105,8 @@ impl Motion {
     }
 
     /// Place of a point of the skeleton at a time, m, with all its derivatives; `g = sin²(ωt)`.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
     pub fn place(self, parameters: &MotionParameters, spot: &Spot, moment: &Moment) -> [Jet; 2] {
         /// A function that does not vary.
         const ONE: [f64; 3] = [1.0, 0.0, 0.0];
@@ -126,6 +127,8 @@ impl Motion {
 
     /// The point `X` of the skeleton that is at a place at a time, m, looked for from a guess by Newton's iteration;
     /// not a number where the place is no point's.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
     pub fn material_place(
         self,
         parameters: &MotionParameters,
@@ -168,7 +171,8 @@ impl Motion {
 }
 
 /// Place of a point of the disc that turns by `A g (1 − 4r²)⁴`; outside it nothing moves.
-#[inline]
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
 fn turned(amplitude: f64, spot: &Spot, moment: &Moment) -> [Jet; 2] {
     let [dx, dy] = spot.place.map(|along| along - MIDDLE);
     let [x, y] = [Jet::coordinate(0, spot.place[0]), Jet::coordinate(1, spot.place[1])];

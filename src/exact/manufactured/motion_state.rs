@@ -80,7 +80,8 @@ fn both<T>(of: impl Fn(usize) -> T) -> [T; 2] {
 
 impl State {
     /// Of a point and a time (docs/theory.md, Eqs 24 and 25).
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
     pub fn of(
         model: ManufacturedModel,
         parameters: &ColumnParameters,
@@ -120,24 +121,28 @@ impl State {
     }
 
     /// Derivative of a quantity along `x` or `y` on the current configuration, `F⁻ᵀ grad_X`.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
     fn derivative(&self, quantity: &Slope, direction: usize) -> f64 {
         let inverse = &self.inverse_deformation;
         inverse[0][direction].value * quantity.slope[0] + inverse[1][direction].value * quantity.slope[1]
     }
 
     /// Divergence of a vector on the current configuration.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
     fn divergence(&self, vector: &[Slope; 2]) -> f64 {
         self.derivative(&vector[0], 0) + self.derivative(&vector[1], 1)
     }
 
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
     fn solid_velocity_slope(&self) -> [Slope; 2] {
         both(|i| self.position[i].along(TIME))
     }
 
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
     fn water_velocity_slope(&self) -> [Slope; 2] {
         let per_porosity = self.porosity.recip();
         both(|i| self.position[i].along(TIME) + self.flux[i] * per_porosity)
@@ -145,7 +150,8 @@ impl State {
 
     /// Effective stress of the law from the deformation gradient; `logarithm` is that of a stretch, whose value counts
     /// in the stress and not in its slopes.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
     fn stress(&self, logarithm: impl Fn(Slope) -> Slope) -> [[Slope; 2]; 2] {
         let (soil, deformation) = (&self.soil, &self.deformation);
         if self.law == Law::NeoHookean {
@@ -213,7 +219,8 @@ impl State {
 
     /// Body forces on the mixture, N per m³ of mixture, and on the water, N per m³ of water: what is left of the
     /// momentum balances with some of their accelerations (docs/theory.md, Eq. 26). Rates follow the skeleton.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
     pub fn body_forces(&self, inertia: Inertia) -> [[f64; 2]; 2] {
         let soil = &self.soil;
         let porosity = self.porosity.value;
@@ -238,7 +245,8 @@ impl State {
 
     /// Source of water, volume per volume of mixture and second: what is left of the continuity
     /// (docs/theory.md, Eq. 27).
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
     pub fn source(&self) -> f64 {
         let storage = self.porosity.value / self.soil.water_bulk_modulus * self.pressure.slope[TIME];
         self.divergence(&self.solid_velocity_slope()) + self.divergence(&self.flux) + storage

@@ -4,3 +4,4 @@ pub mod formula;
 pub mod observed;
 pub mod predicted;
 pub mod spectral_radius;
+mod square;

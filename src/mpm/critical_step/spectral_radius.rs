@@ -2,6 +2,7 @@
 
 use crate::elementary;
 use crate::mpm::assembled::step::AssembledStep;
+use crate::mpm::critical_step::square::square;
 use crate::mpm::explicit::ExplicitSettings;
 use nalgebra::DMatrix;
 
@@ -23,7 +24,7 @@ const BISECTIONS: u32 = 24;
 /// hundreds of eigenvalues that are exactly one.
 pub fn spectral_radius(operator: &DMatrix<f64>) -> f64 {
     let mut power = operator.clone();
-    let mut square = power.clone();
+    let mut squared = power.clone();
     let mut log_radius = 0.0;
     let mut share = 1.0;
     for _ in 0..SQUARINGS {
@@ -36,8 +37,8 @@ pub fn spectral_radius(operator: &DMatrix<f64>) -> f64 {
         }
         log_radius += share * elementary::ln(norm);
         power /= norm;
-        power.mul_to(&power, &mut square);
-        std::mem::swap(&mut power, &mut square);
+        square(power.as_slice(), power.nrows(), squared.as_mut_slice());
+        std::mem::swap(&mut power, &mut squared);
         share *= 0.5;
     }
     let norm = power.norm();

@@ -4,8 +4,10 @@ use crate::mpm::wide::wide;
 
 /// Columns that are factored before the rest is updated by them at once.
 const PANEL: usize = 32;
-/// Rows and columns of the blocks that stay in registers.
-const TILE: usize = 4;
+/// Rows and columns of the blocks whose sums stay in registers: eight chains of additions in registers of four hide the
+/// time that each takes.
+const TILE_ROWS: usize = 4;
+const TILE_COLUMNS: usize = 8;
 
 /// Rows of a panel by tiles of columns, `[tile][row][column]`: what the inner loop reads lies side by side.
 #[derive(Clone, Debug)]
@@ -117,37 +119,44 @@ impl Front<'_> {
     fn update_rest(&mut self, start: usize, end: usize) {
         let (size, depth) = (self.size, end - start);
         let columns = size - end;
-        let tiles = columns / TILE;
+        let tiles = columns / TILE_COLUMNS;
         let packed = &mut self.panel.0;
         packed.clear();
         for tile in 0..tiles {
             for k in start..end {
-                packed.extend_from_slice(&self.entries[k * size + end + tile * TILE..][..TILE]);
+                packed
+                    .extend_from_slice(&self.entries[k * size + end + tile * TILE_COLUMNS..][..TILE_COLUMNS]);
             }
         }
         let (above, below) = self.entries.split_at_mut(end * size);
-        let mut blocks = below.chunks_exact_mut(TILE * size);
-        let mut multipliers = [[0.0; TILE]; PANEL];
+        let mut blocks = below.chunks_exact_mut(TILE_ROWS * size);
+        let mut multipliers = [[0.0; TILE_ROWS]; PANEL];
         for block in &mut blocks {
             for k in 0..depth {
-                for i in 0..TILE {
+                for i in 0..TILE_ROWS {
                     multipliers[k][i] = block[i * size + start + k];
                 }
             }
             for tile in 0..tiles {
-                let panel = &packed[tile * depth * TILE..][..depth * TILE];
+                let panel = &packed[tile * depth * TILE_COLUMNS..][..depth * TILE_COLUMNS];
                 let sums = tile_product(&multipliers[..depth], panel);
-                let column = end + tile * TILE;
-                for i in 0..TILE {
-                    let row = &mut block[i * size + column..][..TILE];
-                    for j in 0..TILE {
+                let column = end + tile * TILE_COLUMNS;
+                for i in 0..TILE_ROWS {
+                    let row = &mut block[i * size + column..][..TILE_COLUMNS];
+                    for j in 0..TILE_COLUMNS {
                         row[j] -= sums[i][j];
                     }
                 }
             }
-            for i in 0..TILE {
-                let (left, right) = block[i * size..][..size].split_at_mut(end + tiles * TILE);
-                take_products(&left[start..end], &above[start * size..], size, end + tiles * TILE, right);
+            for i in 0..TILE_ROWS {
+                let (left, right) = block[i * size..][..size].split_at_mut(end + tiles * TILE_COLUMNS);
+                take_products(
+                    &left[start..end],
+                    &above[start * size..],
+                    size,
+                    end + tiles * TILE_COLUMNS,
+                    right,
+                );
             }
         }
         for row in blocks.into_remainder().chunks_exact_mut(size) {
@@ -160,11 +169,11 @@ impl Front<'_> {
 /// `Σ_k l_k u_k` over tiles.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
-fn tile_product(multipliers: &[[f64; TILE]], panel: &[f64]) -> [[f64; TILE]; TILE] {
-    let mut sums = [[0.0; TILE]; TILE];
-    for (l, u) in multipliers.iter().zip(panel.chunks_exact(TILE)) {
-        for i in 0..TILE {
-            for j in 0..TILE {
+fn tile_product(multipliers: &[[f64; TILE_ROWS]], panel: &[f64]) -> [[f64; TILE_COLUMNS]; TILE_ROWS] {
+    let mut sums = [[0.0; TILE_COLUMNS]; TILE_ROWS];
+    for (l, u) in multipliers.iter().zip(panel.chunks_exact(TILE_COLUMNS)) {
+        for i in 0..TILE_ROWS {
+            for j in 0..TILE_COLUMNS {
                 sums[i][j] += l[i] * u[j];
             }
         }

@@ -3,6 +3,7 @@
 //! Some neighbouring points are taken side by side: each line of the algorithm is a loop over them, without a branch,
 //! that the compiler turns into one over registers.
 
+use crate::elementary::ln_of_each;
 use crate::mpm::body::Body;
 use crate::mpm::explicit::deformation::{
     Following, middle_gradient, relaxed, rotated, stretch_of, stretches_of,
@@ -15,7 +16,7 @@ use crate::mpm::state::lanes::{LANES, Lanes, block_of, blocks_of, put_block};
 use crate::mpm::state::points::Points;
 use crate::mpm::wide::wide;
 use crate::soil::law::{Law, Stiffness};
-use crate::soil::tensor::{Tensor, inverse, product};
+use crate::soil::tensor::{Tensor, identity, inverse, product};
 use std::ops::Range;
 
 impl<const D: usize> Body<D> {
@@ -143,11 +144,14 @@ impl StressUpdate {
         }
         if self.law.is_hyperelastic() {
             put_block(&mut points.volume_ratio, block, &ratios);
-            for point in block.clone() {
-                let deformation = inverse(&points.inverse_deformation[point]).0;
-                points.effective_stress[point] =
-                    self.stiffness.neo_hookean_stress(&deformation, points.volume_ratio[point]);
+            let logarithms = ln_of_each(&ratios);
+            let mut stresses = block_of(&points.inverse_deformation, block, identity());
+            for lane in 0..LANES {
+                let deformation = inverse(&stresses[lane]).0;
+                stresses[lane] =
+                    self.stiffness.neo_hookean_stress(&deformation, ratios[lane], logarithms[lane]);
             }
+            put_block(&mut points.effective_stress, block, &stresses);
             return;
         }
         if let Some(dilations) = dilations {

@@ -15,6 +15,7 @@ pub mod linear_system;
 pub mod newton;
 pub mod residual;
 pub mod sdirk;
+mod straining;
 pub mod tangent;
 pub mod trial;
 pub mod unknowns;

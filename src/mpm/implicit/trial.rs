@@ -3,14 +3,13 @@
 //! Within a step points never move: weights stay on the configuration of its start, and gradients are
 //! pushed forward from there.
 
-use crate::elementary;
 use crate::mpm::body::Body;
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::Memory;
 use crate::mpm::operators::recovery::points_in_cells::points_in_cells;
 use crate::mpm::run::integrator::Formulation;
 use crate::mpm::state::points::Points;
-use crate::soil::tensor::{Tensor, Vector, dot, identity, inverse, product, strain_between};
+use crate::soil::tensor::{Tensor, Vector, dot, identity, inverse, product};
 
 /// Time level at which the effective stress acts in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,13 +38,13 @@ pub struct Trial<const D: usize> {
     /// Points of the anchored state.
     pub anchor: Points<D>,
     /// Their deformation gradients, where points move since the start of the step.
-    anchor_deformation: Vec<Tensor<D>>,
+    pub(super) anchor_deformation: Vec<Tensor<D>>,
     /// What a hyperelastic law wants beside them: their deformation from the start of the run to that of the step.
-    carried: Vec<Tensor<D>>,
+    pub(super) carried: Vec<Tensor<D>>,
     /// Velocities of skeleton and water at the nodes in the anchored state, m/s.
     pub velocity: [Vec<Vector<D>>; 2],
     /// Increment of the nodal displacement since the anchor, m.
-    displacement: Vec<Vector<D>>,
+    pub(super) displacement: Vec<Vector<D>>,
 }
 
 impl<const D: usize> Trial<D> {
@@ -137,18 +136,8 @@ impl<const D: usize> Trial<D> {
         }
         let rows = &self.unknowns.rows;
         let is_bbar = self.body.method.strain.is_bbar();
-        let dilations = if is_bbar { rows.at_points(&rows.at_sites(&self.displacement)) } else { Vec::new() };
-        for point in 0..self.anchor.len() {
-            let mut gradient = self.body.strain_gradient(point, &self.displacement);
-            let mut dilation = 0.0;
-            if let Some(volumetric) = dilations.get(point) {
-                dilation = volumetric - (0..D).map(|d| gradient[d][d]).sum::<f64>();
-                for d in 0..D {
-                    gradient[d][d] += dilation / D as f64;
-                }
-            }
-            self.strain_point(point, &gradient, dilation);
-        }
+        let traces = if is_bbar { rows.at_points(&rows.at_sites(&self.displacement)) } else { Vec::new() };
+        self.strain_points(&traces);
         self.take_pressures(increments);
         if self.body.configuration.deforms() {
             self.body.follow_points();
@@ -176,41 +165,6 @@ impl<const D: usize> Trial<D> {
         body.recovery.recover(&at, &body.site_values, &mut body.points.pressure, |pressure, change| {
             *pressure += scale * change;
         });
-    }
-
-    /// Deformation and effective stress of a point under a displacement gradient since the anchor.
-    fn strain_point(&mut self, point: usize, gradient: &Tensor<D>, dilation: f64) {
-        let anchor = &self.anchor;
-        let points = &mut self.body.points;
-        let (mut strain, mut modulus) = (*gradient, 1.0);
-        if self.body.configuration.deforms() {
-            let before = &self.anchor_deformation[point];
-            let after: Tensor<D> =
-                std::array::from_fn(|i| std::array::from_fn(|j| before[i][j] + gradient[i][j]));
-            let (inverse_after, _) = inverse(&after);
-            points.inverse_deformation[point] = inverse_after;
-            let ratio = inverse(&after).1 / inverse(before).1;
-            points.volume_ratio[point] = anchor.volume_ratio[point] * ratio;
-            if self.body.material.law.is_hyperelastic() {
-                let whole = product(&after, &self.carried[point]);
-                points.effective_stress[point] =
-                    self.body.stiffness.neo_hookean_stress(&whole, points.volume_ratio[point]);
-                return;
-            }
-            strain = strain_between(before, &after, elementary::ln(ratio));
-            modulus =
-                self.body.material.law.modulus_ratio(anchor.volume_ratio[point], points.volume_ratio[point]);
-        }
-        let mut stress = self.body.stiffness.stress(&strain);
-        for i in 0..D {
-            stress[i][i] += self.body.stiffness.shared_dilation_stress::<D>(dilation);
-        }
-        for i in 0..D {
-            for j in 0..D {
-                points.effective_stress[point][i][j] =
-                    anchor.effective_stress[point][i][j] + modulus * stress[i][j];
-            }
-        }
     }
 
     /// Ends a step at increments of the unknowns, after so much flux through the surface, m: the points keep
