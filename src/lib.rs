@@ -174,7 +174,7 @@ pub use study::perturbed::LastDigit;
 pub use mpm::explicit::{Drag, ExplicitSettings};
 pub use mpm::method::{Basis, Configuration, Method};
 pub use mpm::run::integrator::IntegratorKind;
-pub use mpm::run::outcome::{Counters, Failure, FailureKind, StepSizes};
+pub use mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
 pub use mpm::run::{Kernel, Schedule, TimeStepRule};
 pub use scene::SceneKind;
 pub use scene::column::Column;

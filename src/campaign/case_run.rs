@@ -11,8 +11,8 @@ use crate::measure::case_record::{record_of, record_of_critical_step, record_of_
 use crate::mpm::body::Problem;
 use crate::mpm::critical_step::formula;
 use crate::mpm::critical_step::observed::Stopped;
-use crate::mpm::run::outcome::FailureKind;
 use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::run::results::outcome::FailureKind;
 use crate::mpm::run::{Kernel, Schedule};
 use crate::record::machines::Machine;
 use crate::record::{Record, Status, WallSample};

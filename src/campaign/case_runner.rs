@@ -6,7 +6,7 @@ use crate::case::Case;
 use crate::exact::exact_error::ExactError;
 use crate::foreign::attachment::{Attachment, Wish};
 use crate::mpm::run::Kernel;
-use crate::mpm::run::outcome::{Failure, FailureKind};
+use crate::mpm::run::results::outcome::{Failure, FailureKind};
 use crate::record::store::RecordStore;
 use crate::record::{Record, Status};
 use crate::study::check::Study;

@@ -1,6 +1,6 @@
 //! What is measured, and where.
 
-use crate::mpm::run::snapshot::{Samples, Snapshot};
+use crate::mpm::run::results::snapshot::{Samples, Snapshot};
 use crate::wording::words;
 use serde::{Deserialize, Serialize};
 

@@ -16,7 +16,7 @@
 use crate::foreign::output_tail::last_lines;
 use crate::foreign::process::{Ending, Finished};
 use crate::foreign::reading::Unread;
-use crate::mpm::run::outcome::{Failure, FailureKind};
+use crate::mpm::run::results::outcome::{Failure, FailureKind};
 use crate::study::solver::Solver;
 use crate::wording::typed;
 use std::process::ExitStatus;

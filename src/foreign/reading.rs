@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::case::quantity::Sample;
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::preset::Preset;
+use crate::import::mapping::preset::Preset;
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{are_tables, files_of, run_of_tables, runs_of_arrays};
 use crate::import::table::SampledState;

@@ -3,14 +3,11 @@
 //! Programs differ in units, signs, the origins of their coordinates and the place where they keep
 //! the time; a mapping file declares all of these, and nothing is guessed from the numbers.
 
-pub mod convention;
 pub mod formats;
 pub mod frame_rows;
 pub mod import_error;
 pub mod mapping;
-pub mod mapping_parts;
 pub mod opened_csv;
-pub mod preset;
 pub mod raw_row;
 pub mod rows;
 pub mod runs;
@@ -18,4 +15,3 @@ pub mod sample_row;
 pub mod settlement_series;
 pub mod step_times;
 pub mod table;
-pub mod units;

@@ -2,8 +2,8 @@
 
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::mapping_parts::StressKind;
-use crate::import::units::{HorizontalSense, StatedPlace, StressSign, StressUnit, VerticalSense};
+use crate::import::mapping::mapping_parts::StressKind;
+use crate::import::mapping::units::{HorizontalSense, StatedPlace, StressSign, StressUnit, VerticalSense};
 
 /// Share of the height by which a place may lie outside: round-off of a written number.
 const RIM: f64 = 1e-6;

@@ -2,11 +2,11 @@
 
 use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
-use crate::import::mapping_parts::SettlementSeries;
+use crate::import::mapping::mapping_parts::SettlementSeries;
+use crate::import::mapping::units::VerticalSense;
 use crate::import::opened_csv::{CsvTable, line_of};
 use crate::import::raw_row::SolvedBody;
 use crate::import::table::SampledState;
-use crate::import::units::VerticalSense;
 use std::path::Path;
 
 /// How far, relative, a time of the curve may lie from that of a state.

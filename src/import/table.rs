@@ -105,7 +105,7 @@ delimiter = ";"
 
     #[test]
     fn places_along_a_layer_have_an_end_an_origin_and_a_range() {
-        let mapping = crate::import::convention::PLANE_CONVENTION
+        let mapping = crate::import::mapping::convention::PLANE_CONVENTION
             .replace("x = \"right\"\ny", "x = \"left\"\ny")
             .replace("u_x = \"right\"", "u_x = \"left\"")
             .replace("x = 0.0", "x = 5.0")
@@ -121,7 +121,7 @@ delimiter = ";"
     #[test]
     fn a_repeated_row_is_told_from_a_second_column_of_samples() {
         let text = "t,id,y,p,u_y\n1,1,0.5,3,0\n1,2,0.5,3,0\n1,2,0.5,3,0\n1,3,0.25,3,0\n";
-        let states = states(crate::import::convention::CONVENTION, text).expect("rows");
+        let states = states(crate::import::mapping::convention::CONVENTION, text).expect("rows");
         assert_eq!(states[0].repeated, 1, "rows 1 and 2 differ in a column without meaning");
     }
 }

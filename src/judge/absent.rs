@@ -61,7 +61,7 @@ pub fn differing_repeats(records: &[Record]) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::mpm::run::outcome::{Failure, FailureKind};
+    use crate::mpm::run::results::outcome::{Failure, FailureKind};
     use crate::record::Status;
 
     fn records() -> Vec<Record> {

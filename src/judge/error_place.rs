@@ -2,8 +2,8 @@
 
 use crate::exact::exact_error::ExactError;
 use crate::exact::reference::ReferenceKind;
-use crate::measure::error_contributions::largest_contribution;
-use crate::measure::exact_fields::exact_samples;
+use crate::measure::fields::error_contributions::largest_contribution;
+use crate::measure::fields::exact_fields::exact_samples;
 use crate::measure::known_references::known_reference;
 use crate::record::{ErrorRow, Record};
 use crate::wording::{short, typed};

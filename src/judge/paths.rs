@@ -9,7 +9,7 @@ use crate::convergence::orders::{SlopeFit, finest_order, pair_orders, slope};
 use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
 use crate::convergence::series_demand::SeriesDemand as Demand;
 use crate::judge::error_place::place_of_attached;
-use crate::measure::norms::relative_error;
+use crate::measure::fields::norms::relative_error;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::record::Record;
 use crate::soil::material::Material;

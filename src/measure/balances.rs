@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::elementary;
 use crate::exact::exact_error::ExactError;
 use crate::exact::reference::Reference;
-use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::results::snapshot::Snapshot;
 use crate::record::{Balance, HistoryRow, LayerBalance, StartChecks};
 use crate::scene::column::column_parameters;
 

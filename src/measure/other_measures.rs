@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::exact::reference::Reference;
 use crate::measure::pressure_peak::peak_measures;
-use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::results::snapshot::Snapshot;
 use crate::record::{Balance, MeasureRow};
 
 /// Name of the largest nodal velocity over the hydraulic conductivity, of a column at rest.
@@ -50,7 +50,7 @@ pub fn measures_of(
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::record::tidy;
+    use crate::record::csv::tidy;
 
     #[test]
     fn a_peak_and_what_moves_at_rest_are_rows_of_the_table() {

@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::elementary;
 use crate::exact::reference::Reference;
-use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::results::snapshot::Snapshot;
 use crate::record::MeasureRow;
 
 /// Name of the measure of its time factor.

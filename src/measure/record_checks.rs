@@ -1,7 +1,7 @@
 //! Start checks and balances of a record, each with the bound that it is held to: what shows a mark
 //! in a table is judged here, and nowhere else.
 
-use crate::mpm::run::outcome::FailureKind;
+use crate::mpm::run::results::outcome::FailureKind;
 use crate::record::{Balance, Record, Status};
 use crate::scene::arrangement::Arrangement;
 use crate::soil::continuity::Continuity;

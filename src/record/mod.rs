@@ -4,29 +4,24 @@
 //! live solver, so that a report can be made again without solving.
 
 pub mod attached_run;
-pub mod long_tables;
+pub mod csv;
 pub mod machines;
-pub mod machines_table;
 pub mod origins;
 pub(crate) mod pack;
 pub mod packed_store;
-pub(crate) mod packed_table;
 pub mod provenance;
-pub(crate) mod rows_at_hand;
 pub(crate) mod seal;
 pub(crate) mod single_files;
 pub mod store;
-pub mod table_file;
-pub mod tidy;
 pub mod whole_file;
 
 use crate::case::Case;
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 pub use crate::mpm::critical_step::observed::{CriticalStep, Probe};
-use crate::mpm::run::outcome::{Counters, Failure, FailureKind, StepSizes};
 pub use crate::mpm::run::profile::PhaseTime;
-use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
+use crate::mpm::run::results::snapshot::Snapshot;
 use crate::record::attached_run::AttachedRun;
 use crate::record::machines::Machine;
 use crate::record::provenance::Provenance;

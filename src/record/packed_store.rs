@@ -1,15 +1,16 @@
 //! Records of large studies, in packs: found by the hash of their case, appended as they come.
 
+use crate::record::csv::packed_table::{RowsOf, packed_rows};
+use crate::record::csv::rows_at_hand::RowsAtHand;
+use crate::record::csv::tidy;
 use crate::record::pack::FOLDER;
 use crate::record::pack::index::{Damage, Index, Place};
 use crate::record::pack::member::{Header, Kind, packed, unpacked};
 use crate::record::pack::writer::Writer;
-use crate::record::packed_table::{RowsOf, packed_rows};
 use crate::record::provenance::Provenance;
-use crate::record::rows_at_hand::RowsAtHand;
 use crate::record::seal::{Layout, is_whole, sealed};
 use crate::record::whole_file::StoreError;
-use crate::record::{Record, Status, WallSample, tidy};
+use crate::record::{Record, Status, WallSample};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};

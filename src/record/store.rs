@@ -1,11 +1,11 @@
 //! Records on disk: a small study has a folder a case, a large one has packs.
 
 use crate::case::Case;
+use crate::record::csv::rows_at_hand::RowsAtHand;
 use crate::record::origins::Origins;
 use crate::record::pack::index::Damage;
 use crate::record::packed_store::{CaseEnd, Entry, PackedStore, number_of};
 use crate::record::provenance::Provenance;
-use crate::record::rows_at_hand::RowsAtHand;
 use crate::record::whole_file::StoreError;
 use crate::record::{Record, SCHEMA, Status, WallSample, single_files};
 use serde::Deserialize;

@@ -8,7 +8,7 @@ use crate::mpm::critical_step::observed::{CriticalStep, Stopped, critical_step};
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::method::Method;
 use crate::mpm::operators::surface_load::LoadShape;
-use crate::mpm::run::outcome::Outcome;
+use crate::mpm::run::results::outcome::Outcome;
 use crate::mpm::run::{Observer, Schedule, run};
 use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::Support;

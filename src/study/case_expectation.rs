@@ -2,7 +2,7 @@
 //! error or a drift may be. Hard cases are judged by this, not by series.
 
 use crate::case::tier::Tier;
-use crate::mpm::run::outcome::FailureKind;
+use crate::mpm::run::results::outcome::FailureKind;
 use crate::record::Record;
 use crate::study::expectation::{Measure, Selection};
 

@@ -7,7 +7,7 @@ use crate::case::keys::{KEYS, Key, Kind, Range};
 use crate::case::{Case, Task};
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::method::Method;
-use crate::record::long_tables::columns_csv;
+use crate::record::csv::long_tables::columns_csv;
 use crate::scene::SceneKind;
 use crate::schema::{Document, schema_of};
 use crate::wording::typed;

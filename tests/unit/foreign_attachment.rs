@@ -29,7 +29,7 @@ mod runs {
     use crate::case::norm::Norm;
     use crate::case::quantity::Quantity;
     use crate::mpm::method::Method;
-    use crate::mpm::run::outcome::FailureKind;
+    use crate::mpm::run::results::outcome::FailureKind;
     use crate::scene::SceneKind;
     use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -6,7 +6,7 @@ use crate::mpm::implicit::linear::LinearStepper;
 use crate::mpm::implicit::newton::NewtonStepper;
 use crate::mpm::method::{Configuration, Method};
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
-use crate::mpm::run::outcome::{FailureKind, Outcome, RunStatus};
+use crate::mpm::run::results::outcome::{FailureKind, Outcome, RunStatus};
 use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::stepper::{EqualSteps, Stepper};
 use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};

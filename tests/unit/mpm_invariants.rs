@@ -3,8 +3,8 @@
 
 use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::method::{Configuration, Method};
-use crate::mpm::run::outcome::{Outcome, RunStatus};
-use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::results::outcome::{Outcome, RunStatus};
+use crate::mpm::run::results::snapshot::Snapshot;
 use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};
 use crate::scene::SceneKind;
 use crate::scene::column::Column;

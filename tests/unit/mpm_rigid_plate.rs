@@ -6,7 +6,7 @@ use crate::mpm::body::Problem;
 use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::method::Method;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
-use crate::mpm::run::outcome::{Outcome, RunStatus};
+use crate::mpm::run::results::outcome::{Outcome, RunStatus};
 use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};
 use crate::scene::SceneKind;
 use crate::scene::column::{Column, column_parameters};

@@ -6,9 +6,9 @@ use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::cli::study_tables::{Beside, write_machines, write_table};
 use crate::record::Record;
+use crate::record::csv::table_file::TableForm;
 use crate::record::origins::Origins;
 use crate::record::store::RecordStore;
-use crate::record::table_file::TableForm;
 use crate::study::check::Study;
 use std::path::PathBuf;
 

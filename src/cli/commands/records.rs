@@ -3,7 +3,7 @@
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::json_of;
 use crate::cli::stream::{print_data, print_with, say};
-use crate::record::long_tables::LongTable;
+use crate::record::csv::long_tables::LongTable;
 use crate::record::store::RecordStore;
 use std::io::Write;
 use std::path::PathBuf;

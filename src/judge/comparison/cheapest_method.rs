@@ -116,7 +116,7 @@ fn names_of<'a>(records: impl Iterator<Item = &'a Record>) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::mpm::run::outcome::{Failure, FailureKind};
+    use crate::mpm::run::results::outcome::{Failure, FailureKind};
 
     const STUDY: &str = "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
         method = [\"GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = [3, 10, 20]\ntime_step = [{ growth = 0.02 }]\n\

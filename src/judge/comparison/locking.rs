@@ -6,7 +6,7 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::Class;
 use crate::exact::exact_error::ExactError;
 use crate::judge::paths::paths;
-use crate::measure::plane_field::PlaneField;
+use crate::measure::fields::plane_field::PlaneField;
 use crate::measure::wall_times::median;
 use crate::mpm::critical_step::formula;
 use crate::mpm::method::Method;

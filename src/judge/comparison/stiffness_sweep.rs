@@ -6,7 +6,7 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::exact_error::ExactError;
 use crate::judge::comparison::locking::methods_of;
-use crate::measure::plane_field::PlaneField;
+use crate::measure::fields::plane_field::PlaneField;
 use crate::mpm::method::Method;
 use crate::record::{Record, Status};
 use crate::soil::material::Material;

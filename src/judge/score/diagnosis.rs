@@ -10,10 +10,10 @@ use crate::exact::exact_error::ExactError;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::mapping::Mapping;
+use crate::import::mapping::units::{LengthUnit, StressUnit, TimeUnit};
 use crate::import::table::SampledState;
-use crate::import::units::{LengthUnit, StressUnit, TimeUnit};
 use crate::judge::score::completeness::short;
-use crate::measure::exact_fields::ExactFields;
+use crate::measure::fields::exact_fields::ExactFields;
 use std::borrow::Cow;
 
 /// Relative errors below this are an inaccurate solver's, and no mistake in a file.

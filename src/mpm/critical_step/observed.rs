@@ -9,7 +9,7 @@ use crate::mpm::critical_step::formula;
 use crate::mpm::critical_step::predicted::predict;
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
-use crate::mpm::run::outcome::{Failure, FailureKind, RunStatus};
+use crate::mpm::run::results::outcome::{Failure, FailureKind, RunStatus};
 use crate::mpm::run::{Kernel, Observer, Schedule, TimeStepRule, run};
 use serde::{Deserialize, Serialize};
 

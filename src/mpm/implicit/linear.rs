@@ -8,10 +8,10 @@ use crate::mpm::body::Body;
 use crate::mpm::direct_solver::bordered::BorderedLu;
 use crate::mpm::implicit::linear_system::{LinearOperators, LinearSystem};
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
-use crate::mpm::run::outcome::FailureKind;
 use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::run::results::outcome::FailureKind;
+use crate::mpm::run::results::snapshot::Snapshot;
 use crate::mpm::run::run_plan::Plan;
-use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
 use crate::soil::tensor::Vector;
 

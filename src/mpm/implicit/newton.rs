@@ -10,10 +10,10 @@ use crate::mpm::implicit::tangent::Pattern;
 use crate::mpm::implicit::trial::{Skeleton, Trial};
 use crate::mpm::method::{PressureIntegration, Recovery};
 use crate::mpm::run::integrator::StepBound;
-use crate::mpm::run::outcome::FailureKind;
 use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::run::results::outcome::FailureKind;
+use crate::mpm::run::results::snapshot::Snapshot;
 use crate::mpm::run::run_plan::Plan;
-use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
 use crate::mpm::run::watch::lost_point;
 

@@ -2,7 +2,7 @@
 
 use crate::elementary;
 use crate::mpm::layers::two_layers::TwoLayers;
-use crate::mpm::run::snapshot::{LayerTotals, Means, Snapshot, Totals, WaterSamples};
+use crate::mpm::run::results::snapshot::{LayerTotals, Means, Snapshot, Totals, WaterSamples};
 use crate::mpm::state::points::Points;
 use crate::soil::tensor::Vector;
 

@@ -149,8 +149,8 @@ mod tests {
     use crate::mpm::explicit::{Drag, ExplicitSettings};
     use crate::mpm::method::Method;
     use crate::mpm::run::integrator::{Formulation, IntegratorKind};
-    use crate::mpm::run::outcome::{Outcome, RunStatus};
-    use crate::mpm::run::snapshot::{Snapshot, Totals};
+    use crate::mpm::run::results::outcome::{Outcome, RunStatus};
+    use crate::mpm::run::results::snapshot::{Snapshot, Totals};
     use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};
     use crate::scene::SceneKind;
     use crate::scene::arrangement::Arrangement;

@@ -9,7 +9,7 @@ use crate::mpm::method::Configuration;
 use crate::mpm::run::driver::Driver;
 use crate::mpm::run::explicit_stepper::ExplicitStepper;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
-use crate::mpm::run::outcome::{Failure, FailureKind, Outcome};
+use crate::mpm::run::results::outcome::{Failure, FailureKind, Outcome};
 use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::schedule::{Observer, Schedule};
 use crate::mpm::run::stepper::Stepper;
@@ -64,7 +64,7 @@ mod tests {
     use crate::mpm::explicit::scheme::Scheme;
     use crate::mpm::explicit::{Drag, ExplicitSettings};
     use crate::mpm::method::Method;
-    use crate::mpm::run::outcome::RunStatus;
+    use crate::mpm::run::results::outcome::RunStatus;
     use crate::mpm::run::schedule::Kernel;
     use crate::mpm::run::time_step_rule::TimeStepRule;
     use crate::scene::SceneKind;

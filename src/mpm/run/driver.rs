@@ -1,11 +1,11 @@
 //! The one driver of every run: from output to output, with snapshots, history and a watch.
 
-use crate::mpm::run::history::{History, Settled};
-use crate::mpm::run::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
 use crate::mpm::run::profile::{Phase, enter};
+use crate::mpm::run::results::history::{History, Settled};
+use crate::mpm::run::results::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
+use crate::mpm::run::results::snapshot::Snapshot;
 use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::schedule::Observer;
-use crate::mpm::run::snapshot::Snapshot;
 use crate::mpm::run::step_limit::{StepLimit, steps_for};
 use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper};
 use crate::mpm::run::watch::Watch;

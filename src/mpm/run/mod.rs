@@ -9,14 +9,12 @@
 pub mod door;
 pub mod driver;
 pub mod explicit_stepper;
-pub mod history;
 pub mod integrator;
-pub mod outcome;
 pub mod physical_bounds;
 pub mod profile;
+pub mod results;
 pub mod run_plan;
 pub mod schedule;
-pub mod snapshot;
 pub mod step_limit;
 pub mod stepper;
 pub mod time_step_rule;

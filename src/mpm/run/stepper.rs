@@ -1,7 +1,7 @@
 //! What every integrator is to the driver.
 
-use crate::mpm::run::outcome::FailureKind;
-use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::results::outcome::FailureKind;
+use crate::mpm::run::results::snapshot::Snapshot;
 
 /// Why a step could not be taken, or what is wrong with the state that it led to.
 #[derive(Clone, Debug, PartialEq)]

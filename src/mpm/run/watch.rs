@@ -3,7 +3,7 @@
 use crate::elementary;
 use crate::mpm::body::Body;
 use crate::mpm::run::integrator::StepBound;
-use crate::mpm::run::outcome::{FailureKind, StepSizes};
+use crate::mpm::run::results::outcome::{FailureKind, StepSizes};
 use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::stepper::{StepFailure, Stepper};
 

@@ -1,19 +1,17 @@
 //! From what was typed to what will run: every value judged, every complaint at its place.
 
-pub mod check_case_expectation;
 pub mod check_layers;
 pub mod check_material;
 pub mod check_method;
 pub mod check_result;
-pub mod check_series_expectation;
 pub mod check_solver;
 pub mod check_sweep;
 pub mod checker;
 pub mod default_integrator;
 pub mod distinct_labels;
 pub mod end_state;
+pub mod expectations;
 pub mod geometry;
-pub mod matching;
 pub mod step_rule;
 pub mod value;
 

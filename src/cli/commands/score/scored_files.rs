@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::cli::exit::Ended;
 use crate::cli::stream::say;
 use crate::import::mapping::Mapping;
-use crate::import::preset::Preset;
+use crate::import::mapping::preset::Preset;
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Given, Run, are_tables, files_of, run_of_tables, runs_of_arrays};
 use crate::study::file::StudySource;

@@ -3,7 +3,7 @@
 use crate::convergence::class::Class;
 use crate::exact::exact_error::ExactError;
 use crate::judge::comparison::locking::{Standing, standings};
-use crate::measure::plane_field::PlaneField;
+use crate::measure::fields::plane_field::PlaneField;
 use crate::record::{Record, Status};
 use crate::render::chart::describe::{Chart, ChartAxis, Size};
 use crate::render::chart::field::ColourField;

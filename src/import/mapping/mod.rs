@@ -1,10 +1,15 @@
 //! The declared meaning of a file's columns.
 
+pub mod convention;
+pub mod mapping_parts;
+pub mod preset;
+pub mod units;
+
 use crate::case::quantity::Sample;
-use crate::import::mapping_parts::{
+use crate::import::mapping::mapping_parts::{
     DisplacementSource, Hydrostatic, RowFilter, SettlementSeries, StressKind, StressMeaning, Time,
 };
-use crate::import::units::{
+use crate::import::mapping::units::{
     HorizontalSense, LengthUnit, StatedPlace, StressSign, StressUnit, TimeUnit, VerticalSense,
 };
 use crate::study::diagnostic::{Diagnostic, StudyError};
@@ -347,7 +352,7 @@ impl Mapping {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::import::convention::{CONVENTION, PLANE_CONVENTION};
+    use crate::import::mapping::convention::{CONVENTION, PLANE_CONVENTION};
 
     fn read(text: &str) -> Result<Mapping, String> {
         Mapping::read(&StudySource { name: "map.toml".to_owned(), text: text.to_owned() })

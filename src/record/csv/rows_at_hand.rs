@@ -4,8 +4,8 @@
 //! The file has no name on systems that let it go, and is nobody's a day later on others: a run that is killed leaves
 //! nothing, and the next one makes the rows of its records.
 
+use crate::record::csv::packed_table::{RowsOf, is_rows_of};
 use crate::record::pack::member::{HEADER, Header};
-use crate::record::packed_table::{RowsOf, is_rows_of};
 use crate::record::whole_file::create_part;
 use std::collections::HashMap;
 use std::fs::{self, File};
@@ -70,10 +70,10 @@ impl Drop for RowsAtHand {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use crate::record::csv::packed_table::packed_rows;
+    use crate::record::csv::tidy;
     use crate::record::pack::member::unpacked;
-    use crate::record::packed_table::packed_rows;
     use crate::record::store::RecordStore;
-    use crate::record::tidy;
 
     #[test]
     fn rows_come_back_by_what_they_are_of_and_leave_no_file() {

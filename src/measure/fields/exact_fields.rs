@@ -6,7 +6,7 @@ use crate::exact::exact_error::ExactError;
 use crate::exact::field_values::FieldValues;
 use crate::exact::manufactured::Manufactured;
 use crate::exact::reference::Reference;
-use crate::mpm::run::snapshot::{PlaneSamples, Samples, WaterSamples};
+use crate::mpm::run::results::snapshot::{PlaneSamples, Samples, WaterSamples};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 

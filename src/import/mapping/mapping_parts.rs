@@ -1,6 +1,6 @@
 //! Parts of a mapping: which rows count, where times stand, and what is derived from columns.
 
-use crate::import::units::VerticalSense;
+use crate::import::mapping::units::VerticalSense;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 

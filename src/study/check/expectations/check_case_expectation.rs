@@ -2,7 +2,7 @@
 
 use crate::case::tier::Tier;
 use crate::exact::reference::ReferenceKind;
-use crate::mpm::run::outcome::FailureKind;
+use crate::mpm::run::results::outcome::FailureKind;
 use crate::scene::SceneKind;
 use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
 use crate::study::check::checker::Checker;

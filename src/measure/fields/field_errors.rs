@@ -5,9 +5,9 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::exact_error::ExactError;
 use crate::exact::reference::Reference;
-use crate::measure::exact_fields::exact_samples;
-use crate::measure::norms::FieldDifference;
-use crate::mpm::run::snapshot::{Samples, Snapshot};
+use crate::measure::fields::exact_fields::exact_samples;
+use crate::measure::fields::norms::FieldDifference;
+use crate::mpm::run::results::snapshot::{Samples, Snapshot};
 use crate::record::ErrorRow;
 
 /// Norms of a field's error.

@@ -1,10 +1,10 @@
 //! The pressure of a plane run on the lattice of its points, beside the exact one.
 
 use crate::exact::exact_error::ExactError;
-use crate::measure::exact_fields::exact_samples;
+use crate::measure::fields::exact_fields::exact_samples;
+use crate::measure::fields::oscillation::total_variation;
 use crate::measure::known_references::{Known, key_of, known_or, known_reference};
-use crate::measure::oscillation::total_variation;
-use crate::mpm::run::snapshot::Samples;
+use crate::mpm::run::results::snapshot::Samples;
 use crate::record::Record;
 use std::sync::{Arc, LazyLock, Mutex};
 

@@ -1,6 +1,6 @@
 //! What a run leaves behind: its end by name, counters, step sizes and snapshots.
 
-use crate::mpm::run::snapshot::Snapshot;
+use crate::mpm::run::results::snapshot::Snapshot;
 use crate::wording::words;
 use serde::{Deserialize, Serialize};
 use std::fmt;

@@ -1,6 +1,6 @@
 //! The settlement at the times that are asked for, from within the steps.
 
-use crate::mpm::run::outcome::HistoryPoint;
+use crate::mpm::run::results::outcome::HistoryPoint;
 
 /// Time and settlement at one end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
