@@ -56,6 +56,7 @@
 //! | 32 | forces of cells with one rate | `src/mpm/layers/cell_forces.rs:map_cell_forces`, `src/mpm/layers/cell_pressures.rs:keep_cell_rates` |
 //! | 33 | slopes of velocities | `src/mpm/explicit/affine.rs:add_slopes` |
 //! | 34 | lines that pressures fade to | `src/mpm/layers/pressure_lines.rs:fade_beyond_lines` |
+//! | 35 | slopes of stresses | `src/mpm/explicit/stress_slopes.rs:add_stress_slopes`, `src/mpm/state/stress_planes.rs:fit` |
 //!
 //! # The step
 //!

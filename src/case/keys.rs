@@ -226,6 +226,8 @@ keys! {
         "Whether stresses see velocities mapped back from the points"
     affine in &["sweep", "integrator"], Kind::Flag, "", settings.affine;
         "Whether moving points bring the slopes of their velocities to the nodes"
+    stress_slopes in &["sweep", "integrator"], Kind::Flag, "", settings.stress_slopes;
+        "Whether stresses slope over the domains of moving points"
     formulation in &["sweep", "integrator"], word::<Formulation>(), "", formulation;
         "Accelerations that the balances keep"
     scheme in &["sweep", "integrator"], word::<Scheme>(), "", settings.scheme;
@@ -297,8 +299,16 @@ impl Key {
     /// Whether it says something of a case: what only this program's integrators take says nothing to an attached
     /// solver.
     pub fn counts_for(&self, case: &Case) -> bool {
-        const OF_INTEGRATORS: [&str; 7] =
-            ["integrator", "drag", "flip", "mapping_back", "affine", "formulation", "scheme"];
+        const OF_INTEGRATORS: [&str; 8] = [
+            "integrator",
+            "drag",
+            "flip",
+            "mapping_back",
+            "affine",
+            "stress_slopes",
+            "formulation",
+            "scheme",
+        ];
         let is_rule = self.name == "time_step" && !matches!(case.time_step, TimeStepRule::Seconds(_));
         !case.is_attached() || !(is_rule || OF_INTEGRATORS.contains(&self.name))
     }

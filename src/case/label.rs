@@ -21,6 +21,7 @@ impl Case {
             (settings.flip != usual.flip, format!("FLIP {}", settings.flip)),
             (settings.mapping_back != usual.mapping_back, "no mapping back".to_owned()),
             (settings.affine, "slopes of velocities".to_owned()),
+            (settings.stress_slopes, "slopes of stresses".to_owned()),
             (self.column.dimensions == 2 && !self.scene.needs_two_dimensions(), "two dimensions".to_owned()),
             (self.column.self_weight && !self.scene.is_at_rest(), "own weight".to_owned()),
             (self.material.law != self.scene.default_law(), format!("{} law", self.material.law.name())),

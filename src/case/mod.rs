@@ -311,7 +311,7 @@ mod tests {
     #[test]
     fn the_hash_follows_every_input() {
         let mut hashes = vec![seed().hash()];
-        let changes: [fn(&mut Case); 48] = [
+        let changes: [fn(&mut Case); 49] = [
             |case| case.task = Task::Stability,
             |case| case.scene = SceneKind::XieLeo,
             |case| case.column.height = 2.0,
@@ -352,6 +352,7 @@ mod tests {
             |case| case.settings.flip = 0.5,
             |case| case.settings.mapping_back = false,
             |case| case.settings.affine = true,
+            |case| case.settings.stress_slopes = true,
             |case| case.cells = 11,
             |case| case.points_per_cell = 3,
             |case| case.time_step = TimeStepRule::Stable(0.6),

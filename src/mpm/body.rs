@@ -16,6 +16,7 @@ use crate::mpm::state::domains::Domains;
 use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::{Nodes, Support};
 use crate::mpm::state::points::Points;
+use crate::mpm::state::stress_planes::StressPlanes;
 use crate::mpm::state::velocity_slopes::VelocitySlopes;
 use crate::soil::continuity::Continuity;
 use crate::soil::law::Stiffness;
@@ -123,6 +124,8 @@ pub struct Body<const D: usize> {
     pub domains: Option<Domains<D>>,
     /// Slopes of the points' velocities, where they bring them to the nodes.
     pub slopes: Option<VelocitySlopes<D>>,
+    /// How stresses slope over the points' domains, where they do.
+    pub stress_planes: Option<StressPlanes<D>>,
     /// What the cells remember.
     pub cell_memory: CellMemory<D>,
     /// Faces that are held.
@@ -185,6 +188,7 @@ impl<const D: usize> Body<D> {
             basis: if domains.is_some() { corner_stencils(count) } else { method.basis.stencils(count) },
             domains,
             slopes: None,
+            stress_planes: None,
             strain: StrainOperator::of(method.strain, count),
             cell_memory: CellMemory::new(&grid, confined),
             support,

@@ -67,6 +67,14 @@ fn what_a_motion_cannot_have_is_refused_in_sentences() {
             &["xie-leo", "--integrator", "explicit", "--set", "integrator.affine=true"],
             "the critical step with slopes of velocities is not predicted",
         ),
+        (
+            &["manufactured-box", "--method", "CPDI-SRI-patch", "--set", "integrator.stress_slopes=true"],
+            "stresses slope over GIMP's domains that follow points",
+        ),
+        (
+            &["xie-leo", "--integrator", "explicit", "--set", "integrator.stress_slopes=true"],
+            "the critical step with slopes of stresses is not predicted",
+        ),
         (&["manufactured-box", "--integrator", "semi-implicit"], "at times of their own"),
         (&["manufactured-box", "--method", "GIMP-Bbar-patch"], "B-bar changes the strain of a point"),
         (&["manufactured-box", "--set", "material.conductivity_mean=chord"], "the chord mean is of a flux"),

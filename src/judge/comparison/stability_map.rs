@@ -129,5 +129,6 @@ fn settings_of(case: &Case) -> String {
     let scheme =
         if settings.scheme.is_paper() { String::new() } else { format!(", {}", settings.scheme.name()) };
     let slopes = if settings.affine { ", slopes of velocities" } else { "" };
-    format!("{} drag{mapping}{slopes}{scheme}", settings.drag.name())
+    let stresses = if settings.stress_slopes { ", slopes of stresses" } else { "" };
+    format!("{} drag{mapping}{slopes}{stresses}{scheme}", settings.drag.name())
 }

@@ -7,6 +7,7 @@ pub mod deformation;
 pub mod nodes_to_points;
 pub mod points_to_nodes;
 pub mod scheme;
+pub mod stress_slopes;
 pub mod stresses;
 
 use crate::mpm::body::Body;

@@ -55,6 +55,7 @@ impl<const D: usize> Body<D> {
             self.take_velocities();
         }
         if FORCES {
+            self.add_stress_slopes();
             self.nodes.take_forces();
             if self.weight.is_some() {
                 self.add_weight();

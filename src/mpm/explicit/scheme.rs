@@ -79,6 +79,9 @@ pub struct ExplicitSettings {
     /// Whether points that move bring the slopes of their velocities to the nodes (APIC's, with FLIP's increments).
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub affine: bool,
+    /// Whether stresses slope over the domains of points that move, by the planes through neighbouring cells.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stress_slopes: bool,
 }
 
 impl Default for ExplicitSettings {
@@ -90,6 +93,7 @@ impl Default for ExplicitSettings {
             flip: 1.0,
             mapping_back: true,
             affine: false,
+            stress_slopes: false,
         }
     }
 }

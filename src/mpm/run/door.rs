@@ -102,7 +102,8 @@ mod tests {
                 (Scheme::ForwardEuler, Drag::Implicit, 0.99, true),
                 (Scheme::Leapfrog, Drag::Centred, 1.0, true),
             ] {
-                let settings = ExplicitSettings { scheme, drag, flip, mapping_back, affine: false };
+                let settings =
+                    ExplicitSettings { scheme, drag, flip, mapping_back, ..ExplicitSettings::default() };
                 let end = 0.02;
                 let fast = run(problem(name, 7, 3), &schedule(Kernel::Fastest, settings, end), &|_, _| true);
                 let plain =

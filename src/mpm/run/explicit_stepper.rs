@@ -104,6 +104,9 @@ impl<const D: usize> ExplicitStepper<D> {
         if stepper.settings.affine {
             stepper.body.bring_slopes();
         }
+        if stepper.settings.stress_slopes {
+            stepper.body.slope_stresses();
+        }
         if plan.loading_time > 0.0 {
             stepper.set_load_at(0.0);
         }

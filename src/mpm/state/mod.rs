@@ -8,5 +8,6 @@ pub mod grid;
 pub mod lanes;
 pub mod nodes;
 pub mod points;
+pub mod stress_planes;
 pub mod velocity_slopes;
 pub mod water_points;

@@ -2,6 +2,7 @@
 
 use crate::case::Case;
 use crate::case::keys::Key;
+use crate::mpm::method::Basis;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::time_step_rule::TimeStepRule;
 use crate::scene::SceneKind;
@@ -56,6 +57,7 @@ impl Checker<'_> {
             self.rules_fit(table, &sweep, base);
             self.formulations_fit(table, &span, &sweep, base);
             self.slopes_are_brought(table, &span, &sweep, base);
+            self.stresses_slope(table, &span, &sweep, base);
         }
         (self.diagnostics.len() == before).then_some(sweep)
     }
@@ -144,13 +146,50 @@ impl Checker<'_> {
             );
             return;
         }
-        // Columns ended unstable at 0.8 of the limit that is predicted without slopes.
-        let by_limit = |one: &Case| matches!(one.time_step, TimeStepRule::Stable(_));
-        if sweep.cases(base).any(|one| one.settings.affine && by_limit(&one)) {
-            let place = table.typed("affine").map(Spanned::span);
+        let slopes = |one: &Case| one.settings.affine;
+        self.no_limit_is_asked_for((table, span), ("affine", "velocities"), slopes, (sweep, base));
+    }
+
+    /// Complains where stresses are to slope over domains that do not tile the body, or that no explicit step moves.
+    fn stresses_slope(&mut self, table: &SweepTable, span: &Range<usize>, sweep: &Sweep, base: &Case) {
+        let slope = |one: &Case| {
+            let configuration = one.method.configuration_or(one.scene.configuration());
+            one.integrator == IntegratorKind::Explicit
+                && configuration.moves_points()
+                && one.method.basis == Basis::Cpgimp
+                && !one.column.points.has_two_layers()
+        };
+        if sweep.cases(base).any(|one| one.settings.stress_slopes && !slope(&one)) {
+            let place = table.typed("stress_slopes").map(Spanned::span);
             self.complain(
                 place.unwrap_or(span.start..span.start + 1),
-                "the critical step with slopes of velocities is not predicted: no share of it can be taken",
+                "stresses slope over GIMP's domains that follow points which move by explicit steps, in one layer: a \
+                 case of this sweep has no such domains",
+                "leave `stress_slopes` out there, or give those methods and integrators a [[sweep]] block of their own",
+            );
+            return;
+        }
+        let slopes = |one: &Case| one.settings.stress_slopes;
+        self.no_limit_is_asked_for((table, span), ("stress_slopes", "stresses"), slopes, (sweep, base));
+    }
+
+    /// Complains where a share is asked for of the critical step that is predicted without slopes: columns with slopes of
+    /// velocities ended unstable at 0.8 of it.
+    fn no_limit_is_asked_for(
+        &mut self,
+        (table, span): (&SweepTable, &Range<usize>),
+        (key, of_what): (&'static str, &'static str),
+        has_slopes: impl Fn(&Case) -> bool,
+        (sweep, base): (&Sweep, &Case),
+    ) {
+        let by_limit = |one: &Case| matches!(one.time_step, TimeStepRule::Stable(_));
+        if sweep.cases(base).any(|one| has_slopes(&one) && by_limit(&one)) {
+            let place = table.typed(key).map(Spanned::span);
+            self.complain(
+                place.unwrap_or(span.start..span.start + 1),
+                format!(
+                    "the critical step with slopes of {of_what} is not predicted: no share of it can be taken"
+                ),
                 "name the step: `time_step = [{ courant = 0.4 }]`, or in seconds",
             );
         }

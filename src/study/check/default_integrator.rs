@@ -16,8 +16,17 @@ use crate::wording::duration;
 const LONGEST_BY_DEFAULT: f64 = 120.0;
 
 /// Keys that say how steps are taken: who names one of them has chosen.
-const CHOICES_OF_STEPS: [&str; 8] =
-    ["integrator", "drag", "flip", "mapping_back", "affine", "formulation", "scheme", "time_step"];
+const CHOICES_OF_STEPS: [&str; 9] = [
+    "integrator",
+    "drag",
+    "flip",
+    "mapping_back",
+    "affine",
+    "stress_slopes",
+    "formulation",
+    "scheme",
+    "time_step",
+];
 
 impl Checker<'_> {
     /// Takes the implicit integrator for a sweep that names none, where the explicit one would take minutes and
