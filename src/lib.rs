@@ -24,6 +24,10 @@
 //! | `render/` | tables, charts, pages; sees records and verdicts, and never a solver |
 //! | `cli/` | one file per subcommand |
 //! | [`api`] | the door for other languages: names and lists in, lists out |
+//!
+//! `elementary`, `wording`, `soil/`, [`exact`], `mpm/` and `scene/` are a crate of their own, `oedometer-solver`
+//! (`src/solver.rs`): it is compiled with every optimisation, the rest with less and beside it.
+//!
 //! # The equations
 //!
 //! Numbers are those of `docs/theory.md`; the paper is Zheng et al. (2021).
@@ -117,21 +121,18 @@ mod campaign;
 mod case;
 mod cli;
 mod convergence;
-mod elementary;
-pub mod exact;
 mod foreign;
 mod golden;
 mod import;
 mod judge;
 mod measure;
-mod mpm;
 mod record;
 mod render;
-mod scene;
 mod schema;
-mod soil;
 mod study;
-mod wording;
+
+pub use oedometer_solver::exact;
+use oedometer_solver::{elementary, mpm, scene, soil, wording};
 
 // What a study is, and how it is run and judged.
 pub use campaign::case_run::run_case;

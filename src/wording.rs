@@ -60,6 +60,7 @@ pub fn orders(values: &[f64]) -> String {
 }
 
 /// Gives an enumeration its words: `ALL` in the order of tables, and the `name` of each in files.
+#[macro_export]
 macro_rules! words {
     ($kind:ident: $($variant:ident $word:literal),+ $(,)?) => {
         impl $kind {
@@ -73,7 +74,7 @@ macro_rules! words {
         }
     };
 }
-pub(crate) use words;
+pub use words;
 
 #[cfg(test)]
 mod tests {

@@ -21,13 +21,17 @@ pub mod at_rest;
 pub mod consolidation;
 pub mod cosine_layer;
 pub mod dynamic_column;
-pub(crate) mod exact_error;
-pub(crate) mod field_values;
+#[doc(hidden)]
+pub mod exact_error;
+#[doc(hidden)]
+pub mod field_values;
 pub mod large_strain;
 pub mod mandel;
 pub mod manufactured;
-pub(crate) mod parameters;
-pub(crate) mod quadrature;
+#[doc(hidden)]
+pub mod parameters;
+#[doc(hidden)]
+pub mod quadrature;
 pub mod reference;
 pub mod single_mode;
 pub mod terzaghi;

@@ -136,7 +136,6 @@ words!(Memory: Points "points", Cells "cells");
 
 impl Memory {
     /// Whether it is the paper's.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     pub fn is_points(&self) -> bool {
         *self == Self::Points
     }

@@ -11,14 +11,6 @@ pub enum RenderError {
         /// What the drawing library said.
         reason: String,
     },
-    /// The page template failed.
-    #[error("page `{title}` cannot be written: {reason}")]
-    Template {
-        /// Title of the page.
-        title: String,
-        /// What the template engine said.
-        reason: String,
-    },
     /// Two figures of one page would be written to the same file, or two sections share an anchor.
     #[error("page `{title}` uses the name `{name}` twice")]
     Duplicate {

@@ -35,7 +35,6 @@ words!(ConductivityMean: Points "points", Chord "chord");
 
 impl ConductivityMean {
     /// Whether this is the paper's; records of it say nothing of the mean.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     pub fn is_paper(&self) -> bool {
         *self == Self::Points
     }

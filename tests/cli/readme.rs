@@ -11,8 +11,8 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Cells over the height from which on a run of the table takes too long without optimisation.
-const COARSE: usize = if cfg!(debug_assertions) { 20 } else { usize::MAX };
+/// Cells over the height from which on a run of the table takes too long for a test.
+const COARSE: usize = 20;
 /// Units of a wall time.
 const UNITS: [&str; 6] = ["ns", "µs", "ms", "s", "min", "h"];
 

@@ -1,7 +1,7 @@
 //! Large-strain consolidation for any soil law, by a spectral method to round-off.
 
 pub(crate) mod chebyshev;
-pub(crate) mod diffusion;
+pub mod diffusion;
 pub(crate) mod graded_grid;
 pub(crate) mod loading;
 pub(crate) mod march;

@@ -88,7 +88,8 @@ impl Moment {
 /// A factor of all three.
 #[inline]
 fn times(factor: f64, function: [f64; 3]) -> [f64; 3] {
-    function.map(|value| factor * value)
+    let [value, first, second] = function;
+    [factor * value, factor * first, factor * second]
 }
 
 impl Motion {

@@ -29,7 +29,7 @@ impl Banded {
     /// Adds to an entry, which must lie within the band.
     #[inline]
     pub fn add(&mut self, row: usize, column: usize, value: f64) {
-        debug_assert!(column + self.lower >= row && column <= row + self.upper);
+        assert!(column + self.lower >= row && column <= row + self.upper);
         self.entries[row * self.width + column + self.lower - row] += value;
     }
 

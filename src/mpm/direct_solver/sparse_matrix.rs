@@ -77,7 +77,7 @@ impl SparseMatrix {
     pub fn add(&mut self, row: usize, column: usize, value: f64) {
         let (start, columns) = self.row(row);
         let place = columns.partition_point(|other| (*other as usize) < column);
-        debug_assert_eq!(columns[place] as usize, column);
+        assert_eq!(columns[place] as usize, column);
         self.entries[start + place] += value;
     }
 

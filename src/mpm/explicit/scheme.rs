@@ -25,7 +25,6 @@ words!(Scheme: ForwardEuler "forward-euler", Leapfrog "leapfrog");
 
 impl Scheme {
     /// Whether this is the paper's; records of it say nothing of the scheme.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     pub fn is_paper(&self) -> bool {
         *self == Self::ForwardEuler
     }

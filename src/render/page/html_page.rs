@@ -1,11 +1,9 @@
 //! Pages as one HTML file. What stands around the sections is in `page.html` and `page.css`.
 use crate::render::escape;
 use crate::render::page::marked_text::{paragraphs, to_html};
-use crate::render::page::{Block, Figure, Page, check, shown_rows, table_file};
+use crate::render::page::{Block, Figure, Page, Section, check, shown_rows, table_file};
 use crate::render::render_error::RenderError;
 use crate::render::table::{Mood, Table};
-use minijinja::syntax::SyntaxConfig;
-use minijinja::{Environment, Value, context};
 use std::fmt::Write as _;
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -27,48 +25,69 @@ struct Written<'a> {
 /// If a name is unusable or used twice, a table is ragged, or a figure cannot be drawn.
 pub fn render_html(page: &Page) -> Result<String, RenderError> {
     check(page)?;
-    let fail =
-        |e: minijinja::Error| RenderError::Template { title: page.title.clone(), reason: e.to_string() };
-    let mut sections = Vec::new();
+    let mut sections = String::new();
     let mut written = Written { files: page.files.as_deref(), ..Written::default() };
     for section in &page.sections {
-        let mut body = String::new();
+        let (id, heading, mark) = (&section.id, escape::html(&section.heading), mark_of(section));
+        let _ = writeln!(
+            sections,
+            "<section id=\"{id}\">\n<h2>{heading}{mark}<a class=\"anchor\" href=\"#{id}\" \
+             aria-label=\"Link to this section\">#</a></h2>"
+        );
         for block in &section.blocks {
-            write_block(block, &mut body, &mut written)?;
+            write_block(block, &mut sections, &mut written)?;
         }
-        sections.push(context! {
-            id => section.id.as_str(),
-            heading => safe(escape::html(&section.heading)),
-            class => section.mood.map(Mood::class),
-            mark => section.mood.map(Mood::mark),
-            body => safe(body),
-        });
+        sections.push_str("</section>\n");
     }
-    let mut environment = Environment::new();
-    let mut syntax = SyntaxConfig::builder();
-    syntax.trim_blocks(true).lstrip_blocks(true).keep_trailing_newline(true);
-    environment.set_syntax(syntax.build().map_err(fail)?);
-    environment.add_template("page.html", TEMPLATE).map_err(fail)?;
-    let template = environment.get_template("page.html").map_err(fail)?;
-    template
-        .render(context! {
-            title => page.title.as_str(),
-            heading => safe(escape::html(&page.title)),
-            style => safe(STYLE.to_owned()),
-            lead => safe(running(&page.lead)),
-            callout => page.callout.as_ref().map(|(mood, text)| safe(callout(*mood, text))),
-            footer => safe(running(&page.footer)),
-            is_wide => page.is_wide,
-            filter => page.filter.as_deref(),
-            script => safe(SCRIPT.to_owned()),
-            sections => Value::from(sections),
-        })
-        .map_err(fail)
+    let footer = running(&page.footer);
+    let filter = page.filter.as_deref().map(escape::plain_html);
+    Ok(filled(
+        TEMPLATE,
+        &[
+            ("title", &escape::plain_html(&page.title)),
+            ("style", STYLE),
+            ("wide", if page.is_wide { " wide" } else { "" }),
+            ("heading", &escape::html(&page.title)),
+            ("lead", &running(&page.lead)),
+            ("callout", &page.callout.as_ref().map(|(mood, text)| callout(*mood, text)).unwrap_or_default()),
+            ("contents", &contents(page)),
+            ("filter", &filter.map(|filter| format!(" data-filter=\"{filter}\"")).unwrap_or_default()),
+            ("sections", &sections),
+            ("footer", &if footer.is_empty() { footer } else { format!("<footer>\n{footer}</footer>\n") }),
+            ("script", SCRIPT),
+        ],
+    ))
 }
 
-/// Text that is escaped already.
-fn safe(text: String) -> Value {
-    Value::from_safe_string(text)
+/// A template with texts in the places of their names. What is filled in is not looked at again.
+fn filled(template: &str, texts: &[(&str, &str)]) -> String {
+    let mut out = String::new();
+    for (at, part) in template.split("{{ ").enumerate() {
+        let (name, after) = if at == 0 { ("", part) } else { part.split_once(" }}").unwrap_or((part, "")) };
+        out.push_str(texts.iter().find(|(known, _)| *known == name).map_or("", |(_, text)| text));
+        out.push_str(after);
+    }
+    out
+}
+
+/// The list of the sections, where there are several.
+fn contents(page: &Page) -> String {
+    if page.sections.len() < 2 {
+        return String::new();
+    }
+    let mut out = "<nav aria-label=\"Contents\">\n<p class=\"nav-title\">Contents</p>\n<ol>\n".to_owned();
+    for section in &page.sections {
+        let (id, heading, mark) = (&section.id, escape::html(&section.heading), mark_of(section));
+        let _ = writeln!(out, "<li><a href=\"#{id}\">{heading}</a>{mark}</li>");
+    }
+    out.push_str("</ol>\n</nav>\n");
+    out
+}
+
+/// The mark of a section's mood.
+fn mark_of(section: &Section) -> String {
+    let marked = |mood: Mood| format!(" <span class=\"{}\">{}</span>", mood.class(), mood.mark());
+    section.mood.map(marked).unwrap_or_default()
 }
 
 fn running(text: &str) -> String {
@@ -163,4 +182,23 @@ fn natural_width(svg: &str) -> Option<f64> {
     let (head, _) = svg.split_once('>')?;
     let (_, after) = head.split_once(" width=\"")?;
     after.split_once('"')?.0.parse().ok().filter(|w: &f64| w.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_of_the_template_is_filled_once_and_what_fills_it_stays_as_it_is() {
+        assert_eq!(filled("a {{ x }} b {{ y }}\n", &[("y", "{{ x }}"), ("x", "1")]), "a 1 b {{ x }}\n");
+        let page = Page { title: "A < B".to_owned(), ..Page::default() };
+        let html = render_html(&page).expect("a page");
+        assert!(html.contains("<title>A &lt; B</title>"), "{html}");
+        assert!(html.contains("<div class=\"page\">") && html.ends_with("</html>\n"), "{html}");
+        assert!(!html.contains("{{") && !html.contains("<nav") && !html.contains("<footer>"), "{html}");
+        for place in TEMPLATE.split("{{ ").skip(1) {
+            let (name, _) = place.split_once(" }}").expect("a place that ends");
+            assert_eq!(TEMPLATE.matches(&format!("{{{{ {name} }}}}")).count(), 1, "{name}");
+        }
+    }
 }
