@@ -4,10 +4,12 @@ use crate::mpm::wide::wide;
 
 /// Columns that are factored before the rest is updated by them at once.
 const PANEL: usize = 32;
-/// Rows and columns of the blocks whose sums stay in registers: eight chains of additions in registers of four hide the
-/// time that each takes.
+/// Rows of the blocks whose sums stay in registers.
 const TILE_ROWS: usize = 4;
+/// Their columns: eight chains of additions in registers of four hide the time that each takes; what is left over is
+/// taken by half as many.
 const TILE_COLUMNS: usize = 8;
+const HALF_TILE: usize = TILE_COLUMNS / 2;
 
 /// Rows of a panel by tiles of columns, `[tile][row][column]`: what the inner loop reads lies side by side.
 #[derive(Clone, Debug)]
@@ -119,14 +121,19 @@ impl Front<'_> {
     fn update_rest(&mut self, start: usize, end: usize) {
         let (size, depth) = (self.size, end - start);
         let columns = size - end;
-        let tiles = columns / TILE_COLUMNS;
+        let (tiles, has_half) = (columns / TILE_COLUMNS, columns % TILE_COLUMNS >= HALF_TILE);
+        let whole = end + tiles * TILE_COLUMNS;
+        let tiled = whole + if has_half { HALF_TILE } else { 0 };
         let packed = &mut self.panel.0;
         packed.clear();
         for tile in 0..tiles {
             for k in start..end {
-                packed
-                    .extend_from_slice(&self.entries[k * size + end + tile * TILE_COLUMNS..][..TILE_COLUMNS]);
+                let first = k * size + end + tile * TILE_COLUMNS;
+                packed.extend_from_slice(&self.entries[first..][..TILE_COLUMNS]);
             }
+        }
+        for k in (start..end).filter(|_| has_half) {
+            packed.extend_from_slice(&self.entries[k * size + whole..][..HALF_TILE]);
         }
         let (above, below) = self.entries.split_at_mut(end * size);
         let mut blocks = below.chunks_exact_mut(TILE_ROWS * size);
@@ -137,26 +144,17 @@ impl Front<'_> {
                     multipliers[k][i] = block[i * size + start + k];
                 }
             }
-            for tile in 0..tiles {
-                let panel = &packed[tile * depth * TILE_COLUMNS..][..depth * TILE_COLUMNS];
-                let sums = tile_product(&multipliers[..depth], panel);
+            let mut panels = packed.chunks(depth * TILE_COLUMNS);
+            for (tile, panel) in panels.by_ref().take(tiles).enumerate() {
                 let column = end + tile * TILE_COLUMNS;
-                for i in 0..TILE_ROWS {
-                    let row = &mut block[i * size + column..][..TILE_COLUMNS];
-                    for j in 0..TILE_COLUMNS {
-                        row[j] -= sums[i][j];
-                    }
-                }
+                take_tile::<TILE_COLUMNS>(&multipliers[..depth], panel, &mut block[column..], size);
+            }
+            for panel in panels {
+                take_tile::<HALF_TILE>(&multipliers[..depth], panel, &mut block[whole..], size);
             }
             for i in 0..TILE_ROWS {
-                let (left, right) = block[i * size..][..size].split_at_mut(end + tiles * TILE_COLUMNS);
-                take_products(
-                    &left[start..end],
-                    &above[start * size..],
-                    size,
-                    end + tiles * TILE_COLUMNS,
-                    right,
-                );
+                let (left, right) = block[i * size..][..size].split_at_mut(tiled);
+                take_products(&left[start..end], &above[start * size..], size, tiled, right);
             }
         }
         for row in blocks.into_remainder().chunks_exact_mut(size) {
@@ -166,19 +164,28 @@ impl Front<'_> {
     }
 }
 
-/// `Σ_k l_k u_k` over tiles.
+/// Takes `Σ_k l_k u_k` from a tile of so many columns at the start of each of its rows, `size` apart.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
-fn tile_product(multipliers: &[[f64; TILE_ROWS]], panel: &[f64]) -> [[f64; TILE_COLUMNS]; TILE_ROWS] {
-    let mut sums = [[0.0; TILE_COLUMNS]; TILE_ROWS];
-    for (l, u) in multipliers.iter().zip(panel.chunks_exact(TILE_COLUMNS)) {
+fn take_tile<const COLUMNS: usize>(
+    multipliers: &[[f64; TILE_ROWS]],
+    panel: &[f64],
+    rows: &mut [f64],
+    size: usize,
+) {
+    let mut sums = [[0.0; COLUMNS]; TILE_ROWS];
+    for (l, u) in multipliers.iter().zip(panel.chunks_exact(COLUMNS)) {
         for i in 0..TILE_ROWS {
-            for j in 0..TILE_COLUMNS {
+            for j in 0..COLUMNS {
                 sums[i][j] += l[i] * u[j];
             }
         }
     }
-    sums
+    for (i, sums) in sums.iter().enumerate() {
+        for (entry, sum) in rows[i * size..][..COLUMNS].iter_mut().zip(sums) {
+            *entry -= sum;
+        }
+    }
 }
 
 /// Takes multiples of the panel's rows from a row's end.
