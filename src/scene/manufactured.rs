@@ -10,7 +10,6 @@ use crate::exact::parameters::MotionParameters;
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::forcing::{BodyForces, Forcing};
 use crate::mpm::formulation::Formulation;
-use crate::mpm::wide::wide;
 use crate::scene::column::{Column, column_parameters};
 use crate::scene::definition::{
     ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
@@ -154,10 +153,10 @@ impl<const D: usize> Forcing<D> for MadeMotion {
         forces: &mut [BodyForces<D>],
     ) {
         let (moment, inertia) = (self.solution.moment(time), inertia_of(formulation));
-        wide!(for (number, (place, forces)) in places.iter().zip(forces).enumerate() {
+        for (number, (place, forces)) in places.iter().zip(forces).enumerate() {
             let spot = self.spot(number, in_plane(place));
             *forces = self.solution.state_of(&spot, &moment).body_forces(inertia).map(in_space);
-        });
+        }
     }
 
     fn sources(
@@ -168,10 +167,10 @@ impl<const D: usize> Forcing<D> for MadeMotion {
         sources: &mut [f64],
     ) {
         let moment = self.solution.moment(time);
-        wide!(for site in sites {
+        for site in sites {
             let spot = self.spot(site, in_plane(&places[site]));
             sources[site] = self.solution.state_of(&spot, &moment).source();
-        });
+        }
     }
 
     fn material_places(
@@ -182,10 +181,10 @@ impl<const D: usize> Forcing<D> for MadeMotion {
         places: &mut [Vector<D>],
     ) {
         let moment = self.solution.moment(time);
-        wide!(for site in sites {
+        for site in sites {
             let guess = in_plane(&places[site]);
             let found = self.solution.material_place(in_plane(&present(site)), &moment, guess);
             places[site] = in_space(found);
-        });
+        }
     }
 }

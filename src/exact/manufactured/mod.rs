@@ -76,8 +76,7 @@ impl Manufactured {
     }
 
     /// The same for a point and a time that are known already: for many points at one time.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
+    #[inline]
     pub fn state_of(&self, spot: &Spot, moment: &Moment) -> State {
         State::of(self.model, &self.parameters, &self.soil, spot, moment)
     }
@@ -88,8 +87,6 @@ impl Manufactured {
     }
 
     /// The point `X` of the skeleton that is at a place at a time, from a guess, m.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
     pub fn material_place(&self, place: [f64; 2], moment: &Moment, guess: [f64; 2]) -> [f64; 2] {
         self.model.motion.material_place(&self.parameters.motion, place, moment, guess)
     }

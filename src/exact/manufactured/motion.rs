@@ -88,8 +88,7 @@ impl Moment {
 /// A factor of all three.
 #[inline]
 fn times(factor: f64, function: [f64; 3]) -> [f64; 3] {
-    let [value, first, second] = function;
-    [factor * value, factor * first, factor * second]
+    function.map(|value| factor * value)
 }
 
 impl Motion {
@@ -106,8 +105,7 @@ impl Motion {
     }
 
     /// Place of a point of the skeleton at a time, m, with all its derivatives; `g = sin²(ωt)`.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
+    #[inline]
     pub fn place(self, parameters: &MotionParameters, spot: &Spot, moment: &Moment) -> [Jet; 2] {
         /// A function that does not vary.
         const ONE: [f64; 3] = [1.0, 0.0, 0.0];
@@ -128,8 +126,6 @@ impl Motion {
 
     /// The point `X` of the skeleton that is at a place at a time, m, looked for from a guess by Newton's iteration;
     /// not a number where the place is no point's.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
     pub fn material_place(
         self,
         parameters: &MotionParameters,
@@ -172,8 +168,7 @@ impl Motion {
 }
 
 /// Place of a point of the disc that turns by `A g (1 − 4r²)⁴`; outside it nothing moves.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
+#[inline]
 fn turned(amplitude: f64, spot: &Spot, moment: &Moment) -> [Jet; 2] {
     let [dx, dy] = spot.place.map(|along| along - MIDDLE);
     let [x, y] = [Jet::coordinate(0, spot.place[0]), Jet::coordinate(1, spot.place[1])];

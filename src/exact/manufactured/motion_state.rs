@@ -80,8 +80,7 @@ fn both<T>(of: impl Fn(usize) -> T) -> [T; 2] {
 
 impl State {
     /// Of a point and a time (docs/theory.md, Eqs 24 and 25).
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
+    #[inline]
     pub fn of(
         model: ManufacturedModel,
         parameters: &ColumnParameters,
@@ -121,28 +120,24 @@ impl State {
     }
 
     /// Derivative of a quantity along `x` or `y` on the current configuration, `F⁻ᵀ grad_X`.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
+    #[inline]
     fn derivative(&self, quantity: &Slope, direction: usize) -> f64 {
         let inverse = &self.inverse_deformation;
         inverse[0][direction].value * quantity.slope[0] + inverse[1][direction].value * quantity.slope[1]
     }
 
     /// Divergence of a vector on the current configuration.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
+    #[inline]
     fn divergence(&self, vector: &[Slope; 2]) -> f64 {
         self.derivative(&vector[0], 0) + self.derivative(&vector[1], 1)
     }
 
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
+    #[inline]
     fn solid_velocity_slope(&self) -> [Slope; 2] {
         both(|i| self.position[i].along(TIME))
     }
 
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
+    #[inline]
     fn water_velocity_slope(&self) -> [Slope; 2] {
         let per_porosity = self.porosity.recip();
         both(|i| self.position[i].along(TIME) + self.flux[i] * per_porosity)
@@ -150,8 +145,7 @@ impl State {
 
     /// Effective stress of the law from the deformation gradient; `logarithm` is that of a stretch, whose value counts
     /// in the stress and not in its slopes.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
+    #[inline]
     fn stress(&self, logarithm: impl Fn(Slope) -> Slope) -> [[Slope; 2]; 2] {
         let (soil, deformation) = (&self.soil, &self.deformation);
         if self.law == Law::NeoHookean {
@@ -219,8 +213,7 @@ impl State {
 
     /// Body forces on the mixture, N per m³ of mixture, and on the water, N per m³ of water: what is left of the
     /// momentum balances with some of their accelerations (docs/theory.md, Eq. 26). Rates follow the skeleton.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
+    #[inline]
     pub fn body_forces(&self, inertia: Inertia) -> [[f64; 2]; 2] {
         let soil = &self.soil;
         let porosity = self.porosity.value;
@@ -245,8 +238,7 @@ impl State {
 
     /// Source of water, volume per volume of mixture and second: what is left of the continuity
     /// (docs/theory.md, Eq. 27).
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "many points take it in one pass, in wide registers")]
+    #[inline]
     pub fn source(&self) -> f64 {
         let storage = self.porosity.value / self.soil.water_bulk_modulus * self.pressure.slope[TIME];
         self.divergence(&self.solid_velocity_slope()) + self.divergence(&self.flux) + storage
