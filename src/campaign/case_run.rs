@@ -8,7 +8,6 @@ use crate::elementary;
 use crate::exact::exact_error::{ExactError, normal};
 use crate::exact::reference::ReferenceKind;
 use crate::measure::case_record::{record_of, record_of_critical_step, record_of_stopped_search};
-use crate::mpm::body::Problem;
 use crate::mpm::critical_step::formula;
 use crate::mpm::critical_step::observed::Stopped;
 use crate::mpm::run::profile::{Phase, enter};
@@ -17,7 +16,7 @@ use crate::mpm::run::{Kernel, Schedule};
 use crate::record::machines::Machine;
 use crate::record::{Record, Status, WallSample};
 use crate::scene::column::column_parameters;
-use crate::scene::problem::{SceneProblem, column_problem};
+use crate::scene::problem::SceneProblem;
 use std::time::Instant;
 
 /// Points of the settlement curve of a run.
@@ -100,15 +99,8 @@ pub fn run_case(
 }
 
 fn problem_of(case: &Case) -> Result<SceneProblem, ExactError> {
-    Ok(match case.column.dimensions {
-        1 => SceneProblem::Column(problem_in(case)?),
-        _ => SceneProblem::Plane(problem_in(case)?),
-    })
-}
-
-fn problem_in<const D: usize>(case: &Case) -> Result<Problem<D>, ExactError> {
     let Case { scene, column, material, method, cells, points_per_cell, .. } = case;
-    column_problem(*scene, column, material, *method, *cells, *points_per_cell)
+    SceneProblem::of(*scene, column, material, *method, *cells, *points_per_cell)
 }
 
 /// Refuses numbers that no run can go on from, before anything is computed and whoever computes it.

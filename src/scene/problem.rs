@@ -32,6 +32,26 @@ pub enum SceneProblem {
 }
 
 impl SceneProblem {
+    /// The scene's problem in the dimensions of the column, as [`column_problem`] makes it. Without a type parameter: what
+    /// it makes is compiled here and not where it is asked for.
+    ///
+    /// # Errors
+    /// When the parameters are impossible.
+    pub fn of(
+        scene: SceneKind,
+        column: &Column,
+        soil: &Material,
+        method: Method,
+        cells: usize,
+        points_per_cell: usize,
+    ) -> Result<Self, ExactError> {
+        if column.dimensions == 1 {
+            column_problem(scene, column, soil, method, cells, points_per_cell).map(Self::Column)
+        } else {
+            column_problem(scene, column, soil, method, cells, points_per_cell).map(Self::Plane)
+        }
+    }
+
     /// Predicts and observes its critical step, with runs beside it up to `end` seconds or
     /// `most_steps` steps.
     ///
