@@ -131,6 +131,18 @@ mod render;
 mod schema;
 mod study;
 
+/// Exact solutions, by one door:
+///
+/// ```
+/// use oedometer::exact::{ColumnParameters, Reference, ReferenceKind};
+///
+/// let column = ColumnParameters::default();
+/// let terzaghi = Reference::new(ReferenceKind::TerzaghiIncompressible, &column, &[0.1])?;
+/// let at_the_base = terzaghi.fields(0.1, 1.0)?.pressure / column.load;
+/// // Terzaghi & Peck's chart; 50 digits in tests/reference/consolidation.csv.
+/// assert!((at_the_base - 0.949_3).abs() < 1e-4);
+/// # Ok::<(), oedometer::exact::ExactError>(())
+/// ```
 pub use oedometer_solver::exact;
 use oedometer_solver::{elementary, mpm, scene, soil, wording};
 

@@ -4,18 +4,7 @@
 //! displacement upward. Depth is the Lagrangian `ζ = 1 − Y/H` below the drained surface, time the
 //! factor `T_v = c_v t/H²` with the *drained* coefficient of consolidation.
 //!
-//! [`reference::Reference`] is the one door for the rest of the crate:
-//!
-//! ```
-//! use oedometer::exact::{ColumnParameters, Reference, ReferenceKind};
-//!
-//! let column = ColumnParameters::default();
-//! let terzaghi = Reference::new(ReferenceKind::TerzaghiIncompressible, &column, &[0.1])?;
-//! let at_the_base = terzaghi.fields(0.1, 1.0)?.pressure / column.load;
-//! // Terzaghi & Peck's chart; 50 digits in tests/reference/consolidation.csv.
-//! assert!((at_the_base - 0.949_3).abs() < 1e-4);
-//! # Ok::<(), oedometer::exact::ExactError>(())
-//! ```
+//! [`reference::Reference`] is the one door for the rest of the program; `src/lib.rs` has an example of it that runs.
 
 pub mod at_rest;
 pub mod consolidation;
