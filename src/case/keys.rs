@@ -296,21 +296,16 @@ impl Key {
         KEYS.iter().filter(move |key| key.tables.contains(&table))
     }
 
+    /// Whether it is the integrator or a choice of its own.
+    pub fn is_of_integrator(&self) -> bool {
+        self.name == "integrator" || self.tables.contains(&"integrator")
+    }
+
     /// Whether it says something of a case: what only this program's integrators take says nothing to an attached
     /// solver.
     pub fn counts_for(&self, case: &Case) -> bool {
-        const OF_INTEGRATORS: [&str; 8] = [
-            "integrator",
-            "drag",
-            "flip",
-            "mapping_back",
-            "affine",
-            "stress_slopes",
-            "formulation",
-            "scheme",
-        ];
         let is_rule = self.name == "time_step" && !matches!(case.time_step, TimeStepRule::Seconds(_));
-        !case.is_attached() || !(is_rule || OF_INTEGRATORS.contains(&self.name))
+        !case.is_attached() || !(is_rule || self.is_of_integrator())
     }
 
     /// The value in a case.

@@ -15,19 +15,6 @@ use crate::wording::duration;
 /// nobody made. Every shipped study whose sweeps name no integrator stays below it.
 const LONGEST_BY_DEFAULT: f64 = 120.0;
 
-/// Keys that say how steps are taken: who names one of them has chosen.
-const CHOICES_OF_STEPS: [&str; 9] = [
-    "integrator",
-    "drag",
-    "flip",
-    "mapping_back",
-    "affine",
-    "stress_slopes",
-    "formulation",
-    "scheme",
-    "time_step",
-];
-
 impl Checker<'_> {
     /// Takes the implicit integrator for a sweep that names none, where the explicit one would take minutes and
     /// nothing of the study asks for it. All cases of the sweep change, so that a series stays of one kind.
@@ -39,12 +26,15 @@ impl Checker<'_> {
         base: &Case,
         sweep: &mut Sweep,
     ) {
-        let is_named = |key: &&str| {
-            table.typed(key).is_some() || common.given.iter().any(|(given, _)| given.name == *key)
-        };
+        // Who says how steps are taken has chosen.
+        let is_chosen =
+            Key::of("sweep").filter(|key| key.is_of_integrator() || key.name == "time_step").any(|key| {
+                table.typed(key.name).is_some()
+                    || common.given.iter().any(|(given, _)| given.name == key.name)
+            });
         let Case { task, scene, .. } = *base;
         let key = Key::named("integrator", "sweep").filter(|_| task == Task::Solve && !scene.has_waves());
-        let Some(key) = key.filter(|_| !CHOICES_OF_STEPS.iter().any(is_named)) else { return };
+        let Some(key) = key.filter(|_| !is_chosen) else { return };
         let slowest =
             |sweep: &Sweep| sweep.cases(base).map(|case| estimated_seconds(&case)).fold(0.0, f64::max);
         let explicit = slowest(sweep);
