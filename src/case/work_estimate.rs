@@ -4,13 +4,16 @@ use crate::case::step_cost::{CASE_SECONDS, seconds_per_step};
 use crate::case::{Case, Task};
 use crate::elementary;
 use crate::mpm::critical_step::formula;
-use crate::mpm::critical_step::observed::{BISECTIONS, OBSERVED_STEPS, SHARES};
+use crate::mpm::critical_step::observed::{OBSERVED_STEPS, SHARES};
 use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::column::column_parameters;
 
 /// Steps after which a run at a share of the critical step has shown that it is clean.
 pub(crate) const MOST_PROBE_STEPS: u64 = 1_000_000;
+
+/// Runs of a search for the critical step that hold to their end, as a rule: it begins between the runs beside it.
+const HELD_RUNS: f64 = 4.0;
 
 /// Work of cases together: the largest number where there is more.
 pub(crate) fn work_of<'a>(cases: impl Iterator<Item = &'a Case>) -> u64 {
@@ -66,7 +69,7 @@ pub fn estimated_steps(case: &Case) -> f64 {
         Task::Stability => {
             // Runs of a fixed length bracket the limit; those beside it end with the scene, or before.
             let observed = OBSERVED_STEPS as f64;
-            f64::from(BISECTIONS) * observed
+            HELD_RUNS * observed
                 + SHARES.len() as f64 * (end / step).clamp(observed, MOST_PROBE_STEPS as f64)
         }
     }
@@ -99,9 +102,9 @@ mod tests {
     #[test]
     fn the_work_of_a_critical_step_has_an_end() {
         let endless = cases("task = \"stability\"", "cells = [8]\nhydraulic_conductivity = [1e-300]");
-        let most = (u64::from(BISECTIONS) * OBSERVED_STEPS + 2 * MOST_PROBE_STEPS) * 16;
+        let most = (4 * OBSERVED_STEPS + 2 * MOST_PROBE_STEPS) * 16;
         assert_eq!(estimated_updates(&endless[0]), most);
         let short = cases("task = \"stability\"\n[output]\ntime_factors = [1e-9]", "cells = [8]");
-        assert_eq!(estimated_updates(&short[0]), (u64::from(BISECTIONS) + 2) * OBSERVED_STEPS * 16);
+        assert_eq!(estimated_updates(&short[0]), (4 + 2) * OBSERVED_STEPS * 16);
     }
 }

@@ -5,6 +5,7 @@ pub(crate) mod modes;
 pub(crate) mod quartic;
 pub(crate) mod steady;
 pub(crate) mod summation;
+pub(crate) mod waves;
 
 use std::borrow::Cow;
 
@@ -12,6 +13,7 @@ use crate::elementary;
 use crate::exact::consolidation::sine_series::eigenvalue;
 use crate::exact::dynamic_column::modes::ModeState;
 use crate::exact::dynamic_column::steady::Steady;
+use crate::exact::dynamic_column::waves::{BLOCK, Waves};
 use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
 use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::parameters::ColumnParameters;
@@ -111,18 +113,20 @@ impl DynamicColumn {
         let column = &self.parameters;
         let snapshot = self.modes_at(time_factor);
         let mut state = self.departed_from(column.time(time_factor), zeta)?;
-        for (mode, amplitude) in snapshot.amplitudes.iter().enumerate().rev() {
-            let m = self.wave_number(mode);
-            // sin(M_j y/H) and cos(M_j y/H) = ± sin(M_j ζ) vanish exactly at base and surface.
-            let sine = elementary::sin(eigenvalue(mode) * (1.0 - zeta));
-            let sign = if mode % 2 == 0 { 1.0 } else { -1.0 };
-            let cosine = sign * elementary::sin(eigenvalue(mode) * zeta);
-            state.solid += amplitude.solid * sine;
-            state.mixture += amplitude.mixture * sine;
-            state.solid_rate += amplitude.solid_rate * sine;
-            state.mixture_rate += amplitude.mixture_rate * sine;
-            state.solid_strain += amplitude.solid * m * cosine;
-            state.pressure -= column.coupling_modulus() * amplitude.mixture * m * cosine;
+        let coupling = column.coupling_modulus();
+        let waves = Waves::at(zeta);
+        for (block, amplitudes) in snapshot.amplitudes.chunks(BLOCK).enumerate().rev() {
+            let first = block * BLOCK;
+            let [sines, cosines] = waves.of_block(first);
+            for (place, amplitude) in amplitudes.iter().enumerate().rev() {
+                let (m, sine, cosine) = (self.wave_number(first + place), sines[place], cosines[place]);
+                state.solid += amplitude.solid * sine;
+                state.mixture += amplitude.mixture * sine;
+                state.solid_rate += amplitude.solid_rate * sine;
+                state.mixture_rate += amplitude.mixture_rate * sine;
+                state.solid_strain += amplitude.solid * m * cosine;
+                state.pressure -= coupling * amplitude.mixture * m * cosine;
+            }
         }
         let mut fields = self.assemble(&state);
         if self.start.is_release() {

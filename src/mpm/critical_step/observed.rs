@@ -123,7 +123,6 @@ pub fn critical_step<const D: usize>(
     let is_sharp = prediction.growth(SHARES[1] * strict).is_none_or(|growth| growth > 1.0 + VISIBLE_GROWTH);
     let predicted = if is_sharp { strict } else { prediction.critical_step_for(VISIBLE_GROWTH).max(strict) };
     let creeping_from = (strict < SHARES[0] * predicted).then_some(strict);
-    let observed = observed_step(&problem, settings, predicted, observer)?;
     let mut probes = Vec::with_capacity(SHARES.len());
     for share in SHARES {
         let step = share * predicted;
@@ -138,6 +137,7 @@ pub fn critical_step<const D: usize>(
             failure,
         });
     }
+    let observed = observed_step(&problem, settings, &probes, observer)?;
     let cell_size = problem.grid.cell_size;
     let soil = &problem.material;
     Ok(CriticalStep {
@@ -151,33 +151,42 @@ pub fn critical_step<const D: usize>(
     })
 }
 
-/// Largest step that runs, by bisection; none where no step near the prediction leaves.
+/// Largest step that runs, by bisection; none where no step near the prediction leaves. The search begins between the
+/// probes, which are runs that know nothing of the prediction either, and goes outwards where they leave and hold
+/// otherwise than it says.
 fn observed_step<const D: usize>(
     problem: &Problem<D>,
     settings: &ExplicitSettings,
-    predicted: f64,
+    probes: &[Probe],
     observer: Observer<'_>,
 ) -> Result<Option<f64>, Stopped> {
     let runs = |step: f64| -> Result<bool, Stopped> {
         leaves(problem, settings, step, OBSERVED_STEPS, observer).map(|(_, failure)| failure.is_none())
     };
-    let (mut low, mut high) = (0.8 * predicted, 1.25 * predicted);
-    while !runs(low)? {
-        high = low;
+    let [below, above] = probes else { return Ok(None) };
+    // A probe that left later than the runs of a search last did not leave by their measure.
+    let held = |probe: &Probe| probe.failure.is_none() || probe.steps > OBSERVED_STEPS;
+    let (least, most) = (1e-3 * below.step, 1e3 * above.step);
+    let (mut low, mut low_runs) = (below.step, held(below));
+    let (mut high, mut high_runs) = (above.step, held(above));
+    while !low_runs {
+        (high, high_runs) = (low, false);
         low *= 0.5;
         // Written so that a prediction that is no number ends it.
-        let is_near = low >= 1e-3 * predicted;
+        let is_near = low >= least;
         if !is_near {
             return Ok(None);
         }
+        low_runs = runs(low)?;
     }
-    while runs(high)? {
+    while high_runs {
         low = high;
         high *= 2.0;
-        let is_near = high <= 1e3 * predicted;
+        let is_near = high <= most;
         if !is_near {
             return Ok(None);
         }
+        high_runs = runs(high)?;
     }
     for _ in 0..BISECTIONS {
         if high - low < RESOLUTION * low {
