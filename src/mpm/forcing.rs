@@ -57,8 +57,8 @@ pub struct Forced<const D: usize> {
     pub time: f64,
     /// Point of the skeleton at each cell's centre when it was last looked for, m, `[cell][component]`.
     pub at_centre: Vec<Vector<D>>,
-    /// The same when it was looked for before.
-    before: Vec<Vector<D>>,
+    /// The same when it was looked for before, and before that.
+    before: [Vec<Vector<D>>; 2],
     /// Forces at the points, `[point]`.
     forces: Vec<BodyForces<D>>,
     /// Sources at the centres of cells and at the points, 1/s.
@@ -77,7 +77,7 @@ impl<const D: usize> Forced<D> {
             acting,
             formulation: Formulation::VW,
             time: 0.0,
-            before: at_centre.clone(),
+            before: [at_centre.clone(), at_centre.clone()],
             forces: vec![[[0.0; D]; 2]; points.len()],
             sources: [vec![0.0; at_centre.len()], vec![0.0; points.len()]],
             at_centre,
@@ -131,12 +131,13 @@ impl<const D: usize> Forced<D> {
     }
 
     /// Looks for the points of the skeleton that are now at the centres of some cells: not far from where they would
-    /// be, were they to go on as they did.
+    /// be, were they to go on along the parabola of the last three.
     pub fn find_centres(&mut self, grid: &Grid<D>, cells: impl Iterator<Item = usize> + Clone) {
         for cell in cells.clone() {
-            let (last, before) = (self.at_centre[cell], self.before[cell]);
-            self.before[cell] = last;
-            self.at_centre[cell] = std::array::from_fn(|d| 2.0 * last[d] - before[d]);
+            let [before, earliest] = [self.before[0][cell], self.before[1][cell]];
+            let now = self.at_centre[cell];
+            (self.before[0][cell], self.before[1][cell]) = (now, before);
+            self.at_centre[cell] = std::array::from_fn(|d| 3.0 * (now[d] - before[d]) + earliest[d]);
         }
         let present = |cell| grid.cell_centre(cell);
         self.acting.material_places(&present, &mut { cells }, self.time, &mut self.at_centre);

@@ -3,13 +3,15 @@
 
 use crate::exact::exact_error::ExactError;
 use crate::exact::manufactured::Manufactured;
+use crate::exact::manufactured::four::{Four, PLACES};
 use crate::exact::manufactured::model::ManufacturedModel;
-use crate::exact::manufactured::motion::{Motion, Spot};
+use crate::exact::manufactured::motion::{Motion, Spot, Spots};
 use crate::exact::manufactured::motion_state::Inertia;
 use crate::exact::parameters::MotionParameters;
 use crate::exact::reference::ReferenceKind;
 use crate::mpm::forcing::{BodyForces, Forcing};
 use crate::mpm::formulation::Formulation;
+use crate::mpm::wide::wide;
 use crate::scene::column::{Column, column_parameters};
 use crate::scene::definition::{
     ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
@@ -126,12 +128,36 @@ fn in_space<const D: usize>(vector: [f64; 2]) -> Vector<D> {
 
 impl MadeMotion {
     /// What the formulas take of a place: what is known of a point with its number, where it is that point's.
-    #[inline]
+    #[inline(always)]
     fn spot(&self, number: usize, place: [f64; 2]) -> Spot {
         match self.spots.get(number) {
             Some(spot) if spot.place == place => *spot,
             _ => Spot::of(place),
         }
+    }
+
+    /// The same of the places of four sites.
+    #[inline(always)]
+    fn spots_of<const D: usize>(&self, places: &[Vector<D>], sites: &[usize; PLACES]) -> Spots {
+        Spots::of(&sites.map(
+            #[inline(always)]
+            |site| self.spot(site, in_plane(&places[site])),
+        ))
+    }
+}
+
+/// Takes sites four at a time; the last of them stand in for those that there are not.
+#[inline(always)]
+fn by_fours(sites: &mut dyn Iterator<Item = usize>, mut take: impl FnMut(&[usize; PLACES], usize)) {
+    while let Some(first) = sites.next() {
+        let (mut four, mut count) = ([first; PLACES], 1);
+        while count < PLACES
+            && let Some(site) = sites.next()
+        {
+            four[count..].fill(site);
+            count += 1;
+        }
+        take(&four, count);
     }
 }
 
@@ -153,10 +179,18 @@ impl<const D: usize> Forcing<D> for MadeMotion {
         forces: &mut [BodyForces<D>],
     ) {
         let (moment, inertia) = (self.solution.moment(time), inertia_of(formulation));
-        for (number, (place, forces)) in places.iter().zip(forces).enumerate() {
-            let spot = self.spot(number, in_plane(place));
-            *forces = self.solution.state_of(&spot, &moment).body_forces(inertia).map(in_space);
-        }
+        wide!(by_fours(
+            &mut (0..places.len()),
+            #[inline(always)]
+            |sites, count| {
+                let states = self.solution.states_of(&self.spots_of(places, sites), &moment);
+                let [mixture, water] = states.body_forces(inertia);
+                for place in 0..count {
+                    let at = |force: [Four; 2]| in_space([force[0].0[place], force[1].0[place]]);
+                    forces[sites[place]] = [at(mixture), at(water)];
+                }
+            }
+        ));
     }
 
     fn sources(
@@ -167,10 +201,17 @@ impl<const D: usize> Forcing<D> for MadeMotion {
         sources: &mut [f64],
     ) {
         let moment = self.solution.moment(time);
-        for site in sites {
-            let spot = self.spot(site, in_plane(&places[site]));
-            sources[site] = self.solution.state_of(&spot, &moment).source();
-        }
+        wide!(by_fours(
+            sites,
+            #[inline(always)]
+            |sites, count| {
+                let states = self.solution.states_of(&self.spots_of(places, sites), &moment);
+                let of_each = states.source();
+                for place in 0..count {
+                    sources[sites[place]] = of_each.0[place];
+                }
+            }
+        ));
     }
 
     fn material_places(
@@ -181,10 +222,17 @@ impl<const D: usize> Forcing<D> for MadeMotion {
         places: &mut [Vector<D>],
     ) {
         let moment = self.solution.moment(time);
-        for site in sites {
-            let guess = in_plane(&places[site]);
-            let found = self.solution.material_place(in_plane(&present(site)), &moment, guess);
-            places[site] = in_space(found);
-        }
+        wide!(by_fours(
+            sites,
+            #[inline(always)]
+            |sites, count| {
+                let guesses = sites.map(|site| in_plane(&places[site]));
+                let there = sites.map(|site| in_plane(&present(site)));
+                let found = self.solution.material_places(&there, &moment, &guesses);
+                for place in 0..count {
+                    places[sites[place]] = in_space(found[place]);
+                }
+            }
+        ));
     }
 }

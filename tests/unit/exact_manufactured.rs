@@ -2,6 +2,7 @@
 //! inverted motion: nothing of the arithmetic with derivatives is used, but the fields themselves.
 
 use super::*;
+use crate::exact::manufactured::four::Four;
 use crate::exact::manufactured::motion::Motion;
 use crate::exact::manufactured::motion_state::Inertia;
 use crate::exact::parameters::MotionParameters;
@@ -264,4 +265,31 @@ fn what_is_no_solution_is_refused_in_a_sentence() {
     let sound = &solutions()[0];
     assert!(sound.fields(-1.0, 0.5).is_err() && sound.fields(0.1, 1.5).is_err());
     assert!(sound.plane_fields(0.1, [f64::NAN, 0.5]).is_err());
+}
+
+#[test]
+fn four_places_have_the_bits_of_each_alone() {
+    // In the disc, at its rim and outside; near walls.
+    let places = [[0.5, 0.62], [0.03, 0.98], [0.21, 0.4], [0.71, 0.111]];
+    for solution in solutions() {
+        let motion = solution.model;
+        let moment = solution.moment(0.55);
+        let together = solution.states_of(&Spots::of(&places.map(Spot::of)), &moment);
+        let [forces, source] = [together.body_forces(Inertia::Both).concat(), vec![together.source()]];
+        let guesses = places.map(|[x, y]| [x + 0.01, y - 0.02]);
+        let found = solution.material_places(&places, &moment, &guesses);
+        for (lane, place) in places.into_iter().enumerate() {
+            let alone = solution.state_at(place, 0.55);
+            let of_lane = |fours: &[Four]| -> Vec<f64> { fours.iter().map(|four| four.0[lane]).collect() };
+            assert_eq!(of_lane(&forces), alone.body_forces(Inertia::Both).concat(), "{motion:?}, {place:?}");
+            assert_eq!(of_lane(&source), [alone.source()], "{motion:?}, {place:?}");
+            assert_eq!(
+                found[lane],
+                solution.material_place(place, &moment, guesses[lane]),
+                "{motion:?}, {place:?}"
+            );
+            let back = solution.state_at(found[lane], 0.55).position();
+            assert!((back[0] - place[0]).abs() + (back[1] - place[1]).abs() < 1e-13, "{motion:?}, {place:?}");
+        }
+    }
 }

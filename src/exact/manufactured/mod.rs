@@ -5,9 +5,10 @@
 //! mixture and water and as a source of water (docs/theory.md, Eqs 24–27). Points move through the mesh in both
 //! directions and come back; no wall moves, and no front, load or surface spoils the reading.
 //!
-//! `jet` is the arithmetic with derivatives, `motion` the motions and their inverse, `model` which law goes with
-//! which, `state` what follows from one at a point and time.
+//! `four` are the numbers of four places, `jet` is the arithmetic with derivatives, `motion` the motions and their
+//! inverse, `model` which law goes with which, `motion_state` what follows from one at a point and time.
 
+pub mod four;
 pub mod jet;
 pub mod model;
 pub mod motion;
@@ -15,9 +16,10 @@ pub mod motion_state;
 
 use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
 use crate::exact::field_values::{Accuracy, FieldValues};
+use crate::exact::manufactured::four::PLACES;
 use crate::exact::manufactured::model::ManufacturedModel;
-use crate::exact::manufactured::motion::{Moment, Spot};
-use crate::exact::manufactured::motion_state::{Soil, State};
+use crate::exact::manufactured::motion::{Moment, Spot, Spots};
+use crate::exact::manufactured::motion_state::{Soil, State, States};
 use crate::exact::parameters::ColumnParameters;
 use std::f64::consts::PI;
 
@@ -72,13 +74,13 @@ impl Manufactured {
 
     /// All that follows from motion and pressure for the point `X` (m) of the skeleton at a time, s.
     pub fn state_at(&self, place: [f64; 2], time: f64) -> State {
-        self.state_of(&Spot::of(place), &self.moment(time))
+        State::first_of(self.states_of(&Spots::of(&[Spot::of(place); PLACES]), &self.moment(time)))
     }
 
-    /// The same for a point and a time that are known already: for many points at one time.
-    #[inline]
-    pub fn state_of(&self, spot: &Spot, moment: &Moment) -> State {
-        State::of(self.model, &self.parameters, &self.soil, spot, moment)
+    /// The same for four points and a time that are known already: for many points at one time.
+    #[inline(always)]
+    pub fn states_of(&self, spots: &Spots, moment: &Moment) -> States {
+        States::of(self.model, &self.parameters, &self.soil, spots, moment)
     }
 
     /// What all points take of a time, s.
@@ -88,7 +90,18 @@ impl Manufactured {
 
     /// The point `X` of the skeleton that is at a place at a time, from a guess, m.
     pub fn material_place(&self, place: [f64; 2], moment: &Moment, guess: [f64; 2]) -> [f64; 2] {
-        self.model.motion.material_place(&self.parameters.motion, place, moment, guess)
+        self.material_places(&[place; PLACES], moment, &[guess; PLACES])[0]
+    }
+
+    /// The same of four places.
+    #[inline(always)]
+    pub fn material_places(
+        &self,
+        places: &[[f64; 2]; PLACES],
+        moment: &Moment,
+        guesses: &[[f64; 2]; PLACES],
+    ) -> [[f64; 2]; PLACES] {
+        self.model.motion.material_places(&self.parameters.motion, places, moment, guesses)
     }
 
     /// The fields at the point `X` of the skeleton, m, at a time factor.

@@ -4,6 +4,7 @@
 //! no sine is left where points and times meet, but those of an angle that is of both.
 
 use crate::elementary;
+use crate::exact::manufactured::four::{Four, PLACES};
 use crate::exact::manufactured::jet::{Jet, Shape};
 use crate::exact::parameters::MotionParameters;
 use std::f64::consts::PI;
@@ -11,7 +12,7 @@ use std::f64::consts::PI;
 /// Corrections after which a place is found or never is.
 const MOST_CORRECTIONS: usize = 50;
 /// Correction, m, after which a place is found to round-off: what it leaves is of its square.
-const FOUND: f64 = 1e-9;
+const FOUND: f64 = 1e-7;
 /// Middle of the square, m.
 const MIDDLE: f64 = 0.5;
 
@@ -43,21 +44,45 @@ impl Spot {
         let [(sine_x, cosine_x), (sine_y, cosine_y)] = place.map(|along| elementary::sincos(PI * along));
         Self { place, sine: [sine_x, sine_y], cosine: [cosine_x, cosine_y] }
     }
+}
+
+/// Four points of the skeleton, as the formulas take them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spots {
+    place: [Four; 2],
+    sine: [Four; 2],
+    cosine: [Four; 2],
+}
+
+impl Spots {
+    /// Of four points.
+    #[inline(always)]
+    pub fn of(spots: &[Spot; PLACES]) -> Self {
+        let four = |of: fn(&Spot) -> [f64; 2], d: usize| {
+            Four([of(&spots[0])[d], of(&spots[1])[d], of(&spots[2])[d], of(&spots[3])[d]])
+        };
+        let both = |of: fn(&Spot) -> [f64; 2]| [four(of, 0), four(of, 1)];
+        Self {
+            place: both(|spot| spot.place),
+            sine: both(|spot| spot.sine),
+            cosine: both(|spot| spot.cosine),
+        }
+    }
 
     /// `sin(πX)` or `sin(πY)`, with two derivatives.
-    #[inline]
-    fn sine(&self, d: usize) -> [f64; 3] {
-        [self.sine[d], PI * self.cosine[d], -(PI * PI) * self.sine[d]]
+    #[inline(always)]
+    fn sine(&self, d: usize) -> [Four; 3] {
+        [self.sine[d], self.cosine[d] * PI, self.sine[d] * -(PI * PI)]
     }
 
     /// `cos(πX)` or `cos(πY)`, with two derivatives.
-    #[inline]
-    fn cosine(&self, d: usize) -> [f64; 3] {
-        [self.cosine[d], -PI * self.sine[d], -(PI * PI) * self.cosine[d]]
+    #[inline(always)]
+    fn cosine(&self, d: usize) -> [Four; 3] {
+        [self.cosine[d], self.sine[d] * -PI, self.cosine[d] * -(PI * PI)]
     }
 
     /// `cos(πX) cos(πY)`: how the pressure varies over the square.
-    #[inline]
+    #[inline(always)]
     pub fn pressure_shape(&self) -> Shape {
         Shape::product(self.cosine(0), self.cosine(1))
     }
@@ -105,17 +130,18 @@ impl Motion {
     }
 
     /// Place of a point of the skeleton at a time, m, with all its derivatives; `g = sin²(ωt)`.
-    #[inline]
-    pub fn place(self, parameters: &MotionParameters, spot: &Spot, moment: &Moment) -> [Jet; 2] {
+    #[inline(always)]
+    pub fn place(self, parameters: &MotionParameters, spots: &Spots, moment: &Moment) -> [Jet; 2] {
         /// A function that does not vary.
-        const ONE: [f64; 3] = [1.0, 0.0, 0.0];
-        let [x, y] = spot.place;
+        const ONE: [Four; 3] = [Four([1.0; PLACES]), Four([0.0; PLACES]), Four([0.0; PLACES])];
+        let [x, y] = spots.place;
         let [along, up] = match self {
-            Self::Box => [Shape::product(spot.sine(0), ONE), Shape::product(ONE, spot.sine(1))],
-            Self::Shear => {
-                [Shape::product(spot.sine(0), spot.cosine(1)), Shape::product(spot.cosine(0), spot.sine(1))]
-            }
-            Self::Vortex => return turned(parameters.amplitude, spot, moment),
+            Self::Box => [Shape::product(spots.sine(0), ONE), Shape::product(ONE, spots.sine(1))],
+            Self::Shear => [
+                Shape::product(spots.sine(0), spots.cosine(1)),
+                Shape::product(spots.cosine(0), spots.sine(1)),
+            ],
+            Self::Vortex => return turned(parameters.amplitude, spots, moment),
         };
         let grown = |amplitude: f64, shape: &Shape| Jet::growing(shape, times(amplitude / PI, moment.growth));
         [
@@ -124,30 +150,39 @@ impl Motion {
         ]
     }
 
-    /// The point `X` of the skeleton that is at a place at a time, m, looked for from a guess by Newton's iteration;
-    /// not a number where the place is no point's.
-    pub fn material_place(
+    /// The points `X` of the skeleton that are at four places at a time, m, looked for from guesses by Newton's
+    /// iteration; not a number where the place is no point's.
+    #[inline(always)]
+    pub fn material_places(
         self,
         parameters: &MotionParameters,
-        place: [f64; 2],
+        places: &[[f64; 2]; PLACES],
         moment: &Moment,
-        guess: [f64; 2],
-    ) -> [f64; 2] {
-        let mut found = guess;
+        guesses: &[[f64; 2]; PLACES],
+    ) -> [[f64; 2]; PLACES] {
+        let (mut at, mut found) = (*guesses, [[f64::NAN; 2]; PLACES]);
+        let mut is_found = [false; PLACES];
         for _ in 0..MOST_CORRECTIONS {
-            let [x, y] = self.place(parameters, &Spot::of(found), moment);
-            let [off_x, off_y] = [place[0] - x.value, place[1] - y.value];
+            let [x, y] = self.place(parameters, &Spots::of(&at.map(Spot::of)), moment);
+            let off = |d: usize, jet: &Jet| {
+                Four([places[0][d], places[1][d], places[2][d], places[3][d]]) - jet.value
+            };
+            let [off_x, off_y] = [off(0, &x), off(1, &y)];
             let determinant = x.slope[0] * y.slope[1] - x.slope[1] * y.slope[0];
-            let correction = [
-                (y.slope[1] * off_x - x.slope[1] * off_y) / determinant,
-                (x.slope[0] * off_y - y.slope[0] * off_x) / determinant,
-            ];
-            found = [found[0] + correction[0], found[1] + correction[1]];
-            if correction[0].abs() + correction[1].abs() < FOUND {
-                return found;
+            let correction_x = (y.slope[1] * off_x - x.slope[1] * off_y).over(determinant);
+            let correction_y = (x.slope[0] * off_y - y.slope[0] * off_x).over(determinant);
+            for place in 0..PLACES {
+                let correction = [correction_x.0[place], correction_y.0[place]];
+                at[place] = [at[place][0] + correction[0], at[place][1] + correction[1]];
+                if !is_found[place] && correction[0].abs() + correction[1].abs() < FOUND {
+                    (found[place], is_found[place]) = (at[place], true);
+                }
+            }
+            if is_found == [true; PLACES] {
+                break;
             }
         }
-        [f64::NAN; 2]
+        found
     }
 
     /// Largest displacement of a point, m: what displacements are measured by.
@@ -167,26 +202,24 @@ impl Motion {
     }
 }
 
-/// Place of a point of the disc that turns by `A g (1 − 4r²)⁴`; outside it nothing moves.
-#[inline]
-fn turned(amplitude: f64, spot: &Spot, moment: &Moment) -> [Jet; 2] {
-    let [dx, dy] = spot.place.map(|along| along - MIDDLE);
-    let [x, y] = [Jet::coordinate(0, spot.place[0]), Jet::coordinate(1, spot.place[1])];
-    let share = 1.0 - 4.0 * (dx * dx + dy * dy);
-    if share <= 0.0 {
-        return [x, y];
-    }
+/// Places of points of the disc that turns by `A g (1 − 4r²)⁴`; outside it nothing moves.
+#[inline(always)]
+fn turned(amplitude: f64, spots: &Spots, moment: &Moment) -> [Jet; 2] {
+    let [dx, dy] = [spots.place[0] + -MIDDLE, spots.place[1] + -MIDDLE];
+    let still = [Jet::coordinate(0, spots.place[0]), Jet::coordinate(1, spots.place[1])];
+    let share = (dx * dx + dy * dy) * -4.0 + 1.0;
     // S = s⁴, s = 1 − 4 r²
     let square = share * share;
-    let (first, second) = (4.0 * square * share, 12.0 * square);
-    let [by_x, by_y] = [-8.0 * dx, -8.0 * dy];
+    let (first, second) = (square * 4.0 * share, square * 12.0);
+    let [by_x, by_y] = [dx * -8.0, dy * -8.0];
     let mixed = second * by_x * by_y;
     let shape = Shape {
         value: square * square,
         slope: [first * by_x, first * by_y],
-        bend: [[second * by_x * by_x - 8.0 * first, mixed], [mixed, second * by_y * by_y - 8.0 * first]],
+        bend: [[second * by_x * by_x - first * 8.0, mixed], [mixed, second * by_y * by_y - first * 8.0]],
     };
     let [sine, cosine] = Jet::growing(&shape, times(amplitude, moment.growth)).sine_and_cosine();
-    let [x, y] = [x + -MIDDLE, y + -MIDDLE];
-    [cosine * x - sine * y + MIDDLE, sine * x + cosine * y + MIDDLE]
+    let [x, y] = [still[0] + -MIDDLE, still[1] + -MIDDLE];
+    let turned = [cosine * x - sine * y + MIDDLE, sine * x + cosine * y + MIDDLE];
+    [Jet::where_positive(share, &turned[0], &still[0]), Jet::where_positive(share, &turned[1], &still[1])]
 }

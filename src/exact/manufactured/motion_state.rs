@@ -1,8 +1,9 @@
 //! All that follows from a motion and a pressure at a point of the skeleton and a time.
 
+use crate::exact::manufactured::four::Four;
 use crate::exact::manufactured::jet::{Jet, Slope, TIME};
 use crate::exact::manufactured::model::ManufacturedModel;
-use crate::exact::manufactured::motion::{Moment, Spot};
+use crate::exact::manufactured::motion::{Moment, Spots};
 use crate::exact::parameters::ColumnParameters;
 use crate::soil::law::Law;
 
@@ -52,10 +53,10 @@ pub enum Inertia {
     None,
 }
 
-/// The state of a point of the skeleton. Vectors are `[component]`, tensors `[row][column]`. What few ask for is made
-/// where it is asked for.
+/// The states of four points of the skeleton. Vectors are `[component]`, tensors `[row][column]`. What few ask for is
+/// made where it is asked for.
 #[derive(Clone, Copy, Debug)]
-pub struct State {
+pub struct States {
     soil: Soil,
     law: Law,
     position: [Jet; 2],
@@ -73,23 +74,24 @@ pub struct State {
 }
 
 /// A vector or a row from its places.
-#[inline]
+#[inline(always)]
 fn both<T>(of: impl Fn(usize) -> T) -> [T; 2] {
     [of(0), of(1)]
 }
 
-impl State {
-    /// Of a point and a time (docs/theory.md, Eqs 24 and 25).
-    #[inline]
+impl States {
+    /// Of four points and a time (docs/theory.md, Eqs 24 and 25).
+    #[inline(always)]
     pub fn of(
         model: ManufacturedModel,
         parameters: &ColumnParameters,
         soil: &Soil,
-        spot: &Spot,
+        spots: &Spots,
         moment: &Moment,
     ) -> Self {
-        let position = model.motion.place(&parameters.motion, spot, moment);
-        let pressure = Jet::growing(&spot.pressure_shape(), moment.beat.map(|value| parameters.load * value));
+        let position = model.motion.place(&parameters.motion, spots, moment);
+        let pressure =
+            Jet::growing(&spots.pressure_shape(), moment.beat.map(|value| parameters.load * value));
         let deformation = both(|i| both(|j| position[i].along(j)));
         let [[xx, xy], [yx, yy]] = deformation;
         let volume_ratio = xx * yy - xy * yx;
@@ -120,24 +122,24 @@ impl State {
     }
 
     /// Derivative of a quantity along `x` or `y` on the current configuration, `F⁻ᵀ grad_X`.
-    #[inline]
-    fn derivative(&self, quantity: &Slope, direction: usize) -> f64 {
+    #[inline(always)]
+    fn derivative(&self, quantity: &Slope, direction: usize) -> Four {
         let inverse = &self.inverse_deformation;
         inverse[0][direction].value * quantity.slope[0] + inverse[1][direction].value * quantity.slope[1]
     }
 
     /// Divergence of a vector on the current configuration.
-    #[inline]
-    fn divergence(&self, vector: &[Slope; 2]) -> f64 {
+    #[inline(always)]
+    fn divergence(&self, vector: &[Slope; 2]) -> Four {
         self.derivative(&vector[0], 0) + self.derivative(&vector[1], 1)
     }
 
-    #[inline]
+    #[inline(always)]
     fn solid_velocity_slope(&self) -> [Slope; 2] {
         both(|i| self.position[i].along(TIME))
     }
 
-    #[inline]
+    #[inline(always)]
     fn water_velocity_slope(&self) -> [Slope; 2] {
         let per_porosity = self.porosity.recip();
         both(|i| self.position[i].along(TIME) + self.flux[i] * per_porosity)
@@ -145,7 +147,7 @@ impl State {
 
     /// Effective stress of the law from the deformation gradient; `logarithm` is that of a stretch, whose value counts
     /// in the stress and not in its slopes.
-    #[inline]
+    #[inline(always)]
     fn stress(&self, logarithm: impl Fn(Slope) -> Slope) -> [[Slope; 2]; 2] {
         let (soil, deformation) = (&self.soil, &self.deformation);
         if self.law == Law::NeoHookean {
@@ -176,60 +178,26 @@ impl State {
         })
     }
 
-    /// Present place, m.
-    pub fn position(&self) -> [f64; 2] {
-        both(|i| self.position[i].value)
-    }
-
-    /// Volume ratio `J`.
-    pub fn volume_ratio(&self) -> f64 {
-        self.volume_ratio.value
-    }
-
-    /// Porosity.
-    pub fn porosity(&self) -> f64 {
-        self.porosity.value
-    }
-
-    /// Pore pressure, Pa, compression positive.
-    pub fn pressure(&self) -> f64 {
-        self.pressure.value
-    }
-
-    /// Effective Cauchy stress, Pa, tension positive.
-    pub fn effective_stress(&self) -> [[f64; 2]; 2] {
-        self.stress(Slope::ln).map(|row| row.map(|component| component.value))
-    }
-
-    /// Velocity of the skeleton, m/s.
-    pub fn solid_velocity(&self) -> [f64; 2] {
-        self.solid_velocity_slope().map(|component| component.value)
-    }
-
-    /// Velocity of the pore water, m/s.
-    pub fn water_velocity(&self) -> [f64; 2] {
-        self.water_velocity_slope().map(|component| component.value)
-    }
-
     /// Body forces on the mixture, N per m³ of mixture, and on the water, N per m³ of water: what is left of the
     /// momentum balances with some of their accelerations (docs/theory.md, Eq. 26). Rates follow the skeleton.
-    #[inline]
-    pub fn body_forces(&self, inertia: Inertia) -> [[f64; 2]; 2] {
+    #[inline(always)]
+    pub fn body_forces(&self, inertia: Inertia) -> [[Four; 2]; 2] {
         let soil = &self.soil;
         let porosity = self.porosity.value;
-        let still = [0.0; 2];
+        let still = [Four::all(0.0); 2];
         let of_skeleton = || both(|i| self.position[i].bend[TIME][TIME]);
         let [of_grains, of_water] = match inertia {
             Inertia::Both => {
-                [of_skeleton(), self.water_velocity_slope().map(|velocity| velocity.slope[TIME])]
+                let velocity = self.water_velocity_slope();
+                [of_skeleton(), both(|i| velocity[i].slope[TIME])]
             }
             Inertia::Skeleton => [of_skeleton(); 2],
             Inertia::None => [still; 2],
         };
         let stress = self.stress(Slope::ln_slopes);
-        let water = of_water.map(|acceleration| soil.water_density * acceleration);
+        let water = both(|i| of_water[i] * soil.water_density);
         let mixture = both(|i| {
-            let grains = (1.0 - porosity) * soil.grain_density * of_grains[i];
+            let grains = (Four::all(1.0) - porosity) * soil.grain_density * of_grains[i];
             grains + porosity * water[i] - self.divergence(&stress[i]) + self.pressure_gradient[i].value
         });
         // The drag balances the pressure gradient: no more is left for the water.
@@ -238,9 +206,66 @@ impl State {
 
     /// Source of water, volume per volume of mixture and second: what is left of the continuity
     /// (docs/theory.md, Eq. 27).
-    #[inline]
-    pub fn source(&self) -> f64 {
-        let storage = self.porosity.value / self.soil.water_bulk_modulus * self.pressure.slope[TIME];
+    #[inline(always)]
+    pub fn source(&self) -> Four {
+        let storage =
+            self.porosity.value.over(Four::all(self.soil.water_bulk_modulus)) * self.pressure.slope[TIME];
         self.divergence(&self.solid_velocity_slope()) + self.divergence(&self.flux) + storage
+    }
+}
+
+/// The state of a point of the skeleton.
+#[derive(Clone, Copy, Debug)]
+pub struct State(States);
+
+impl State {
+    /// Of the first of four points.
+    pub fn first_of(states: States) -> Self {
+        Self(states)
+    }
+
+    /// Present place, m.
+    pub fn position(&self) -> [f64; 2] {
+        both(|i| self.0.position[i].value.first())
+    }
+
+    /// Volume ratio `J`.
+    pub fn volume_ratio(&self) -> f64 {
+        self.0.volume_ratio.value.first()
+    }
+
+    /// Porosity.
+    pub fn porosity(&self) -> f64 {
+        self.0.porosity.value.first()
+    }
+
+    /// Pore pressure, Pa, compression positive.
+    pub fn pressure(&self) -> f64 {
+        self.0.pressure.value.first()
+    }
+
+    /// Effective Cauchy stress, Pa, tension positive.
+    pub fn effective_stress(&self) -> [[f64; 2]; 2] {
+        self.0.stress(Slope::ln).map(|row| row.map(|component| component.value.first()))
+    }
+
+    /// Velocity of the skeleton, m/s.
+    pub fn solid_velocity(&self) -> [f64; 2] {
+        self.0.solid_velocity_slope().map(|component| component.value.first())
+    }
+
+    /// Velocity of the pore water, m/s.
+    pub fn water_velocity(&self) -> [f64; 2] {
+        self.0.water_velocity_slope().map(|component| component.value.first())
+    }
+
+    /// Body forces on mixture and water, as [`States::body_forces`].
+    pub fn body_forces(&self, inertia: Inertia) -> [[f64; 2]; 2] {
+        self.0.body_forces(inertia).map(|force| force.map(Four::first))
+    }
+
+    /// Source of water, as [`States::source`].
+    pub fn source(&self) -> f64 {
+        self.0.source().first()
     }
 }
