@@ -10,7 +10,7 @@ use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::column::column_parameters;
 
 /// Steps after which a run at a share of the critical step has shown that it is clean.
-pub(crate) const MOST_PROBE_STEPS: u64 = 1_000_000;
+pub(crate) const MOST_PROBE_STEPS: u64 = 262_144;
 
 /// Runs of a search for the critical step that hold to their end, as a rule: it begins between the runs beside it.
 const HELD_RUNS: f64 = 4.0;

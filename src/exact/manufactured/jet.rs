@@ -141,29 +141,31 @@ impl Jet {
     /// A function of it, given its value and first two derivatives there.
     #[inline(always)]
     fn chain(self, [value, first, second]: [Four; 3]) -> Self {
-        Self {
-            value,
-            slope: each(|i| first * self.slope[i]),
-            bend: each(|i| each(|j| first * self.bend[i][j] + second * self.slope[i] * self.slope[j])),
+        let mut chained = Self { value, ..self };
+        for i in 0..DIRECTIONS {
+            chained.slope[i] = first * self.slope[i];
+            for j in 0..DIRECTIONS {
+                chained.bend[i][j] = first * self.bend[i][j] + second * self.slope[i] * self.slope[j];
+            }
         }
+        chained
     }
 
     /// The product, by its rule.
     #[inline(always)]
     fn times(self, other: Self) -> Self {
         let (a, b) = (self, other);
-        Self {
-            value: a.value * b.value,
-            slope: each(|i| a.value * b.slope[i] + b.value * a.slope[i]),
-            bend: each(|i| {
-                each(|j| {
-                    a.value * b.bend[i][j]
-                        + b.value * a.bend[i][j]
-                        + a.slope[i] * b.slope[j]
-                        + a.slope[j] * b.slope[i]
-                })
-            }),
+        let mut product = Self { value: a.value * b.value, ..a };
+        for i in 0..DIRECTIONS {
+            product.slope[i] = a.value * b.slope[i] + b.value * a.slope[i];
+            for j in 0..DIRECTIONS {
+                product.bend[i][j] = a.value * b.bend[i][j]
+                    + b.value * a.bend[i][j]
+                    + a.slope[i] * b.slope[j]
+                    + a.slope[j] * b.slope[i];
+            }
         }
+        product
     }
 
     /// The sine and the cosine.

@@ -92,20 +92,23 @@ impl States {
         let position = model.motion.place(&parameters.motion, spots, moment);
         let pressure =
             Jet::growing(&spots.pressure_shape(), moment.beat.map(|value| parameters.load * value));
-        let deformation = both(|i| both(|j| position[i].along(j)));
+        let deformation =
+            [[position[0].along(0), position[0].along(1)], [position[1].along(0), position[1].along(1)]];
         let [[xx, xy], [yx, yy]] = deformation;
         let volume_ratio = xx * yy - xy * yx;
         let per_volume = volume_ratio.recip();
         let inverse_deformation =
             [[yy * per_volume, xy * per_volume * -1.0], [yx * per_volume * -1.0, xx * per_volume]];
         // grad p = F⁻ᵀ grad_X p
-        let pressure_gradient = both(|i| {
-            inverse_deformation[0][i] * pressure.along(0) + inverse_deformation[1][i] * pressure.along(1)
-        });
+        let [along_x, along_y] = [pressure.along(0), pressure.along(1)];
+        let pressure_gradient = [
+            inverse_deformation[0][0] * along_x + inverse_deformation[1][0] * along_y,
+            inverse_deformation[0][1] * along_x + inverse_deformation[1][1] * along_y,
+        ];
         let porosity = Slope::constant(1.0) - per_volume * soil.grains;
         // w = −(k/γ_w) grad p with k = k_0 J²
         let mobility = volume_ratio * volume_ratio * -soil.mobility;
-        let flux = both(|i| mobility * pressure_gradient[i]);
+        let flux = [mobility * pressure_gradient[0], mobility * pressure_gradient[1]];
         Self {
             soil: *soil,
             law: model.law,
@@ -153,14 +156,16 @@ impl States {
         if self.law == Law::NeoHookean {
             // [μ (F Fᵀ − I) + λ ln J I]/J
             let pressure = self.volume_ratio.ln() * soil.lame + Slope::constant(-soil.shear);
-            return both(|i| {
-                both(|j| {
+            let mut stress = *deformation;
+            for i in 0..2 {
+                for j in 0..2 {
                     let [left, right] = [&deformation[i], &deformation[j]];
                     let stretch = (left[0] * right[0] + left[1] * right[1]) * soil.shear;
                     let whole = if i == j { stretch + pressure } else { stretch };
-                    whole * self.per_volume
-                })
-            });
+                    stress[i][j] = whole * self.per_volume;
+                }
+            }
+            return stress;
         }
         // Without shear or spin: 2μ ln F_ii + λ ln J, and J = F_xx F_yy.
         let logarithms = both(|i| logarithm(deformation[i][i]));

@@ -26,11 +26,11 @@ struct Levers {
 }
 
 impl Levers {
-    /// Of a domain of such a half-length, m, whose middle is so far from the node, m, and has that weight there; cells of
-    /// such a size, m.
+    /// Of a domain of such a half-length, cells, whose middle is so far from the node, m, and has that weight there; cells
+    /// of such a size, m.
     #[inline]
-    fn of(distance: f64, half_length: f64, weight: f64, cell_size: f64) -> Self {
-        let (middle, half) = (distance / cell_size, (half_length / cell_size).min(0.5));
+    fn of(distance: f64, half: f64, weight: f64, cell_size: f64) -> Self {
+        let middle = distance / cell_size;
         let (low, high) = (middle - half, middle + half);
         let ends = 0.5 * (hat(low) + hat(high));
         let once = 0.5 * (hat_integral(low) + hat_integral(high));
@@ -79,18 +79,28 @@ impl<const D: usize> Body<D> {
             for (point, in_cells) in self.cells.place.iter().enumerate() {
                 let place: Vector<D> =
                     std::array::from_fn(|d| (in_cells[d] - GHOST_LAYERS as f64) * cell_size);
-                let half_length = &points.half_length[point];
+                let half = points.half_length[point].map(|length| (length / cell_size).min(0.5));
                 let volume = points.volume(point) * points.stressed_share[point];
                 let given = given_by(&planes.slopes[self.cells.of_point[point]], volume);
                 let levers = |node: &Vector<D>, d: usize, weight: f64| {
-                    Levers::of(place[d] - node[d], half_length[d], weight, cell_size)
+                    Levers::of(place[d] - node[d], half[d], weight, cell_size)
                 };
+                // The runs of a point lie above each other: what is along them is theirs together.
+                let mut of_runs = None;
                 blocks.visit_filled_runs(&stride, point, |run| {
+                    let nodes = &planes.nodes[run.first..run.first + run.weights.len()];
+                    let (along, weights) = of_runs.get_or_insert_with(|| {
+                        let mut along = run.weights.map(|weight| Levers { weight, gradient: 0.0 });
+                        for (along, node) in along.iter_mut().zip(nodes) {
+                            *along = levers(node, 0, along.weight);
+                        }
+                        (along, run.weights)
+                    });
+                    assert_eq!(*weights, run.weights, "a point whose weights are no product has no slopes");
                     // In the plane one direction goes across the run.
-                    let node = &planes.nodes[run.first];
-                    let other = (D > 1).then(|| levers(node, D - 1, run.across[0]));
+                    let other = (D > 1).then(|| levers(&nodes[0], D - 1, run.across[0]));
                     for (k, (weight, gradient)) in run.weights.iter().zip(&run.gradients).enumerate() {
-                        let along = levers(&planes.nodes[run.first + k], 0, *weight);
+                        let along = along[k];
                         let mut means = [[0.0; D]; D];
                         means[0][0] = along.gradient * run.across[0];
                         if let Some(other) = other {
