@@ -69,8 +69,7 @@ pub fn estimated_steps(case: &Case) -> f64 {
         Task::Stability => {
             // Runs of a fixed length bracket the limit; those beside it end with the scene, or before.
             let observed = OBSERVED_STEPS as f64;
-            HELD_RUNS * observed
-                + SHARES.len() as f64 * (end / step).clamp(observed, MOST_PROBE_STEPS as f64)
+            HELD_RUNS * observed + SHARES.len() as f64 * (end / step).clamp(observed, MOST_PROBE_STEPS as f64)
         }
     }
 }
