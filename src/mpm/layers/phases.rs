@@ -3,7 +3,7 @@
 
 use crate::mpm::layers::motion::Motion;
 use crate::mpm::layers::two_layers::TwoLayers;
-use crate::mpm::operators::stencil::PointStencils;
+use crate::mpm::operators::stencil::{PointStencils, with_stencils};
 use crate::mpm::state::nodes::Nodes;
 use crate::soil::tensor::Vector;
 
@@ -15,13 +15,15 @@ fn sum_momenta<const D: usize>(
     sums: &mut [Vector<D>],
 ) {
     sums.fill([0.0; D]);
-    for (point, momentum) in momenta.enumerate() {
-        basis.visit(stride, point, |node, weight, _| {
-            for d in 0..D {
-                sums[node][d] += weight * momentum[d];
-            }
-        });
-    }
+    with_stencils!(basis, stencils => {
+        for (point, momentum) in momenta.enumerate() {
+            stencils.visit(stride, point, |node, weight, _| {
+                for d in 0..D {
+                    sums[node][d] += weight * momentum[d];
+                }
+            });
+        }
+    });
 }
 
 impl<const D: usize> TwoLayers<D> {
@@ -29,36 +31,42 @@ impl<const D: usize> TwoLayers<D> {
     pub(crate) fn advance_skeleton(&mut self, motion: Motion) {
         let body = &mut self.body;
         let (stride, moves) = (*body.grid.node_stride(), body.configuration.moves_points());
-        for point in 0..body.points.len() {
-            let (velocities, rates) = (&body.nodes.solid_velocity, &body.nodes.solid_acceleration);
-            let rate = body.basis.value(&stride, point, rates);
-            let of_basis = body.basis.value(&stride, point, velocities);
-            let carrying = body.carrying(point, velocities, of_basis);
-            let points = &mut body.points;
-            motion.accelerate(&mut points.solid_velocity[point], &rate, &of_basis);
-            motion.carry(&mut points.displacement[point], &carrying);
-            if moves {
-                motion.carry(&mut points.position[point], &carrying);
+        let (velocities, rates) = (&body.nodes.solid_velocity, &body.nodes.solid_acceleration);
+        let carrier = body.strain.carrier();
+        with_stencils!(&body.basis, stencils => {
+            let (blocks, points) = (stencils.blocks(), &mut body.points);
+            for point in 0..points.len() {
+                let rate = blocks.value(&stride, point, rates);
+                let of_basis = blocks.value(&stride, point, velocities);
+                let carrying = carrier.map_or(of_basis, |ends| ends.value(&stride, point, velocities));
+                motion.accelerate(&mut points.solid_velocity[point], &rate, &of_basis);
+                motion.carry(&mut points.displacement[point], &carrying);
+                if moves {
+                    motion.carry(&mut points.position[point], &carrying);
+                }
             }
-        }
+        });
     }
 
     /// Step 4 of the water: velocities and places of its points.
     pub(crate) fn advance_water(&mut self, motion: Motion) {
         let moves = self.body.configuration.moves_points();
         let (stride, nodes) = (*self.body.grid.node_stride(), &self.body.nodes);
-        for point in 0..self.water.len() {
-            let rate = self.basis.value(&stride, point, &nodes.water_acceleration);
-            let carrying = if moves || motion.flip < 1.0 {
-                self.basis.value(&stride, point, &nodes.water_velocity)
-            } else {
-                [0.0; D]
-            };
-            motion.accelerate(&mut self.water.velocity[point], &rate, &carrying);
-            if moves {
-                motion.carry(&mut self.water.position[point], &carrying);
+        with_stencils!(&self.basis, stencils => {
+            let blocks = stencils.blocks();
+            for point in 0..self.water.len() {
+                let rate = blocks.value(&stride, point, &nodes.water_acceleration);
+                let carrying = if moves || motion.flip < 1.0 {
+                    blocks.value(&stride, point, &nodes.water_velocity)
+                } else {
+                    [0.0; D]
+                };
+                motion.accelerate(&mut self.water.velocity[point], &rate, &carrying);
+                if moves {
+                    motion.carry(&mut self.water.position[point], &carrying);
+                }
             }
-        }
+        });
     }
 
     /// Maps the velocity of the skeleton to the nodes, weighted with mass.

@@ -9,6 +9,7 @@
 
 use crate::elementary;
 use crate::mpm::layers::two_layers::TwoLayers;
+use crate::mpm::operators::stencil::with_stencils;
 
 /// Share of a domain that is too little to stand alone.
 const LEAST_SHARE: f64 = 1e-3;
@@ -24,18 +25,20 @@ impl<const D: usize> TwoLayers<D> {
     /// Porosity at every point by its last weights; a point that no node with soil knows keeps its own.
     fn take_porosities(&mut self) {
         let (stride, nodes) = (*self.body.grid.node_stride(), &self.body.nodes);
-        for point in 0..self.water.len() {
-            let (mut sum, mut weights) = (0.0, 0.0);
-            self.basis.visit(&stride, point, |node, weight, _| {
-                if nodes.is_active(node) {
-                    sum += weight * nodes.porosity[node];
-                    weights += weight;
+        with_stencils!(&self.basis, stencils => {
+            for (point, porosity) in self.water.porosity.iter_mut().enumerate() {
+                let (mut sum, mut weights) = (0.0, 0.0);
+                stencils.visit(&stride, point, |node, weight, _| {
+                    if nodes.is_active(node) {
+                        sum += weight * nodes.porosity[node];
+                        weights += weight;
+                    }
+                });
+                if weights > 0.0 {
+                    *porosity = sum / weights;
                 }
-            });
-            if weights > 0.0 {
-                self.water.porosity[point] = sum / weights;
             }
-        }
+        });
     }
 
     /// Volumes and domains, cut at the surface.

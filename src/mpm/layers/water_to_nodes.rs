@@ -5,6 +5,8 @@
 //! ```
 
 use crate::mpm::layers::two_layers::TwoLayers;
+use crate::mpm::operators::pairs::add_weighted;
+use crate::mpm::operators::stencil::with_stencils;
 
 impl<const D: usize> TwoLayers<D> {
     /// Puts mass, inertia and drag of the water on the nodes with soil.
@@ -13,17 +15,15 @@ impl<const D: usize> TwoLayers<D> {
         let (solid_fraction, unit_weight) = (1.0 - soil.porosity, soil.unit_weight_of_water());
         let (water, sums) = (&self.water, &mut self.sums.masses);
         sums.fill([0.0; 4]);
-        for point in 0..water.len() {
-            let (porosity, mass) = (water.porosity[point], water.mass_inside(point));
-            let conductivity = soil.hydraulic_conductivity_at(solid_fraction / (1.0 - porosity));
-            let drag = porosity * unit_weight / conductivity * water.volume_inside(point);
-            let masses = [mass, mass / porosity, drag, 0.0];
-            self.basis.visit(&stride, point, |node, weight, _| {
-                for (sum, mass) in sums[node].iter_mut().zip(&masses) {
-                    *sum += weight * mass;
-                }
-            });
-        }
+        with_stencils!(&self.basis, stencils => {
+            for point in 0..water.len() {
+                let (porosity, mass) = (water.porosity[point], water.mass_inside(point));
+                let conductivity = soil.hydraulic_conductivity_at(solid_fraction / (1.0 - porosity));
+                let drag = porosity * unit_weight / conductivity * water.volume_inside(point);
+                let masses = [mass, mass / porosity, drag, 0.0];
+                stencils.visit(&stride, point, |node, weight, _| add_weighted(&mut sums[node], weight, &masses));
+            }
+        });
         let nodes = &mut self.body.nodes;
         for (node, [mass, inertia, drag, _]) in sums.iter().enumerate() {
             let is_wet = nodes.is_active(node) && *mass > 0.0;
@@ -46,16 +46,18 @@ impl<const D: usize> TwoLayers<D> {
         let stride = *self.body.grid.node_stride();
         let (water, nodes) = (&self.water, &mut self.body.nodes);
         let (mixture_force, water_force) = (&mut nodes.mixture_force, &mut nodes.water_force);
-        for (point, pressure) in water.pressure.iter().enumerate() {
-            let pressure = water.volume_inside(point) * pressure;
-            self.basis.visit(&stride, point, |node, _, gradient| {
-                for d in 0..D {
-                    let force = pressure * gradient[d];
-                    mixture_force[node][d] += force;
-                    water_force[node][d] += force;
-                }
-            });
-        }
+        with_stencils!(&self.basis, stencils => {
+            for (point, pressure) in water.pressure.iter().enumerate() {
+                let pressure = water.volume_inside(point) * pressure;
+                stencils.visit(&stride, point, |node, _, gradient| {
+                    for d in 0..D {
+                        let force = pressure * gradient[d];
+                        mixture_force[node][d] += force;
+                        water_force[node][d] += force;
+                    }
+                });
+            }
+        });
         self.slivers.merge_forces(&mut self.body.nodes);
     }
 }
