@@ -11,6 +11,7 @@
 //! vertical, along which alone the water of a column flows.
 
 use crate::mpm::body::Body;
+use crate::mpm::operators::stencil::with_stencils;
 
 /// Share of its terms below which a difference of stresses says nothing: the soil is uniform there.
 const UNIFORM: f64 = 1e-7;
@@ -26,25 +27,32 @@ impl<const D: usize> Body<D> {
         let (nodes, points, cells) = (&mut self.nodes, &self.points, &self.cells);
         nodes.sums.chords.fill([0.0; 3]);
         let sums = &mut nodes.sums.chords;
-        for point in 0..points.len() {
-            // n_c = 1 − (1 − n_0)/J_c
-            let strain = solid_fraction / (1.0 - cells.porosity[cells.of_point[point]]) - 1.0;
-            let potential = law.flow_potential(strain) - end_potential;
-            let stress = law.uniaxial_stress_ratio(strain) - end_stress;
-            // What the stress fills: of that the slopes of one value cancel.
-            let mut volume = points.volume(point) * points.stressed_share[point];
-            if self.is_pushed_forward {
-                // Gradients of an earlier configuration take the volume with them.
-                volume *= points.inverse_deformation[point][D - 1][D - 1];
+        // Neighbouring points are of one cell as a rule, and its state is theirs together.
+        let (mut known, mut potential, mut stress) = (None, 0.0, 0.0);
+        with_stencils!(&self.basis, stencils => {
+            for (point, cell) in cells.of_point.iter().enumerate() {
+                if known != Some(*cell) {
+                    // n_c = 1 − (1 − n_0)/J_c
+                    let strain = solid_fraction / (1.0 - cells.porosity[*cell]) - 1.0;
+                    potential = law.flow_potential(strain) - end_potential;
+                    stress = law.uniaxial_stress_ratio(strain) - end_stress;
+                    known = Some(*cell);
+                }
+                // What the stress fills: of that the slopes of one value cancel.
+                let mut volume = points.volume(point) * points.stressed_share[point];
+                if self.is_pushed_forward {
+                    // Gradients of an earlier configuration take the volume with them.
+                    volume *= points.inverse_deformation[point][D - 1][D - 1];
+                }
+                stencils.visit(self.grid.node_stride(), point, |node, _, gradient| {
+                    let weight = volume * gradient[D - 1];
+                    let [potentials, stresses, size] = &mut sums[node];
+                    *potentials += weight * potential;
+                    *stresses += weight * stress;
+                    *size += (weight * stress).abs();
+                });
             }
-            self.basis.visit(self.grid.node_stride(), point, |node, _, gradient| {
-                let weight = volume * gradient[D - 1];
-                let [potentials, stresses, size] = &mut sums[node];
-                *potentials += weight * potential;
-                *stresses += weight * stress;
-                *size += (weight * stress).abs();
-            });
-        }
+        });
         let unit_weight = soil.unit_weight_of_water();
         for node in 0..nodes.len() {
             if !nodes.is_active(node) {
