@@ -269,7 +269,7 @@ fn what_is_no_solution_is_refused_in_a_sentence() {
 
 #[test]
 fn four_places_have_the_bits_of_each_alone() {
-    // In the disc, at its rim and outside; near walls.
+    // In the disc, outside it and at its rim.
     let places = [[0.5, 0.62], [0.03, 0.98], [0.21, 0.4], [0.71, 0.111]];
     for solution in solutions() {
         let motion = solution.model;
@@ -288,6 +288,10 @@ fn four_places_have_the_bits_of_each_alone() {
                 solution.material_place(place, &moment, guesses[lane]),
                 "{motion:?}, {place:?}"
             );
+            if motion.motion == Motion::Vortex {
+                let is_inside = (place[0] - 0.5).hypot(place[1] - 0.5) < 0.5;
+                assert_eq!(alone.position() != place, is_inside, "{place:?}");
+            }
             let back = solution.state_at(found[lane], 0.55).position();
             assert!((back[0] - place[0]).abs() + (back[1] - place[1]).abs() < 1e-13, "{motion:?}, {place:?}");
         }

@@ -238,6 +238,11 @@ fn steps_to(end: f64, step: f64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mpm::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use crate::soil::material::Material;
 
     fn probe(share: f64, failure: Option<FailureKind>) -> Probe {
         let failed = |kind| Failure {
@@ -275,6 +280,32 @@ mod tests {
         for stopped in [FailureKind::Stopped, FailureKind::TimedOut] {
             assert!(!agree(&[probe(below, None), probe(above, Some(stopped))]), "a stop is no leaving");
             assert!(!agree(&[probe(below, Some(stopped)), probe(above, unstable)]));
+        }
+    }
+
+    #[test]
+    fn a_search_finds_the_limit_from_probes_on_one_side_of_it() {
+        let settings = ExplicitSettings::default();
+        let method = Method::named("GIMP-SRI-patch").expect("a known method");
+        let (column, soil) = (Column::default(), Material::default());
+        let problem =
+            column_problem::<1>(SceneKind::Terzaghi, &column, &soil, method, 4, 2).expect("a column");
+        let found = |steps: [f64; 2]| {
+            let probes = steps.map(|step| {
+                let (steps, failure) =
+                    leaves(&problem, &settings, step, OBSERVED_STEPS, &|_, _| true).expect("nobody stops it");
+                Probe { step, steps, ..probe(1.0, failure.map(|failure| failure.kind)) }
+            });
+            observed_step(&problem, &settings, &probes, &|_, _| true)
+                .expect("nobody stops it")
+                .expect("a limit")
+        };
+        let predicted = predict(&problem, &settings, WHOLE_COLUMN).critical_step;
+        let about = found([0.97 * predicted, 1.03 * predicted]);
+        assert!((about / predicted - 1.0).abs() < 0.02, "{about} for {predicted}");
+        for [low, high] in [[1.9, 2.0], [0.2, 0.3]] {
+            let from_aside = found([low * predicted, high * predicted]);
+            assert!((from_aside / about - 1.0).abs() < 2e-3, "{from_aside} for {about}");
         }
     }
 
