@@ -5,6 +5,16 @@ pub fn error(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { finite(value, |v| format!("{v:.2e}")) }
 }
 
+/// Two errors with three digits, or with as many as tell them apart.
+pub fn told_apart(values: [f64; 2]) -> [String; 2] {
+    let [one, two] = values.map(error);
+    if one != two || values[0] == values[1] {
+        return [one, two];
+    }
+    let with = |digits: usize| values.map(|value| finite(value, |v| format!("{v:.digits$e}")));
+    (3..17).map(with).find(|[one, two]| one != two).unwrap_or([one, two])
+}
+
 /// A number with so many decimals, with a proper minus and no sign at zero.
 pub fn fixed(value: f64, decimals: usize) -> String {
     finite(value, |v| minus(format!("{v:.decimals$}")))
@@ -115,6 +125,15 @@ fn unsigned_zero(text: String) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn two_numbers_have_the_digits_that_tell_them_apart() {
+        assert_eq!(told_apart([2.371e-5, 2.372e-5]), ["2.371e-5", "2.372e-5"]);
+        assert_eq!(told_apart([2.37e-5, 2.41e-5]), ["2.37e-5", "2.41e-5"]);
+        assert_eq!(told_apart([1.0, 1.0 + f64::EPSILON]), ["1.0000000000000000e0", "1.0000000000000002e0"]);
+        assert_eq!(told_apart([0.5, 0.5]), ["5.00e-1"; 2]);
+        assert_eq!(told_apart([0.0, 1e-30]), ["0", "1.00e-30"]);
+    }
 
     #[test]
     fn errors_have_three_digits() {

@@ -28,17 +28,15 @@ pub fn answer(changes: Option<&[(String, Difference)]>) -> Answer {
         .filter(|kind| count(*kind) > 0)
         .map(|kind| format!("{} {}", count(kind), kind.name()))
         .collect();
-    let value = |value: Option<f64>| {
-        value.map_or(Cell::missing("no value"), |value| Cell::Text(number::error(value)))
-    };
     let rows = ranked.iter().map(|(study, one)| {
         let mood = if one.change == Change::Moved { Mood::Fail } else { Mood::Note };
+        let [golden, found] = values_of(one);
         vec![
             Cell::Verdict(mood, one.change.name().to_owned()),
             Cell::Code(study.clone()),
             one.name.as_str().into(),
-            value(one.golden),
-            value(one.found),
+            golden,
+            found,
             Cell::of(one.relative_change(), Cell::Percent, "nothing to compare"),
         ]
     });
@@ -52,6 +50,15 @@ pub fn answer(changes: Option<&[(String, Difference)]>) -> Answer {
         counted.join(", ")
     );
     QUESTION.told(sentence, vec![Block::Table(short(table, "listed by oedometer check"))])
+}
+
+/// The golden value and the present one, with digits that tell them apart.
+fn values_of(one: &Difference) -> [Cell; 2] {
+    if let (Some(golden), Some(found)) = (one.golden, one.found) {
+        return number::told_apart([golden, found]).map(Cell::Text);
+    }
+    [one.golden, one.found]
+        .map(|value| value.map_or(Cell::missing("no value"), |value| Cell::Text(number::error(value))))
 }
 
 #[cfg(test)]
