@@ -9,8 +9,9 @@ use crate::soil::tensor::{Tensor, Vector};
 /// Rows of some neighbouring points, `[direction]`.
 pub type RowBlock<const D: usize, const W: usize> = [LaneRows<W>; D];
 
-/// Rows of some neighbouring points along one direction.
+/// Rows of some neighbouring points along one direction; no register of them straddles two lines of the cache.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
 pub struct LaneRows<const W: usize> {
     /// Weights, `[node][point]`.
     pub weights: [Lanes; W],

@@ -54,7 +54,11 @@ impl<const D: usize> StrainOperator<D> {
                     &cells.place,
                     #[inline(always)]
                     |_, direction, place, rows| {
-                        fill_composite_rows::<D>(grid.line(direction), place, rows)
+                        if grid.cells[direction] == 1 {
+                            fill_linear_rows(grid.line(direction), place, rows)
+                        } else {
+                            fill_composite_rows::<D>(grid.line(direction), place, rows)
+                        }
                     },
                 ));
                 // Where a neighbour is missing, the polynomial is of a lower degree.
@@ -64,7 +68,7 @@ impl<const D: usize> StrainOperator<D> {
                     for d in 0..D {
                         let stride = grid.cell_stride()[d];
                         let sides = (cells.is_reached(home - stride), cells.is_reached(home + stride));
-                        if sides != (true, true) {
+                        if sides != (true, true) && grid.cells[d] > 1 {
                             for point in points.clone() {
                                 let row = composite(cells.place[point][d], cell[d], sides.0, sides.1);
                                 stencils.set_row(grid, point, d, &row);
@@ -189,6 +193,28 @@ fn fill_composite_lanes<const D: usize>(line: Line, place: &Lanes, rows: &mut La
     lowest
 }
 
+/// The same in a direction of one cell, which has no neighbours.
+#[inline(never)]
+fn fill_linear_rows(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
+    wide!(fill_linear_lanes(line, place, rows))
+}
+
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn fill_linear_lanes(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
+    let mut lowest = [0.0; LANES];
+    for lane in 0..LANES {
+        let cell = line.cell_at(place[lane]);
+        let x = place[lane] - cell;
+        (rows.weights[1][lane], rows.weights[2][lane]) = (1.0 - x, x);
+        lowest[lane] = cell - 1.0;
+    }
+    let [none, slope] = [0.0, line.per_cell].map(|slope| [slope; LANES]);
+    (rows.weights[0], rows.weights[3]) = (none, none);
+    rows.gradients = [none, slope.map(|slope| -slope), slope, none];
+    lowest
+}
+
 /// The cubic through four nodes at −1, 0, 1 and 2: weights and gradients.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
@@ -236,7 +262,39 @@ fn composite(place: f64, cell: usize, has_lower: bool, has_upper: bool) -> Row<4
 mod tests {
     use super::*;
     use crate::mpm::operators::row::moments;
+    use crate::mpm::state::points::Points;
     use proptest::prelude::*;
+
+    #[test]
+    fn rows_of_a_column_of_one_cell_across_are_those_of_its_cells_one_by_one() {
+        let (grid, mut points) = (Grid::new(0.5, [1, 4]), Points::<2>::lattice(0.5, [1, 4], 2));
+        for (point, place) in points.position.iter_mut().enumerate() {
+            let nudge = 0.02 * (1.7 * point as f64).sin();
+            *place = [place[0] + nudge, place[1] - nudge];
+        }
+        let mut cells = Cells::new(&grid, points.len());
+        cells.locate(&grid, &points, 0.3);
+        cells.find_reached(&grid, &points);
+        let mut operator = StrainOperator::of(StrainGradient::Cmpm, points.len());
+        operator.build(&grid, &cells, &points.half_length);
+        let StrainOperator::Composite(built) = operator else { unreachable!("it is composite") };
+        let mut expected = Stencils::<2, 4>::with_points(points.len());
+        for (point, place) in cells.place.iter().enumerate() {
+            let cell = grid.cell_at(place);
+            let rows = std::array::from_fn(|d| composite_row(&grid, &cells, &cell, d, place[d], cell[d]));
+            expected.set(&grid, point, &rows);
+        }
+        let field: Vec<Vector<2>> = (0..grid.node_count())
+            .map(|node| [(0.7 * node as f64).sin(), (1.3 * node as f64).cos()])
+            .collect();
+        for point in 0..points.len() {
+            let of = |stencils: &Stencils<2, 4>| {
+                let (blocks, stride) = (stencils.blocks(), grid.node_stride());
+                (blocks.gradient(stride, point, &field), blocks.value(stride, point, &field))
+            };
+            assert_eq!(of(&built), of(&expected), "point {point}");
+        }
+    }
 
     proptest! {
         #[test]

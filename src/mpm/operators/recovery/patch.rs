@@ -119,7 +119,11 @@ impl<const D: usize> PatchRows<D> {
                         *at += stride * along;
                     }
                 }
-                fill::<D>(&mut lines[d], &along, &place);
+                if grid.cells[d] == 1 {
+                    lines[d] = LineRows::ALONE;
+                } else {
+                    fill::<D>(&mut lines[d], &along, &place);
+                }
             }
             for (first, home) in firsts.iter_mut().zip(homes) {
                 *first = home - lowest;
@@ -144,7 +148,8 @@ impl<const D: usize> PatchRows<D> {
         match neighbours {
             Neighbours::All => {}
             Neighbours::Rectangle(sides) => {
-                for d in (0..D).filter(|d| sides[*d] != (true, true)) {
+                // Rows of a direction of one cell are made so.
+                for d in (0..D).filter(|d| sides[*d] != (true, true) && grid.cells[*d] > 1) {
                     for point in points.clone() {
                         self.lines[point / LANES][d].cut(point % LANES, sides[d]);
                     }
@@ -277,6 +282,7 @@ impl<const D: usize> Neighbours<D> {
 
 /// Lines fitted along one direction through the cells around some points, side by side, `[cell][point]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
 struct LineRows {
     /// How far above each point the centre of its cell lies, in cells.
     offsets: Lanes,
@@ -294,6 +300,12 @@ impl Default for LineRows {
 }
 
 impl LineRows {
+    /// The rows of points whose cells have no neighbours.
+    const ALONE: Self = {
+        let (none, all) = ([0.0; LANES], [1.0; LANES]);
+        Self { offsets: none, line: [none, all, none], shares: [none, all, none] }
+    };
+
     /// The row of a point some of whose cells are empty: the line through two, or the value of the only one.
     #[inline]
     fn cut(&mut self, lane: usize, sides: (bool, bool)) {
@@ -560,6 +572,26 @@ mod tests {
             let [got, fitted] = both_rows(place, |[x, y]| pattern >> (x + 3 * y) & 1 == 1);
             for (got, fitted) in got.iter().zip(&fitted) {
                 assert!((got - fitted).abs() < 1e-13, "{got} for {fitted} in pattern {pattern}");
+            }
+        }
+    }
+
+    #[test]
+    fn closed_forms_are_the_fit_in_a_column_of_one_cell_across() {
+        let (grid, mut points) = (Grid::new(0.5, [1, 4]), Points::<2>::lattice(0.5, [1, 4], 2));
+        for (point, place) in points.position.iter_mut().enumerate() {
+            let nudge = 0.02 * (1.7 * point as f64).sin();
+            *place = [place[0] + nudge, place[1] - nudge];
+        }
+        let mut cells = Cells::new(&grid, points.len());
+        cells.locate(&grid, &points, 0.3);
+        let mut rows = PatchRows::with_points(points.len(), grid.cell_count());
+        rows.build(&grid, &cells);
+        for point in 0..points.len() {
+            let mut fitted = vec![0.0; power(BLOCK, 2)];
+            fit(&grid, &cells, cells.of_point[point], &cells.place[point], &mut fitted);
+            for ((_, weight), fitted) in rows.row(&grid, point).iter().zip(&fitted) {
+                assert!((weight - fitted).abs() < 1e-14, "{weight} for {fitted} at {point}");
             }
         }
     }
