@@ -6,8 +6,8 @@
 
 use serde::de::value::StringDeserializer;
 use serde::de::{
-    Deserialize, DeserializeOwned, DeserializeSeed, Deserializer, Error, IntoDeserializer, MapAccess,
-    SeqAccess, Visitor,
+    Deserialize, DeserializeOwned, DeserializeSeed, Deserializer, Error, Expected, IntoDeserializer,
+    MapAccess, SeqAccess, Unexpected, Visitor,
 };
 use serde::forward_to_deserialize_any;
 use std::fmt;
@@ -126,6 +126,12 @@ impl Error for Refusal {
     }
 }
 
+/// What serde says of an integer of more than 64 bits, which no type of a study takes. Here and not by the visitor's
+/// own method, which would be compiled for each of more than a hundred.
+fn refusal_of_long(number: i128, wanted: &dyn Expected) -> Refusal {
+    Error::invalid_type(Unexpected::Other(&format!("integer `{number}` as i128")), wanted)
+}
+
 impl<'de> Deserializer<'de> for Tree<'de> {
     type Error = Refusal;
 
@@ -134,7 +140,7 @@ impl<'de> Deserializer<'de> for Tree<'de> {
         match node {
             Node::Text(text) => visitor.visit_str(&text),
             Node::Integer(number) => visitor.visit_i64(number),
-            Node::LongInteger(number) => visitor.visit_i128(number),
+            Node::LongInteger(number) => Err(refusal_of_long(number, &visitor)),
             Node::Number(number) => visitor.visit_f64(number),
             Node::Flag(flag) => visitor.visit_bool(flag),
             Node::List(list) => visitor.visit_seq(Elements::of(list)),
