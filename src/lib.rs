@@ -6,7 +6,7 @@
 //!
 //! | folder | what it is |
 //! | :-- | :-- |
-//! | `elementary`, `wording` | elementary functions with the same bits everywhere; numbers in sentences |
+//! | `elementary`, `wording`, `sorting` | elementary functions with the same bits everywhere; numbers in sentences; sorts |
 //! | `soil/` | material, stress–strain laws, continuity |
 //! | [`exact`] | series solutions with bounds on their own errors |
 //! | `convergence/` | numbers only: series, orders, fits, classes, uncertainty |
@@ -25,7 +25,7 @@
 //! | `cli/` | one file per subcommand |
 //! | [`api`] | the door for other languages: names and lists in, lists out |
 //!
-//! `elementary`, `wording`, `soil/`, [`exact`], `mpm/` and `scene/` are a crate of their own, `oedometer-solver`
+//! `elementary`, `wording`, `sorting`, `soil/`, [`exact`], `mpm/` and `scene/` are a crate of their own, `oedometer-solver`
 //! (`src/solver.rs`): it is compiled with every optimisation, the rest with less and beside it.
 //!
 //! # The equations
@@ -144,7 +144,7 @@ mod study;
 /// # Ok::<(), oedometer::exact::ExactError>(())
 /// ```
 pub use oedometer_solver::exact;
-use oedometer_solver::{elementary, mpm, scene, soil, wording};
+use oedometer_solver::{elementary, mpm, scene, soil, sorting, wording};
 
 // What a study is, and how it is run and judged.
 pub use campaign::case_run::run_case;

@@ -11,6 +11,7 @@ pub mod exact;
 pub mod mpm;
 pub mod scene;
 pub mod soil;
+pub mod sorting;
 pub mod wording;
 
 #[cfg(test)]

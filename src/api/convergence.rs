@@ -6,6 +6,7 @@ use crate::convergence::orders::pair_orders;
 use crate::convergence::series::{ErrorSeries, SeriesLevel};
 use crate::convergence::series_demand::{ErrorBound, OrderBand, SeriesDemand};
 use crate::judge::verdict::{Beside, Verdict, judge};
+use crate::sorting;
 use crate::study::diagnostic::one_of;
 
 /// Errors up to this are round-off.
@@ -51,7 +52,7 @@ fn series_of(
     let level = |(size, error): (&f64, &f64)| SeriesLevel { size: *size, error: Some(error.abs()) };
     let series = ErrorSeries::new(sizes.iter().zip(errors).map(level).collect());
     let mut signed: Vec<(f64, f64)> = sizes.iter().copied().zip(errors.iter().copied()).collect();
-    signed.sort_by(|a, b| b.0.total_cmp(&a.0));
+    sorting::sort_by(&mut signed, |a, b| b.0.total_cmp(&a.0));
     // Norms have no sign, and then the signs tell nothing.
     let has_signs = errors.iter().any(|error| *error < 0.0);
     let signed = if has_signs { signed.into_iter().map(|(_, error)| error).collect() } else { Vec::new() };

@@ -1,5 +1,6 @@
 //! The same for many things on all cores, in the order of the things.
 
+use crate::sorting;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -25,7 +26,7 @@ pub fn side_by_side<T: Sync, R: Send>(things: &[T], of: impl Fn(&T) -> R + Sync)
         }
     });
     let mut made = made.into_inner().unwrap_or_default();
-    made.sort_by_key(|(place, _)| *place);
+    sorting::sort_by_key(&mut made, |(place, _)| *place);
     made.into_iter().map(|(_, result)| result).collect()
 }
 

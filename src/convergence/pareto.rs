@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::convergence::class::{Class, Classification};
 use crate::convergence::orders::{WINDOW, slope_of};
 use crate::elementary;
+use crate::sorting;
 
 /// What a run cost and how far off it was.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,7 +35,7 @@ impl CostPoint {
 /// Which points lie on the Pareto front: usable, and dominated by none, which is nowhere worse and somewhere better.
 pub fn front(points: &[CostPoint]) -> Vec<bool> {
     let mut order: Vec<usize> = (0..points.len()).filter(|place| points[*place].is_usable()).collect();
-    order.sort_by(|a, b| {
+    sorting::sort_by(&mut order, |a, b| {
         let (a, b) = (&points[*a], &points[*b]);
         a.cost.total_cmp(&b.cost).then(a.error.total_cmp(&b.error))
     });
@@ -123,7 +124,7 @@ fn usable(levels: &[CostLevel]) -> Option<Vec<CostLevel>> {
         return None;
     }
     let mut levels = levels.to_vec();
-    levels.sort_by(|a, b| b.size.total_cmp(&a.size));
+    sorting::sort_by(&mut levels, |a, b| b.size.total_cmp(&a.size));
     levels.windows(2).all(|pair| pair[0].size > pair[1].size).then_some(levels)
 }
 

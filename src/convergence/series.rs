@@ -1,6 +1,7 @@
 //! A series of errors over levels of refinement, and why a quantity derived from it may be
 //! undefined.
 
+use crate::sorting;
 use thiserror::Error;
 
 /// One level of refinement.
@@ -79,7 +80,7 @@ pub enum Undefined {
 impl ErrorSeries {
     /// A series of these levels, put in order from coarse to fine.
     pub fn new(mut levels: Vec<SeriesLevel>) -> Self {
-        levels.sort_by(|a, b| b.size.total_cmp(&a.size));
+        sorting::sort_by(&mut levels, |a, b| b.size.total_cmp(&a.size));
         Self { levels }
     }
 

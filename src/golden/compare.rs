@@ -2,6 +2,7 @@
 
 use crate::golden::references::REFERENCES;
 use crate::golden::{GoldenFile, parts};
+use crate::sorting;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -117,7 +118,7 @@ pub fn compare(golden: &GoldenFile, found: &BTreeMap<String, f64>) -> Vec<Differ
         });
     }
     tell_apart_what_is_paid_for(&mut differences);
-    differences.sort_by(Difference::worst_first);
+    sorting::sort_by(&mut differences, Difference::worst_first);
     differences
 }
 

@@ -13,6 +13,7 @@ use crate::import::sample_row::take_rows;
 use crate::import::settlement_series::attach;
 use crate::import::step_times::{declared_time, fits, step_of};
 use crate::import::table::SampledState;
+use crate::sorting;
 use std::path::{Component, Path, PathBuf};
 
 /// An argument with the files that it stands for.
@@ -89,7 +90,7 @@ fn fitting(pattern: &Path) -> Vec<PathBuf> {
     found.retain(|path| path.is_file());
     found.sort();
     let number = |path: &PathBuf| step_of(&path.file_name().unwrap_or_default().to_string_lossy(), None);
-    found.sort_by(|a, b| {
+    sorting::sort_by(&mut found, |a, b| {
         a.parent().cmp(&b.parent()).then(number(a).unwrap_or(-1.0).total_cmp(&number(b).unwrap_or(-1.0)))
     });
     found

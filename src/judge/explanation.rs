@@ -12,6 +12,7 @@ use crate::golden::{GoldenFile, measure_name, values_of};
 use crate::judge::error_place::{ErrorPlace, place_of};
 use crate::judge::paths::{level_size, paths};
 use crate::record::{ErrorRow, Record};
+use crate::sorting;
 use crate::study::expectation::Axis;
 
 /// The error of one quantity at one kind of places, at the output where it is largest.
@@ -70,9 +71,9 @@ pub fn explain(
     focus: Option<&str>,
 ) -> Result<Explanation, ExactError> {
     let mut carriers = carriers_of(record)?;
-    carriers.sort_by(|a, b| b.row.value.abs().total_cmp(&a.row.value.abs()));
+    sorting::sort_by(&mut carriers, |a, b| b.row.value.abs().total_cmp(&a.row.value.abs()));
     if let Some(focus) = focus {
-        carriers.sort_by_key(|carrier| !same_measure(&measure_name(&carrier.row), focus));
+        sorting::sort_by_key(&mut carriers, |carrier| !same_measure(&measure_name(&carrier.row), focus));
     }
     let levels = match (carriers.first(), golden) {
         (Some(first), Some(golden)) => levels_of(record, siblings, golden, &first.row),

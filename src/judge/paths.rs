@@ -13,6 +13,7 @@ use crate::measure::fields::norms::relative_error;
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::record::Record;
 use crate::soil::material::Material;
+use crate::sorting;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
 use std::collections::HashMap;
 
@@ -79,7 +80,7 @@ pub fn paths<'a>(records: impl IntoIterator<Item = &'a Record>, axis: Axis) -> V
     }
     groups.retain(|group| group.records.len() > 1);
     for group in &mut groups {
-        group.records.sort_by(|a, b| level_size(b, axis).total_cmp(&level_size(a, axis)));
+        sorting::sort_by(&mut group.records, |a, b| level_size(b, axis).total_cmp(&level_size(a, axis)));
     }
     groups
 }

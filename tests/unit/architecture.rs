@@ -8,28 +8,28 @@ use std::path::{Path, PathBuf};
 const MAY_IMPORT: [(&str, &str); 18] = [
     ("soil", "elementary wording"),
     ("exact", "elementary soil wording"),
-    ("convergence", "elementary wording"),
+    ("convergence", "elementary sorting wording"),
     ("mpm", "elementary soil wording"),
     ("scene", "elementary exact mpm soil wording"),
     ("case", "elementary exact mpm scene soil wording"),
     ("record", "case mpm wording"),
     ("measure", "case elementary exact mpm record scene soil wording"),
     ("study", "case convergence elementary exact mpm record scene soil wording"),
-    ("import", "case study wording"),
+    ("import", "case sorting study wording"),
     ("foreign", "case elementary exact import measure mpm record scene soil study wording"),
-    ("campaign", "case elementary exact foreign measure mpm record scene study wording"),
-    ("golden", "convergence elementary exact record study"),
+    ("campaign", "case elementary exact foreign measure mpm record scene sorting study wording"),
+    ("golden", "convergence elementary exact record sorting study"),
     (
         "judge",
-        "campaign case convergence elementary exact golden import measure mpm record scene soil study wording",
+        "campaign case convergence elementary exact golden import measure mpm record scene soil sorting study wording",
     ),
-    ("render", "case convergence elementary exact golden judge measure record study wording"),
+    ("render", "case convergence elementary exact golden judge measure record sorting study wording"),
     ("schema", "foreign import record study"),
     (
         "cli",
-        "campaign case exact foreign golden import judge measure mpm record render scene schema soil study wording",
+        "campaign case exact foreign golden import judge measure mpm record render scene schema soil sorting study wording",
     ),
-    ("api", "case cli convergence exact import judge scene study"),
+    ("api", "case cli convergence exact import judge scene sorting study"),
 ];
 
 /// Every arrow of a source that its folder's row does not name; tests inside it may look anywhere.

@@ -10,6 +10,7 @@ use crate::convergence::fit::two_terms::{Exponent, minimum};
 use crate::convergence::series::Undefined;
 use crate::convergence::uncertainty::grid_convergence::check;
 use crate::elementary;
+use crate::sorting;
 
 /// The error models of the procedure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -184,7 +185,7 @@ fn checked(grids: &[(f64, f64)], formal_order: f64) -> Result<Vec<(f64, f64)>, U
     }
     check(grids)?;
     let mut grids = grids.to_vec();
-    grids.sort_by(|a, b| b.0.total_cmp(&a.0));
+    sorting::sort_by(&mut grids, |a, b| b.0.total_cmp(&a.0));
     let same = grids.windows(2).find(|pair| pair[0].0 <= pair[1].0 * (1.0 + 1e-9));
     same.map_or(Ok(()), |pair| Err(Undefined::SameSize { size: pair[1].0 }))?;
     Ok(grids)

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::convergence::series::Undefined;
 use crate::elementary;
+use crate::sorting;
 
 /// Safety factor of the index for three grids and an order that agrees with the formal one, or
 /// where no formal order is known (Roache 1998; Celik et al. 2008).
@@ -86,7 +87,7 @@ pub fn three_grids(grids: [(f64, f64); 3], formal_order: Option<f64>) -> Result<
     if formal_order.is_some_and(|order| !order.is_finite() || order <= 0.0) {
         return Err(Undefined::NotDetermined);
     }
-    grids.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sorting::sort_by(&mut grids, |a, b| a.0.total_cmp(&b.0));
     let [(h1, f1), (h2, f2), (h3, f3)] = grids;
     if h2 <= h1 * (1.0 + 1e-9) || h3 <= h2 * (1.0 + 1e-9) {
         return Err(Undefined::SameSize { size: h2 });

@@ -10,6 +10,7 @@ pub mod grid_convergence;
 use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
 use crate::convergence::uncertainty::eca_hoekstra::{LeastSquaresUncertainty, least_squares_uncertainty};
 use crate::convergence::uncertainty::grid_convergence::{Behaviour, SAFETY_ASSUMED, ThreeGrids, three_grids};
+use crate::sorting;
 use serde::{Deserialize, Serialize};
 
 /// Levels that an index needs.
@@ -56,7 +57,7 @@ pub struct NumericalUncertainty {
 impl ValueSeries {
     /// The values of levels, in any order.
     pub fn new(mut levels: Vec<(f64, Option<f64>)>) -> Self {
-        levels.sort_by(|a, b| b.0.total_cmp(&a.0));
+        sorting::sort_by(&mut levels, |a, b| b.0.total_cmp(&a.0));
         Self { levels }
     }
 

@@ -3,6 +3,7 @@
 use crate::case::step_cost::seconds_per_step;
 use crate::judge::comparison::work_precision::worst_error;
 use crate::record::{Record, Status};
+use crate::sorting;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Error of the pore pressure at the points that is asked for.
@@ -102,7 +103,7 @@ fn ways(records: &[&Record], reference: &str) -> Vec<Way> {
         }
     }
     let mut ways: Vec<Way> = best.into_values().collect();
-    ways.sort_by(|a, b| a.seconds.total_cmp(&b.seconds).then(a.error.total_cmp(&b.error)));
+    sorting::sort_by(&mut ways, |a, b| a.seconds.total_cmp(&b.seconds).then(a.error.total_cmp(&b.error)));
     ways
 }
 

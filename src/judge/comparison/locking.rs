@@ -12,6 +12,7 @@ use crate::mpm::critical_step::formula;
 use crate::mpm::method::Method;
 use crate::record::{Record, Status};
 use crate::soil::material::Material;
+use crate::sorting;
 use crate::study::check::Study;
 use crate::study::expectation::{Axis, Measure};
 use std::collections::BTreeSet;
@@ -65,7 +66,7 @@ pub fn standings(study: &Study, records: &[Record]) -> Result<Vec<Standing>, Exa
         .map(|method| standing(records, *method, cells, reference))
         .collect::<Result<Vec<_>, _>>()?;
     rank(&mut standings);
-    standings.sort_by(|a, b| a.rank.total_cmp(&b.rank));
+    sorting::sort_by(&mut standings, |a, b| a.rank.total_cmp(&b.rank));
     Ok(standings)
 }
 

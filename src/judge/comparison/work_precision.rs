@@ -5,6 +5,7 @@ use crate::convergence::pareto::{CostLevel, CostPoint, LevelPrediction, front, p
 use crate::judge::paths::{Path, first_norm, paths};
 use crate::measure::wall_times::{WallSpread, median, noise_floor, paired_ratio, spread};
 use crate::record::{Record, Status};
+use crate::sorting;
 use crate::study::expectation::{Axis, Measure};
 
 /// Tolerances that are asked for.
@@ -69,7 +70,7 @@ impl<'a> WorkPrecision<'a> {
         if runs.len() < 2 {
             return None;
         }
-        runs.sort_by(|a, b| a.wall.median.total_cmp(&b.wall.median));
+        sorting::sort_by(&mut runs, |a, b| a.wall.median.total_cmp(&b.wall.median));
         let points: Vec<_> = runs.iter().map(TimedRun::point).collect();
         for (run, on_front) in runs.iter_mut().zip(front(&points)) {
             run.on_front = on_front;

@@ -8,6 +8,7 @@ use crate::convergence::series::{ErrorSeries, SeriesLevel};
 use crate::judge::score::times::TimeGroups;
 use crate::judge::score::{Leaning, Score};
 use crate::record::ErrorRow;
+use crate::sorting;
 use std::collections::HashMap;
 
 /// Errors up to this are round-off of a written number.
@@ -54,7 +55,7 @@ pub fn series_of(levels: &[(usize, &Score)], times: &TimeGroups, height: f64) ->
         }
     }
     // Stable: within a time in the order in which the first level has them.
-    order.sort_by_key(|key| key.0);
+    sorting::sort_by_key(&mut order, |key| key.0);
     order
         .iter()
         .filter_map(|key| {

@@ -12,6 +12,7 @@ use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, Slope
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
+use crate::sorting;
 use std::collections::HashMap;
 
 /// The question.
@@ -128,7 +129,7 @@ fn pairings_of(group: Vec<&Record>) -> Vec<Pairing<'_>> {
         }
     }
     for one in &mut all {
-        one.levels.sort_by_key(|record| record.case.cells);
+        sorting::sort_by_key(&mut one.levels, |record| record.case.cells);
     }
     all
 }

@@ -9,6 +9,7 @@ use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::{StudyResults, labels, refinement};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
+use crate::sorting;
 
 /// The question.
 pub const QUESTION: Question =
@@ -85,7 +86,7 @@ fn table(regimes: &[(&str, &Regime<'_>)]) -> Table {
         distinct(regimes.iter().flat_map(|(_, regime)| regime.methods.iter().map(|one| one.method.as_str())));
     let mut ranked: Vec<&str> = all.clone();
     // Methods that answer most come first, then those with the smaller error where it is hardest.
-    ranked.sort_by(|a, b| {
+    sorting::sort_by(&mut ranked, |a, b| {
         let tried = |name: &str| regimes.iter().filter(|(_, regime)| regime.method(name).is_some()).count();
         let error = |name: &str| {
             let last = regimes.iter().rev().find_map(|(_, regime)| Some((regime, regime.method(name)?)));

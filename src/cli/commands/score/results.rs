@@ -16,6 +16,7 @@ use crate::judge::score::times::TimeGroups;
 use crate::judge::score::times::time_factors;
 use crate::judge::score::{Score, score};
 use crate::scene::column::column_parameters;
+use crate::sorting;
 use std::path::PathBuf;
 
 /// What results are held against, and how they are read.
@@ -66,7 +67,7 @@ impl Results {
         let parameters = column_parameters(&held.case.column, &held.case.material);
         let mut all: Vec<Read> = runs.into_iter().map(Read::of).collect();
         let mut order: Vec<usize> = (0..all.len()).collect();
-        order.sort_by_key(|place| all[*place].cells);
+        sorting::sort_by_key(&mut order, |place| all[*place].cells);
         let times_of = |all: &[Read]| {
             let lists: Vec<Vec<f64>> =
                 order.iter().map(|place| time_factors(&parameters, &all[*place].states)).collect();

@@ -4,6 +4,7 @@ use crate::render::chart::axis_numbers::{decimals, power, whole};
 use crate::render::chart::layout::scale::{Ruler, Scale, Span, drawable};
 use crate::render::number::minus;
 use crate::render::script::{exponent, width};
+use crate::sorting;
 
 /// A tick; without a label it is a minor one.
 #[derive(Debug, Clone, PartialEq)]
@@ -141,7 +142,7 @@ fn value_of(m: i32, n: i32) -> f64 {
 fn thin(ticks: &mut [Tick], ruler: &Ruler, room: Room) {
     let mut order: Vec<usize> = (0..ticks.len()).filter(|&i| ticks[i].label.is_some()).collect();
     if ruler.span.kind == Scale::Log10 {
-        order.sort_by_key(|&i| !is_power(ticks[i].value));
+        sorting::sort_by_key(&mut order, |&i| !is_power(ticks[i].value));
     }
     let mut taken: Vec<(f64, f64)> = Vec::new();
     for i in order {
