@@ -1,6 +1,8 @@
 //! Motions of a square that are written down, and made by body forces and a source of water: large strain in the
 //! plane against exact fields. Points cross cells in both directions and come back.
 
+#![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
+
 use crate::exact::exact_error::ExactError;
 use crate::exact::manufactured::Manufactured;
 use crate::exact::manufactured::four::{Four, PLACES};

@@ -1,7 +1,7 @@
 //! Attached solvers of scenes in the plane: a slab between plates, and a layer whose fields vary along it.
 #![cfg(unix)]
 
-use crate::program::call;
+use crate::program::{PROGRAM, call};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -54,8 +54,7 @@ fn errors(at: &Path) -> Vec<(String, f64)> {
 fn a_slab_counts_from_its_middle_and_its_settlement_is_no_samples() {
     let folder = TempDir::new().expect("a folder");
     let at = folder.path();
-    let program = assert_cmd::cargo::cargo_bin("oedometer");
-    write(at, "mandel", &format!("\"{}\"", program.display()), "t y p", SLAB);
+    write(at, "mandel", &format!("\"{PROGRAM}\""), "t y p", SLAB);
     let told = call(at, &["run", "s.toml"]);
     assert_eq!(told.code, 0, "{}", told.err);
     let found = errors(at);
@@ -65,7 +64,7 @@ fn a_slab_counts_from_its_middle_and_its_settlement_is_no_samples() {
     );
     // A displacement along the slab is none of its plate.
     let moved = SLAB.replace("t,y,p", "t,y,p,u_y").replace("%.17g\\n\"", "%.17g,0\\n\"");
-    write(at, "mandel", &format!("\"{}\"", program.display()), "t y p u_y", &moved);
+    write(at, "mandel", &format!("\"{PROGRAM}\""), "t y p u_y", &moved);
     assert_eq!(call(at, &["run", "s.toml"]).code, 0);
     assert!(errors(at).iter().all(|(name, _)| name != "settlement"), "{:?}", errors(at));
     let plan = call(at, &["plan", "s.toml", "--format", "json"]);

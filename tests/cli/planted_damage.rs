@@ -1,7 +1,7 @@
 //! Faults around a run: killed, out of space, two at once, damaged records, a clock that jumps.
 //! Nothing finished is lost, and nothing wrong is taken for a result.
 
-use crate::program::table_without_times;
+use crate::program::{PROGRAM, table_without_times};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::fs;
@@ -27,7 +27,7 @@ time_step = [{ stable = 0.4 }]
 const KILLS: u32 = 50;
 
 fn program() -> Command {
-    Command::new(assert_cmd::cargo::cargo_bin("oedometer"))
+    Command::new(PROGRAM)
 }
 
 fn folder_with_study() -> TempDir {
@@ -127,9 +127,8 @@ fn two_runs_in_one_folder_leave_the_same_bytes_as_one() {
 fn a_full_disk_is_told_and_leaves_no_half_record() {
     let (expected, _) = whole_run();
     let folder = folder_with_study();
-    let binary = assert_cmd::cargo::cargo_bin("oedometer");
     // Blocks of 1024 bytes; a record has more, its wall times fewer.
-    let script = format!("trap '' XFSZ; ulimit -f 2; exec {} run short.toml --out out", binary.display());
+    let script = format!("trap '' XFSZ; ulimit -f 2; exec {PROGRAM} run short.toml --out out");
     let output =
         Command::new("bash").current_dir(folder.path()).args(["-c", &script]).output().expect("bash");
     let told = String::from_utf8_lossy(&output.stderr).into_owned();

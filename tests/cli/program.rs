@@ -2,12 +2,15 @@
 //! writes to both outputs, and never a panic.
 #![allow(dead_code, reason = "every test takes the part that it needs")]
 
-use assert_cmd::Command;
 use std::fs;
 use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::mpsc;
 use std::time::Duration;
 use tempfile::TempDir;
 
+/// Where the program is.
+pub const PROGRAM: &str = env!("CARGO_BIN_EXE_oedometer");
 /// Longest that any call of a test may take.
 const LONGEST: Duration = Duration::from_secs(600);
 /// Variables of a CI that must not reach a test from the one that runs it.
@@ -37,12 +40,20 @@ pub fn call(folder: &Path, arguments: &[&str]) -> Told {
 
 /// Calls the program in a folder with variables of the environment.
 pub fn call_with(folder: &Path, variables: &[(&str, &str)], arguments: &[&str]) -> Told {
-    let mut command = Command::cargo_bin("oedometer").expect("the program");
+    let mut command = Command::new(PROGRAM);
     for name in OF_A_CI {
         command.env_remove(name);
     }
-    command.envs(variables.iter().copied()).current_dir(folder).args(arguments).timeout(LONGEST);
-    let output = command.output().expect("it starts");
+    command.envs(variables.iter().copied()).current_dir(folder).args(arguments);
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = command.spawn().expect("it starts");
+    let (id, (ends, end)) = (child.id(), mpsc::channel());
+    std::thread::spawn(move || ends.send(child.wait_with_output()));
+    let output = end.recv_timeout(LONGEST).unwrap_or_else(|_| {
+        let ended = Command::new("kill").arg(id.to_string()).status();
+        panic!("{arguments:?} takes longer than {LONGEST:?}; ended: {ended:?}")
+    });
+    let output = output.expect("its outputs");
     let told = Told {
         code: output.status.code().expect("an exit code"),
         out: String::from_utf8(output.stdout).expect("words"),
@@ -92,14 +103,16 @@ fn without_wall_time(text: &str) -> String {
 /// Holds the words of a table against its snapshot and not the numbers in it: those are for golden
 /// values and expectations to judge, and their last digits are another platform's own.
 pub fn assert_words(name: &str, text: &str) {
-    let text = without_wall_time(text);
-    let mut settings = settings();
-    // Not those in a name, as in `cells=4` or `L2`.
-    settings.add_filter(r"([ (])[-+]?\d+(\.\d+)?(e-?\d+)?", "${1}#");
-    // Columns are as wide as their numbers.
-    settings.add_filter(" {2,}", " ");
-    settings.add_filter("-{3,}:?", "---");
-    settings.bind(|| insta::assert_snapshot!(name, text));
+    // Numbers are not those in a name, as in `cells=4` or `L2`; columns are as wide as their numbers.
+    let numbers = (r"([ (])[-+]?\d+(\.\d+)?(e-?\d+)?", "${1}#");
+    let text = [numbers, (" {2,}", " "), ("-{3,}:?", "---")].into_iter().fold(
+        without_wall_time(text),
+        |text, (what, by)| {
+            let what = regex_lite::Regex::new(what).expect("a pattern");
+            what.replace_all(&text, by).into_owned()
+        },
+    );
+    settings().bind(|| insta::assert_snapshot!(name, text));
 }
 
 fn settings() -> insta::Settings {

@@ -2,7 +2,7 @@
 //! kept, and `--resume` goes on.
 #![cfg(target_os = "linux")]
 
-use crate::program::{OF_A_CI, call};
+use crate::program::{OF_A_CI, PROGRAM, call};
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -52,11 +52,11 @@ fn folder() -> TempDir {
 }
 
 fn start(at: &Path, arguments: &[&str]) -> Child {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin("oedometer"));
+    let mut command = Command::new(PROGRAM);
     if ignores_interrupts() {
         // Whoever begins the tests in the background of a script has them ignore Ctrl-C, and the program inherits that.
         command = Command::new("env");
-        command.arg("--default-signal=INT").arg(assert_cmd::cargo::cargo_bin("oedometer"));
+        command.arg("--default-signal=INT").arg(PROGRAM);
     }
     for name in OF_A_CI {
         command.env_remove(name);

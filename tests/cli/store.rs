@@ -1,7 +1,7 @@
 //! What is kept and taken together: names of studies, origins of records, sweeps that are too large, a disk
 //! that is full, a reference that refuses; and the list of faults that these tests are held against.
 
-use crate::program::{Told, call, folder_with, table_without_times};
+use crate::program::{PROGRAM, Told, call, folder_with, table_without_times};
 use oedometer::exact::reference::ReferenceKind;
 use oedometer::{
     CheckEnd, Failure, FailureKind, GoldenFile, Origins, Record, RecordStore, RunOptions, Selected, Status,
@@ -10,7 +10,9 @@ use oedometer::{
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 /// Eight short cases.
 const STUDY: &str = r#"title = "Eight short cases"
@@ -133,8 +135,15 @@ fn a_study_comes_from_a_pipe_and_never_from_what_does_not_end() {
     let large = format!("{STUDY}# {}", "x".repeat(16_000_000));
     fs::write(folder.path().join("large.toml"), large).expect("a file");
     assert_eq!(call(folder.path(), &["plan", "large.toml"]).code, 2);
-    let mut command = assert_cmd::Command::cargo_bin("oedometer").expect("the program");
-    let output = command.args(["plan", "/dev/stdin"]).write_stdin(STUDY).output().expect("it starts");
+    let mut command = Command::new(PROGRAM);
+    let mut child = command
+        .args(["plan", "/dev/stdin"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    child.stdin.take().expect("a pipe").write_all(STUDY.as_bytes()).expect("it reads");
+    let output = child.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(0));
     assert_eq!(String::from_utf8_lossy(&output.stdout).lines().count(), 9);
 }
@@ -325,8 +334,12 @@ fn a_case_that_was_late_is_run_again() {
 /// The profile is the folder that cargo builds it in; `PROFILE` of a build script knows two only.
 #[test]
 fn a_program_names_its_own_profile() {
-    let program = assert_cmd::cargo::cargo_bin("oedometer");
-    let folder = program.parent().and_then(Path::file_name).expect("a folder").to_string_lossy().into_owned();
+    let folder = Path::new(PROGRAM)
+        .parent()
+        .and_then(Path::file_name)
+        .expect("a folder")
+        .to_string_lossy()
+        .into_owned();
     let place = folder_with(STUDY);
     assert_eq!(call(place.path(), &["run", "short.toml"]).code, 0);
     assert!(
@@ -446,13 +459,9 @@ fn the_first_result_that_cannot_be_kept_ends_the_run() {
 fn a_full_disk_is_told_at_the_first_record() {
     let folder = folder_with(STUDY);
     // The limit on the size of files stands in for a disk of that size: wall times fit, a record does not.
-    let program = assert_cmd::cargo::cargo_bin("oedometer");
-    let script = format!("trap '' XFSZ; ulimit -f 2; exec '{}' run short.toml --jobs 1", program.display());
-    let output = std::process::Command::new("sh")
-        .args(["-c", &script])
-        .current_dir(folder.path())
-        .output()
-        .expect("a shell");
+    let script = format!("trap '' XFSZ; ulimit -f 2; exec '{PROGRAM}' run short.toml --jobs 1");
+    let output =
+        Command::new("sh").args(["-c", &script]).current_dir(folder.path()).output().expect("a shell");
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(3), "{told}");
     assert!(told.starts_with("error: cannot write ") && told.contains("record.json"), "{told}");

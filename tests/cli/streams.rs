@@ -2,6 +2,7 @@
 //! under standard output is one with a sentence, and under standard error it stops nothing.
 #![cfg(target_os = "linux")]
 
+use crate::program::PROGRAM;
 use std::fs::{self, File, OpenOptions};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -90,7 +91,7 @@ fn full() -> Stdio {
 }
 
 fn call(folder: &Path, arguments: &[&str], out: Stdio, err: Stdio) -> Output {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin("oedometer"));
+    let mut command = Command::new(PROGRAM);
     for name in crate::program::OF_A_CI {
         command.env_remove(name);
     }

@@ -1,6 +1,6 @@
 //! Many cases: packed records, shares, tables that are made without reading everything again.
 
-use crate::program::{Told, call, folder_with, table_without_times};
+use crate::program::{PROGRAM, Told, call, folder_with, table_without_times};
 use oedometer::{Case, Failure, FailureKind, Record, RecordStore, Status, Study, StudySource, Tier};
 use std::collections::BTreeSet;
 use std::fs;
@@ -174,11 +174,10 @@ fn a_packed_record_with_any_damaged_part_is_run_again_and_no_other_is() {
 #[test]
 fn a_packed_run_that_is_killed_at_any_moment_goes_on_to_the_same_table() {
     let (_, expected) = whole();
-    let program = assert_cmd::cargo::cargo_bin("oedometer");
     for kill in 0..12_u32 {
         let folder = folder_with(STUDY);
         let at = folder.path();
-        let mut child = Command::new(&program)
+        let mut child = Command::new(PROGRAM)
             .current_dir(at)
             .args(["run", "short.toml", "--jobs", "2"])
             .stderr(Stdio::null())
@@ -314,7 +313,7 @@ fn what_cases_took_is_learned_and_a_table_of_costs_makes_the_shares() {
 fn a_run_that_is_told_to_end_keeps_what_is_done_and_says_what_is_left() {
     let folder = folder_with(&STUDY.replace("[2, 3, 4]", "[400, 500, 600]").replace("[0.02]", "[1.0]"));
     let at = folder.path();
-    let child = Command::new(assert_cmd::cargo::cargo_bin("oedometer"))
+    let child = Command::new(PROGRAM)
         .current_dir(at)
         .args(["run", "short.toml", "--jobs", "1"])
         .stderr(Stdio::piped())

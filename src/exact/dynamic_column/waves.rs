@@ -40,7 +40,7 @@ impl Waves {
             // cos(M_j y/H) = ± sin(M_j ζ): both vanish exactly where they do.
             for place in 0..BLOCK {
                 let mode = first + place;
-                let sign = if mode % 2 == 0 { 1.0 } else { -1.0 };
+                let sign = if mode.is_multiple_of(2) { 1.0 } else { -1.0 };
                 waves[0][place] = elementary::sin(eigenvalue(mode) * self.above_base);
                 waves[1][place] = sign * elementary::sin(eigenvalue(mode) * self.zeta);
             }

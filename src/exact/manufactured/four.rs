@@ -3,6 +3,8 @@
 //!
 //! Every operation is that of single numbers, place by place and in one order: four places have the bits of each alone.
 
+#![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
+
 use crate::elementary;
 use std::ops::{Add, Mul, Sub};
 

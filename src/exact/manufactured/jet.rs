@@ -4,6 +4,8 @@
 //! divergences and sources, comes out of the arithmetic to round-off and without a formula of its own. Each number is
 //! that of four places.
 
+#![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
+
 use crate::exact::manufactured::four::Four;
 use std::ops::{Add, Div, Mul, Sub};
 

@@ -8,6 +8,8 @@
 //! `four` are the numbers of four places, `jet` is the arithmetic with derivatives, `motion` the motions and their
 //! inverse, `model` which law goes with which, `motion_state` what follows from one at a point and time.
 
+#![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
+
 pub mod four;
 pub mod jet;
 pub mod model;

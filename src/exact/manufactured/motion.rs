@@ -3,6 +3,8 @@
 //! What the formulas take of a place ([`Spot`]) and of a time ([`Moment`]) is made once for a point and once a step:
 //! no sine is left where points and times meet, but those of an angle that is of both.
 
+#![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
+
 use crate::elementary;
 use crate::exact::manufactured::four::{Four, PLACES};
 use crate::exact::manufactured::jet::{Jet, Shape};

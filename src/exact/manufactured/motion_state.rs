@@ -1,5 +1,7 @@
 //! All that follows from a motion and a pressure at a point of the skeleton and a time.
 
+#![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
+
 use crate::exact::manufactured::four::Four;
 use crate::exact::manufactured::jet::{Jet, Slope, TIME};
 use crate::exact::manufactured::model::ManufacturedModel;
