@@ -26,7 +26,8 @@
 //! | [`api`] | the door for other languages: names and lists in, lists out |
 //!
 //! `elementary`, `wording`, `sorting`, `soil/`, [`exact`], `mpm/` and `scene/` are a crate of their own, `oedometer-solver`
-//! (`src/solver.rs`): it is compiled with every optimisation, the rest with less and beside it.
+//! (`src/solver.rs`), compiled with every optimisation; `convergence/`, `case/`, `record/` and `measure/` are another,
+//! `oedometer-records` (`src/records.rs`), with some; the rest only leads there and has none.
 //!
 //! # The equations
 //!
@@ -118,19 +119,16 @@
 
 pub mod api;
 mod campaign;
-mod case;
 mod cli;
-mod convergence;
 mod foreign;
 mod golden;
 mod import;
 mod judge;
-mod measure;
-mod record;
 mod render;
 mod schema;
 mod study;
 
+use oedometer_records::{case, convergence, measure, record};
 /// Exact solutions, by one door:
 ///
 /// ```

@@ -3,13 +3,20 @@
 //! What a key means, its unit, its range and its place in a case stand here once. Parsing, checks, sweeps,
 //! selections of expectations, the JSON Schema and the columns of tables follow from it.
 
-use crate::case::{Case, step_label};
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::case::tier::Tier;
+use crate::case::{Case, Task, step_label};
+use crate::convergence::class::Class;
 use crate::exact::parameters::Base;
 use crate::mpm::explicit::Drag;
 use crate::mpm::explicit::scheme::Scheme;
-use crate::mpm::method::Method;
+use crate::mpm::method::{
+    Basis, Configuration, Memory, Method, PressureIntegration, Recovery, StrainGradient,
+};
 use crate::mpm::run::TimeStepRule;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::scene::SceneKind;
 use crate::soil::conductivity_mean::ConductivityMean;
 use crate::soil::continuity::Continuity;
 use crate::soil::law::Law;
@@ -108,9 +115,32 @@ macro_rules! choices {
         }
     )+ };
 }
-pub(crate) use choices;
 
-choices!(Base, ConductivityMean, Continuity, Drag, Formulation, IntegratorKind, Law, Scheme);
+choices!(
+    Base,
+    Basis,
+    Class,
+    ConductivityMean,
+    Configuration,
+    Continuity,
+    Drag,
+    Formulation,
+    IntegratorKind,
+    Law,
+    Memory
+);
+choices!(
+    Norm,
+    PressureIntegration,
+    Quantity,
+    Recovery,
+    Sample,
+    SceneKind,
+    Scheme,
+    StrainGradient,
+    Task,
+    Tier
+);
 
 /// A type of the fields of a case: its value as an input, and back.
 trait Field: Sized {

@@ -10,19 +10,19 @@ use crate::mpm::run::integrator::IntegratorKind;
 use crate::scene::column::column_parameters;
 
 /// Steps after which a run at a share of the critical step has shown that it is clean.
-pub(crate) const MOST_PROBE_STEPS: u64 = 262_144;
+pub const MOST_PROBE_STEPS: u64 = 262_144;
 
 /// Runs of a search for the critical step that hold to their end, as a rule: it begins between the runs beside it.
 const HELD_RUNS: f64 = 4.0;
 
 /// Work of cases together: the largest number where there is more.
-pub(crate) fn work_of<'a>(cases: impl Iterator<Item = &'a Case>) -> u64 {
+pub fn work_of<'a>(cases: impl Iterator<Item = &'a Case>) -> u64 {
     cases.fold(0, |sum, case| sum.saturating_add(estimated_work(case)))
 }
 
 /// Work of a case: the time that it will take on one core, ns.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, it is an estimate")]
-pub(crate) fn estimated_work(case: &Case) -> u64 {
+pub fn estimated_work(case: &Case) -> u64 {
     (1e9 * estimated_seconds(case)).max(1.0) as u64
 }
 
@@ -71,39 +71,5 @@ pub fn estimated_steps(case: &Case) -> f64 {
             let observed = OBSERVED_STEPS as f64;
             HELD_RUNS * observed + (end / step).clamp(observed, MOST_PROBE_STEPS as f64)
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::case::tier::Tier;
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
-
-    fn cases(head: &str, sweep: &str) -> Vec<Case> {
-        let text =
-            format!("title = \"t\"\nscene = \"terzaghi\"\n{head}\n[[sweep]]\nmethod = [\"MPM\"]\n{sweep}\n");
-        let study = Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound");
-        study.cases(Tier::Full).into_iter().cloned().collect()
-    }
-
-    #[test]
-    fn work_beyond_counting_stays_the_largest_number() {
-        let endless = cases("", "cells = [3, 4]\ntime_step = [{ seconds = 1e-300 }]");
-        assert_eq!(endless.len(), 2);
-        assert!(endless.iter().all(|case| estimated_work(case) == u64::MAX));
-        assert_eq!(work_of(endless.iter()), u64::MAX);
-        let short = cases("", "cells = [3, 4]");
-        assert_eq!(work_of(short.iter()), estimated_work(&short[0]) + estimated_work(&short[1]));
-    }
-
-    #[test]
-    fn the_work_of_a_critical_step_has_an_end() {
-        let endless = cases("task = \"stability\"", "cells = [8]\nhydraulic_conductivity = [1e-300]");
-        let most = (4 * OBSERVED_STEPS + MOST_PROBE_STEPS) * 16;
-        assert_eq!(estimated_updates(&endless[0]), most);
-        let short = cases("task = \"stability\"\n[output]\ntime_factors = [1e-9]", "cells = [8]");
-        assert_eq!(estimated_updates(&short[0]), (4 + 1) * OBSERVED_STEPS * 16);
     }
 }

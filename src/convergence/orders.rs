@@ -36,7 +36,7 @@ pub fn pair_orders(series: &ErrorSeries) -> Vec<Result<f64, Undefined>> {
 
 /// `ln(a/b)` of positive numbers; the quotient keeps the digits of close numbers, the difference
 /// of logarithms serves where it leaves the range of a double.
-pub(crate) fn log_ratio(a: f64, b: f64) -> f64 {
+pub fn log_ratio(a: f64, b: f64) -> f64 {
     let quotient = a / b;
     if quotient.is_normal() { elementary::ln(quotient) } else { elementary::ln(a) - elementary::ln(b) }
 }
@@ -49,7 +49,11 @@ pub fn slope(series: &ErrorSeries) -> Result<SlopeFit, Undefined> {
     slope_of(&series.points()?)
 }
 
-pub(crate) fn slope_of(points: &[(f64, f64)]) -> Result<SlopeFit, Undefined> {
+/// The same from (size, error) points.
+///
+/// # Errors
+/// As [`slope`].
+pub fn slope_of(points: &[(f64, f64)]) -> Result<SlopeFit, Undefined> {
     let count = points.len();
     let [first, _, ..] = points else {
         return Err(Undefined::TooFewLevels { levels: count, needed: 2 });

@@ -7,7 +7,7 @@ use crate::elementary;
 /// 97.5 % quantile for a number of degrees of freedom: `|t|` stays below it with 95 %.
 ///
 /// Nothing for none. Its square is the 95 % quantile of Fisher's F with one degree over as many.
-pub(crate) fn quantile_975(freedom: usize) -> Option<f64> {
+pub fn quantile_975(freedom: usize) -> Option<f64> {
     if freedom == 0 {
         return None;
     }

@@ -9,13 +9,13 @@ use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
 
 /// Values by what they depend on.
-pub(crate) type Known<T> = LazyLock<Mutex<HashMap<String, T>>>;
+pub type Known<T> = LazyLock<Mutex<HashMap<String, T>>>;
 
 /// Values that are kept of each kind.
 const MOST_KNOWN: usize = 256;
 
 /// What a reference depends on: the columns of many methods and studies are the same.
-pub(crate) fn key_of(case: &Case, kind: ReferenceKind, times: &[f64]) -> String {
+pub fn key_of(case: &Case, kind: ReferenceKind, times: &[f64]) -> String {
     format!("{:?} {:?} {kind:?} {times:?}", case.column, case.material)
 }
 
@@ -23,7 +23,7 @@ pub(crate) fn key_of(case: &Case, kind: ReferenceKind, times: &[f64]) -> String 
 ///
 /// # Errors
 /// Those of the making; nothing is kept then.
-pub(crate) fn known_or<T: Clone>(
+pub fn known_or<T: Clone>(
     known: &Known<T>,
     key: String,
     make: impl FnOnce() -> Result<T, ExactError>,

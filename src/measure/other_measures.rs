@@ -45,34 +45,3 @@ pub fn measures_of(
     }
     measures
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::campaign::runner::records_of;
-    use crate::record::csv::tidy;
-
-    #[test]
-    fn a_peak_and_what_moves_at_rest_are_rows_of_the_table() {
-        for (scene, more, name, exact) in [
-            (
-                "mandel",
-                "output = { time_factors = [0.0645, 0.068, 0.0717] }",
-                "peak_pressure",
-                0.546_059_661_7,
-            ),
-            ("at-rest", "output = { time_factors = [1e-4] }", SPURIOUS_VELOCITY, 0.0),
-        ] {
-            let study = format!(
-                "title = \"t\"\nscene = \"{scene}\"\n{more}\n[[sweep]]\nmethod = [\"GIMP-SRI\"]\n\
-                 integrator = [\"implicit\"]\ncells = [10]\ntime_step = [{{ growth = 0.02 }}]\n"
-            );
-            let record = records_of(&study).remove(0);
-            let row = record.measures.iter().find(|row| row.name == name).expect("the measure");
-            assert!((row.exact - exact).abs() < 1e-10 && row.error().abs() < 5e-3, "{row:?}");
-            let table = tidy::rows_of("t", &record);
-            let told = table.lines().filter(|line| line.contains(&format!(",{name},,"))).count();
-            assert_eq!(told, 1, "{table}");
-        }
-    }
-}

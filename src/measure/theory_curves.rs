@@ -96,35 +96,3 @@ pub fn constant_recovery_error(case: &Case) -> f64 {
     let size = case.cell_size() / case.column.height;
     std::f64::consts::FRAC_PI_2 * size * ((1.0 - 1.0 / (points * points)) / 12.0).sqrt()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
-
-    fn seed_case() -> Case {
-        let text =
-            "title = 'x'\nscene = 'terzaghi'\n[[sweep]]\nmethod = ['GIMP-SRI']\ncells = [10]\n".to_owned();
-        let study = Study::check(&StudySource { name: "x.toml".to_owned(), text }).expect("a sound study");
-        study.planned[0].case.clone()
-    }
-
-    #[test]
-    fn a_theory_line_begins_at_the_drained_surface_and_falls_with_time() {
-        let case = Case { time_factors: vec![0.05, 0.5].into(), ..seed_case() };
-        let lines = theory_isochrones(&case, ReferenceKind::Terzaghi).expect("the seed column");
-        let [early, late] = [0, 1].map(|place| &lines[place].line);
-        assert!(lines[0].degree < lines[1].degree && lines[0].time_factor == 0.05);
-        assert_eq!(early[0], (0.0, 0.0));
-        assert!((early[100].0 - 1.0).abs() < 0.01 && (early[100].1 - 1.0).abs() < 1e-15);
-        assert!(late[100].0 < early[100].0);
-    }
-
-    #[test]
-    fn the_error_of_a_constant_in_a_cell_is_that_of_the_oracle() {
-        // Two points at a quarter of the cell from its centre: offset h/4, slope π/2.
-        let expected = std::f64::consts::FRAC_PI_2 * 0.1 * 0.25;
-        assert!((constant_recovery_error(&seed_case()) - expected).abs() < 1e-15);
-    }
-}

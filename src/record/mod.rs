@@ -7,11 +7,11 @@ pub mod attached_run;
 pub mod csv;
 pub mod machines;
 pub mod origins;
-pub(crate) mod pack;
+pub mod pack;
 pub mod packed_store;
 pub mod provenance;
-pub(crate) mod seal;
-pub(crate) mod single_files;
+pub mod seal;
+pub mod single_files;
 pub mod store;
 pub mod whole_file;
 

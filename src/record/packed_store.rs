@@ -17,7 +17,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The packs of one study.
 #[derive(Debug)]
-pub(crate) struct PackedStore {
+pub struct PackedStore {
     study: PathBuf,
     state: Mutex<State>,
 }
@@ -288,7 +288,7 @@ impl PackedStore {
 }
 
 /// The number that the hash of a case is.
-pub(crate) fn number_of(hash: &str) -> u64 {
+pub fn number_of(hash: &str) -> u64 {
     u64::from_str_radix(hash, 16).unwrap_or(0)
 }
 

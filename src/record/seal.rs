@@ -11,7 +11,7 @@ const DIGEST_DIGITS: usize = 32;
 
 /// How a record is laid out as text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Layout {
+pub enum Layout {
     /// Every field on a line of its own, for a file of one record.
     Lines,
     /// All on one line, for a file of many.
@@ -23,7 +23,7 @@ pub(crate) enum Layout {
 ///
 /// # Errors
 /// When the value has no JSON.
-pub(crate) fn sealed(value: &impl Serialize, layout: Layout) -> serde_json::Result<String> {
+pub fn sealed(value: &impl Serialize, layout: Layout) -> serde_json::Result<String> {
     let content = match layout {
         Layout::Lines => serde_json::to_string_pretty(value)?,
         Layout::OneLine => serde_json::to_string(value)?,
@@ -34,7 +34,7 @@ pub(crate) fn sealed(value: &impl Serialize, layout: Layout) -> serde_json::Resu
 }
 
 /// Whether a text is as it was sealed, in either layout.
-pub(crate) fn is_whole(text: &str) -> bool {
+pub fn is_whole(text: &str) -> bool {
     SEALS.iter().zip(ENDS).any(|(seal, end)| sealed_by(text, seal, end).is_some_and(is_digest_of))
 }
 

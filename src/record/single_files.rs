@@ -17,18 +17,18 @@ fn path(study: &Path, hash: &str, file: &str) -> PathBuf {
 }
 
 /// Text of the record of a case, where it is whole.
-pub(crate) fn text(study: &Path, hash: &str) -> Option<String> {
+pub fn text(study: &Path, hash: &str) -> Option<String> {
     fs::read_to_string(path(study, hash, RECORD)).ok().filter(|text| is_whole(text))
 }
 
 /// Wall times of a case. Without readable ones it is done all the same, only not timed.
-pub(crate) fn wall(study: &Path, hash: &str) -> Vec<WallSample> {
+pub fn wall(study: &Path, hash: &str) -> Vec<WallSample> {
     let text = fs::read_to_string(path(study, hash, WALL)).ok();
     text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
 }
 
 /// Hashes of the cases that have a folder.
-pub(crate) fn hashes(study: &Path) -> Vec<String> {
+pub fn hashes(study: &Path) -> Vec<String> {
     let folders = fs::read_dir(study.join("cases")).into_iter().flatten().flatten();
     folders.filter_map(|folder| folder.file_name().into_string().ok()).collect()
 }
@@ -38,7 +38,7 @@ pub(crate) fn hashes(study: &Path) -> Vec<String> {
 ///
 /// # Errors
 /// When the file system refuses.
-pub(crate) fn write(study: &Path, record: &Record) -> Result<(), StoreError> {
+pub fn write(study: &Path, record: &Record) -> Result<(), StoreError> {
     let path = path(study, &record.hash, RECORD);
     if let Some(folder) = path.parent() {
         remove_stale(folder);
@@ -52,7 +52,7 @@ pub(crate) fn write(study: &Path, record: &Record) -> Result<(), StoreError> {
 ///
 /// # Errors
 /// When the file system refuses.
-pub(crate) fn write_wall(study: &Path, record: &Record) -> Result<(), StoreError> {
+pub fn write_wall(study: &Path, record: &Record) -> Result<(), StoreError> {
     let path = path(study, &record.hash, WALL);
     let json = |source| StoreError::Json { path: path.clone(), source };
     let text = serde_json::to_string_pretty(&record.wall).map_err(json)?;

@@ -166,7 +166,7 @@ impl RecordStore {
     }
 
     /// The rows that were made so.
-    pub(crate) fn take_rows_at_hand(&self) -> Option<RowsAtHand> {
+    pub fn take_rows_at_hand(&self) -> Option<RowsAtHand> {
         self.packs.take_rows_at_hand()
     }
 

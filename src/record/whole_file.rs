@@ -55,7 +55,7 @@ fn line_of(path: &str) -> String {
 }
 
 /// Name of this machine.
-pub(crate) fn host_name() -> String {
+pub fn host_name() -> String {
     let told = ["/proc/sys/kernel/hostname", "/etc/hostname"].map(line_of);
     let host = told.into_iter().find(|name| !name.is_empty());
     host.or_else(|| std::env::var("COMPUTERNAME").ok()).unwrap_or_else(|| "host".to_owned())
@@ -89,7 +89,7 @@ fn remove_stale_once(folder: &Path) {
 }
 
 /// The same, with what is done to the file before it takes its name.
-pub(crate) fn write_renamed(
+pub fn write_renamed(
     path: &Path,
     content: &[u8],
     finish: impl Fn(&fs::File) -> std::io::Result<()>,
@@ -104,7 +104,7 @@ pub(crate) fn write_renamed(
 ///
 /// # Errors
 /// When the file system or `fill` refuses; nothing is left under the name then.
-pub(crate) fn write_streamed(
+pub fn write_streamed(
     path: &Path,
     fill: impl FnOnce(&mut fs::File) -> std::io::Result<()>,
 ) -> Result<(), StoreError> {
@@ -128,12 +128,12 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// Host name and tag of where this process runs: two processes of one place see each other's locks.
-pub(crate) fn place_of_this_process() -> &'static str {
+pub fn place_of_this_process() -> &'static str {
     &PLACE
 }
 
 /// Sixteen hexadecimal digits that nobody else has.
-pub(crate) fn random_word() -> String {
+pub fn random_word() -> String {
     format!("{:016x}", RandomState::new().build_hasher().finish())
 }
 
@@ -142,7 +142,7 @@ pub(crate) fn random_word() -> String {
 ///
 /// # Errors
 /// When the file system refuses.
-pub(crate) fn create_part(folder: &Path, name: &str) -> std::io::Result<(PathBuf, fs::File)> {
+pub fn create_part(folder: &Path, name: &str) -> std::io::Result<(PathBuf, fs::File)> {
     let path = folder.join(part_name(name));
     let file = fs::File::options().read(true).write(true).create_new(true).open(&path)?;
     Ok((path, file))
@@ -155,7 +155,7 @@ fn part_name(file: &str) -> String {
 
 /// Removes what writers that are no more left in a folder: a process of this place that has ended, or anyone's
 /// after a day. Whatever cannot be read or removed stays.
-pub(crate) fn remove_stale(folder: &Path) {
+pub fn remove_stale(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         if entry.file_name().to_str().is_some_and(|name| is_stale(name, || age_of(&entry))) {
             let _ = fs::remove_file(entry.path());

@@ -80,6 +80,9 @@ const ON_THE_LINE: &str = "0123456789−+n";
 
 /// What stands on the line for a character that Unicode has above it.
 fn superscript(c: char) -> Option<char> {
+    if c.is_ascii() {
+        return None; // Nearly every character: not worth a search.
+    }
     let at = ABOVE.chars().position(|one| one == c)?;
     ON_THE_LINE.chars().nth(at)
 }

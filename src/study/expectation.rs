@@ -1,7 +1,7 @@
 //! What a study expects of its own results: which series, and what of it.
 
 use crate::case::Case;
-use crate::case::keys::{Key, Value};
+use crate::case::keys::{Choice, Key, Value};
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
@@ -33,6 +33,15 @@ words!(
     Cells "cells", TimeStep "time_step", PointsPerCell "points_per_cell",
     WaterBulkModulus "water_bulk_modulus",
 );
+
+impl Choice for Axis {
+    fn all() -> Vec<Self> {
+        Self::ALL.to_vec()
+    }
+    fn word(self) -> &'static str {
+        self.name()
+    }
+}
 
 impl Axis {
     /// Those along which a discretisation gets finer.

@@ -1,13 +1,12 @@
 //! A study as it was typed: every value with its place in the text, nothing judged yet.
 
 use crate::case::Task;
-use crate::case::keys::{KEYS, Key, choices};
+use crate::case::keys::{KEYS, Key};
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
 use crate::convergence::class::Class;
 use crate::exact::reference::ReferenceKind;
-use crate::mpm::method::{Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient};
 use crate::scene::SceneKind;
 use crate::study::choice_tables::{Named, Placed, Typed, TypedList};
 use crate::study::diagnostic::{Diagnostic, StudyError, nearest};
@@ -18,9 +17,6 @@ use crate::study::result_table::ResultTable;
 use crate::study::solver_table::SolverTable;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-
-choices!(Axis, Class, Configuration, Norm, PressureIntegration, Quantity, Recovery, Sample, SceneKind);
-choices!(Basis, Memory, StrainGradient, Task, Tier);
 
 /// Text of a study with a name for messages.
 #[derive(Clone, Debug, PartialEq, Eq)]

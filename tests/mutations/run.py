@@ -33,7 +33,7 @@ ROOT = HERE.parent.parent
 OUTCOMES = HERE / "outcomes.csv"
 REPORT = HERE / "OUTCOME.md"
 # What is copied: folders and files that the program, the benches and the tests are made of.
-PARTS = ["src", "solver", "studies", "golden", "benches", "tests", "examples", "docs", "python"]
+PARTS = ["src", "records", "solver", "studies", "golden", "benches", "tests", "examples", "docs", "python"]
 FILES = ["Cargo.toml", "Cargo.lock", "build.rs", "rust-toolchain.toml", "README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
 # Seconds after which a study, or a test, that hangs counts as objecting.
 LONGEST = 900
@@ -122,7 +122,8 @@ def with_switches(tree, faults):
             text = text[:start] + new + text[end:]
             end_before = start
         path.write_text(text)
-    for root, switch in (("src/solver.rs", SWITCH), ("src/lib.rs", "pub use oedometer_solver::fault;\n")):
+    for root, switch in (("src/solver.rs", SWITCH), ("src/records.rs", "pub use oedometer_solver::fault;\n"),
+                         ("src/lib.rs", "pub use oedometer_solver::fault;\n")):
         library = tree / root
         library.write_text("#![allow(unused_parens)]\n" + library.read_text() + switch)
 

@@ -11,7 +11,7 @@ const MAY_IMPORT: [(&str, &str); 18] = [
     ("convergence", "elementary sorting wording"),
     ("mpm", "elementary soil wording"),
     ("scene", "elementary exact mpm soil wording"),
-    ("case", "elementary exact mpm scene soil wording"),
+    ("case", "convergence elementary exact mpm scene soil wording"),
     ("record", "case mpm wording"),
     ("measure", "case elementary exact mpm record scene soil wording"),
     ("study", "case convergence elementary exact mpm record scene soil wording"),

@@ -2,10 +2,14 @@
 //! a file here that the room names.
 
 mod architecture;
+mod case_work_estimate;
 mod convergence_classes;
 mod documented_tables;
 mod judge_verdicts;
+mod measure_of_runs;
+mod measure_pressure_peak;
 mod option_pairs;
+mod record_tables;
 mod runs_cosine_layer;
 mod runs_large_strain;
 mod runs_manufactured;

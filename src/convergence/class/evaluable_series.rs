@@ -11,33 +11,33 @@ use crate::elementary;
 use crate::wording::{order, short};
 
 /// A series that can be evaluated, with what the checks share.
-pub(crate) struct EvaluableSeries<'a> {
+pub struct EvaluableSeries<'a> {
     /// Sizes and errors from coarse to fine, all positive.
-    pub(crate) points: &'a [(f64, f64)],
+    pub points: &'a [(f64, f64)],
     /// The same with the errors' signs, where they have one.
-    pub(crate) values: Vec<(f64, f64)>,
+    pub values: Vec<(f64, f64)>,
     /// Orders between neighbouring levels.
-    pub(crate) pairs: Vec<f64>,
+    pub pairs: Vec<f64>,
     /// Least-squares order on the finest window.
-    pub(crate) order: f64,
+    pub order: f64,
     /// Formal order, where known.
-    pub(crate) formal: Option<f64>,
+    pub formal: Option<f64>,
     /// What may put a floor under the errors.
-    pub(crate) limiters: Vec<Limiter>,
+    pub limiters: Vec<Limiter>,
 }
 
 /// A classification without order, floor and advice.
-pub(crate) fn plain(class: Class, reason: String) -> Classification {
+pub fn plain(class: Class, reason: String) -> Classification {
     Classification { class, reason, advice: None, order: None, floor: None }
 }
 
 /// A classification with advice.
-pub(crate) fn advised(class: Class, reason: String, advice: &str) -> Classification {
+pub fn advised(class: Class, reason: String, advice: &str) -> Classification {
     Classification { advice: Some(advice.to_owned()), ..plain(class, reason) }
 }
 
 /// Levels at which a floor can be claimed: three show it, and a fourth could have refuted it.
-pub(crate) const FLOOR_LEVELS: usize = 4;
+pub const FLOOR_LEVELS: usize = 4;
 
 /// The points with the signs of values of the same size; as they are where the values are others.
 fn with_signs(points: &[(f64, f64)], signed: &[f64]) -> Vec<(f64, f64)> {
@@ -58,7 +58,11 @@ fn put_down_to(limiter: Option<&Limiter>) -> String {
 }
 
 impl<'a> EvaluableSeries<'a> {
-    pub(crate) fn of(points: &'a [(f64, f64)], context: &Context) -> Result<Self, Undefined> {
+    /// A series of (size, error) with what is known of it.
+    ///
+    /// # Errors
+    /// [`Undefined`] where its finest levels have no slope.
+    pub fn of(points: &'a [(f64, f64)], context: &Context) -> Result<Self, Undefined> {
         let pair = |pair: &[(f64, f64)]| log_ratio(pair[0].1, pair[1].1) / log_ratio(pair[0].0, pair[1].0);
         let mut limiters = context.limiters.clone();
         let known = |kind, name: &str, magnitude: Option<f64>| {
@@ -86,11 +90,13 @@ impl<'a> EvaluableSeries<'a> {
         })
     }
 
-    pub(crate) fn finest(&self) -> (f64, f64) {
+    /// Size and error of the finest level.
+    pub fn finest(&self) -> (f64, f64) {
         self.points.last().copied().unwrap_or((f64::NAN, f64::NAN))
     }
 
-    pub(crate) fn coarsest(&self) -> (f64, f64) {
+    /// Size and error of the coarsest level.
+    pub fn coarsest(&self) -> (f64, f64) {
         self.points.first().copied().unwrap_or((f64::NAN, f64::NAN))
     }
 
@@ -118,7 +124,7 @@ impl<'a> EvaluableSeries<'a> {
     }
 
     /// A converging error and a floor of opposite sign that cancel at one level.
-    pub(crate) fn cancelled(&self, fit: &CancellingFit) -> Classification {
+    pub fn cancelled(&self, fit: &CancellingFit) -> Classification {
         let target = 0.1 * fit.coefficient * elementary::powf(self.finest().0, fit.order);
         let told = format!(
             "the error falls, cancels near size {} and grows again to a floor of {} of opposite sign, which",
@@ -129,7 +135,7 @@ impl<'a> EvaluableSeries<'a> {
     }
 
     /// A series that goes to a limit which is not zero.
-    pub(crate) fn approaching(&self, found: &Approach) -> Classification {
+    pub fn approaching(&self, found: &Approach) -> Classification {
         let target = 0.1 * (found.at(self.finest().0) - found.limit).abs();
         let told = format!(
             "the error goes from {} to {} at order {} towards a limit of {}, and the finest level lies where \
@@ -143,7 +149,7 @@ impl<'a> EvaluableSeries<'a> {
     }
 
     /// A limit that the three finest levels suggest and none confirms.
-    pub(crate) fn may_approach(&self, found: &Approach) -> Classification {
+    pub fn may_approach(&self, found: &Approach) -> Classification {
         let (size, _) = self.finest();
         advised(
             Class::PreAsymptotic,
@@ -165,7 +171,7 @@ impl<'a> EvaluableSeries<'a> {
     }
 
     /// The floor that a short series may have, and what is not known.
-    pub(crate) fn may_be_limited(&self, reason: &str, height: f64) -> Classification {
+    pub fn may_be_limited(&self, reason: &str, height: f64) -> Classification {
         let limiter = identify(height, &self.limiters);
         let suspect = limiter.map_or_else(String::new, |limiter| format!(" ({})", limiter.name));
         advised(
@@ -180,7 +186,7 @@ impl<'a> EvaluableSeries<'a> {
     }
 
     /// A floor-limited classification with the floor fitted, its cause and advice.
-    pub(crate) fn limited(&self, reason: &str) -> Classification {
+    pub fn limited(&self, reason: &str) -> Classification {
         let series = ErrorSeries::of(self.points);
         let fit = fit_floor(&series).ok().filter(|fit| fit.significant && fit.residual < 0.1);
         let (size, error) = self.finest();

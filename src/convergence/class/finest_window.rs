@@ -18,7 +18,7 @@ const GOVERNS: f64 = 0.2;
 const ABSURD: f64 = 6.0;
 
 /// Judges a series that falls steadily.
-pub(crate) fn judge_window(case: &EvaluableSeries) -> Classification {
+pub fn judge_window(case: &EvaluableSeries) -> Classification {
     let [.., coarse, fine] = *case.pairs.as_slice() else {
         return plain(Class::NotEvaluable, "fewer than two pairs of levels".to_owned());
     };

@@ -19,18 +19,18 @@ const NEAR: f64 = 0.01;
 
 /// A limit with the way towards it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Approach {
+pub struct Approach {
     /// `F`, in the unit of the values.
-    pub(crate) limit: f64,
+    pub limit: f64,
     /// `C`.
     coefficient: f64,
     /// `p`.
-    pub(crate) order: f64,
+    pub order: f64,
 }
 
 /// What the values say of a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Limit {
+pub enum Limit {
     /// The finest level lies where the three before it said.
     Confirmed(Approach),
     /// The three finest levels say so, and no level confirms it.
@@ -41,7 +41,7 @@ pub(crate) enum Limit {
 
 impl Approach {
     /// The value at a size.
-    pub(crate) fn at(&self, size: f64) -> f64 {
+    pub fn at(&self, size: f64) -> f64 {
         self.limit + self.coefficient * powf(size, self.order)
     }
 
@@ -84,7 +84,7 @@ impl Approach {
 
 /// The limit that values go to while they move away from zero or through it; none where they fall
 /// towards zero, or go nowhere.
-pub(crate) fn limit_of(values: &[(f64, f64)]) -> Option<Limit> {
+pub fn limit_of(values: &[(f64, f64)]) -> Option<Limit> {
     let window = values.last_chunk::<3>()?;
     let [before, finest] = [window[1].1, window[2].1];
     let four = values.last_chunk::<4>();

@@ -7,7 +7,7 @@ use crate::convergence::fit::two_terms::{Exponent, TwoTerms, fit_two_terms};
 
 /// The second term that explains a falling order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Bend {
+pub enum Bend {
     /// A floor: the lower exponent is 0.
     Floor(TwoTerms),
     /// A term of lower order than the one sought, or than the one seen on the coarse levels.
@@ -27,7 +27,7 @@ const LEAST_SHARE: f64 = 0.01;
 
 impl Bend {
     /// The fit, whatever it says.
-    pub(crate) fn terms(&self) -> &TwoTerms {
+    pub fn terms(&self) -> &TwoTerms {
         match self {
             Self::Floor(terms) | Self::Lower(terms) | Self::Higher(terms) => terms,
         }
@@ -35,7 +35,7 @@ impl Bend {
 }
 
 /// The best explanation of a falling order, with the formal order where it is known.
-pub(crate) fn explain(points: &[(f64, f64)], formal: Option<f64>) -> Option<Bend> {
+pub fn explain(points: &[(f64, f64)], formal: Option<f64>) -> Option<Bend> {
     let best = match formal {
         Some(formal) => about_formal(points, formal),
         None => without_formal(points),

@@ -9,12 +9,15 @@ use crate::elementary;
 
 /// The fit of a dip.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CancellingFit {
-    pub(crate) order: f64,
-    pub(crate) coefficient: f64,
-    pub(crate) floor: f64,
+pub struct CancellingFit {
+    /// p.
+    pub order: f64,
+    /// C.
+    pub coefficient: f64,
+    /// F.
+    pub floor: f64,
     /// Size at which the two cancel.
-    pub(crate) cancels_at: f64,
+    pub cancels_at: f64,
 }
 
 /// A fit worse than this (root mean square, relative) explains nothing.
@@ -22,7 +25,7 @@ const POOR: f64 = 0.03;
 
 /// Fits `|C h^p − F|` to (size, error) points; five levels at least, for one more free choice
 /// (where the sign changes) is made than numbers are fitted.
-pub(crate) fn fit_cancelling(points: &[(f64, f64)]) -> Result<CancellingFit, Undefined> {
+pub fn fit_cancelling(points: &[(f64, f64)]) -> Result<CancellingFit, Undefined> {
     let levels = points.len();
     if levels < 5 {
         return Err(Undefined::TooFewLevels { levels, needed: 5 });

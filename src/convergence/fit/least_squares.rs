@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Solves `min Σ w_i (Σ_j c_j a_ij − y_i)²`; returns the coefficients and the weighted sum of
 /// squares, or nothing where the columns do not determine them.
-pub(crate) fn solve(columns: &[Vec<f64>], target: &[f64], weights: &[f64]) -> Option<(Vec<f64>, f64)> {
+pub fn solve(columns: &[Vec<f64>], target: &[f64], weights: &[f64]) -> Option<(Vec<f64>, f64)> {
     let root = |row: usize| weights[row].sqrt();
     let matrix =
         DMatrix::from_fn(target.len(), columns.len(), |row, column| root(row) * columns[column][row]);

@@ -118,7 +118,7 @@ fn project(points: &[(f64, f64)], low: f64, high: f64) -> TwoTerms {
 }
 
 /// Unconstrained least squares of `a u + b v = 1` by orthogonalisation.
-pub(crate) fn both(columns: &[(f64, f64)]) -> Option<(f64, f64)> {
+pub fn both(columns: &[(f64, f64)]) -> Option<(f64, f64)> {
     let norm = columns.iter().map(|(u, _)| u * u).sum::<f64>().sqrt();
     let along = columns.iter().map(|(u, v)| u / norm * v).sum::<f64>();
     let rest = || columns.iter().map(|(u, v)| v - along * u / norm);
@@ -129,7 +129,7 @@ pub(crate) fn both(columns: &[(f64, f64)]) -> Option<(f64, f64)> {
 }
 
 /// Where a function of one exponent is least: a scan, then golden sections about the best place.
-pub(crate) fn minimum(exponent: Exponent, value: impl Fn(f64) -> f64) -> f64 {
+pub fn minimum(exponent: Exponent, value: impl Fn(f64) -> f64) -> f64 {
     const STEPS: u32 = 48;
     const SHRINK: f64 = 0.618_033_988_749_894_9;
     let (from, to) = match exponent {

@@ -2,7 +2,7 @@
 
 pub mod long_tables;
 pub mod machines_table;
-pub(crate) mod packed_table;
-pub(crate) mod rows_at_hand;
+pub mod packed_table;
+pub mod rows_at_hand;
 pub mod table_file;
 pub mod tidy;

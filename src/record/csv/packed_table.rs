@@ -38,12 +38,12 @@ impl RowsOf {
 ///
 /// # Errors
 /// When they are longer than a member may be.
-pub(crate) fn packed_rows(of: RowsOf, rows: &str) -> std::io::Result<Vec<u8>> {
+pub fn packed_rows(of: RowsOf, rows: &str) -> std::io::Result<Vec<u8>> {
     packed(of.header(), rows.as_bytes())
 }
 
 /// Whether a member of the table has the rows of a record.
-pub(crate) fn is_rows_of(member: &[u8], of: RowsOf) -> bool {
+pub fn is_rows_of(member: &[u8], of: RowsOf) -> bool {
     Header::read(member).is_some_and(|header| header.kind == Kind::Rows && RowsOf::of(&header) == of)
 }
 

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 /// Rows of records, packed.
 #[derive(Debug)]
-pub(crate) struct RowsAtHand {
+pub struct RowsAtHand {
     file: File,
     /// Its name, where the system would not let it go.
     path: Option<PathBuf>,
@@ -62,60 +62,6 @@ impl Drop for RowsAtHand {
     fn drop(&mut self) {
         if let Some(path) = &self.path {
             let _ = fs::remove_file(path);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::campaign::runner::records_of;
-    use crate::record::csv::packed_table::packed_rows;
-    use crate::record::csv::tidy;
-    use crate::record::pack::member::unpacked;
-    use crate::record::store::RecordStore;
-
-    #[test]
-    fn rows_come_back_by_what_they_are_of_and_leave_no_file() {
-        let folder = tempfile::TempDir::new().expect("a folder");
-        let study = folder.path().join("study");
-        let mut rows = RowsAtHand::in_folder(&study).expect("a file");
-        let of = |case, generation| RowsOf { case, generation, program: 1, build: 2 };
-        for (of, text) in [(of(1, 1), "a,1\n"), (of(2, 1), "b,2\nb,3\n"), (of(1, 2), "a,4\n")] {
-            rows.keep(of, &packed_rows(of, text).expect("packed")).expect("kept");
-        }
-        let mut text = |of| rows.packed(of).and_then(|member| unpacked(&member));
-        assert_eq!(text(of(2, 1)).as_deref(), Some("b,2\nb,3\n"));
-        assert_eq!(text(of(1, 2)).as_deref(), Some("a,4\n"));
-        assert_eq!(
-            [text(of(3, 1)), text(of(2, 2)), text(of(1, 1))],
-            [None, None, None],
-            "another case, another run"
-        );
-        drop(rows);
-        assert_eq!(fs::read_dir(&study).expect("a folder").count(), 0);
-    }
-    #[test]
-    fn rows_at_hand_are_those_of_the_records_as_they_are_read_back() {
-        let records = records_of(
-            "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
-             method = [\"MPM\", \"GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = [2, 3]\n",
-        );
-        let folder = tempfile::TempDir::new().expect("a folder");
-        let store = RecordStore::for_cases(folder.path(), "s", 100);
-        let (last, first) = records.split_last().expect("some");
-        store.keep_rows_at_hand();
-        for record in first {
-            store.write(record).expect("written");
-        }
-        let mut rows = store.take_rows_at_hand().expect("asked for");
-        store.write(last).expect("written");
-        let again = RecordStore::for_cases(folder.path(), "s", 100);
-        for record in &records {
-            let of = again.entry(&record.case).expect("a record").rows();
-            let read = tidy::rows_of("s", &again.kept(&record.case).expect("whole"));
-            let at_hand = rows.packed(of).and_then(|member| unpacked(&member));
-            assert_eq!(at_hand, (record != last).then_some(read), "none are made before or after");
         }
     }
 }

@@ -20,7 +20,7 @@ thread_local! {
 ///
 /// # Errors
 /// Never for bytes in memory; the packer's own otherwise.
-pub(crate) fn deflate(text: &[u8], into: &mut Vec<u8>) -> io::Result<()> {
+pub fn deflate(text: &[u8], into: &mut Vec<u8>) -> io::Result<()> {
     COMPRESSOR.with_borrow_mut(|compressor| {
         compressor.reset();
         let mut rest = text;
@@ -38,7 +38,7 @@ pub(crate) fn deflate(text: &[u8], into: &mut Vec<u8>) -> io::Result<()> {
 }
 
 /// The text of packed bytes, which are all of them; none where they are damaged, or more or less than `length`.
-pub(crate) fn inflate(packed: &[u8], length: usize) -> Option<Vec<u8>> {
+pub fn inflate(packed: &[u8], length: usize) -> Option<Vec<u8>> {
     if length > RATIO.saturating_mul(packed.len()) {
         return None;
     }

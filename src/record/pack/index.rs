@@ -14,7 +14,7 @@ const LOOK: u64 = 1 << 20;
 
 /// Where a member lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Place {
+pub struct Place {
     /// Number of its pack.
     pub pack: u32,
     /// First byte in it.
@@ -72,7 +72,7 @@ impl fmt::Display for Damage {
 
 /// The members of the packs of a folder.
 #[derive(Debug, Default)]
-pub(crate) struct Index {
+pub struct Index {
     packs: Vec<PathBuf>,
     /// How far each pack was read.
     ends: Vec<u64>,
@@ -87,7 +87,7 @@ pub(crate) struct Index {
 }
 
 /// Reads members, each pack opened once.
-pub(crate) struct Reader<'a> {
+pub struct Reader<'a> {
     index: &'a Index,
     files: HashMap<u32, File>,
 }

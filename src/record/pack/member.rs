@@ -8,7 +8,7 @@ const START: [u8; 16] = [0x1f, 0x8b, 8, 4, 0, 0, 0, 0, 0, 0xff, FIELD + 4, 0, b'
 /// Length of what the subfield holds.
 const FIELD: u8 = 33;
 /// Length of a header.
-pub(crate) const HEADER: usize = START.len() + FIELD as usize;
+pub const HEADER: usize = START.len() + FIELD as usize;
 /// What follows the compressed text: its checksum and its length.
 const TRAILER: usize = 8;
 /// Longest text of a member, bytes: more is no record but an attack.
@@ -16,7 +16,7 @@ const MOST_TEXT: u32 = 1 << 30;
 
 /// What a member holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Kind {
+pub enum Kind {
     /// A record of a case that came to its end, and its wall times.
     Record,
     /// That of a case that failed.
@@ -52,7 +52,7 @@ impl Kind {
 
 /// What the header of a member says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Header {
+pub struct Header {
     /// What it holds.
     pub kind: Kind,
     /// Count of the runs into the store: of two members of a case the one with the higher count is the newer.
@@ -102,7 +102,7 @@ impl Header {
 ///
 /// # Errors
 /// When the text is longer than a member may be.
-pub(crate) fn packed(mut header: Header, text: &[u8]) -> std::io::Result<Vec<u8>> {
+pub fn packed(mut header: Header, text: &[u8]) -> std::io::Result<Vec<u8>> {
     let mut member = vec![0; HEADER];
     deflate(text, &mut member)?;
     member.extend(crc32fast::hash(text).to_le_bytes());
@@ -114,7 +114,7 @@ pub(crate) fn packed(mut header: Header, text: &[u8]) -> std::io::Result<Vec<u8>
 }
 
 /// The text of a whole member; none where it was damaged.
-pub(crate) fn unpacked(member: &[u8]) -> Option<String> {
+pub fn unpacked(member: &[u8]) -> Option<String> {
     let (packed, trailer) =
         member.strip_prefix(&START)?.get(usize::from(FIELD)..)?.split_last_chunk::<TRAILER>()?;
     let half = |at: usize| trailer[at..at + 4].try_into().ok().map(u32::from_le_bytes);
@@ -124,7 +124,7 @@ pub(crate) fn unpacked(member: &[u8]) -> Option<String> {
 }
 
 /// The place of the next header in some bytes.
-pub(crate) fn next_start(bytes: &[u8]) -> Option<usize> {
+pub fn next_start(bytes: &[u8]) -> Option<usize> {
     bytes.windows(START.len()).position(|window| window == START)
 }
 

@@ -9,12 +9,12 @@
 //! began it. A member is written in one go behind the last one: a writer that ends at any moment leaves whole members
 //! and at most one cut one at the end, which readers leave out and name.
 
-pub(crate) mod deflate;
-pub(crate) mod index;
-pub(crate) mod member;
-pub(crate) mod writer;
+pub mod deflate;
+pub mod index;
+pub mod member;
+pub mod writer;
 
 /// Ending of a pack's name.
-pub(crate) const ENDING: &str = ".jsonl.gz";
+pub const ENDING: &str = ".jsonl.gz";
 /// Folder of the packs within that of a study's results.
-pub(crate) const FOLDER: &str = "records";
+pub const FOLDER: &str = "records";

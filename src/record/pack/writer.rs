@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// A pack that is locked for this writer.
 #[derive(Debug)]
-pub(crate) struct Writer {
+pub struct Writer {
     file: File,
     path: PathBuf,
     number: u32,

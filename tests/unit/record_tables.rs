@@ -1,0 +1,168 @@
+//! Tables of records, by runs of small studies.
+
+use crate::campaign::runner::records_of;
+use crate::record::Record;
+use crate::record::csv::long_tables::{LongTable, columns_csv};
+use crate::record::csv::machines_table::MachinesTable;
+use crate::record::csv::packed_table::{RowsOf, packed_rows};
+use crate::record::csv::rows_at_hand::RowsAtHand;
+use crate::record::csv::tidy;
+use crate::record::csv::tidy::{columns, header_line, rows_of};
+use crate::record::machines::Machine;
+use crate::record::pack::member::unpacked;
+use crate::record::store::RecordStore;
+use std::fs;
+
+#[test]
+fn every_machine_and_build_has_its_row_with_its_cases() {
+    let mut records = records_of(
+        "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
+         method = [\"MPM\"]\nintegrator = [\"implicit\"]\ncells = [2, 3, 4, 5]\n",
+    );
+    let other = Machine { node: "node-7".to_owned(), processor: "Another, 3 GHz".to_owned() };
+    records[1].wall[0].machine = Some(other);
+    records[2].provenance.compiler = "rustc 0.0.0".to_owned();
+    let mut table = MachinesTable::default();
+    for record in &records {
+        table.add(record);
+    }
+    let text = table.to_csv().expect("a table");
+    let rows: Vec<csv::StringRecord> =
+        csv::Reader::from_reader(text.as_bytes()).records().map(|row| row.expect("a row")).collect();
+    let cases: Vec<&str> = rows.iter().map(|row| &row[9]).collect();
+    assert_eq!((rows.len(), cases.iter().filter(|count| **count == "2").count()), (3, 1), "{text}");
+    let node = rows.iter().find(|row| &row[0] == "node-7").expect("a row");
+    assert_eq!((&node[1], &node[9]), ("Another, 3 GHz", "1"));
+    assert!(rows.iter().any(|row| &row[6] == "rustc 0.0.0" && row[0] == Machine::this().node));
+}
+
+const STUDY: &str = "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
+                     method = [\"MPM\"]\nintegrator = [\"implicit\"]\ncells = [3]\npoisson_ratio = []\n";
+
+fn table(table: LongTable, records: &[Record]) -> String {
+    let mut bytes = table.header_line().into_bytes();
+    for record in records {
+        table.write_rows(&mut bytes, record).expect("a table");
+    }
+    String::from_utf8(bytes).expect("words")
+}
+
+fn rows(text: &str) -> Vec<csv::StringRecord> {
+    csv::Reader::from_reader(text.as_bytes()).records().map(|row| row.expect("a row")).collect()
+}
+
+#[test]
+fn every_place_of_every_output_has_a_row_and_every_column_a_meaning() {
+    let records = records_of(&STUDY.replace("poisson_ratio = []\n", "poissons_ratio = [0.1, 0.4]\n"));
+    let profiles = rows(&table(LongTable::Profiles, &records));
+    // Two cases of 6 points, 3 centres and 4 nodes.
+    assert_eq!(profiles.len(), 2 * (6 + 3 + 4));
+    let snapshot = &records[0].snapshots[0];
+    assert_eq!(profiles[0][6].parse::<f64>().ok(), Some(snapshot.points.pressure[0]));
+    assert_eq!(rows(&table(LongTable::History, &records)).len(), 2 * records[0].history.len());
+    let meanings = rows(&columns_csv().expect("a table"));
+    for column in tidy::columns() {
+        let found = meanings.iter().filter(|row| row[0].is_empty() && &row[1] == column).count();
+        assert_eq!(found, 1, "{column}");
+    }
+    assert!(meanings.iter().all(|row| !row[3].is_empty()));
+    let modulus = meanings.iter().find(|row| &row[1] == "youngs_modulus").expect("a row");
+    assert_eq!(&modulus[2], "Pa");
+}
+
+#[test]
+fn what_is_swept_tells_the_rows_apart() {
+    let records = records_of(&STUDY.replace("poisson_ratio = []\n", "poissons_ratio = [0.1, 0.4]\n"));
+    let all: String = records.iter().map(|one| tidy::rows_of("s", one)).collect();
+    let table = tidy::header_line() + &all;
+    let place = |name: &str| tidy::columns().iter().position(|column| *column == name).expect("a column");
+    let all = rows(&table);
+    let values: std::collections::BTreeSet<&str> =
+        all.iter().map(|row| &row[place("poissons_ratio")]).collect();
+    assert_eq!(values.into_iter().collect::<Vec<_>>(), ["0.1", "0.4"]);
+    let row = &all[0];
+    assert_eq!((&row[place("scene")], &row[place("task")]), ("terzaghi", "solve"));
+    assert_eq!(row[place("cell_size")].parse::<f64>().ok(), Some(1.0 / 3.0));
+    assert!(row[place("wall_seconds")].parse::<f64>().is_ok_and(|seconds| seconds > 0.0));
+    let error = &records[0].errors[0];
+    assert_eq!(row[place("absolute_error")].parse::<f64>().ok(), Some(error.absolute));
+    assert_eq!(row[place("value")].parse::<f64>().ok(), Some(error.value));
+}
+
+#[test]
+fn rows_are_what_the_usual_writer_makes_of_the_same_fields() {
+    let mut records = records_of(
+        "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1, 0.2]\n[[sweep]]\n\
+         method = [\"GIMP-SRI-patch\", { basis = \"hat\", strain = \"cmpm\", pressure = \"sri\", recovery = \"patch\" }]\n\
+         integrator = [\"implicit\"]\ncells = [2]\n",
+    );
+    records[1].errors.clear();
+    records[1].measures.clear();
+    for (record, rows) in records.iter().zip([2 * 56, 1]) {
+        let text = header_line() + &rows_of("a \"b\", c", record);
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let read: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
+        assert!(read.len() <= rows && !read.is_empty(), "{} rows", read.len());
+        let mut again = csv::Writer::from_writer(Vec::new());
+        again.write_record(columns()).expect("in memory");
+        for row in &read {
+            again.write_record(row).expect("in memory");
+        }
+        assert_eq!(String::from_utf8(again.into_inner().expect("bytes")).expect("text"), text);
+        let names = columns();
+        let at =
+            |row: usize, name: &str| &read[row][names.iter().position(|one| *one == name).expect("a column")];
+        assert_eq!((at(0, "study"), at(0, "scene")), ("a \"b\", c", "terzaghi"));
+        if let Some(first) = record.errors.first() {
+            assert_eq!(read.len(), record.errors.len() + record.measures.len());
+            assert_eq!(at(0, "value").parse(), Ok(first.value));
+            assert_eq!(at(0, "absolute_error").parse(), Ok(first.absolute));
+        } else {
+            assert_eq!([at(0, "quantity"), at(0, "absolute_error")], ["", ""]);
+        }
+    }
+}
+
+#[test]
+fn rows_come_back_by_what_they_are_of_and_leave_no_file() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let study = folder.path().join("study");
+    let mut rows = RowsAtHand::in_folder(&study).expect("a file");
+    let of = |case, generation| RowsOf { case, generation, program: 1, build: 2 };
+    for (of, text) in [(of(1, 1), "a,1\n"), (of(2, 1), "b,2\nb,3\n"), (of(1, 2), "a,4\n")] {
+        rows.keep(of, &packed_rows(of, text).expect("packed")).expect("kept");
+    }
+    let mut text = |of| rows.packed(of).and_then(|member| unpacked(&member));
+    assert_eq!(text(of(2, 1)).as_deref(), Some("b,2\nb,3\n"));
+    assert_eq!(text(of(1, 2)).as_deref(), Some("a,4\n"));
+    assert_eq!(
+        [text(of(3, 1)), text(of(2, 2)), text(of(1, 1))],
+        [None, None, None],
+        "another case, another run"
+    );
+    drop(rows);
+    assert_eq!(fs::read_dir(&study).expect("a folder").count(), 0);
+}
+#[test]
+fn rows_at_hand_are_those_of_the_records_as_they_are_read_back() {
+    let records = records_of(
+        "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
+         method = [\"MPM\", \"GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = [2, 3]\n",
+    );
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let store = RecordStore::for_cases(folder.path(), "s", 100);
+    let (last, first) = records.split_last().expect("some");
+    store.keep_rows_at_hand();
+    for record in first {
+        store.write(record).expect("written");
+    }
+    let mut rows = store.take_rows_at_hand().expect("asked for");
+    store.write(last).expect("written");
+    let again = RecordStore::for_cases(folder.path(), "s", 100);
+    for record in &records {
+        let of = again.entry(&record.case).expect("a record").rows();
+        let read = tidy::rows_of("s", &again.kept(&record.case).expect("whole"));
+        let at_hand = rows.packed(of).and_then(|member| unpacked(&member));
+        assert_eq!(at_hand, (record != last).then_some(read), "none are made before or after");
+    }
+}
