@@ -89,6 +89,9 @@ fn remove_stale_once(folder: &Path) {
 }
 
 /// The same, with what is done to the file before it takes its name.
+///
+/// # Errors
+/// [`StoreError`] where a file cannot be written, finished or renamed.
 pub fn write_renamed(
     path: &Path,
     content: &[u8],

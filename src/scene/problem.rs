@@ -79,6 +79,18 @@ impl SceneProblem {
     }
 }
 
+impl From<Problem<1>> for SceneProblem {
+    fn from(problem: Problem<1>) -> Self {
+        Self::Column(problem)
+    }
+}
+
+impl From<Problem<2>> for SceneProblem {
+    fn from(problem: Problem<2>) -> Self {
+        Self::Plane(problem)
+    }
+}
+
 /// The scene's problem on `cells` cells over the height with `points_per_cell` points each, in the
 /// dimension that is asked for.
 ///

@@ -32,6 +32,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 OUTCOMES = HERE / "outcomes.csv"
 REPORT = HERE / "OUTCOME.md"
+# The test program of what stands beside the solver's formulas.
+UNITS = "oedometer_solver"
 # What is copied: folders and files that the program, the benches and the tests are made of.
 PARTS = ["src", "records", "solver", "studies", "golden", "benches", "tests", "examples", "docs", "python"]
 FILES = ["Cargo.toml", "Cargo.lock", "build.rs", "rust-toolchain.toml", "README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
@@ -239,6 +241,7 @@ def target_of(tree, name):
     pattern = re.compile(rf"\bfn {re.escape(name)}\b")
     own = [(path.stem, path) for path in (tree / "tests").glob("*.rs")]
     own += [("cli", path) for path in (tree / "tests/cli").glob("*.rs")]
+    own += [("runs", path) for path in (tree / "tests/solver").glob("*.rs")]
     for target, path in sorted(own):
         if pattern.search(path.read_text()):
             return target
@@ -262,10 +265,10 @@ class Tests:
         self.sound = set()
 
     def build(self):
-        """Builds what is needed, and gives each target its programs: two where it is the libraries."""
+        """Builds what is needed, and gives each target its programs: one a library where it is their own tests."""
         targets = set(self.target.values())
         command = ["cargo", "test", "--no-run", "--locked", "--message-format", "json-render-diagnostics", "--target-dir", "target/tests"]
-        command += ["--lib"] if None in targets else []
+        command += ["--lib", "--test", UNITS] if None in targets else []
         for target in sorted(target for target in targets if target):
             command += ["--test", target]
         environment = {**os.environ, "CARGO_INCREMENTAL": "0", "CARGO_PROFILE_DEV_DEBUG": "0"}
@@ -274,7 +277,7 @@ class Tests:
         for line in done.stdout.splitlines():
             message = json.loads(line)
             if message.get("reason") == "compiler-artifact" and message["profile"]["test"] and message["executable"]:
-                is_library = "lib" in message["target"]["kind"]
+                is_library = "lib" in message["target"]["kind"] or message["target"]["name"] == UNITS
                 programs.setdefault(None if is_library else message["target"]["name"], []).append(message["executable"])
         return programs
 

@@ -25,6 +25,9 @@ const POOR: f64 = 0.03;
 
 /// Fits `|C h^p − F|` to (size, error) points; five levels at least, for one more free choice
 /// (where the sign changes) is made than numbers are fitted.
+///
+/// # Errors
+/// [`Undefined`] where there are fewer, or one of them cannot be used.
 pub fn fit_cancelling(points: &[(f64, f64)]) -> Result<CancellingFit, Undefined> {
     let levels = points.len();
     if levels < 5 {

@@ -172,6 +172,9 @@ fn order_of(differences: f64, r21: f64, r32: f64) -> Option<f64> {
 }
 
 /// Refuses sizes and values that are no numbers.
+///
+/// # Errors
+/// [`Undefined`] with the first of them.
 pub fn check(grids: &[(f64, f64)]) -> Result<(), Undefined> {
     for (index, (size, value)) in grids.iter().enumerate() {
         if !size.is_normal() || *size < 0.0 {

@@ -207,7 +207,3 @@ impl DynamicColumn {
         Ok(Accuracy { terms: snapshot.amplitudes.len(), tail_bound: snapshot.tail / self.parameters.load })
     }
 }
-
-#[cfg(test)]
-#[path = "../../../tests/unit/exact_dynamic_column.rs"]
-mod tests;

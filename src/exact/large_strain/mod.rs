@@ -276,5 +276,25 @@ impl Attempt {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/unit/exact_large_strain.rs"]
-mod tests;
+mod tests {
+    use super::*;
+    use crate::soil::continuity::Continuity;
+    use crate::soil::law::Law;
+
+    #[test]
+    fn front_is_handed_over_smoothly() {
+        let column = ColumnParameters { load: 2e5, height: 2.0, ..ColumnParameters::default() };
+        for continuity in Continuity::ALL {
+            let steep =
+                LargeStrainModel { law: Law::PorosityDependent, continuity, water: Water::Compressible };
+            let general = LargeStrain::new(&column, steep, &[0.05]).unwrap();
+            let end = general.front.as_ref().expect("a load at once has a front").valid_until();
+            for zeta in [0.001, 0.02, 0.1, 0.4, 1.0] {
+                let before = general.fields(end, zeta).unwrap();
+                let after = general.fields(end * (1.0 + 1e-14), zeta).unwrap();
+                assert!((before.pressure - after.pressure).abs() < 1e-9 * column.load);
+                assert!((before.displacement - after.displacement).abs() < 1e-10);
+            }
+        }
+    }
+}

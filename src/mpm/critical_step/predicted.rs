@@ -140,9 +140,9 @@ mod tests {
             let column = Column { points, ..Column::default() };
             let method = Method::named(name).expect("a known method");
             let problem =
-                column_problem::<1>(SceneKind::Terzaghi, &column, &Material::default(), method, 30, 2)
+                column_problem::<1>(SceneKind::Terzaghi, &column, &Material::default(), method, 14, 2)
                     .expect("the seed column");
-            let whole = predict(&problem, &settings, 30).critical_step;
+            let whole = predict(&problem, &settings, 14).critical_step;
             let cut = predict(&problem, &settings, FEW_CELLS).critical_step;
             assert!((cut / whole - 1.0).abs() < 0.01, "{name} {filling}: {cut} for {whole}");
         }

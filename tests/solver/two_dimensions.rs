@@ -8,7 +8,8 @@ use crate::mpm::method::{Basis, Memory, Method};
 use crate::mpm::run::integrator::IntegratorKind;
 use crate::mpm::run::results::outcome::{Outcome, RunStatus};
 use crate::mpm::run::results::snapshot::Snapshot;
-use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};
+use crate::mpm::run::{Kernel, Schedule, TimeStepRule};
+use crate::run;
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::scene::problem::column_problem;
@@ -34,7 +35,7 @@ fn both(scene: SceneKind, method: Method, load: f64, end: f64, drag: Drag) -> (O
     };
     let narrow = column_problem::<1>(scene, &column, &soil, method, CELLS, PER_CELL).expect("the seed");
     let wide = column_problem::<2>(scene, &plane, &soil, method, CELLS, PER_CELL).expect("the seed");
-    (run(narrow, &schedule, &|_, _| true), run(wide, &schedule, &|_, _| true))
+    (run(narrow, &schedule), run(wide, &schedule))
 }
 
 /// Largest difference of two fields over the largest value of the first, point by point: the plane
@@ -131,7 +132,7 @@ fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
                     integrator: IntegratorKind::Explicit,
                     formulation: IntegratorKind::Explicit.default_formulation(),
                 };
-                run(layer(name, Base::Rough), &schedule, &|_, _| true)
+                run(layer(name, Base::Rough), &schedule)
             };
             let (fast, plain) = (run_by(Kernel::Fastest), run_by(Kernel::PointWise));
             assert_eq!(fast.status, RunStatus::Ok, "{name}");
@@ -170,7 +171,7 @@ fn the_predicted_step_of_a_plane_parts_stable_from_unstable_runs() {
                     integrator: IntegratorKind::Explicit,
                     formulation: IntegratorKind::Explicit.default_formulation(),
                 };
-                let outcome = run(layer(name, Base::Smooth), &schedule, &|_, _| true);
+                let outcome = run(layer(name, Base::Smooth), &schedule);
                 let limit = outcome.step_sizes.predicted_critical;
                 assert_eq!(
                     outcome.status == RunStatus::Ok,

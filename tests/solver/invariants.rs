@@ -5,7 +5,8 @@ use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::method::{Configuration, Method};
 use crate::mpm::run::results::outcome::{Outcome, RunStatus};
 use crate::mpm::run::results::snapshot::Snapshot;
-use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};
+use crate::mpm::run::{Kernel, Schedule, TimeStepRule};
+use crate::run;
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::scene::problem::column_problem;
@@ -70,7 +71,7 @@ impl Setup {
             settings: self.settings,
             kernel: self.kernel,
         };
-        let outcome = run(problem, &schedule, &|_, _| true);
+        let outcome = run(problem, &schedule);
         assert_eq!(outcome.status, RunStatus::Ok, "{self:?}");
         assert_eq!(outcome.snapshots.len(), self.time_factors.len());
         outcome

@@ -1,7 +1,9 @@
 //! The dynamic column against 20-digit values and its own limits.
 #![allow(clippy::print_stderr, reason = "a test tells how far it was off")]
 
-use super::*;
+use crate::exact::dynamic_column::{DynamicColumn, DynamicFields, Start};
+use crate::exact::field_values::FieldValues;
+use crate::exact::parameters::ColumnParameters;
 use crate::exact::single_mode::SingleMode;
 use crate::exact::terzaghi::Terzaghi;
 

@@ -1,0 +1,89 @@
+//! Kernels against each other, and runs at their limits.
+
+use crate::mpm::body::Problem;
+use crate::mpm::explicit::scheme::Scheme;
+use crate::mpm::explicit::{Drag, ExplicitSettings};
+use crate::mpm::method::Method;
+use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use crate::mpm::run::results::outcome::{FailureKind, RunStatus};
+use crate::mpm::run::{Kernel, Schedule, TimeStepRule};
+use crate::run;
+use crate::scene::SceneKind;
+use crate::scene::column::Column;
+use crate::scene::problem::column_problem;
+use crate::soil::material::Material;
+
+fn problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {
+    let method = Method::named(method).expect("a known method");
+    let (column, soil) = (Column::default(), Material::default());
+    column_problem(SceneKind::SingleMode, &column, &soil, method, cells, per_cell).expect("the seed column")
+}
+
+fn schedule(kernel: Kernel, settings: ExplicitSettings, end: f64) -> Schedule {
+    let history = vec![0.25 * end, 0.5 * end];
+    Schedule {
+        outputs: vec![0.0, 0.4 * end, end],
+        history,
+        rule: TimeStepRule::Stable(0.6),
+        settings,
+        kernel,
+        integrator: IntegratorKind::Explicit,
+        critical_step: None,
+        formulation: Formulation::VW,
+    }
+}
+
+#[test]
+fn the_assembled_column_is_the_point_wise_step_to_round_off() {
+    for name in ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"] {
+        for (scheme, drag, flip, mapping_back) in [
+            (Scheme::ForwardEuler, Drag::Explicit, 1.0, true),
+            (Scheme::ForwardEuler, Drag::Implicit, 1.0, false),
+            (Scheme::ForwardEuler, Drag::Implicit, 0.99, true),
+            (Scheme::Leapfrog, Drag::Centred, 1.0, true),
+        ] {
+            let settings =
+                ExplicitSettings { scheme, drag, flip, mapping_back, ..ExplicitSettings::default() };
+            let end = 0.02;
+            let fast = run(problem(name, 7, 3), &schedule(Kernel::Fastest, settings, end));
+            let plain = run(problem(name, 7, 3), &schedule(Kernel::PointWise, settings, end));
+            assert_eq!(fast.counters, plain.counters);
+            assert_eq!(fast.status, RunStatus::Ok);
+            let (fast, plain) = (fast.snapshots[2].clone(), plain.snapshots[2].clone());
+            for (a, b) in [
+                (&fast.points.pressure, &plain.points.pressure),
+                (&fast.points.effective_stress, &plain.points.effective_stress),
+                (&fast.points.displacement, &plain.points.displacement),
+                (&fast.nodes.displacement, &plain.nodes.displacement),
+                (&vec![fast.settlement], &vec![plain.settlement]),
+                (&vec![fast.totals.surface_flux], &vec![plain.totals.surface_flux]),
+            ] {
+                let scale = b.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
+                for (x, y) in a.iter().zip(b) {
+                    assert!((x - y).abs() <= 1e-10 * scale, "{name} {settings:?}: {x} for {y}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_step_beyond_the_limit_ends_with_a_name_and_below_it_runs() {
+    for (share, stable) in [(0.97, true), (1.03, false)] {
+        for name in ["GIMP", "GIMP-SRI-patch", "GC-SRI-patch"] {
+            for mapping_back in [true, false] {
+                let settings = ExplicitSettings { mapping_back, ..ExplicitSettings::default() };
+                let mut schedule = schedule(Kernel::Fastest, settings, 0.3);
+                schedule.rule = TimeStepRule::Stable(share);
+                let outcome = run(problem(name, 8, 2), &schedule);
+                match outcome.status {
+                    RunStatus::Ok => assert!(stable, "{name} {share} {mapping_back}"),
+                    RunStatus::Failed(failure) => {
+                        assert!(!stable, "{name} {share} {mapping_back}");
+                        assert_eq!(failure.kind, FailureKind::Unstable);
+                    }
+                }
+            }
+        }
+    }
+}
