@@ -16,7 +16,8 @@
 //! | `record/` | what is kept of a case, and its store on disk |
 //! | `measure/` | from an outcome to its record: errors, balances, oscillation, checks |
 //! | `study/` | study files: keys, sweeps, expectations, every complaint at its place |
-//! | `import/` | external results: mapping files and tables |
+//! | `formats/` | files of other programs, each format read into one form |
+//! | `import/` | external results: mapping files, and tables and frames turned into samples |
 //! | `foreign/` | attached solvers: what they are told, how they are run and ended, how their results are taken |
 //! | `campaign/` | runs the cases of a study: parallel, resumable, by shards |
 //! | `golden/` | accepted values, their tolerances, and what changed |
@@ -26,7 +27,8 @@
 //! | [`api`] | the door for other languages: names and lists in, lists out |
 //!
 //! `elementary`, `wording`, `sorting`, `soil/`, [`exact`], `mpm/` and `scene/` are a crate of their own, `oedometer-solver`
-//! (`src/solver.rs`), compiled with every optimisation; `convergence/`, `case/`, `record/` and `measure/` are another,
+//! (`src/solver.rs`), compiled with every optimisation; `convergence/`, `case/`, `record/`, `measure/` and `formats/` are
+//! another,
 //! `oedometer-records` (`src/records.rs`), with some; the rest only leads there and has none.
 //!
 //! # The equations
@@ -128,7 +130,7 @@ mod render;
 mod schema;
 mod study;
 
-use oedometer_records::{case, convergence, measure, record};
+use oedometer_records::{case, convergence, formats, measure, record};
 /// Exact solutions, by one door:
 ///
 /// ```

@@ -1,6 +1,7 @@
-//! Cases of `oedometer`, what is measured and kept of them, and how series of errors converge.
+//! Cases of `oedometer`, what is measured and kept of them, how series of errors converge, and files of other programs.
 //!
-//! A crate of its own for the compiler alone: records are written and read by the thousand, so this much is compiled with
+//! A crate of its own for the compiler alone: records are written and read by the thousand and other
+//! programs' files have a million points, so this much is compiled with
 //! some optimisation, and what only leads here with none. The map of all is the front page of `oedometer`, `src/lib.rs`.
 
 // Tests may call the platform's functions: a second opinion there.
@@ -8,6 +9,7 @@
 
 pub mod case;
 pub mod convergence;
+pub mod formats;
 pub mod measure;
 pub mod record;
 

@@ -5,7 +5,7 @@ use crate::case::Case;
 use crate::case::quantity::Sample;
 use crate::cli::commands::score::results::{Held, Results};
 use crate::cli::commands::score::{Asked, study_of};
-use crate::import::import_error::ImportError;
+use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::{RawRow, SolvedBody};
 use crate::import::rows::Rows;

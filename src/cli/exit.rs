@@ -1,7 +1,7 @@
 //! Exit codes, decided in one place.
 
 use crate::exact::exact_error::ExactError;
-use crate::import::import_error::ImportError;
+use crate::formats::import_error::ImportError;
 use crate::study::diagnostic::StudyError;
 
 /// The exit codes, as `--help` tells them.

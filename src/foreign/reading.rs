@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::case::quantity::Sample;
-use crate::import::import_error::ImportError;
+use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::Preset;
 use crate::import::raw_row::SolvedBody;

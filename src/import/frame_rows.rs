@@ -1,8 +1,8 @@
 //! Rows of a state in arrays: columns found among arrays and coordinates, rows chosen, displacements formed.
 
-use crate::import::formats::frame::{Array, Association, Frame};
-use crate::import::formats::hints::program_of;
-use crate::import::import_error::ImportError;
+use crate::formats::frame::{Array, Association, Frame};
+use crate::formats::hints::program_of;
+use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
 use crate::import::rows::Rows;
@@ -416,9 +416,7 @@ impl Columns<'_> {
     fn count(&self, frame: &Frame) -> usize {
         match (self.pressure.or(self.displacement), self.on) {
             (Some(Source::Array(array, _)), _) if array.on != Association::Whole => array.tuples,
-            (_, Association::Cells) => {
-                frame.cells.as_ref().map_or(0, crate::import::formats::frame::Cells::len)
-            }
+            (_, Association::Cells) => frame.cells.as_ref().map_or(0, crate::formats::frame::Cells::count),
             _ if !frame.coordinates.is_empty() => frame.coordinates.len(),
             _ => match self.y {
                 Source::Array(array, _) => array.tuples,
@@ -434,7 +432,7 @@ impl Columns<'_> {
                 array.values.get(tuple * array.components + component).copied().unwrap_or(f64::NAN)
             }
             Source::Coordinates(component) => match (self.on, &frame.cells) {
-                (Association::Cells, Some(cells)) if row < cells.len() => {
+                (Association::Cells, Some(cells)) if row < cells.count() => {
                     let corners = cells.corners(row);
                     let sum: f64 =
                         corners.iter().map(|point| frame.coordinates[*point as usize][component]).sum();

@@ -3,9 +3,7 @@
 //! Programs differ in units, signs, the origins of their coordinates and the place where they keep
 //! the time; a mapping file declares all of these, and nothing is guessed from the numbers.
 
-pub mod formats;
 pub mod frame_rows;
-pub mod import_error;
 pub mod mapping;
 pub mod opened_csv;
 pub mod raw_row;

@@ -1,6 +1,6 @@
 //! A table of somebody else's, opened: its header, and what is told of it by its name.
 
-use crate::import::import_error::ImportError;
+use crate::formats::import_error::ImportError;
 use crate::import::mapping::TableLayout;
 use std::fs::File;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! One row as it stands in a file, and what it is in SI with the signs of this program.
 
-use crate::import::import_error::ImportError;
+use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::mapping_parts::StressKind;
 use crate::import::mapping::units::{HorizontalSense, StatedPlace, StressSign, StressUnit, VerticalSense};

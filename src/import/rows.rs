@@ -2,7 +2,7 @@
 //!
 //! A million rows take some fifty bytes each here, and twice that as a list of rows.
 
-use crate::import::import_error::ImportError;
+use crate::formats::import_error::ImportError;
 use crate::import::raw_row::SampleRow;
 use crate::import::table::SampledState;
 

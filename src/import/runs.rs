@@ -1,11 +1,11 @@
 //! From what a user names to runs: files found, their states grouped by mesh, times and rows read.
 
 use crate::case::quantity::Sample;
-use crate::import::formats::frame::{Association, Frame, Wanted};
-use crate::import::formats::hints::collection_of;
-use crate::import::formats::steps::{Kind, Step, frame_of, steps_of};
+use crate::formats::frame::{Association, Frame, Wanted};
+use crate::formats::hints::collection_of;
+use crate::formats::import_error::ImportError;
+use crate::formats::steps::{Kind, Step, frame_of, steps_of};
 use crate::import::frame_rows::{FrameReader, Start, cells_over_height, wanted_names};
-use crate::import::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::SolvedBody;
 use crate::import::rows::Rows;

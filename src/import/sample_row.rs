@@ -1,6 +1,6 @@
 //! One file's rows in SI, with the signs of this program.
 
-use crate::import::import_error::ImportError;
+use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::opened_csv::{CsvTable, line_of};
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};

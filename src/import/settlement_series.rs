@@ -1,6 +1,6 @@
 //! A settlement curve in a file of its own.
 
-use crate::import::import_error::ImportError;
+use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::mapping_parts::SettlementSeries;
 use crate::import::mapping::units::VerticalSense;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folders from the ground up; a folder may import what its row names, and nothing else.
-const MAY_IMPORT: [(&str, &str); 18] = [
+const MAY_IMPORT: [(&str, &str); 19] = [
     ("soil", "elementary wording"),
     ("exact", "elementary soil wording"),
     ("convergence", "elementary sorting wording"),
@@ -15,8 +15,9 @@ const MAY_IMPORT: [(&str, &str); 18] = [
     ("record", "case mpm wording"),
     ("measure", "case elementary exact mpm record scene soil wording"),
     ("study", "case convergence elementary exact mpm record scene soil wording"),
-    ("import", "case sorting study wording"),
-    ("foreign", "case elementary exact import measure mpm record scene soil study wording"),
+    ("formats", ""),
+    ("import", "case formats sorting study wording"),
+    ("foreign", "case elementary exact formats import measure mpm record scene soil study wording"),
     ("campaign", "case elementary exact foreign measure mpm record scene sorting study wording"),
     ("golden", "convergence elementary exact record sorting study"),
     (
@@ -27,9 +28,9 @@ const MAY_IMPORT: [(&str, &str); 18] = [
     ("schema", "foreign import record study"),
     (
         "cli",
-        "campaign case exact foreign golden import judge measure mpm record render scene schema soil sorting study wording",
+        "campaign case exact foreign formats golden import judge measure mpm record render scene schema soil sorting study wording",
     ),
-    ("api", "case cli convergence exact import judge scene sorting study"),
+    ("api", "case cli convergence exact formats import judge scene sorting study"),
 ];
 
 /// Every arrow of a source that its folder's row does not name; tests inside it may look anywhere.

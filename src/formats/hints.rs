@@ -1,6 +1,6 @@
 //! What to name instead, where a user named what cannot be scored: a folder, one step of many, files of another program.
 
-use crate::import::formats::frame::Frame;
+use crate::formats::frame::Frame;
 use std::path::{Path, PathBuf};
 
 /// Entries of a folder that are looked at.

@@ -1,7 +1,7 @@
 //! The payload of one `DataArray` of VTK's XML files: text, base64, appended, packed or not.
 
-use crate::import::formats::appended::{Appended, Raw};
-use crate::import::formats::bytes::{Budget, Scalar, base64, counts, decode_text_as, unzlib};
+use crate::formats::appended::{Appended, Raw};
+use crate::formats::bytes::{Budget, Scalar, base64, counts, decode_text_as, unzlib};
 use std::borrow::Cow;
 
 /// How a file keeps its data.
@@ -74,8 +74,8 @@ impl Payloads<'_> {
                     format!("an array begins at the byte {offset} of {there} appended ones: the file is cut")
                 };
                 match self.appended.ok_or("its data are appended, and nothing is")? {
-                    Appended::Raw(data) if offset <= data.len() => self.of_raw(data, offset, budget),
-                    Appended::Raw(data) => Err(beyond(data.len())),
+                    Appended::Raw(data) if offset <= data.count() => self.of_raw(data, offset, budget),
+                    Appended::Raw(data) => Err(beyond(data.count())),
                     Appended::Base64(data) => {
                         let data = data.get(offset..).ok_or_else(|| beyond(data.len()))?;
                         Ok(self.of_base64(data, budget)?.into())
@@ -96,7 +96,7 @@ impl Payloads<'_> {
         if !self.is_packed {
             return data.part(offset + width, first);
         }
-        let head = packed_head(first, width, data.len() - offset)?;
+        let head = packed_head(first, width, data.count() - offset)?;
         let header = self.sizes(&data.part(offset, head)?)?;
         let packed = data.part(offset + head, blocks_of(&header)?)?;
         Ok(unpacked(&header, &packed, budget)?.into())

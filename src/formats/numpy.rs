@@ -3,8 +3,8 @@
 //! Format: "NEP 1"; zip: PKWARE's APPNOTE, with the entries of 64 bits that `NumPy` writes. Objects that were pickled are
 //! programs and not read; they are skipped with a word.
 
-use crate::import::formats::bytes::{Budget, Scalar, inflate, short};
-use crate::import::formats::frame::{Array, Association, Frame, Wanted};
+use crate::formats::bytes::{Budget, Scalar, inflate, short};
+use crate::formats::frame::{Array, Association, Frame, Wanted};
 
 /// Reads an `.npz`.
 ///

@@ -31,7 +31,7 @@ pub enum Raw<'a> {
 
 impl<'a> Raw<'a> {
     /// How many there are.
-    pub fn len(self) -> usize {
+    pub fn count(self) -> usize {
         match self {
             Self::Bytes(bytes) => bytes.len(),
             Self::File(_, _, length) => length,
@@ -43,8 +43,8 @@ impl<'a> Raw<'a> {
     /// # Errors
     /// When there are fewer, or the file cannot be read.
     pub fn part(self, from: usize, length: usize) -> Result<Cow<'a, [u8]>, String> {
-        let Some(end) = from.checked_add(length).filter(|end| *end <= self.len()) else {
-            let there = self.len().saturating_sub(from);
+        let Some(end) = from.checked_add(length).filter(|end| *end <= self.count()) else {
+            let there = self.count().saturating_sub(from);
             return Err(format!("{length} bytes are declared and {there} are there: the file is cut"));
         };
         match self {
@@ -166,7 +166,7 @@ mod tests {
             match (appended, in_memory) {
                 (Some(Appended::Raw(on_disk)), Some(Appended::Raw(in_memory))) => {
                     assert!(matches!(on_disk, Raw::File(..)), "they stay there");
-                    assert_eq!(on_disk.len(), 200);
+                    assert_eq!(on_disk.count(), 200);
                     assert_eq!(on_disk.part(7, 50), in_memory.part(7, 50));
                     assert_eq!(on_disk.part(7, 50).expect("there")[0], 7);
                     for (from, length) in [(150, 51), (201, 0), (0, usize::MAX), (usize::MAX, 1)] {

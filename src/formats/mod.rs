@@ -10,6 +10,7 @@ pub mod hdf5;
 #[path = "without_hdf5.rs"]
 pub mod hdf5;
 pub mod hints;
+pub mod import_error;
 pub mod legacy_vtk;
 pub mod numpy;
 pub mod steps;
@@ -22,5 +23,5 @@ pub mod xdmf;
 pub mod xml;
 
 #[cfg(test)]
-#[path = "../../../tests/unit/import_formats.rs"]
+#[path = "../../tests/unit/formats.rs"]
 mod tests;

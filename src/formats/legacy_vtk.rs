@@ -2,9 +2,9 @@
 //!
 //! Format: "VTK Legacy Formats", docs.vtk.org; cells of versions up to 4 and from 5.1 on.
 
-use crate::import::formats::bytes::{Budget, Scalar, counts, number_of_word, short};
-use crate::import::formats::frame::{Array, Association, Cells, Frame, Wanted};
-use crate::import::formats::vtu::{is_time, kinds, places};
+use crate::formats::bytes::{Budget, Scalar, counts, number_of_word, short};
+use crate::formats::frame::{Array, Association, Cells, Frame, Wanted};
+use crate::formats::vtu::{is_time, kinds, places};
 
 /// A place in a file.
 struct Cursor<'a> {
@@ -62,7 +62,7 @@ pub fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
     if let Some((ends, connectivity)) = listed {
         let cells = Cells { types, ends, connectivity };
         cells.check(points)?;
-        frame.cells = (cells.len() > 0).then_some(cells);
+        frame.cells = (cells.count() > 0).then_some(cells);
     }
     Ok(frame)
 }

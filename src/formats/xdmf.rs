@@ -3,12 +3,12 @@
 //! Format: "XDMF Model and Format", xdmf.org; a state without places and cells has those of the state before it,
 //! which is what the references of meshio and `OpenGeoSys` mean.
 
-use crate::import::formats::bytes::{Budget, count, counts, numbers_of_text};
-use crate::import::formats::collections::{beside, time_of};
-use crate::import::formats::frame::{Array, Association, Cells, Frame, Wanted};
-use crate::import::formats::hdf5::Store;
-use crate::import::formats::vtu::places;
-use crate::import::formats::xml::{Element, tree_of};
+use crate::formats::bytes::{Budget, count, counts, numbers_of_text};
+use crate::formats::collections::{beside, time_of};
+use crate::formats::frame::{Array, Association, Cells, Frame, Wanted};
+use crate::formats::hdf5::Store;
+use crate::formats::vtu::places;
+use crate::formats::xml::{Element, tree_of};
 use std::path::{Path, PathBuf};
 
 /// Cells: name, code among mixed cells, points, type of VTK.

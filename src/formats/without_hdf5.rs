@@ -1,6 +1,6 @@
 //! What stands for HDF5 where this program was built without it.
 
-use crate::import::formats::frame::{Frame, Wanted};
+use crate::formats::frame::{Frame, Wanted};
 use std::path::Path;
 
 /// A file that could be opened: there is none.

@@ -4,12 +4,12 @@
 //! headers of 32 and 64 bits; both byte orders.
 
 #[cfg(test)]
-use crate::import::formats::appended::parted;
-use crate::import::formats::appended::{Appended, Opened};
-use crate::import::formats::bytes::{Budget, Scalar, as_count, count};
-use crate::import::formats::frame::{Array, Association, Cells, Frame, Wanted};
-use crate::import::formats::vtk_data::{Payloads, Place};
-use crate::import::formats::xml::attributes_of;
+use crate::formats::appended::parted;
+use crate::formats::appended::{Appended, Opened};
+use crate::formats::bytes::{Budget, Scalar, as_count, count};
+use crate::formats::frame::{Array, Association, Cells, Frame, Wanted};
+use crate::formats::vtk_data::{Payloads, Place};
+use crate::formats::xml::attributes_of;
 use quick_xml::Reader;
 use quick_xml::events::Event;
 use std::collections::BTreeMap;
@@ -205,7 +205,7 @@ impl Head<'_> {
         if let (Some(connectivity), Some(ends)) = (connectivity, ends) {
             let cells = Cells { types, ends, connectivity };
             cells.check(piece.points)?;
-            frame.cells = (cells.len() > 0).then_some(cells);
+            frame.cells = (cells.count() > 0).then_some(cells);
         }
         Ok(frame)
     }

@@ -52,7 +52,7 @@ pub struct Cells {
 
 impl Cells {
     /// How many there are.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.ends.len()
     }
 
@@ -80,7 +80,7 @@ impl Cells {
     /// Which of a number of points are corners of a cell.
     pub fn are_corners(&self, points: usize) -> Vec<bool> {
         let mut are_corners = vec![false; points];
-        for cell in 0..self.len() {
+        for cell in 0..self.count() {
             for corner in self.corners(cell) {
                 if let Some(is_corner) = are_corners.get_mut(*corner as usize) {
                     *is_corner = true;
@@ -150,7 +150,7 @@ impl Frame {
     /// Memory of its numbers, bytes.
     pub fn bytes(&self) -> u64 {
         let numbers: usize = self.arrays.iter().map(|array| array.values.len()).sum();
-        let of_cells = self.cells.as_ref().map_or(0, |cells| 9 * cells.len() + 4 * cells.connectivity.len());
+        let of_cells = self.cells.as_ref().map_or(0, |cells| 9 * cells.count() + 4 * cells.connectivity.len());
         (8 * numbers + 24 * self.coordinates.len() + of_cells) as u64
     }
 

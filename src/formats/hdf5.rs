@@ -1,7 +1,7 @@
 //! HDF5: data sets by their paths, states over times, and tables of records.
 
-use crate::import::formats::bytes::{Budget, Scalar};
-use crate::import::formats::frame::{Array, Association, Frame, Wanted};
+use crate::formats::bytes::{Budget, Scalar};
+use crate::formats::frame::{Array, Association, Frame, Wanted};
 use hdf5_pure::{Datatype, DatatypeByteOrder, File, Group};
 use std::path::Path;
 

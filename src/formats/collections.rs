@@ -1,6 +1,6 @@
 //! Files that name other files: PVD, `.vtm` of several blocks, and series in JSON.
 
-use crate::import::formats::xml::tree_of;
+use crate::formats::xml::tree_of;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -33,7 +33,7 @@ pub fn of_pvd(path: &Path, bytes: &[u8]) -> Result<Vec<Member>, String> {
     let root = tree_of(bytes)?;
     let mut sets = Vec::new();
     root.all("DataSet", &mut sets);
-    let member = |set: &&crate::import::formats::xml::Element| {
+    let member = |set: &&crate::formats::xml::Element| {
         let time = match set.attribute("timestep") {
             "" => None,
             typed => Some(time_of(typed)?),

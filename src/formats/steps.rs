@@ -1,12 +1,12 @@
 //! From a file to its states: what kind it is, which states it holds or names, and one of them read.
 
-use crate::import::formats::bytes::Budget;
-use crate::import::formats::collections::{Member, of_blocks, of_pvd, of_series};
-use crate::import::formats::frame::{Frame, Wanted};
-use crate::import::formats::hdf5::Store;
-use crate::import::formats::hints::of_folder;
-use crate::import::formats::{legacy_vtk, numpy, vtu, xdmf};
-use crate::import::import_error::ImportError;
+use crate::formats::bytes::Budget;
+use crate::formats::collections::{Member, of_blocks, of_pvd, of_series};
+use crate::formats::frame::{Frame, Wanted};
+use crate::formats::hdf5::Store;
+use crate::formats::hints::of_folder;
+use crate::formats::import_error::ImportError;
+use crate::formats::{legacy_vtk, numpy, vtu, xdmf};
 use std::collections::{HashMap, HashSet};
 use std::io::Read;
 use std::path::{Path, PathBuf};
