@@ -84,6 +84,7 @@ fn implicit_step<const C: usize>(bencher: Bencher, method: &str) {
         kernel: StepKernel::Fastest,
         integrator: IntegratorKind::Implicit,
         formulation: IntegratorKind::Implicit.default_formulation(),
+        threads: 1,
     };
     let plan = Plan::of(&problem, &schedule);
     let mut stepper = LinearStepper::new(Body::new(problem), &plan);

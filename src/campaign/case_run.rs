@@ -1,6 +1,6 @@
 //! Runs one case: from its inputs to its record.
 
-use crate::campaign::cpu_clock::thread_seconds;
+use crate::campaign::cpu_clock::{process_seconds, thread_seconds};
 use crate::campaign::deadline::Deadline;
 use crate::case::work_estimate::MOST_PROBE_STEPS;
 use crate::case::{Case, Task};
@@ -24,6 +24,28 @@ const HISTORY_POINTS: usize = 48;
 /// First time factor of the settlement curve.
 const HISTORY_START: f64 = 1e-3;
 
+/// What of the machine a case has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cores {
+    /// Threads that it may use. Results do not depend on it.
+    pub threads: usize,
+    /// Whether nothing else competes for the cores meanwhile.
+    pub alone: bool,
+}
+
+impl Cores {
+    /// One thread: other cases have the others, or the case is timed.
+    pub fn one(alone: bool) -> Self {
+        Self { threads: 1, alone }
+    }
+
+    /// All cores that the system gives this program, for a case that is alone.
+    pub fn all() -> Self {
+        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get);
+        Self { threads, alone: true }
+    }
+}
+
 /// Runs one case for so many seconds at most: what takes longer has failed, by that name.
 ///
 /// # Errors
@@ -33,12 +55,12 @@ pub fn run_case_within(
     case: &Case,
     references: &[ReferenceKind],
     kernel: Kernel,
-    alone: bool,
+    cores: Cores,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
     let deadline = Deadline::after(seconds);
     let in_time = |done: u64, expected: u64| observe(done, expected) && !deadline.is_over();
-    Ok(named_if_late(run_case(case, references, kernel, alone, &in_time)?, seconds))
+    Ok(named_if_late(run_case_on(cores, case, references, kernel, &in_time)?, seconds))
 }
 
 /// The record of a case that was stopped because its time was over says so.
@@ -52,7 +74,7 @@ fn named_if_late(mut record: Record, seconds: f64) -> Record {
     record
 }
 
-/// Runs one case; `alone` says whether nothing else competes for the cores meanwhile.
+/// Runs one case on one thread; `alone` says whether nothing else competes for the cores meanwhile.
 ///
 /// ```
 /// use oedometer::exact::ReferenceKind;
@@ -81,16 +103,28 @@ pub fn run_case(
     alone: bool,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
+    run_case_on(Cores::one(alone), case, references, kernel, observe)
+}
+
+fn run_case_on(
+    Cores { threads, alone }: Cores,
+    case: &Case,
+    references: &[ReferenceKind],
+    kernel: Kernel,
+    observe: &dyn Fn(u64, u64) -> bool,
+) -> Result<Record, ExactError> {
     plausible(case)?;
     if case.task == Task::Stability {
         return stability_of(case, observe);
     }
     let problem = problem_of(case)?;
-    let schedule = schedule_of(case, kernel);
-    let (start, worked) = (Instant::now(), thread_seconds());
+    let schedule = schedule_of(case, kernel, threads);
+    // A case of several threads has the process for itself.
+    let clock = if threads > 1 { process_seconds } else { thread_seconds };
+    let (start, worked) = (Instant::now(), clock());
     let outcome = problem.run(&schedule, observe);
     let seconds = start.elapsed().as_secs_f64();
-    let cpu_seconds = worked.zip(thread_seconds()).map(|(before, after)| after - before);
+    let cpu_seconds = worked.zip(clock()).map(|(before, after)| after - before);
     enter(Phase::Assessment);
     let mut record = record_of(case, references, outcome)?;
     let machine = Some(Machine::this());
@@ -129,7 +163,7 @@ fn stability_of(case: &Case, observe: &dyn Fn(u64, u64) -> bool) -> Result<Recor
     })
 }
 
-fn schedule_of(case: &Case, kernel: Kernel) -> Schedule {
+fn schedule_of(case: &Case, kernel: Kernel, threads: usize) -> Schedule {
     let parameters = column_parameters(&case.column, &case.material);
     let end = case.time_factors.last().copied().unwrap_or(0.0);
     let history = if end > HISTORY_START {
@@ -149,5 +183,6 @@ fn schedule_of(case: &Case, kernel: Kernel) -> Schedule {
         integrator: case.integrator,
         critical_step: None,
         formulation: case.formulation,
+        threads,
     }
 }

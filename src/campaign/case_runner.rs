@@ -1,6 +1,6 @@
 //! Runs the cases of a study, each by whom it is given to: this program, or an attached solver.
 
-use crate::campaign::case_run::{run_case, run_case_within};
+use crate::campaign::case_run::{Cores, run_case, run_case_within};
 use crate::campaign::stop;
 use crate::case::Case;
 use crate::exact::exact_error::ExactError;
@@ -45,7 +45,7 @@ impl<'a> CaseRunner<'a> {
             return self.attached(case, store, alone, observe);
         }
         let (seconds, references) = (self.study.case_seconds, &self.study.references);
-        run_case_within(seconds, case, references, Kernel::Fastest, alone, observe)
+        run_case_within(seconds, case, references, Kernel::Fastest, Cores::one(alone), observe)
     }
 
     /// Runs a case alone, to be timed or looked at.

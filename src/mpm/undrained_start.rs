@@ -83,17 +83,17 @@ pub struct UndrainedSystem<const D: usize> {
 }
 
 impl<const D: usize> UndrainedSystem<D> {
-    /// Assembles and factorises the stiffness of a body's present operators.
+    /// Assembles and factorises the stiffness of a body's present operators, by so many threads where that pays.
     ///
     /// # Errors
     /// When it is singular: a body that nothing holds.
-    pub fn of(body: &Body<D>) -> Result<Self, Singular> {
+    pub fn of(body: &Body<D>, threads: usize) -> Result<Self, Singular> {
         let rows = body.volumetric_rows();
         let mut stiffness = body.skeleton_stiffness(&rows);
         stiffness.add(&pressure_stiffness(&body.coupled_pressure_forces(&rows), &rows.divergence));
         let unknowns = FreeComponents::of(body);
         let matrix = unknowns.matrix(&stiffness, &body.grid);
-        let mut factors = BorderedLu::of_shape(&matrix);
+        let mut factors = BorderedLu::of_shape(&matrix, threads);
         factors.factor(&matrix)?;
         Ok(Self { unknowns, stiffness: (!matrix.is_banded()).then_some(matrix), factors, rows })
     }
@@ -125,12 +125,12 @@ impl<const D: usize> UndrainedSystem<D> {
 }
 
 impl<const D: usize> Body<D> {
-    /// Brings the body into undrained equilibrium with its load.
+    /// Brings the body into undrained equilibrium with its load, by so many threads where that pays.
     ///
     /// # Errors
     /// When its stiffness is singular.
-    pub fn settle_undrained(&mut self) -> Result<(), Singular> {
-        let mut system = UndrainedSystem::of(self)?;
+    pub fn settle_undrained(&mut self, threads: usize) -> Result<(), Singular> {
+        let mut system = UndrainedSystem::of(self, threads)?;
         self.map_forces();
         let displacements = system.displacements(&self.nodes.mixture_force);
         let field = &displacements[..];

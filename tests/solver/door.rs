@@ -30,6 +30,7 @@ fn schedule(kernel: Kernel, settings: ExplicitSettings, end: f64) -> Schedule {
         integrator: IntegratorKind::Explicit,
         critical_step: None,
         formulation: Formulation::VW,
+        threads: 1,
     }
 }
 

@@ -47,6 +47,7 @@ fn schedule(
         settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
         kernel: Kernel::Fastest,
         formulation: integrator.default_formulation(),
+        threads: 1,
         integrator,
     }
 }

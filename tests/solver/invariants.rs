@@ -65,6 +65,7 @@ impl Setup {
             integrator: crate::mpm::run::integrator::IntegratorKind::Explicit,
             critical_step: None,
             formulation: crate::mpm::run::integrator::Formulation::VW,
+            threads: 1,
             outputs: self.time_factors.iter().map(|factor| factor * seconds).collect(),
             history: Vec::new(),
             rule: self.rule,

@@ -32,6 +32,7 @@ fn both(scene: SceneKind, method: Method, load: f64, end: f64, drag: Drag) -> (O
         kernel: Kernel::PointWise,
         integrator: IntegratorKind::Explicit,
         formulation: IntegratorKind::Explicit.default_formulation(),
+        threads: 1,
     };
     let narrow = column_problem::<1>(scene, &column, &soil, method, CELLS, PER_CELL).expect("the seed");
     let wide = column_problem::<2>(scene, &plane, &soil, method, CELLS, PER_CELL).expect("the seed");
@@ -131,6 +132,7 @@ fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
                     kernel,
                     integrator: IntegratorKind::Explicit,
                     formulation: IntegratorKind::Explicit.default_formulation(),
+                    threads: 1,
                 };
                 run(layer(name, Base::Rough), &schedule)
             };
@@ -170,6 +172,7 @@ fn the_predicted_step_of_a_plane_parts_stable_from_unstable_runs() {
                     kernel: Kernel::Fastest,
                     integrator: IntegratorKind::Explicit,
                     formulation: IntegratorKind::Explicit.default_formulation(),
+                    threads: 1,
                 };
                 let outcome = run(layer(name, Base::Smooth), &schedule);
                 let limit = outcome.step_sizes.predicted_critical;

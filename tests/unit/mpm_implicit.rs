@@ -30,6 +30,7 @@ fn schedule() -> Schedule {
         kernel: Kernel::Fastest,
         formulation: IntegratorKind::Implicit.default_formulation(),
         integrator: IntegratorKind::Implicit,
+        threads: 1,
     }
 }
 

@@ -51,6 +51,7 @@ fn solved_with(
         integrator,
         critical_step: None,
         formulation,
+        threads: 1,
     };
     let outcome = run(problem, &schedule, &|_, _| true);
     assert_eq!(outcome.status, RunStatus::Ok);
@@ -74,7 +75,7 @@ fn the_undrained_start_is_skemptons_and_the_plate_is_in_balance() {
         let problem = slab("GIMP-SRI-patch", &soil, 6, 2);
         let mut body = Body::new(problem);
         assert_eq!(body.plate.as_ref().map(|plate| plate.nodes.len()), Some(7));
-        body.settle_undrained().expect("held");
+        body.settle_undrained(1).expect("held");
         assert!(body.unbalanced_force() < 1e-9, "{}", body.unbalanced_force());
         let parameters = column_parameters(&Column { horizontal_extent: 1.0 / 3.0, ..Column::slab() }, &soil);
         let exact = Mandel::new(&parameters).expect("possible");
@@ -170,6 +171,7 @@ fn the_assembled_plate_is_tied_whatever_the_velocities_are_mapped_by() {
                 integrator: IntegratorKind::Explicit,
                 critical_step: None,
                 formulation: Formulation::VW,
+                threads: 1,
             };
             // Under a plate over one row of cells all nodes map to one velocity by themselves.
             let outcome = run(slab("GIMP-SRI-patch", &soft(), 4, 2), &schedule, &|_, _| true);

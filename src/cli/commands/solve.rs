@@ -1,6 +1,6 @@
 //! `oedometer solve`: one case from the command line, its errors on standard output.
 
-use crate::campaign::case_run::run_case_within;
+use crate::campaign::case_run::{Cores, run_case_within};
 use crate::campaign::run_report::LongestCase;
 use crate::case::Case;
 use crate::cli::exit::{Ended, Exit};
@@ -82,8 +82,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
     tell_of_long(&study);
-    let solve =
-        || run_case_within(study.case_seconds, &planned.case, &study.references, kernel, true, &|_, _| true);
+    let (seconds, case, cores) = (study.case_seconds, &planned.case, Cores::all());
+    let solve = || run_case_within(seconds, case, &study.references, kernel, cores, &|_, _| true);
     let (record, phases) = if arguments.profile { profiled(solve) } else { (solve(), Vec::new()) };
     let record = record?;
     match arguments.format {

@@ -37,6 +37,25 @@ impl<const D: usize> NodeBlocks<D> {
     }
 }
 
+/// The same where the last look may have ended just before: `place` is that of the last entry, and then of this.
+fn entry_after<'a, T>(
+    row: &'a mut Vec<(usize, T)>,
+    place: &mut usize,
+    column: usize,
+    zero: impl FnOnce() -> T,
+) -> &'a mut T {
+    let next = *place + 1;
+    *place = if row.get(next).is_some_and(|entry| entry.0 == column) {
+        next
+    } else {
+        row.binary_search_by_key(&column, |entry| entry.0).unwrap_or_else(|place| {
+            row.insert(place, (column, zero()));
+            place
+        })
+    };
+    &mut row[*place].1
+}
+
 /// The entry of a column in a row that ascends in its columns, made where there is none.
 pub fn entry_of<T>(row: &mut Vec<(usize, T)>, column: usize, zero: T) -> &mut T {
     let place = row.binary_search_by_key(&column, |entry| entry.0).unwrap_or_else(|place| {
@@ -106,26 +125,21 @@ impl<const D: usize> Body<D> {
     /// N/m, with its sign turned.
     pub fn skeleton_stiffness(&self, rows: &VolumetricRows<D>) -> NodeBlocks<D> {
         let mut blocks = NodeBlocks::zero(self.nodes.len());
+        // Stress of a unit displacement along each direction of each node that strains a point.
+        let mut stresses: Vec<(usize, [Tensor<D>; D])> = Vec::new();
         for point in 0..self.points.len() {
             let volume = self.points.volume(point);
-            let forces = self.basis.gradient_row(&self.grid, point);
-            for entry in self.strain_row(point, rows) {
-                // Stress of a unit displacement of the node along each direction.
-                let stresses: [Tensor<D>; D] = std::array::from_fn(|e| {
-                    let (mut displaced, mut unit) = ([[0.0; D]; D], [0.0; D]);
-                    unit[e] = 1.0;
-                    entry.add_to(&mut displaced, &unit);
-                    let mut stress = self.stiffness.stress(&displaced);
-                    for d in 0..D {
-                        stress[d][d] += self.stiffness.shared_dilation_stress::<D>(entry.dilation[e]);
-                    }
-                    stress
-                });
-                for (row, force) in &forces {
-                    let block = blocks.block(*row, entry.node);
+            stresses.clear();
+            stresses.extend(
+                self.strain_row(point, rows).iter().map(|entry| (entry.node, self.unit_stresses(entry))),
+            );
+            for (row, force) in self.basis.gradient_row(&self.grid, point) {
+                let (row, mut place) = (&mut blocks.rows[row], 0);
+                for (column, stresses) in &stresses {
+                    let block = entry_after(row, &mut place, *column, || [[0.0; D]; D]);
                     for d in 0..D {
                         for e in 0..D {
-                            block[d][e] += volume * dot(&stresses[e][d], force);
+                            block[d][e] += volume * dot(&stresses[e][d], &force);
                         }
                     }
                 }
@@ -134,14 +148,29 @@ impl<const D: usize> Body<D> {
         blocks
     }
 
+    /// Stress at a point of a unit displacement along each direction.
+    fn unit_stresses(&self, entry: &StrainEntry<D>) -> [Tensor<D>; D] {
+        std::array::from_fn(|e| {
+            let (mut displaced, mut unit) = ([[0.0; D]; D], [0.0; D]);
+            unit[e] = 1.0;
+            entry.add_to(&mut displaced, &unit);
+            let mut stress = self.stiffness.stress(&displaced);
+            for d in 0..D {
+                stress[d][d] += self.stiffness.shared_dilation_stress::<D>(entry.dilation[e]);
+            }
+            stress
+        })
+    }
+
     /// `A = Σ V ∇N ⊗ R`: force on the nodes of unit pressures at the sites, `[node] → (site, N/Pa)`.
     pub fn pressure_forces(&self, rows: &VolumetricRows<D>) -> Vec<Vec<(usize, Vector<D>)>> {
         let mut forces: Vec<Vec<(usize, Vector<D>)>> = vec![Vec::new(); self.nodes.len()];
         for point in 0..self.points.len() {
             let volume = self.points.volume(point);
             for (node, gradient) in self.basis.gradient_row(&self.grid, point) {
+                let (forces, mut place) = (&mut forces[node], 0);
                 for (site, weight) in &rows.recovery[point] {
-                    let force = entry_of(&mut forces[node], *site, [0.0; D]);
+                    let force = entry_after(forces, &mut place, *site, || [0.0; D]);
                     for d in 0..D {
                         force[d] += volume * weight * gradient[d];
                     }

@@ -218,6 +218,7 @@ fn leaves<const D: usize>(
         kernel: Kernel::Fastest,
         integrator: IntegratorKind::Explicit,
         formulation: Formulation::VW,
+        threads: 1,
         // A run that observes knows nothing of the prediction.
         critical_step: Some(step),
     };

@@ -101,14 +101,15 @@ struct EliminatedBorder {
 }
 
 impl BorderedLu {
-    /// Factors of the unit matrix, with room for those of matrices of a shape.
-    pub fn of_shape(shape: &Bordered) -> Self {
+    /// Factors of the unit matrix, with room for those of matrices of a shape, made and used by so many threads where
+    /// that pays.
+    pub fn of_shape(shape: &Bordered, threads: usize) -> Self {
         let eliminated = |border: &Border| EliminatedBorder {
             row: vec![0.0; border.row.len()],
             solved_column: vec![0.0; border.column.len()],
             per_corner: 1.0,
         };
-        Self { core: Factors::of_shape(&shape.core), border: shape.border.as_ref().map(eliminated) }
+        Self { core: Factors::of_shape(&shape.core, threads), border: shape.border.as_ref().map(eliminated) }
     }
 
     /// Factors `fixed + factor · scaled`; nothing is allocated.
@@ -201,7 +202,7 @@ mod tests {
             dense[(row, column)] = entry(row, column);
         }
         let right = DVector::from_fn(size + 1, |row, _| row as f64 - 3.0);
-        let mut lu = BorderedLu::of_shape(&matrix);
+        let mut lu = BorderedLu::of_shape(&matrix, 1);
         let mut halves = matrix.clone();
         halves.clear();
         for combined in [false, true] {
@@ -218,6 +219,6 @@ mod tests {
             assert!(product.amax() < 1e-12, "{}", product.amax());
         }
         let core_only = Bordered::spanning(&[[0.0]], 1, |visitor| visitor(0, 0));
-        assert!(BorderedLu::of_shape(&core_only).factor(&core_only).is_err());
+        assert!(BorderedLu::of_shape(&core_only, 1).factor(&core_only).is_err());
     }
 }

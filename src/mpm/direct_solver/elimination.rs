@@ -2,6 +2,7 @@
 
 use crate::mpm::direct_solver::dissection::dissect;
 use crate::mpm::direct_solver::sparse_matrix::SparseMatrix;
+use std::ops::Range;
 
 /// Unknowns that are eliminated together, with those that they are tied to.
 #[derive(Clone, Debug)]
@@ -14,8 +15,8 @@ pub struct FrontShape {
     pub boundary: Vec<usize>,
     /// Fronts whose remainders it takes up: the last ones before it that nobody has taken up.
     pub children: Vec<usize>,
-    /// Entries of the matrix that belong to it, by row and number.
-    pub entries: Vec<(u32, u32)>,
+    /// Entries of the matrix that belong to it, in [`Elimination::entries`].
+    pub entries: Range<usize>,
 }
 
 impl FrontShape {
@@ -28,6 +29,21 @@ impl FrontShape {
     pub fn factor_entries(&self) -> usize {
         self.count * (self.size() + self.boundary.len())
     }
+
+    /// Entries of `L` in the rows that it eliminates, ones on the diagonal left out.
+    pub fn within(&self) -> usize {
+        self.count * self.count.saturating_sub(1) / 2
+    }
+
+    /// Entries of `L`.
+    pub fn lower_entries(&self) -> usize {
+        self.within() + self.count * self.boundary.len()
+    }
+
+    /// Entries of what it leaves to its parent.
+    pub fn remainder_entries(&self) -> usize {
+        self.boundary.len() * self.boundary.len()
+    }
 }
 
 /// The order of elimination of a matrix.
@@ -39,14 +55,20 @@ pub struct Elimination {
     pub place: Vec<usize>,
     /// The fronts, in order.
     pub fronts: Vec<FrontShape>,
+    /// Entries of the matrix by row and number, front after front.
+    pub entries: Vec<(u32, u32)>,
 }
 
 impl Elimination {
     /// Orders the unknowns of a matrix by nested dissection.
     pub fn of(matrix: &SparseMatrix) -> Self {
         let separators = dissect(matrix);
-        let mut elimination =
-            Self { order: Vec::new(), place: vec![0; matrix.positions().len()], fronts: Vec::new() };
+        let mut elimination = Self {
+            order: Vec::new(),
+            place: vec![0; matrix.positions().len()],
+            fronts: Vec::new(),
+            entries: Vec::new(),
+        };
         for separator in &separators {
             for unknown in &separator.unknowns {
                 elimination.place[*unknown] = elimination.order.len();
@@ -58,7 +80,7 @@ impl Elimination {
             let count = separator.unknowns.len();
             let boundary = elimination.boundary(matrix, first..first + count, &separator.children);
             let children = separator.children;
-            elimination.fronts.push(FrontShape { first, count, boundary, children, entries: Vec::new() });
+            elimination.fronts.push(FrontShape { first, count, boundary, children, entries: 0..0 });
             first += count;
         }
         elimination.share_entries(matrix);
@@ -66,15 +88,16 @@ impl Elimination {
     }
 
     /// Unknowns behind a front that it is tied to, itself or through its children.
-    fn boundary(&self, matrix: &SparseMatrix, own: std::ops::Range<usize>, children: &[usize]) -> Vec<usize> {
+    fn boundary(&self, matrix: &SparseMatrix, own: Range<usize>, children: &[usize]) -> Vec<usize> {
         let tied = self.order[own.clone()].iter().flat_map(|unknown| matrix.row(*unknown).1);
-        let mut boundary: Vec<usize> = tied.map(|other| self.place[*other as usize]).collect();
+        let mut boundary: Vec<usize> =
+            tied.map(|other| self.place[*other as usize]).filter(|place| *place >= own.end).collect();
         for child in children {
-            boundary.extend_from_slice(&self.fronts[*child].boundary);
+            boundary.extend(self.fronts[*child].boundary.iter().filter(|place| **place >= own.end));
         }
-        boundary.retain(|place| *place >= own.end);
         boundary.sort_unstable();
         boundary.dedup();
+        boundary.shrink_to_fit();
         boundary
     }
 
@@ -84,15 +107,30 @@ impl Elimination {
         for (number, front) in self.fronts.iter().enumerate() {
             front_of.extend(std::iter::repeat_n(number, front.count));
         }
+        let front_of_entry = |place: usize, column: u32| front_of[self.place[column as usize].min(place)];
+        let mut counts = vec![0; self.fronts.len()];
+        for (row, place) in self.place.iter().enumerate() {
+            for column in matrix.row(row).1 {
+                counts[front_of_entry(*place, *column)] += 1;
+            }
+        }
+        let mut end = 0;
+        for (front, count) in self.fronts.iter_mut().zip(counts) {
+            front.entries = end..end;
+            end += count;
+        }
+        let mut entries = vec![(0, 0); end];
         for (row, place) in self.place.iter().enumerate() {
             let (start, columns) = matrix.row(row);
             for (entry, column) in columns.iter().enumerate() {
-                let first = self.place[*column as usize].min(*place);
+                let own = &mut self.fronts[front_of_entry(*place, *column)].entries;
                 let numbers = (u32::try_from(row), u32::try_from(start + entry));
                 if let (Ok(row), Ok(entry)) = numbers {
-                    self.fronts[front_of[first]].entries.push((row, entry));
+                    entries[own.end] = (row, entry);
+                    own.end += 1;
                 }
             }
         }
+        self.entries = entries;
     }
 }

@@ -4,6 +4,10 @@ use crate::mpm::wide::wide;
 
 /// Columns that are factored before the rest is updated by them at once.
 const PANEL: usize = 32;
+/// Columns of a panel that are factored before its others are.
+const STRIP: usize = 8;
+/// Rows behind the pivots that go through a panel side by side.
+const ROWS_BEHIND: usize = 16;
 /// Rows of the blocks whose sums stay in registers.
 const TILE_ROWS: usize = 4;
 /// Their columns: eight chains of additions in registers of four hide the time that each takes; what is left over is
@@ -48,18 +52,31 @@ impl Front<'_> {
         let (mut start, count) = (0, pivots.len());
         while start < count {
             let end = (start + PANEL).min(count);
-            self.factor_panel(start, end, pivots)?;
-            self.solve_panel_rows(start, end);
+            let mut per_pivot = [0.0; PANEL];
+            for strip in (start..end).step_by(STRIP) {
+                let strip_end = (strip + STRIP).min(end);
+                self.factor_strip(strip, strip_end, pivots, &mut per_pivot[strip - start..])?;
+                self.solve_rows(strip, strip_end, end);
+                self.update_columns(strip, strip_end, end, count);
+            }
+            self.divide_rows_behind(start, end, count, &per_pivot);
+            self.solve_rows(start, end, self.size);
             self.update_rest(start, end);
             start = end;
         }
         Ok(())
     }
 
-    /// LU of the panel's columns in all rows.
+    /// LU of a strip's columns in the rows that are eliminated; one over each pivot.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
-    fn factor_panel(&mut self, start: usize, end: usize, pivots: &mut [usize]) -> Result<(), usize> {
+    fn factor_strip(
+        &mut self,
+        start: usize,
+        end: usize,
+        pivots: &mut [usize],
+        per_pivot: &mut [f64],
+    ) -> Result<(), usize> {
         let size = self.size;
         for column in start..end {
             let mut pivot = column;
@@ -78,35 +95,92 @@ impl Front<'_> {
                 let (above, below) = self.entries.split_at_mut(pivot * size);
                 above[column * size..][..size].swap_with_slice(&mut below[..size]);
             }
-            let (above, below) = self.entries.split_at_mut((column + 1) * size);
+            let (above, below) = self.entries[..pivots.len() * size].split_at_mut((column + 1) * size);
             let pivot_row = &above[column * size..][column..end];
-            let per_pivot = 1.0 / pivot_row[0];
+            per_pivot[column - start] = 1.0 / pivot_row[0];
             for row in below.chunks_exact_mut(size) {
                 let row = &mut row[column..end];
-                let multiplier = row[0] * per_pivot;
+                let multiplier = row[0] * per_pivot[column - start];
                 row[0] = multiplier;
-                if multiplier != 0.0 {
-                    for (entry, above) in row[1..].iter_mut().zip(&pivot_row[1..]) {
-                        *entry -= multiplier * above;
-                    }
+                for (entry, above) in row[1..].iter_mut().zip(&pivot_row[1..]) {
+                    *entry -= multiplier * above;
                 }
             }
         }
         Ok(())
     }
 
-    /// `U ← L⁻¹ U` in the panel's rows.
+    /// Takes a strip's product from the columns behind it, up to `columns`, in the rows behind it, up to `rows`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
-    fn solve_panel_rows(&mut self, start: usize, end: usize) {
+    fn update_columns(&mut self, start: usize, end: usize, columns: usize, rows: usize) {
+        let size = self.size;
+        let (above, below) = self.entries[..rows * size].split_at_mut(end * size);
+        let whole = end + (columns - end) / STRIP * STRIP;
+        for row in below.chunks_exact_mut(size) {
+            let (left, right) = row.split_at_mut(end);
+            for column in (end..whole).step_by(STRIP) {
+                let tile = &mut right[column - end..][..STRIP];
+                let mut sums = [0.0; STRIP];
+                sums.copy_from_slice(tile);
+                for (multiplier, above) in left[start..].iter().zip(above[start * size..].chunks_exact(size))
+                {
+                    let above = &above[column..][..STRIP];
+                    for j in 0..STRIP {
+                        sums[j] -= multiplier * above[j];
+                    }
+                }
+                tile.copy_from_slice(&sums);
+            }
+            take_products(
+                &left[start..],
+                &above[start * size..],
+                size,
+                whole,
+                &mut right[whole - end..columns - end],
+            );
+        }
+    }
+
+    /// `L ← L U⁻¹` of a panel in the rows behind those that are eliminated, whose numbers no pivot is chosen from.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+    fn divide_rows_behind(&mut self, start: usize, end: usize, count: usize, per_pivot: &[f64; PANEL]) {
+        let size = self.size;
+        let (above, below) = self.entries.split_at_mut(count * size);
+        // Columns of `U`: what an inner loop reads lies side by side.
+        let mut upper = [[0.0; PANEL]; PANEL];
+        for (row, entries) in above.chunks_exact(size).skip(start).take(end - start).enumerate() {
+            for (column, entry) in entries[start..end].iter().enumerate() {
+                upper[column][row] = *entry;
+            }
+        }
+        let upper = &upper[..end - start];
+        let mut blocks = below.chunks_exact_mut(ROWS_BEHIND * size);
+        for block in &mut blocks {
+            divide_rows::<ROWS_BEHIND>(upper, per_pivot, &mut block[start..], size);
+        }
+        let mut blocks = blocks.into_remainder().chunks_exact_mut(TILE_ROWS * size);
+        for block in &mut blocks {
+            divide_rows::<TILE_ROWS>(upper, per_pivot, &mut block[start..], size);
+        }
+        for row in blocks.into_remainder().chunks_exact_mut(size) {
+            divide_rows::<1>(upper, per_pivot, &mut row[start..], size);
+        }
+    }
+
+    /// `U ← L⁻¹ U` in some rows and the columns behind them, up to `columns`.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+    fn solve_rows(&mut self, start: usize, end: usize, columns: usize) {
         let size = self.size;
         for row in start + 1..end {
             let (above, below) = self.entries.split_at_mut(row * size);
-            let (left, right) = below[..size].split_at_mut(end);
+            let (left, right) = below[..columns].split_at_mut(end);
             for other in start..row {
                 let multiplier = left[other];
                 if multiplier != 0.0 {
-                    let source = &above[other * size + end..][..size - end];
+                    let source = &above[other * size + end..][..columns - end];
                     for (entry, above) in right.iter_mut().zip(source) {
                         *entry -= multiplier * above;
                     }
@@ -152,9 +226,20 @@ impl Front<'_> {
             for panel in panels {
                 take_tile::<HALF_TILE>(&multipliers[..depth], panel, &mut block[whole..], size);
             }
-            for i in 0..TILE_ROWS {
-                let (left, right) = block[i * size..][..size].split_at_mut(tiled);
-                take_products(&left[start..end], &above[start * size..], size, tiled, right);
+            for column in tiled..size {
+                let mut sums = [0.0; TILE_ROWS];
+                for (i, sum) in sums.iter_mut().enumerate() {
+                    *sum = block[i * size + column];
+                }
+                for (k, l) in multipliers[..depth].iter().enumerate() {
+                    let above = above[(start + k) * size + column];
+                    for i in 0..TILE_ROWS {
+                        sums[i] -= l[i] * above;
+                    }
+                }
+                for (i, sum) in sums.iter().enumerate() {
+                    block[i * size + column] = *sum;
+                }
             }
         }
         for row in blocks.into_remainder().chunks_exact_mut(size) {
@@ -184,6 +269,33 @@ fn take_tile<const COLUMNS: usize>(
     for (i, sums) in sums.iter().enumerate() {
         for (entry, sum) in rows[i * size..][..COLUMNS].iter_mut().zip(sums) {
             *entry -= sum;
+        }
+    }
+}
+
+/// Divides rows, `size` apart, by `U` given by columns: each entry by those to its left in turn, then by its pivot.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+fn divide_rows<const ROWS: usize>(
+    upper: &[[f64; PANEL]],
+    per_pivot: &[f64; PANEL],
+    rows: &mut [f64],
+    size: usize,
+) {
+    let mut quotients = [[0.0; ROWS]; PANEL];
+    for (column, upper) in upper.iter().enumerate() {
+        let mut rest = [0.0; ROWS];
+        for (i, rest) in rest.iter_mut().enumerate() {
+            *rest = rows[i * size + column];
+        }
+        for (quotient, upper) in quotients[..column].iter().zip(upper) {
+            for i in 0..ROWS {
+                rest[i] -= quotient[i] * upper;
+            }
+        }
+        for (i, rest) in rest.iter().enumerate() {
+            quotients[column][i] = rest * per_pivot[column];
+            rows[i * size + column] = quotients[column][i];
         }
     }
 }

@@ -1,19 +1,25 @@
 //! A square matrix by its entries, row by row.
 
-/// Places of a row that are gathered before those named twice are dropped.
-const GATHERED: usize = 1024;
+use std::sync::Arc;
 
 /// A square matrix over a fixed set of places, with those of the transposed matrix and of the diagonal among
 /// them: elimination fills them in anyway.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SparseMatrix {
+    /// Its places, which matrices of one shape share.
+    shape: Arc<Shape>,
+    entries: Vec<f64>,
+}
+
+/// Places of entries.
+#[derive(Debug, PartialEq)]
+struct Shape {
     /// Place of each unknown in space, m; zeros beyond the dimension.
     positions: Vec<[f64; 3]>,
     /// First entry of each row, and the end of the last.
     starts: Vec<usize>,
     /// Column of each entry, rising in a row.
     columns: Vec<u32>,
-    entries: Vec<f64>,
 }
 
 impl SparseMatrix {
@@ -28,44 +34,42 @@ impl SparseMatrix {
         let number = |unknown: usize| u32::try_from(unknown).expect("fewer than 2^32 unknowns");
         let mut rows: Vec<Vec<u32>> = (0..positions.len()).map(|row| vec![number(row)]).collect();
         let mut note = |row: usize, column: usize| {
-            let row = &mut rows[row];
-            row.push(number(column));
-            if row.len() >= GATHERED && row.len().is_power_of_two() {
-                row.sort_unstable();
-                row.dedup();
+            let (row, column) = (&mut rows[row], number(column));
+            if let Err(place) = row.binary_search(&column) {
+                row.insert(place, column);
             }
         };
         visit(&mut |row, column| {
             note(row, column);
             note(column, row);
         });
-        let (mut starts, mut columns) = (vec![0], Vec::new());
-        for mut row in rows {
-            row.sort_unstable();
-            row.dedup();
+        let mut starts = vec![0];
+        let mut columns = Vec::with_capacity(rows.iter().map(Vec::len).sum());
+        for row in rows {
             columns.extend(row);
             starts.push(columns.len());
         }
         let in_space = |place: &[f64; D]| std::array::from_fn(|d| place.get(d).copied().unwrap_or(0.0));
         let positions = positions.iter().map(in_space).collect();
-        Self { positions, starts, entries: vec![0.0; columns.len()], columns }
+        let entries = vec![0.0; columns.len()];
+        Self { shape: Arc::new(Shape { positions, starts, columns }), entries }
     }
 
     /// Place of each unknown in space, m.
     pub fn positions(&self) -> &[[f64; 3]] {
-        &self.positions
+        &self.shape.positions
     }
 
     /// Number of the first entry of a row, and its columns.
     pub fn row(&self, row: usize) -> (usize, &[u32]) {
-        let start = self.starts[row];
-        (start, &self.columns[start..self.starts[row + 1]])
+        let Shape { starts, columns, .. } = &*self.shape;
+        (starts[row], &columns[starts[row]..starts[row + 1]])
     }
 
     /// Column of an entry.
     #[inline]
     pub fn column(&self, entry: usize) -> usize {
-        self.columns[entry] as usize
+        self.shape.columns[entry] as usize
     }
 
     /// The entries, in the order of their numbers.
@@ -83,7 +87,7 @@ impl SparseMatrix {
 
     /// `rest ← rest − A values`.
     pub fn take_product(&self, values: &[f64], rest: &mut [f64]) {
-        for (row, rest) in rest.iter_mut().enumerate().take(self.positions.len()) {
+        for (row, rest) in rest.iter_mut().enumerate().take(self.shape.positions.len()) {
             let (start, columns) = self.row(row);
             let entries = &self.entries[start..start + columns.len()];
             *rest = entries

@@ -71,11 +71,11 @@ pub enum Factors {
 }
 
 impl Factors {
-    /// Room for the factors of matrices of a shape.
-    pub fn of_shape(shape: &SystemMatrix) -> Self {
+    /// Room for the factors of matrices of a shape, made and used by so many threads where that pays.
+    pub fn of_shape(shape: &SystemMatrix, threads: usize) -> Self {
         match shape {
             SystemMatrix::Banded(matrix) => Self::Banded(Box::new(BandedLu::of_shape(matrix))),
-            SystemMatrix::Sparse(matrix) => Self::Frontal(Box::new(FrontalLu::of_shape(matrix))),
+            SystemMatrix::Sparse(matrix) => Self::Frontal(Box::new(FrontalLu::of_shape(matrix, threads))),
         }
     }
 

@@ -50,7 +50,7 @@ impl<const D: usize> LinearStepper<D> {
         let zero = vec![0.0; system.unknowns.count];
         Self {
             settled: start.settlement(plan.initial_height),
-            lu: BorderedLu::of_shape(&system.fixed),
+            lu: BorderedLu::of_shape(&system.fixed, plan.schedule.threads),
             factored: None,
             state: zero.clone(),
             residual: system.start_residual.clone(),

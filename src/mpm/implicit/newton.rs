@@ -46,6 +46,8 @@ pub struct NewtonStepper<const D: usize> {
     pattern: Pattern,
     tangent: Bordered,
     lu: BorderedLu,
+    /// Threads that it may use.
+    threads: usize,
     /// Stage duration that the factors belong to, s.
     factored: Option<f64>,
     /// Ratio of successive corrections that the last stage ended with.
@@ -87,7 +89,8 @@ impl<const D: usize> NewtonStepper<D> {
         let cells = trial.body.grid.cells.iter().fold(0.0, |most: f64, count| most.max(*count as f64));
         let zero = vec![0.0; trial.unknowns.count];
         Self {
-            lu: BorderedLu::of_shape(&tangent),
+            lu: BorderedLu::of_shape(&tangent, plan.schedule.threads),
+            threads: plan.schedule.threads,
             tangent,
             pattern,
             factored: None,
@@ -344,7 +347,7 @@ impl<const D: usize> NewtonStepper<D> {
     fn renew_pattern(&mut self) {
         self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
         self.tangent = self.pattern.zeros();
-        self.lu = BorderedLu::of_shape(&self.tangent);
+        self.lu = BorderedLu::of_shape(&self.tangent, self.threads);
         self.factored = None;
     }
 }

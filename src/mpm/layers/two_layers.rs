@@ -184,6 +184,7 @@ mod tests {
             // Half of the least of them: no need to look for it.
             critical_step: Some(0.9e-4),
             formulation: Formulation::VW,
+            threads: 1,
         };
         run(problem, &schedule, &|_, _| true)
     }
@@ -312,6 +313,7 @@ mod tests {
             integrator: IntegratorKind::Implicit,
             critical_step: None,
             formulation: Formulation::QuasiStatic,
+            threads: 1,
         };
         let outcome = run(problem::<1>(SceneKind::Terzaghi, "GIMP", [2, 2], 1.0), &schedule, &|_, _| true);
         let RunStatus::Failed(failure) = outcome.status else { panic!("solved") };

@@ -22,7 +22,8 @@ pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: O
     let mut problem = problem;
     let water = problem.water.take();
     let mut body = Body::new(problem);
-    let start_failure = if undrained_start { body.settle_undrained().err().map(no_start) } else { None };
+    let start_failure =
+        if undrained_start { body.settle_undrained(schedule.threads).err().map(no_start) } else { None };
     match water {
         Some(lattice) => {
             let start_failure = start_failure.or_else(|| no_layers(schedule.integrator));
@@ -89,6 +90,7 @@ mod tests {
             integrator: IntegratorKind::Explicit,
             critical_step: None,
             formulation: Formulation::VW,
+            threads: 1,
         }
     }
 

@@ -33,6 +33,8 @@ pub struct Schedule {
     pub critical_step: Option<f64>,
     /// Accelerations that an implicit integrator keeps.
     pub formulation: Formulation,
+    /// Threads that large systems may be solved by. Results do not depend on it.
+    pub threads: usize,
 }
 
 /// Called every few steps with the steps done and those expected; returns `false` to stop the run.
