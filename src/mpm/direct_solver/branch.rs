@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Halvings of the whole: four parts at most.
 const HALVINGS: usize = 2;
 /// Entries of the factors of a half below which a thread of its own costs more than it saves.
-pub const SMALLEST_HALF: usize = 1 << 18;
+pub const SMALLEST_HALF: usize = 1 << 20;
 
 /// A front with all that comes before it in the tree of fronts.
 #[derive(Clone, Debug)]
