@@ -4,6 +4,8 @@ use crate::mpm::body::{Body, Problem};
 use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::implicit::linear::LinearStepper;
 use crate::mpm::implicit::newton::NewtonStepper;
+use crate::mpm::implicit::trial::{Skeleton, Trial};
+use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::{Configuration, Method};
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::results::outcome::{FailureKind, Outcome, RunStatus};
@@ -511,4 +513,37 @@ fn strains_that_round_off_all_but_hides_are_solved_without_smaller_steps() {
     };
     let (tiny, small) = (settlement(1e-3), settlement(1.0));
     assert!((tiny / small - 1.0).abs() < 1e-5, "{tiny} {small}");
+}
+
+#[test]
+fn unknowns_follow_points_that_empty_cells_as_if_they_were_numbered_anew() {
+    let soil = xie_leo_soil();
+    for method in ["GIMP-SRI-patch", "CE-SRI-patch-cells", "GIMP", "GC-Bbar-patch"] {
+        let body = Body::new(large_strain(method, &soil, 8));
+        let mut trial = Trial::new(body, Formulation::QuasiStatic, Skeleton::Implicit);
+        let (count, mut renumbered) = (trial.unknowns.count, 0);
+        for _ in 0..12 {
+            // Three per cent of the height a step: the cell at the top ends empty.
+            let mut increments = vec![0.0; trial.unknowns.count];
+            for (node, [number]) in trial.unknowns.displacement.iter().enumerate() {
+                let height = trial.body.grid.node_position(node)[0] / trial.unknowns.scales.length;
+                if let Some(number) = number {
+                    increments[*number] = -0.03 * height;
+                }
+            }
+            trial.begin_step(0.0);
+            trial.end_step(&increments, 0.0);
+            let anew = Unknowns::of(&trial.body);
+            let followed = &trial.unknowns;
+            assert_eq!(
+                (&followed.displacement, &followed.pressure, &followed.rows.sites, followed.count),
+                (&anew.displacement, &anew.pressure, &anew.rows.sites, anew.count),
+                "{method}"
+            );
+            renumbered += usize::from(anew.count != count);
+            trial.unknowns.take_rows(&trial.body);
+            assert_eq!(trial.unknowns.rows, anew.rows, "{method}");
+        }
+        assert!(renumbered > 0, "{method}");
+    }
 }
