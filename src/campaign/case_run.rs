@@ -11,7 +11,7 @@ use crate::measure::case_record::{record_of, record_of_critical_step, record_of_
 use crate::mpm::critical_step::formula;
 use crate::mpm::critical_step::observed::Stopped;
 use crate::mpm::run::profile::{Phase, enter};
-use crate::mpm::run::results::outcome::FailureKind;
+use crate::mpm::run::results::outcome::{FailureKind, Outcome};
 use crate::mpm::run::{Kernel, Schedule};
 use crate::record::machines::Machine;
 use crate::record::{Record, Status, WallSample};
@@ -107,7 +107,7 @@ pub fn run_case(
 }
 
 fn run_case_on(
-    Cores { threads, alone }: Cores,
+    cores: Cores,
     case: &Case,
     references: &[ReferenceKind],
     kernel: Kernel,
@@ -117,6 +117,28 @@ fn run_case_on(
     if case.task == Task::Stability {
         return stability_of(case, observe);
     }
+    let (outcome, wall) = solved(cores, case, kernel, observe)?;
+    enter(Phase::Assessment);
+    let mut record = record_of(case, references, outcome)?;
+    record.wall.push(wall);
+    Ok(record)
+}
+
+/// Runs a case alone once more, only to time it: nothing is held against its references.
+///
+/// # Errors
+/// When the case's parameters are impossible.
+pub fn time_case(case: &Case) -> Result<WallSample, ExactError> {
+    solved(Cores::one(true), case, Kernel::Fastest, &|_, _| true).map(|(_, wall)| wall)
+}
+
+/// What a case comes to, and how long that took.
+fn solved(
+    Cores { threads, alone }: Cores,
+    case: &Case,
+    kernel: Kernel,
+    observe: &dyn Fn(u64, u64) -> bool,
+) -> Result<(Outcome, WallSample), ExactError> {
     let problem = problem_of(case)?;
     let schedule = schedule_of(case, kernel, threads);
     // A case of several threads has the process for itself.
@@ -125,11 +147,8 @@ fn run_case_on(
     let outcome = problem.run(&schedule, observe);
     let seconds = start.elapsed().as_secs_f64();
     let cpu_seconds = worked.zip(clock()).map(|(before, after)| after - before);
-    enter(Phase::Assessment);
-    let mut record = record_of(case, references, outcome)?;
     let machine = Some(Machine::this());
-    record.wall.push(WallSample { seconds, alone, cpu_seconds, machine, ..WallSample::default() });
-    Ok(record)
+    Ok((outcome, WallSample { seconds, alone, cpu_seconds, machine, ..WallSample::default() }))
 }
 
 fn problem_of(case: &Case) -> Result<SceneProblem, ExactError> {

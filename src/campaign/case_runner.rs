@@ -1,6 +1,6 @@
 //! Runs the cases of a study, each by whom it is given to: this program, or an attached solver.
 
-use crate::campaign::case_run::{Cores, run_case, run_case_within};
+use crate::campaign::case_run::{Cores, run_case, run_case_within, time_case};
 use crate::campaign::stop;
 use crate::case::Case;
 use crate::exact::exact_error::ExactError;
@@ -8,7 +8,7 @@ use crate::foreign::attachment::{Attachment, Wish};
 use crate::mpm::run::Kernel;
 use crate::mpm::run::results::outcome::{Failure, FailureKind};
 use crate::record::store::RecordStore;
-use crate::record::{Record, Status};
+use crate::record::{Record, Status, WallSample};
 use crate::study::check::Study;
 
 /// A study with its attached solvers, ready to run.
@@ -57,6 +57,23 @@ impl<'a> CaseRunner<'a> {
             return self.attached(case, store, true, &|_, _| true);
         }
         run_case(case, &self.study.references, Kernel::Fastest, true, &|_, _| true)
+    }
+
+    /// Wall times of a case alone, which says no more than it did: nothing is held against its references again. None
+    /// where it was stopped.
+    ///
+    /// # Errors
+    /// When the case's parameters are impossible.
+    pub fn time_alone(
+        &self,
+        case: &Case,
+        store: Option<&RecordStore>,
+    ) -> Result<Vec<WallSample>, ExactError> {
+        if case.is_attached() {
+            let timed = self.attached(case, store, true, &|_, _| true)?;
+            return Ok(if is_stopped(&timed) { Vec::new() } else { timed.wall });
+        }
+        time_case(case).map(|wall| vec![wall])
     }
 
     fn attached(

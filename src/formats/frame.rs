@@ -150,7 +150,8 @@ impl Frame {
     /// Memory of its numbers, bytes.
     pub fn bytes(&self) -> u64 {
         let numbers: usize = self.arrays.iter().map(|array| array.values.len()).sum();
-        let of_cells = self.cells.as_ref().map_or(0, |cells| 9 * cells.count() + 4 * cells.connectivity.len());
+        let of_cells =
+            self.cells.as_ref().map_or(0, |cells| 9 * cells.count() + 4 * cells.connectivity.len());
         (8 * numbers + 24 * self.coordinates.len() + of_cells) as u64
     }
 

@@ -4,20 +4,29 @@ use crate::mpm::body::{Body, Problem};
 use crate::mpm::explicit::{Drag, ExplicitSettings};
 use crate::mpm::implicit::linear::LinearStepper;
 use crate::mpm::implicit::newton::NewtonStepper;
+use crate::mpm::implicit::trial::{Skeleton, Trial};
+use crate::mpm::implicit::unknowns::Unknowns;
 use crate::mpm::method::Method;
-use crate::mpm::run::integrator::IntegratorKind;
+use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::stepper::{EqualSteps, Stepper};
 use crate::mpm::run::{Kernel, Schedule, TimeStepRule};
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::scene::problem::column_problem;
+use crate::soil::law::Law;
 use crate::soil::material::Material;
 
 fn seed(method: &str, soil: &Material, cells: usize) -> Problem<1> {
     let method = Method::named(method).expect("a known method");
     column_problem(SceneKind::Terzaghi, &Column::default(), soil, method, cells, 2)
         .expect("a possible column")
+}
+
+fn large_strain(method: &str, soil: &Material, cells: usize) -> Problem<1> {
+    let method = Method::named(method).expect("a known method");
+    let column = Column { load: 2e5, ..Column::default() };
+    column_problem(SceneKind::XieLeo, &column, soil, method, cells, 4).expect("a possible column")
 }
 
 fn schedule() -> Schedule {
@@ -62,5 +71,38 @@ fn newton_on_a_frozen_body_is_the_linear_system() {
         assert!((rates[0] / rates[1] - 1.0).abs() < 1e-6, "{name}");
         let flux = one.totals.surface_flux - other.totals.surface_flux;
         assert!(flux.abs() < 1e-8 * one.settlement, "{name}");
+    }
+}
+
+#[test]
+fn unknowns_follow_points_that_empty_cells_as_if_they_were_numbered_anew() {
+    let soil = Material { law: Law::LogLinear, ..Material::default() };
+    for method in ["GIMP-SRI-patch", "CE-SRI-patch-cells", "GIMP", "GC-Bbar-patch"] {
+        let body = Body::new(large_strain(method, &soil, 8));
+        let mut trial = Trial::new(body, Formulation::QuasiStatic, Skeleton::Implicit);
+        let (count, mut renumbered) = (trial.unknowns.count, 0);
+        for _ in 0..12 {
+            // Three per cent of the height a step: the cell at the top ends empty.
+            let mut increments = vec![0.0; trial.unknowns.count];
+            for (node, [number]) in trial.unknowns.displacement.iter().enumerate() {
+                let height = trial.body.grid.node_position(node)[0] / trial.unknowns.scales.length;
+                if let Some(number) = number {
+                    increments[*number] = -0.03 * height;
+                }
+            }
+            trial.begin_step(0.0);
+            trial.end_step(&increments, 0.0);
+            let anew = Unknowns::of(&trial.body);
+            let followed = &trial.unknowns;
+            assert_eq!(
+                (&followed.displacement, &followed.pressure, &followed.rows.sites, followed.count),
+                (&anew.displacement, &anew.pressure, &anew.rows.sites, anew.count),
+                "{method}"
+            );
+            renumbered += usize::from(anew.count != count);
+            trial.unknowns.take_rows(&trial.body);
+            assert_eq!(trial.unknowns.rows, anew.rows, "{method}");
+        }
+        assert!(renumbered > 0, "{method}");
     }
 }

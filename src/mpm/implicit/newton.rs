@@ -6,6 +6,7 @@ use crate::mpm::direct_solver::bordered::{Bordered, BorderedLu};
 use crate::mpm::implicit::guess::StageGuess;
 use crate::mpm::implicit::residual::StageStart;
 use crate::mpm::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
+use crate::mpm::implicit::secants::Secants;
 use crate::mpm::implicit::tangent::Pattern;
 use crate::mpm::implicit::trial::{Skeleton, Trial};
 use crate::mpm::method::{PressureIntegration, Recovery};
@@ -26,9 +27,10 @@ const TOLERANCE: f64 = 1e-12;
 /// Ratio of an iteration's correction to the last one's that is taken for granted where none is known.
 const SLOW: f64 = 0.1;
 /// The same beyond which the tangent is made anew, whatever is left.
-const TOO_SLOW: f64 = 0.5;
-/// Iterations with the tangent that there is which are worth a new one: that costs a residual for each of its groups.
-const PATIENCE: f64 = 6.0;
+const TOO_SLOW: f64 = 0.8;
+/// Iterations with the tangent that there is which are worth a new one: that costs a residual for each of its groups,
+/// and what corrections tell makes the next ones fewer than they look.
+const PATIENCE: f64 = 12.0;
 /// What a contraction is taken to grow by in a stage that ends without a second correction to tell it.
 const UNSEEN_GROWTH: f64 = 2.0;
 
@@ -48,9 +50,13 @@ pub struct NewtonStepper<const D: usize> {
     lu: BorderedLu,
     /// Threads that it may use.
     threads: usize,
+    /// What corrections tell of the tangent beyond its factors.
+    secants: Secants,
+    /// The last correction of the scaled unknowns.
+    correction: Vec<f64>,
     /// Stage duration that the factors belong to, s.
     factored: Option<f64>,
-    /// Ratio of successive corrections that the last stage ended with.
+    /// Ratio of successive corrections: the last one within a stage, the first one from stage to stage.
     contraction: f64,
     /// Error that a stage may leave in the scaled unknowns.
     tolerance: f64,
@@ -91,6 +97,8 @@ impl<const D: usize> NewtonStepper<D> {
         Self {
             lu: BorderedLu::of_shape(&tangent, plan.schedule.threads),
             threads: plan.schedule.threads,
+            secants: Secants::default(),
+            correction: zero.clone(),
             tangent,
             pattern,
             factored: None,
@@ -228,6 +236,7 @@ impl<const D: usize> NewtonStepper<D> {
     /// Newton's iteration, with the tangent of an earlier state as long as it contracts well.
     fn iterate(&mut self) -> Result<(), StepFailure> {
         let mut last = f64::INFINITY;
+        let mut first = None;
         let mut renew = self.factored != Some(self.start.duration);
         for _ in 0..MOST_ITERATIONS {
             enter(Phase::Balances);
@@ -239,6 +248,11 @@ impl<const D: usize> NewtonStepper<D> {
             enter(Phase::Solve);
             self.scratch.copy_from_slice(&self.residual);
             self.lu.solve(&mut self.scratch);
+            self.secants.apply(&mut self.scratch);
+            if last.is_finite() && !renew {
+                self.secants.learn(&self.correction, &mut self.scratch);
+            }
+            self.correction.copy_from_slice(&self.scratch);
             let mut size: f64 = 0.0;
             for (state, correction) in self.state.iter_mut().zip(&self.scratch) {
                 *state -= correction;
@@ -249,21 +263,20 @@ impl<const D: usize> NewtonStepper<D> {
             self.work.iterations += 1;
             if last.is_finite() && last > 0.0 {
                 self.contraction = (size / last).max(1e-3);
+                first.get_or_insert(self.contraction);
             }
             if size * self.contraction <= self.tolerance * (1.0 - self.contraction) {
-                if last.is_infinite() {
-                    self.contraction = (UNSEEN_GROWTH * self.contraction).min(SLOW);
-                }
-                return Ok(());
+                // The next stage begins without what this one's later corrections were told.
+                self.contraction = first.unwrap_or((UNSEEN_GROWTH * self.contraction).min(SLOW));
+                return self.end_iteration(renew);
             }
             if size <= self.round_off && size >= SLOW * last {
                 // What round-off leaves, neither a new tangent nor smaller steps take away.
                 self.contraction = SLOW;
-                return Ok(());
+                return self.end_iteration(renew);
             }
-            let is_told = last.is_finite();
             let left = elementary::ln(self.tolerance / size) / elementary::ln(self.contraction);
-            renew = self.contraction > TOO_SLOW || is_told && left > PATIENCE;
+            renew = last.is_finite() && (self.contraction > TOO_SLOW || left > PATIENCE);
             last = size;
         }
         Err(StepFailure {
@@ -273,6 +286,15 @@ impl<const D: usize> NewtonStepper<D> {
                 self.start.duration
             ),
         })
+    }
+
+    /// Ends an iteration: where its tangent was just made, the nodes still have the velocities and the flux of the last
+    /// difference.
+    fn end_iteration(&mut self, was_renewed: bool) -> Result<(), StepFailure> {
+        if was_renewed {
+            self.trial.residual(&self.state, &self.start, &mut self.residual)?;
+        }
+        Ok(())
     }
 
     fn renew_tangent(&mut self) -> Result<(), StepFailure> {
@@ -294,6 +316,7 @@ impl<const D: usize> NewtonStepper<D> {
         self.work.factorisations += 1;
         self.factored = Some(start.duration);
         enter(Phase::Factors);
+        self.secants.clear();
         self.lu.factor(&self.tangent).map_err(|singular| {
             self.factored = None;
             StepFailure {
@@ -336,7 +359,8 @@ impl<const D: usize> NewtonStepper<D> {
         let count = self.trial.unknowns.count;
         self.guess = StageGuess::of(count);
         if count != self.state.len() {
-            for vector in [&mut self.rate, &mut self.state, &mut self.residual, &mut self.scratch] {
+            let scratch = [&mut self.scratch, &mut self.correction];
+            for vector in [&mut self.rate, &mut self.state, &mut self.residual].into_iter().chain(scratch) {
                 vector.clear();
                 vector.resize(count, 0.0);
             }
@@ -345,6 +369,7 @@ impl<const D: usize> NewtonStepper<D> {
 
     /// Makes the pattern anew, with room for its factors.
     fn renew_pattern(&mut self) {
+        self.trial.unknowns.take_rows(&self.trial.body);
         self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
         self.tangent = self.pattern.zeros();
         self.lu = BorderedLu::of_shape(&self.tangent, self.threads);

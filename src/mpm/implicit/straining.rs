@@ -5,9 +5,12 @@
 
 use crate::elementary::ln_of_each;
 use crate::mpm::implicit::trial::Trial;
+use crate::mpm::operators::block_rows::Blocks;
+use crate::mpm::operators::stencil::with_stencils;
+use crate::mpm::operators::strain_gradient::StrainOperator;
 use crate::mpm::state::lanes::{LANES, block_of, blocks_of, put_block};
 use crate::mpm::wide::wide;
-use crate::soil::tensor::{Tensor, identity, inverse, product, strain_between};
+use crate::soil::tensor::{Tensor, Vector, identity, inverse, product, strain_between};
 use std::ops::Range;
 
 /// What some points undergo since the anchor.
@@ -23,18 +26,32 @@ impl<const D: usize> Trial<D> {
     /// it has in the place of the trace of each point's gradient.
     pub(super) fn strain_points(&mut self, traces: &[f64]) {
         for block in blocks_of(self.anchor.len()) {
-            let mut increments = Increments { gradients: [[[0.0; D]; D]; LANES], dilations: [0.0; LANES] };
-            let of_points = increments.gradients.iter_mut().zip(&mut increments.dilations);
-            for (point, (gradient, dilation)) in block.clone().zip(of_points) {
-                *gradient = self.body.strain_gradient(point, &self.displacement);
-                if let Some(trace) = traces.get(point) {
-                    *dilation = trace - (0..D).map(|d| gradient[d][d]).sum::<f64>();
-                    for d in 0..D {
-                        gradient[d][d] += *dilation / D as f64;
-                    }
+            let mut increments = Increments { gradients: self.gradients_of(&block), dilations: [0.0; LANES] };
+            for (lane, trace) in traces.iter().skip(block.start).take(block.len()).enumerate() {
+                let gradient = &mut increments.gradients[lane];
+                let dilation = trace - (0..D).map(|d| gradient[d][d]).sum::<f64>();
+                for d in 0..D {
+                    gradient[d][d] += dilation / D as f64;
                 }
+                increments.dilations[lane] = dilation;
             }
             wide!(self.strain_block(&block, &increments));
+        }
+    }
+
+    /// Gradients of the displacement at a block of points.
+    fn gradients_of(&self, block: &Range<usize>) -> [Tensor<D>; LANES] {
+        let stride = self.body.grid.node_stride();
+        match &self.body.strain {
+            StrainOperator::Basis => with_stencils!(&self.body.basis, stencils => {
+                wide!(gradients(stencils.blocks(), stride, block, &self.displacement))
+            }),
+            StrainOperator::Composite(stencils) => {
+                wide!(gradients(stencils.blocks(), stride, block, &self.displacement))
+            }
+            StrainOperator::BetweenEnds(stencils) => {
+                wide!(gradients(stencils.blocks(), stride, block, &self.displacement))
+            }
         }
     }
 
@@ -106,4 +123,21 @@ impl<const D: usize> Trial<D> {
         put_block(&mut self.body.points.inverse_deformation, block, &inverses);
         (before, after, stretches)
     }
+}
+
+/// Gradients of a nodal field at a block of points; zero in the place of those that there are not.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+fn gradients<const D: usize, const W: usize>(
+    stencils: Blocks<'_, D, W>,
+    stride: &[usize; D],
+    block: &Range<usize>,
+    field: &[Vector<D>],
+) -> [Tensor<D>; LANES] {
+    let rows = stencils.block(block.start / LANES);
+    let mut gradients = [[[0.0; D]; D]; LANES];
+    for (lane, gradient) in gradients.iter_mut().take(block.len()).enumerate() {
+        *gradient = rows.gradient(stride, lane, field);
+    }
+    gradients
 }

@@ -7,12 +7,16 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::direct_solver::bordered::Bordered;
+use crate::mpm::implicit::unknown_groups::{Lists, groups_of};
 use crate::mpm::implicit::unknowns::Unknowns;
 use crate::soil::conductivity_mean::ConductivityMean;
 
 /// Difference by which a scaled unknown is moved: the square root of the round-off leaves eight
 /// digits of a tangent whose unknowns are strains.
 const DIFFERENCE: f64 = 1e-7;
+
+/// Room for what a point feels on a line.
+const MOST_FELT: usize = 12;
 
 /// Where the operators' rows begin: what the pattern of the tangent depends on.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -48,7 +52,7 @@ impl Structure {
 pub struct Pattern {
     structure: Structure,
     /// Rows that feel each unknown.
-    rows_of_column: Vec<Vec<usize>>,
+    rows_of_column: Lists,
     /// Unknowns that are moved together.
     groups: Vec<Vec<usize>>,
     /// Zeros in the shape of the tangent.
@@ -59,12 +63,7 @@ impl Pattern {
     /// The pattern of a body on its present operators.
     pub fn of<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Self {
         let columns_of_row = felt_unknowns(body, unknowns);
-        let mut rows_of_column = vec![Vec::new(); unknowns.count];
-        for (row, columns) in columns_of_row.iter().enumerate() {
-            for column in columns {
-                rows_of_column[*column].push(row);
-            }
-        }
+        let rows_of_column = Lists::turned(&columns_of_row);
         let zeros = Bordered::spanning(&unknowns.positions, unknowns.border, |visitor| {
             for (row, columns) in columns_of_row.iter().enumerate() {
                 for column in columns {
@@ -72,7 +71,7 @@ impl Pattern {
                 }
             }
         });
-        let groups = groups_of(&columns_of_row, &rows_of_column);
+        let groups = groups_of(&rows_of_column);
         Self { structure: Structure::of(body, unknowns), rows_of_column, groups, zeros }
     }
 
@@ -117,7 +116,7 @@ impl Pattern {
             residual(state, scratch);
             for column in group {
                 state[*column] -= DIFFERENCE;
-                for row in &self.rows_of_column[*column] {
+                for row in self.rows_of_column.of(*column) {
                     tangent.add(*row, *column, (scratch[*row] - base[*row]) / DIFFERENCE);
                 }
             }
@@ -130,9 +129,12 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
     let stride = body.grid.node_stride();
     let by_point: Vec<Vec<usize>> = (0..body.points.len())
         .map(|point| {
-            let mut felt = Vec::new();
-            for entry in body.strain_row(point, &unknowns.rows) {
-                felt.extend(unknowns.displacement[entry.node].into_iter().flatten());
+            let mut felt = Vec::with_capacity(MOST_FELT);
+            let mut feel = |node: usize| felt.extend(unknowns.displacement[node].into_iter().flatten());
+            if body.method.strain.is_bbar() {
+                body.strain_row(point, &unknowns.rows).iter().for_each(|entry| feel(entry.node));
+            } else {
+                body.strain.visit(&body.basis, stride, point, |node, _| feel(node));
             }
             felt.extend(unknowns.rows.recovery[point].iter().map(|(site, _)| unknowns.pressure[*site]));
             felt
@@ -178,14 +180,16 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
             row.extend_from_slice(felt);
         }
     }
-    for site in 0..unknowns.pressure.len() {
-        let row = &mut rows[unknowns.pressure[site]];
-        row.push(unknowns.pressure[site]);
-        for (node, _) in &unknowns.rows.divergence[site] {
-            row.extend_from_slice(&by_node[*node]);
-        }
+    // Site that last felt each unknown: what neighbours feel alike is taken once.
+    let mut felt_by = vec![usize::MAX; unknowns.count];
+    for (site, number) in unknowns.pressure.iter().enumerate() {
+        let row = &mut rows[*number];
+        row.retain(|unknown| std::mem::replace(&mut felt_by[*unknown], site) != site);
+        let around = unknowns.rows.divergence[site].iter().flat_map(|(node, _)| &by_node[*node]);
+        let beyond =
+            around.chain([number]).filter(|unknown| std::mem::replace(&mut felt_by[**unknown], site) != site);
+        row.extend(beyond);
         row.sort_unstable();
-        row.dedup();
     }
     rows
 }
@@ -201,32 +205,17 @@ fn feel_cells<const D: usize>(body: &Body<D>, by_point: &[Vec<usize>], by_node: 
         felt.sort_unstable();
         felt.dedup();
     }
+    let first = body.basis.first();
+    let parts = first.len() / by_point.len();
+    let mut last = None;
     for (point, cell) in body.cells.of_point.iter().enumerate() {
-        body.basis.visit(body.grid.node_stride(), point, |node, _, _| {
-            by_node[node].extend_from_slice(&by_cell[*cell]);
-        });
-    }
-}
-
-/// Each unknown goes to the first group with none that shares a row with it.
-fn groups_of(columns_of_row: &[Vec<usize>], rows_of_column: &[Vec<usize>]) -> Vec<Vec<usize>> {
-    let mut group_of = vec![usize::MAX; rows_of_column.len()];
-    let mut groups: Vec<Vec<usize>> = Vec::new();
-    // Column that last took each group's place as a neighbour.
-    let mut taken_by = Vec::new();
-    for (column, rows) in rows_of_column.iter().enumerate() {
-        for neighbour in rows.iter().flat_map(|row| &columns_of_row[*row]) {
-            if let Some(taken) = taken_by.get_mut(group_of[*neighbour]) {
-                *taken = column;
-            }
+        // Neighbours mostly reach the same nodes.
+        let reached = Some((*cell, &first[point * parts..(point + 1) * parts]));
+        if last != reached {
+            last = reached;
+            body.basis.visit(body.grid.node_stride(), point, |node, _, _| {
+                by_node[node].extend_from_slice(&by_cell[*cell]);
+            });
         }
-        let group = taken_by.iter().position(|taken| *taken != column).unwrap_or(taken_by.len());
-        if group == groups.len() {
-            groups.push(Vec::new());
-            taken_by.push(usize::MAX);
-        }
-        groups[group].push(column);
-        group_of[column] = group;
     }
-    groups
 }

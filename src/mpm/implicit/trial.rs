@@ -199,7 +199,7 @@ impl<const D: usize> Trial<D> {
             }
             self.body.build_operators();
             self.body.map_masses();
-            self.unknowns = Unknowns::of(&self.body);
+            self.unknowns.follow(&self.body);
             if self.formulation != Formulation::QuasiStatic {
                 self.body.map_velocities();
             }

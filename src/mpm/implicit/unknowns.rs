@@ -36,8 +36,10 @@ pub struct Unknowns<const D: usize> {
     pub displacement: Vec<[Option<usize>; D]>,
     /// Unknown of each site.
     pub pressure: Vec<usize>,
-    /// `D` and `R` of the method.
+    /// `D` and `R` of the method: those of an earlier step where `has_old_rows`, but for their sites.
     pub rows: VolumetricRows<D>,
+    /// Whether the coefficients of the rows are to be made before somebody takes them.
+    has_old_rows: bool,
     /// Number of unknowns.
     pub count: usize,
     /// Where each unknown before the border lies, `[unknown][component]`, m.
@@ -62,6 +64,7 @@ impl<const D: usize> Unknowns<D> {
             displacement: Vec::new(),
             pressure: Vec::new(),
             rows: body.volumetric_rows(),
+            has_old_rows: false,
             count: 0,
             positions: Vec::new(),
             border: usize::from(body.plate.is_some()),
@@ -69,6 +72,41 @@ impl<const D: usize> Unknowns<D> {
         };
         unknowns.number(body);
         unknowns
+    }
+
+    /// Follows a body whose points have moved on: what most steps leave as it was, numbers and sites, stays, and rows that
+    /// only a new tangent takes wait for it.
+    pub fn follow(&mut self, body: &Body<D>) {
+        if !self.has_numbers_of(body) {
+            *self = Self::of(body);
+            return;
+        }
+        self.has_old_rows = true;
+        if body.method.strain.is_bbar() || !body.recovery.is_local() {
+            self.take_rows(body);
+        }
+    }
+
+    /// Makes the rows anew where they are old.
+    pub fn take_rows(&mut self, body: &Body<D>) {
+        if self.has_old_rows {
+            self.rows = body.volumetric_rows();
+            self.has_old_rows = false;
+        }
+    }
+
+    /// Whether a body has the sites and free components that were numbered, at places that stay; one with a plate is
+    /// not looked at.
+    fn has_numbers_of(&self, body: &Body<D>) -> bool {
+        body.method.pressure.is_by_cells()
+            && body.plate.is_none()
+            && self.border == 0
+            && body.cells.occupied().eq(self.rows.sites.iter().copied())
+            && self
+                .displacement
+                .iter()
+                .zip(&body.nodes.free)
+                .all(|(numbers, free)| (0..D).all(|d| numbers[d].is_some() == (free[d] > 0.0)))
     }
 
     fn number(&mut self, body: &Body<D>) {
