@@ -82,7 +82,11 @@ fn a_c_library_off_by_one_unit_in_the_last_place_changes_no_value() {
 #[test]
 fn matrices_are_multiplied_by_no_instruction_that_only_some_processors_have() {
     // With `std` come products that are fused where the processor can, and with them other last bits.
-    for manifest in [include_str!("../../Cargo.toml"), include_str!("../../solver/Cargo.toml")] {
+    for manifest in [
+        include_str!("../../records/Cargo.toml"),
+        include_str!("../../solver/Cargo.toml"),
+        include_str!("../../solver/units/Cargo.toml"),
+    ] {
         let manifest: toml::Table = toml::from_str(manifest).expect("a manifest");
         let nalgebra = &manifest["dependencies"]["nalgebra"];
         assert_eq!(nalgebra["default-features"].as_bool(), Some(false));
