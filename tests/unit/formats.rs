@@ -263,7 +263,7 @@ fn files_to_damage() -> Vec<(PathBuf, Vec<u8>)> {
 }
 
 fn real_files() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/foreign");
     [
         "ogs/col_ts_50_t_4.087500.vtu",
         "ogs/col.pvd",
