@@ -34,6 +34,8 @@ OUTCOMES = HERE / "outcomes.csv"
 REPORT = HERE / "OUTCOME.md"
 # The test program of what stands beside the solver's formulas.
 UNITS = "oedometer_solver"
+# That of the solver's runs.
+RUNS = "runs"
 # What is copied: folders and files that the program, the benches and the tests are made of.
 PARTS = ["src", "records", "solver", "studies", "golden", "benches", "tests", "examples", "docs", "python"]
 FILES = ["Cargo.toml", "Cargo.lock", "build.rs", "rust-toolchain.toml", "README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
@@ -241,7 +243,7 @@ def target_of(tree, name):
     pattern = re.compile(rf"\bfn {re.escape(name)}\b")
     own = [(path.stem, path) for path in (tree / "tests").glob("*.rs")]
     own += [("cli", path) for path in (tree / "tests/cli").glob("*.rs")]
-    own += [("runs", path) for path in (tree / "tests/solver").glob("*.rs")]
+    own += [(RUNS, path) for path in (tree / "tests/solver").glob("*.rs")]
     for target, path in sorted(own):
         if pattern.search(path.read_text()):
             return target
@@ -267,14 +269,20 @@ class Tests:
     def build(self):
         """Builds what is needed, and gives each target its programs: one a library where it is their own tests."""
         targets = set(self.target.values())
-        command = ["cargo", "test", "--no-run", "--locked", "--message-format", "json-render-diagnostics", "--target-dir", "target/tests"]
-        command += ["--lib", "--test", UNITS] if None in targets else []
-        for target in sorted(target for target in targets if target):
-            command += ["--test", target]
+        # The runs are tests of the solver's package, whose library has none of its own.
+        groups = [(["oedometer", "oedometer-records", "oedometer-solver-units"], targets - {RUNS}),
+                  (["oedometer-solver"], targets & {RUNS})]
         environment = {**os.environ, "CARGO_INCREMENTAL": "0", "CARGO_PROFILE_DEV_DEBUG": "0"}
-        done = subprocess.run(command, cwd=self.tree, env=environment, stdout=subprocess.PIPE, text=True, check=True)
+        told = ""
+        for packages, wanted in groups:
+            command = ["cargo", "test", "--no-run", "--locked", "--message-format", "json-render-diagnostics", "--target-dir", "target/tests"]
+            command += [word for package in packages for word in ("--package", package)]
+            command += ["--lib", "--test", UNITS] if None in wanted else []
+            command += [word for target in sorted(target for target in wanted if target) for word in ("--test", target)]
+            if wanted:
+                told += subprocess.run(command, cwd=self.tree, env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
         programs = {}
-        for line in done.stdout.splitlines():
+        for line in told.splitlines():
             message = json.loads(line)
             if message.get("reason") == "compiler-artifact" and message["profile"]["test"] and message["executable"]:
                 is_library = "lib" in message["target"]["kind"] or message["target"]["name"] == UNITS
