@@ -1,13 +1,13 @@
 //! Packs the golden values of the shipped studies for the program.
 #![allow(clippy::print_stdout, reason = "Cargo reads it")]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Names, lengths and texts in one compressed stream, a tenth of what the files take.
 fn main() {
     println!("cargo:rerun-if-changed=golden");
-    let mut files = Vec::new();
-    collect(Path::new("golden"), &mut files);
+    let entries = std::fs::read_dir("golden").into_iter().flatten().flatten();
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
     files.retain(|path| path.extension().is_some_and(|kind| kind == "csv"));
     files.sort();
     let mut whole = Vec::new();
@@ -20,15 +20,4 @@ fn main() {
     let folder = PathBuf::from(std::env::var_os("OUT_DIR").unwrap_or_default());
     let packed = miniz_oxide::deflate::compress_to_vec_zlib(&whole, 8);
     std::fs::write(folder.join("golden.z"), packed).expect("the folder of the build can be written to");
-}
-
-fn collect(folder: &Path, sources: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            collect(&path, sources);
-        } else {
-            sources.push(path);
-        }
-    }
 }

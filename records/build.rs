@@ -24,9 +24,8 @@ fn main() {
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
     tell("SOURCES", &sources_hash[..16]);
     tell("COMMIT", &output("git", &["rev-parse", "--short=12", "HEAD"]));
-    let code = ["src", "records", "solver", "Cargo.toml", "Cargo.lock"].map(|path| format!(":/{path}"));
-    let asked = ["status", "--porcelain", "--"].into_iter().chain(code.iter().map(String::as_str));
-    let changed = output("git", &asked.collect::<Vec<_>>());
+    let code = ["../src", "../records", "../solver", "../Cargo.toml", "../Cargo.lock"];
+    let changed = output("git", &[&["status", "--porcelain", "--"], &code[..]].concat());
     tell("DIRTY", if changed.is_empty() { "false" } else { "true" });
     tell("COMPILER", &output(&rustc, &["--version"]));
     tell("TARGET", &std::env::var("TARGET").unwrap_or_default());

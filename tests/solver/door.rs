@@ -1,4 +1,4 @@
-//! Kernels against each other, and runs at their limits.
+//! Kernels against each other, what a run keeps, and runs at their limits.
 
 use crate::mpm::body::Problem;
 use crate::mpm::explicit::scheme::Scheme;
@@ -10,7 +10,7 @@ use crate::mpm::run::{Kernel, Schedule, TimeStepRule};
 use crate::run;
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
-use crate::scene::problem::column_problem;
+use crate::scene::problem::{SceneProblem, column_problem};
 use crate::soil::material::Material;
 
 fn problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {
@@ -87,4 +87,24 @@ fn a_step_beyond_the_limit_ends_with_a_name_and_below_it_runs() {
             }
         }
     }
+}
+
+#[test]
+fn outputs_are_hit_and_history_is_noted() {
+    let outcome = run(problem("GIMP", 5, 2), &schedule(Kernel::Fastest, ExplicitSettings::default(), 0.01));
+    let times: Vec<f64> = outcome.snapshots.iter().map(|snapshot| snapshot.time).collect();
+    assert_eq!(times[0], 0.0);
+    assert!((times[1] - 0.004).abs() < 1e-15 && (times[2] - 0.01).abs() < 1e-15);
+    assert_eq!(outcome.history.len(), 2);
+    assert_eq!(outcome.history.iter().map(|point| point.time).collect::<Vec<_>>(), [0.0025, 0.005]);
+    assert!(outcome.step_sizes.largest <= 0.6 * outcome.step_sizes.predicted_critical * (1.0 + 1e-12));
+}
+
+#[test]
+fn an_observer_can_stop_a_run() {
+    let schedule = schedule(Kernel::Fastest, ExplicitSettings::default(), 0.1);
+    let outcome = SceneProblem::from(problem("GIMP", 5, 2)).run(&schedule, &|done, _| done < 100);
+    let RunStatus::Failed(failure) = outcome.status else { panic!("not stopped") };
+    assert_eq!((failure.kind, failure.step), (FailureKind::Stopped, 128));
+    assert_eq!(outcome.snapshots.len(), 1, "what was finished stays");
 }
