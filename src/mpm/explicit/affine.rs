@@ -43,7 +43,7 @@ impl<const D: usize> Body<D> {
         let Some(VelocitySlopes { slopes, nodes }) = &self.slopes else { return };
         let (stride, points) = (*self.grid.node_stride(), &self.points);
         let (solid_fraction, cell_size) = (1.0 - self.material.porosity, self.grid.cell_size);
-        let momenta = &mut self.nodes.sums.momenta;
+        let balances = &mut self.nodes.sums.balances;
         with_stencils!(&self.basis, stencils => {
             let blocks = stencils.blocks();
             for (point, (in_cells, slopes)) in self.cells.place.iter().zip(slopes).enumerate() {
@@ -57,7 +57,7 @@ impl<const D: usize> Body<D> {
                 });
                 blocks.visit_filled_runs(&stride, point, |run| {
                     let places = &nodes[run.first..run.first + run.weights.len()];
-                    let sums = &mut momenta[run.first..run.first + run.weights.len()];
+                    let sums = &mut balances[run.first..run.first + run.weights.len()];
                     // Across the run all its nodes are as far from the point.
                     let mut across = [[0.0; D]; 2];
                     for e in 1..D {
@@ -68,7 +68,7 @@ impl<const D: usize> Body<D> {
                         let mut given = across;
                         let apart = run.across[0] * (at[0] - place[0]);
                         add_weighted(given.as_flattened_mut(), apart, brought[0].as_flattened());
-                        add_weighted(sum.as_flattened_mut(), *weight, given.as_flattened());
+                        add_weighted(sum[..2].as_flattened_mut(), *weight, given.as_flattened());
                     }
                 });
             }

@@ -58,9 +58,11 @@ impl<const D: usize> Body<D> {
         let carrier = self.strain.carrier();
         let stride = *self.grid.node_stride();
         let Nodes { solid_velocity: solid_field, motion, sums, .. } = &mut self.nodes;
-        let (solid_field, motion, momenta) = (&solid_field[..], &motion[..], &mut sums.momenta[..]);
+        let (solid_field, motion, balances) = (&solid_field[..], &motion[..], &mut sums.balances[..]);
         if BACK {
-            momenta.fill([[0.0; D]; 2]);
+            for [solid, water, ..] in &mut *balances {
+                (*solid, *water) = ([0.0; D], [0.0; D]);
+            }
         }
         let points = &mut self.points;
         for block in blocks_of(points.len()) {
@@ -125,7 +127,7 @@ impl<const D: usize> Body<D> {
                     rows,
                     &stride,
                     count,
-                    momenta,
+                    balances,
                     #[inline(always)]
                     |lane| momenta_of([grains[lane], pores[lane]], &solid[lane], &water[lane]),
                 );

@@ -6,7 +6,7 @@
 
 use crate::mpm::body::Body;
 use crate::mpm::operators::block_rows::{BlockRows, Blocks, Run};
-use crate::mpm::operators::line_sums::{LineSums, gradients_of, weights_of};
+use crate::mpm::operators::line_sums::{LineSums, add_nodes, gradients_of, weights_of};
 use crate::mpm::operators::pairs::add_weighted;
 use crate::mpm::operators::stencil::with_stencils;
 use crate::mpm::state::lanes::{LANES, Lanes, block_of, blocks_of};
@@ -84,37 +84,34 @@ impl<const D: usize> Body<D> {
     ) {
         self.nodes.clear_sums(MASSES, VELOCITIES, FORCES);
         let (soil, sums, points) = (&self.material, &mut self.nodes.sums, &self.points);
-        let (masses, momenta, forces) = (&mut sums.masses[..], &mut sums.momenta[..], &mut sums.forces[..]);
+        let (masses, balances) = (&mut sums.masses[..], &mut sums.balances[..]);
         let (stride, is_total) = (*self.grid.node_stride(), self.is_pushed_forward);
         for block in blocks_of(points.len()) {
             let (rows, count) = (basis.block(block.start / LANES), block.len().min(LANES));
             let given = Given::of(soil, points, &block, is_total);
             if D == 1 && MASSES && VELOCITIES && FORCES {
-                let sums = LineSums {
-                    masses,
-                    momenta: momenta.as_flattened_mut().as_flattened_mut().as_chunks_mut().0,
-                    forces: forces.as_flattened_mut().as_flattened_mut().as_chunks_mut().0,
-                };
+                let sums = LineSums { masses, balances: fours_of(balances) };
                 rows.add_all_in_line(
                     count,
                     sums,
                     #[inline(always)]
                     |lane| {
-                        let [momenta, stresses] = [given.momenta(lane), given.stresses(lane)[0]];
-                        (given.masses(lane), of_line(&momenta), of_line(&stresses))
+                        let ([solid, water], [mixture, flow]) =
+                            (of_line(&given.momenta(lane)), of_line(&given.stresses(lane)[0]));
+                        [given.masses(lane), [solid, water, mixture, flow]]
                     },
                 );
                 continue;
             }
             if D == 1 {
                 if MASSES {
-                    let masses = masses.as_flattened_mut();
                     rows.add_in_line(
                         count,
-                        masses,
                         weights_of,
                         #[inline(always)]
                         |lane| given.masses(lane),
+                        #[inline(always)]
+                        |first, window| add_nodes(&mut masses[first..first + W], window),
                     );
                 }
                 if VELOCITIES {
@@ -122,19 +119,23 @@ impl<const D: usize> Body<D> {
                         rows,
                         &stride,
                         count,
-                        momenta,
+                        balances,
                         #[inline(always)]
                         |lane| given.momenta(lane),
                     );
                 }
                 if FORCES {
-                    let forces = forces.as_flattened_mut().as_flattened_mut();
                     rows.add_in_line(
                         count,
-                        forces,
                         gradients_of,
                         #[inline(always)]
                         |lane| of_line(&given.stresses(lane)[0]),
+                        #[inline(always)]
+                        |first, window| {
+                            for (node, sum) in fours_of(balances)[first..first + W].iter_mut().zip(window) {
+                                (node[2], node[3]) = (node[2] + sum[0], node[3] + sum[1]);
+                            }
+                        },
                     );
                 }
                 continue;
@@ -151,10 +152,10 @@ impl<const D: usize> Body<D> {
                             add_masses_to_run(masses, run, &masses_of_point);
                         }
                         if VELOCITIES {
-                            add_momenta_to_run(momenta, run, &momenta_of_point);
+                            add_momenta_to_run(balances, run, &momenta_of_point);
                         }
                         if FORCES {
-                            add_forces_to_run(forces, run, &stresses_of_point);
+                            add_forces_to_run(balances, run, &stresses_of_point);
                         }
                     },
                 );
@@ -280,6 +281,13 @@ fn of_line<const D: usize>([one, two]: &[Vector<D>; 2]) -> [f64; 2] {
     [one[0], two[0]]
 }
 
+/// The balances of the nodes of a line.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+fn fours_of<const D: usize>(balances: &mut [[Vector<D>; 4]]) -> &mut [[f64; 4]] {
+    balances.as_flattened_mut().as_flattened_mut().as_chunks_mut().0
+}
+
 /// Adds a point's volumes and drag to a run of nodes.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
@@ -298,13 +306,13 @@ fn add_masses_to_run<const D: usize, const W: usize>(
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 fn add_momenta_to_run<const D: usize, const W: usize>(
-    momenta: &mut [[Vector<D>; 2]],
+    balances: &mut [[Vector<D>; 4]],
     run: &Run<D, W>,
     given: &[Vector<D>; 2],
 ) {
     let given = given.map(|momentum| momentum.map(|component| component * run.across[0]));
-    for (node, weight) in momenta[run.first..run.first + W].iter_mut().zip(&run.weights) {
-        add_weighted(node.as_flattened_mut(), *weight, given.as_flattened());
+    for (node, weight) in balances[run.first..run.first + W].iter_mut().zip(&run.weights) {
+        add_weighted(node[..2].as_flattened_mut(), *weight, given.as_flattened());
     }
 }
 
@@ -313,7 +321,7 @@ fn add_momenta_to_run<const D: usize, const W: usize>(
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 fn add_forces_to_run<const D: usize, const W: usize>(
-    forces: &mut [[Vector<D>; 2]],
+    balances: &mut [[Vector<D>; 4]],
     run: &Run<D, W>,
     given: &[[Vector<D>; 2]; D],
 ) {
@@ -323,13 +331,14 @@ fn add_forces_to_run<const D: usize, const W: usize>(
             *stress *= run.across[e];
         }
     }
-    for (k, node) in forces[run.first..run.first + W].iter_mut().enumerate() {
-        let mut sum = *node;
+    for (k, node) in balances[run.first..run.first + W].iter_mut().enumerate() {
+        let [.., mixture, water] = node;
+        let mut sum = [*mixture, *water];
         for e in 0..D {
             let along = if e == 0 { run.gradients[k] } else { run.weights[k] };
             add_weighted(sum.as_flattened_mut(), along, given[e].as_flattened());
         }
-        *node = sum;
+        [*mixture, *water] = sum;
     }
 }
 
@@ -340,16 +349,21 @@ pub(crate) fn add_momenta<const D: usize, const W: usize>(
     rows: BlockRows<'_, D, W>,
     stride: &[usize; D],
     count: usize,
-    momenta: &mut [[Vector<D>; 2]],
+    balances: &mut [[Vector<D>; 4]],
     given: impl Fn(usize) -> [Vector<D>; 2],
 ) {
     if D == 1 {
         rows.add_in_line(
             count,
-            momenta.as_flattened_mut().as_flattened_mut(),
             weights_of,
             #[inline(always)]
             |lane| of_line(&given(lane)),
+            #[inline(always)]
+            |first, window| {
+                for (node, sum) in fours_of(balances)[first..first + W].iter_mut().zip(window) {
+                    (node[0], node[1]) = (node[0] + sum[0], node[1] + sum[1]);
+                }
+            },
         );
         return;
     }
@@ -359,7 +373,7 @@ pub(crate) fn add_momenta<const D: usize, const W: usize>(
             stride,
             lane,
             #[inline(always)]
-            |run| add_momenta_to_run(momenta, run, &given),
+            |run| add_momenta_to_run(balances, run, &given),
         );
     }
 }

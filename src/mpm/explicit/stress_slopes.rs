@@ -73,7 +73,7 @@ impl<const D: usize> Body<D> {
         let Some(mut planes) = self.stress_planes.take() else { return };
         planes.fit(&self.grid, &self.cells, &self.points);
         let (stride, points, cell_size) = (*self.grid.node_stride(), &self.points, self.grid.cell_size);
-        let sums = &mut self.nodes.sums.forces;
+        let sums = &mut self.nodes.sums.balances;
         with_stencils!(&self.basis, stencils => {
             let blocks = stencils.blocks();
             for (point, in_cells) in self.cells.place.iter().enumerate() {
@@ -108,7 +108,7 @@ impl<const D: usize> Body<D> {
                             means[D - 1][0] = other.weight * gradient;
                             means[D - 1][D - 1] = other.gradient * weight;
                         }
-                        let [mixture, water] = &mut sums[run.first + k];
+                        let [_, _, mixture, water] = &mut sums[run.first + k];
                         for d in 0..D {
                             for e in 0..D {
                                 for c in 0..D {

@@ -30,13 +30,11 @@ impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
     pub fn add_in_line<const N: usize>(
         &self,
         count: usize,
-        sums: &mut [f64],
         rows_of: impl Fn(&LaneRows<W>) -> &[Lanes; W],
         given: impl Fn(usize) -> [f64; N],
+        mut add: impl FnMut(usize, &[[f64; N]; W]),
     ) {
-        let nodes = sums.as_chunks_mut::<N>().0;
         let rows = rows_of(&self.rows[0]);
-        let mut add = |first: usize, window: &[[f64; N]; W]| add_nodes(&mut nodes[first..first + W], window);
         let (mut window, mut first) = ([[0.0; N]; W], self.first[0]);
         for (lane, own) in self.first.iter().enumerate().take(count) {
             if *own != first {
@@ -58,7 +56,7 @@ impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
         &self,
         count: usize,
         mut sums: LineSums<'_>,
-        given: impl Fn(usize) -> ([f64; 4], [f64; 2], [f64; 2]),
+        given: impl Fn(usize) -> [[f64; 4]; 2],
     ) {
         let rows = &self.rows[0];
         let (mut window, mut first) = (Window::<W>::EMPTY, self.first[0]);
@@ -67,12 +65,13 @@ impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
                 window.add_to(&mut sums, first);
                 (window, first) = (Window::EMPTY, *own);
             }
-            let (masses, momenta, forces) = given(lane);
+            let [masses, balances] = given(lane);
             for k in 0..W {
                 let (weight, gradient) = (rows.weights[k][lane], rows.gradients[k][lane]);
                 add_weighted(&mut window.masses[k], weight, &masses);
-                add_weighted(&mut window.momenta[k], weight, &momenta);
-                add_weighted(&mut window.forces[k], gradient, &forces);
+                let along = [weight, weight, gradient, gradient];
+                window.balances[k] =
+                    std::array::from_fn(|i| window.balances[k][i] + along[i] * balances[i]);
             }
         }
         window.add_to(&mut sums, first);
@@ -83,36 +82,32 @@ impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
 pub struct LineSums<'a> {
     /// As [`NodalSums::masses`](crate::mpm::state::nodes::NodalSums::masses).
     pub masses: &'a mut [[f64; 4]],
-    /// Momenta of both phases.
-    pub momenta: &'a mut [[f64; 2]],
-    /// Forces on the mixture and on the water.
-    pub forces: &'a mut [[f64; 2]],
+    /// As [`NodalSums::balances`](crate::mpm::state::nodes::NodalSums::balances).
+    pub balances: &'a mut [[f64; 4]],
 }
 
 /// The same of the few nodes that neighbouring points give to.
 #[derive(Clone, Copy)]
 struct Window<const W: usize> {
     masses: [[f64; 4]; W],
-    momenta: [[f64; 2]; W],
-    forces: [[f64; 2]; W],
+    balances: [[f64; 4]; W],
 }
 
 impl<const W: usize> Window<W> {
-    const EMPTY: Self = Self { masses: [[0.0; 4]; W], momenta: [[0.0; 2]; W], forces: [[0.0; 2]; W] };
+    const EMPTY: Self = Self { masses: [[0.0; 4]; W], balances: [[0.0; 4]; W] };
 
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     fn add_to(&self, sums: &mut LineSums<'_>, first: usize) {
         add_nodes(&mut sums.masses[first..first + W], &self.masses);
-        add_nodes(&mut sums.momenta[first..first + W], &self.momenta);
-        add_nodes(&mut sums.forces[first..first + W], &self.forces);
+        add_nodes(&mut sums.balances[first..first + W], &self.balances);
     }
 }
 
 /// Adds the numbers of some nodes to others.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn add_nodes<const N: usize>(nodes: &mut [[f64; N]], window: &[[f64; N]]) {
+pub fn add_nodes<const N: usize>(nodes: &mut [[f64; N]], window: &[[f64; N]]) {
     for (node, sum) in nodes.iter_mut().zip(window) {
         for i in 0..N {
             node[i] += sum[i];

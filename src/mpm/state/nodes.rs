@@ -75,10 +75,8 @@ pub struct Nodes<const D: usize> {
 pub struct NodalSums<const D: usize> {
     /// Volume of the grains and of the pores (m^D), drag (N s/m), and nothing.
     pub masses: Vec<[f64; 4]>,
-    /// Volume times velocity of the grains and of the pores, m^D m/s.
-    pub momenta: Vec<[Vector<D>; 2]>,
-    /// Forces on the mixture and on the water, N.
-    pub forces: Vec<[Vector<D>; 2]>,
+    /// Volume times velocity of the grains and of the pores (m^D m/s), and forces on the mixture and on the water (N).
+    pub balances: Vec<[Vector<D>; 4]>,
     /// Forces of the flow potential and of the stress, and the size of the latter, where the drag is of
     /// their ratio.
     pub chords: Vec<[f64; 3]>,
@@ -177,8 +175,7 @@ impl<const D: usize> Nodes<D> {
             drag: scalars,
             sums: NodalSums {
                 masses: vec![[0.0; 4]; count],
-                momenta: vec![[[0.0; D]; 2]; count],
-                forces: vec![[[0.0; D]; 2]; count],
+                balances: vec![[[0.0; D]; 4]; count],
                 chords: vec![[0.0; 3]; count],
             },
             external_force: vectors.clone(),
@@ -218,13 +215,25 @@ impl<const D: usize> Nodes<D> {
         if masses {
             self.sums.masses.fill([0.0; 4]);
         }
-        if momenta {
-            self.sums.momenta.fill([[0.0; D]; 2]);
-        }
-        if forces {
-            for (forces, external) in self.sums.forces.iter_mut().zip(&self.external_force) {
-                *forces = [*external, [0.0; D]];
+        match (momenta, forces) {
+            (true, true) => {
+                for (sums, external) in self.sums.balances.iter_mut().zip(&self.external_force) {
+                    *sums = [[0.0; D], [0.0; D], *external, [0.0; D]];
+                }
             }
+            (true, false) => {
+                for [solid, water, ..] in &mut self.sums.balances {
+                    (*solid, *water) = ([0.0; D], [0.0; D]);
+                }
+            }
+            (false, true) => {
+                for ([.., mixture, water], external) in
+                    self.sums.balances.iter_mut().zip(&self.external_force)
+                {
+                    (*mixture, *water) = (*external, [0.0; D]);
+                }
+            }
+            (false, false) => {}
         }
     }
 
@@ -276,14 +285,14 @@ impl<const D: usize> Nodes<D> {
     /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held or empty.
     pub fn take_velocities(&mut self, soil: &Material) {
         let count = self.len();
-        let momenta = &self.sums.momenta[..count];
+        let sums = &self.sums.balances[..count];
         let (per_solid_mass, free) = (&self.per_solid_mass[..count], &self.free[..count]);
         let (per_water_mass, water_free) = (&self.per_water_mass[..count], &self.water_free[..count]);
         let (solid_velocity, water_velocity) =
             (&mut self.solid_velocity[..count], &mut self.water_velocity[..count]);
         for run in &self.runs {
             for node in run.start..run.end.min(count) {
-                let [solid, water] = momenta[node];
+                let [solid, water, ..] = sums[node];
                 let per_grain_volume = soil.grain_density * per_solid_mass[node];
                 let per_pore_volume = soil.water_density * per_water_mass[node];
                 for d in 0..D {
@@ -297,11 +306,11 @@ impl<const D: usize> Nodes<D> {
     /// Forces from the points' [`sums`](Self::sums).
     pub fn take_forces(&mut self) {
         let count = self.len();
-        let sums = &self.sums.forces[..count];
+        let sums = &self.sums.balances[..count];
         let (mixture, water) = (&mut self.mixture_force[..count], &mut self.water_force[..count]);
         for run in &self.runs {
             for node in run.start..run.end.min(count) {
-                [mixture[node], water[node]] = sums[node];
+                [_, _, mixture[node], water[node]] = sums[node];
             }
         }
     }
@@ -414,7 +423,7 @@ mod tests {
             for node in [3, 4, 6] {
                 let share = if node == 4 && !has_mass { 0.0 } else { 1.0 };
                 nodes.sums.masses[node] = [2.0 * share, share, 5.0 * share, 0.0];
-                nodes.sums.momenta[node] = [[6.0 * share], [4.0 * share]];
+                nodes.sums.balances[node] = [[6.0 * share], [4.0 * share], [0.0], [0.0]];
             }
             nodes.take_masses(&soil);
             nodes.take_velocities(&soil);
