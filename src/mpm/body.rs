@@ -14,6 +14,7 @@ use crate::mpm::state::cells::Cells;
 use crate::mpm::state::confined_points::ConfinedPoints;
 use crate::mpm::state::domains::Domains;
 use crate::mpm::state::grid::Grid;
+use crate::mpm::state::nodes::each_of_runs;
 use crate::mpm::state::nodes::{Nodes, Support};
 use crate::mpm::state::points::Points;
 use crate::mpm::state::stress_planes::StressPlanes;
@@ -362,16 +363,8 @@ impl<const D: usize> Body<D> {
     /// `v_s + n (v_w − v_s)` at the nodes, with the nodal porosity: what docs/theory.md, Eq. 4
     /// takes the divergence of.
     pub fn nodal_flux(&mut self) {
-        let (count, nodes) = (self.nodes.len(), &mut self.nodes);
-        let (porosity, solid) = (&nodes.porosity[..count], &nodes.solid_velocity[..count]);
-        let (water, flux) = (&nodes.water_velocity[..count], &mut nodes.flux[..count]);
-        for run in &nodes.runs {
-            for node in run.start..run.end.min(count) {
-                for d in 0..D {
-                    flux[node][d] = solid[node][d] + porosity[node] * (water[node][d] - solid[node][d]);
-                }
-            }
-        }
+        let nodes = &mut self.nodes;
+        each_of_runs!(nodes, |first, N| nodes.flux_of::<N>(first));
     }
 
     /// Largest nodal velocity of either phase, m/s; infinite where one is not finite.

@@ -91,12 +91,13 @@ impl Law {
         }
     }
 
-    /// Hydraulic conductivities, m/s, at some volume ratios from the initial one: the law is asked once.
+    /// What the water has to overcome at some volume ratios, `γ_w/k` in N s/m⁴, from that of the initial one: the law is
+    /// asked once, and where the conductivity is constant nothing is divided.
     #[inline]
-    pub fn conductivities<const N: usize>(self, initial: f64, volume_ratios: &[f64; N]) -> [f64; N] {
+    pub fn resistivities<const N: usize>(self, initial: f64, volume_ratios: &[f64; N]) -> [f64; N] {
         match self {
             Self::Linear => [initial; N],
-            law => volume_ratios.map(|ratio| law.conductivity(initial, ratio)),
+            law => volume_ratios.map(|ratio| initial / law.conductivity(1.0, ratio)),
         }
     }
 
@@ -169,6 +170,17 @@ impl Stiffness {
 mod tests {
     use super::*;
     use crate::soil::material::Material;
+
+    #[test]
+    fn the_resistivity_is_the_weight_of_water_over_the_conductivity() {
+        for law in Law::ALL {
+            let ratios = [1.0, 0.7, 1.3];
+            for (ratio, resistivity) in ratios.iter().zip(law.resistivities(1e4 / 1e-3, &ratios)) {
+                let expected = 1e4 / law.conductivity(1e-3, *ratio);
+                assert!((resistivity / expected - 1.0).abs() < 1e-15, "{} at {ratio}", law.name());
+            }
+        }
+    }
 
     #[test]
     fn a_uniaxial_strain_meets_the_oedometric_modulus() {

@@ -11,9 +11,14 @@ fn recovered<const D: usize>(
 ) -> Vec<(f64, f64)> {
     let mut cells = Cells::new(grid, points.len());
     cells.locate(grid, points, 0.3);
-    let mut rows = PatchRows::with_points(points.len(), grid.cell_count());
+    let mut rows = PatchRows::with_points(points.len(), grid);
     rows.build(grid, &cells);
     let at_cells: Vec<f64> = (0..grid.cell_count()).map(|cell| field(&grid.cell_centre(cell))).collect();
+    let mut side_by_side = vec![0.0; points.len()];
+    rows.recover(grid, &at_cells, &mut side_by_side, |place, value| *place = value);
+    for (point, value) in side_by_side.iter().enumerate() {
+        assert_eq!(*value, rows.value(grid, point, &at_cells), "point {point}, with others or alone");
+    }
     (0..points.len())
         .map(|point| (rows.value(grid, point, &at_cells), field(&points.position[point])))
         .collect()
@@ -38,8 +43,19 @@ proptest! {
 #[test]
 fn a_line_is_recovered_exactly_in_a_column_and_in_its_boundary_cells() {
     let grid = Grid::new(0.1, [12]);
-    let points = Points::lattice(0.1, [10], 3);
-    for (got, exact) in recovered(&grid, &points, |x| 2.0 - 5.0 * x[0]) {
+    for per_cell in [3, 4] {
+        let points = Points::lattice(0.1, [10], per_cell);
+        for (got, exact) in recovered(&grid, &points, |x| 2.0 - 5.0 * x[0]) {
+            assert!((got - exact).abs() < 1e-14, "{got} for {exact}");
+        }
+    }
+}
+
+#[test]
+fn a_line_is_recovered_exactly_in_a_plane_column_of_one_cell() {
+    let grid = Grid::new(0.1, [1, 12]);
+    let points = Points::lattice(0.1, [1, 10], 2);
+    for (got, exact) in recovered(&grid, &points, |x| 2.0 - 5.0 * x[1]) {
         assert!((got - exact).abs() < 1e-14, "{got} for {exact}");
     }
 }
@@ -60,7 +76,7 @@ fn both_rows<const D: usize>(place: Vector<D>, is_occupied: impl Fn(&[usize; D])
     points.position[point] = place.map(|x| 1.0 + x);
     let mut cells = Cells::new(&grid, points.len());
     cells.locate(&grid, &points, 0.3);
-    let mut rows = PatchRows::with_points(points.len(), grid.cell_count());
+    let mut rows = PatchRows::with_points(points.len(), &grid);
     rows.build(&grid, &cells);
     let mut fitted = vec![0.0; power(BLOCK, D)];
     fit(&grid, &cells, cells.of_point[point], &cells.place[point], &mut fitted);
@@ -96,7 +112,7 @@ fn closed_forms_are_the_fit_in_a_column_of_one_cell_across() {
     }
     let mut cells = Cells::new(&grid, points.len());
     cells.locate(&grid, &points, 0.3);
-    let mut rows = PatchRows::with_points(points.len(), grid.cell_count());
+    let mut rows = PatchRows::with_points(points.len(), &grid);
     rows.build(&grid, &cells);
     for point in 0..points.len() {
         let mut fitted = vec![0.0; power(BLOCK, 2)];

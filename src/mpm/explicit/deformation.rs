@@ -2,8 +2,7 @@
 
 use crate::elementary;
 use crate::mpm::state::grid::SIXTH;
-use crate::mpm::state::lanes::LANES;
-use crate::soil::tensor::{Tensor, Vector, identity, inverse, product, product_with_transpose};
+use crate::soil::tensor::{Tensor, Vector, identity, inverse, product};
 
 /// What follows the deformation of a point beside its volume.
 #[derive(Clone, Copy)]
@@ -52,7 +51,7 @@ fn four_terms(strain: f64) -> f64 {
 /// where all strains are small, without a branch for each.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub fn stretches_of<const D: usize>(strains: &[Vector<D>; LANES]) -> [Vector<D>; LANES] {
+pub fn stretches_of<const D: usize, const N: usize>(strains: &[Vector<D>; N]) -> [Vector<D>; N] {
     let mut stretches = *strains;
     let (strains, of_strains) = (strains.as_flattened(), stretches.as_flattened_mut());
     if strains.iter().fold(true, |all, strain| all & (strain.abs() < SMALL)) {
@@ -72,20 +71,47 @@ pub fn stretches_of<const D: usize>(strains: &[Vector<D>; LANES]) -> [Vector<D>;
 /// form it is Jaumann's stress rate, and exactly objective under a rigid rotation.
 #[inline]
 pub fn rotated<const D: usize>(stress: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
+    let [turned] = all_rotated(&[*stress], &[*increment]);
+    turned
+}
+
+/// The same of some points side by side.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub fn all_rotated<const D: usize, const N: usize>(
+    stresses: &[Tensor<D>; N],
+    increments: &[Tensor<D>; N],
+) -> [Tensor<D>; N] {
+    let mut turned = *stresses;
     if D != 2 {
-        return *stress;
+        return turned;
     }
-    let half = 0.25 * (increment[1][0] - increment[0][1]);
-    let per = 1.0 / (1.0 + half * half);
-    let (cosine, sine) = ((1.0 - half * half) * per, 2.0 * half * per);
-    let turn: Tensor<D> = std::array::from_fn(|i| {
-        std::array::from_fn(|j| match (i, j) {
-            (0, 1) => -sine,
-            (1, 0) => sine,
-            _ => cosine,
-        })
-    });
-    product_with_transpose(&product(&turn, stress), &turn)
+    let [mut cosine, mut sine] = [[0.0; N]; 2];
+    for point in 0..N {
+        sine[point] = 0.25 * (increments[point][1][0] - increments[point][0][1]);
+    }
+    for point in 0..N {
+        let half = sine[point];
+        let per = 1.0 / (1.0 + half * half);
+        (cosine[point], sine[point]) = ((1.0 - half * half) * per, 2.0 * half * per);
+    }
+    // `Q σ`, by rows of `σ`, and that by `Qᵀ`: `[component][point]`.
+    let mut rows = [[[0.0; N]; 2]; 2];
+    for j in 0..2 {
+        for point in 0..N {
+            let [above, below] = [stresses[point][0][j], stresses[point][1][j]];
+            rows[0][j][point] = cosine[point] * above - sine[point] * below;
+            rows[1][j][point] = sine[point] * above + cosine[point] * below;
+        }
+    }
+    for i in 0..2 {
+        for point in 0..N {
+            let [left, right] = [rows[i][0][point], rows[i][1][point]];
+            turned[point][i][0] = left * cosine[point] - right * sine[point];
+            turned[point][i][1] = left * sine[point] + right * cosine[point];
+        }
+    }
+    turned
 }
 
 /// `F⁻¹ exp(−A)` for a step's strain `A`, to third order in it.
@@ -121,8 +147,8 @@ mod tests {
             assert!((stretch_of(strain) / strain.exp() - 1.0).abs() < 3e-16);
         }
         for last in [3e-6, 0.2, f64::NAN] {
-            let mut strains = [[-1e-7, 9.9e-5]; LANES];
-            strains[LANES - 1][1] = last;
+            let mut strains = [[-1e-7, 9.9e-5]; 4];
+            strains[3][1] = last;
             for (stretches, strains) in stretches_of(&strains).iter().zip(&strains) {
                 assert_eq!(stretches.map(f64::to_bits), strains.map(|strain| stretch_of(strain).to_bits()));
             }
@@ -144,6 +170,27 @@ mod tests {
         }
         let stretched = rotated(&stress, &[[0.1, 0.3], [0.3, -0.2]]);
         assert_eq!(stretched, stress, "a strain without spin turns nothing");
+    }
+
+    #[test]
+    fn stresses_turn_side_by_side_as_one_by_one() {
+        let tensor =
+            |seed: f64| [[(1.1 * seed).sin(), (2.3 * seed).cos()], [(0.7 * seed).cos(), (1.9 * seed).sin()]];
+        let stresses: [Tensor<2>; 4] = std::array::from_fn(|point| tensor(1.0 + point as f64));
+        let increments: [Tensor<2>; 4] = std::array::from_fn(|point| tensor(7.0 - point as f64));
+        for (point, turned) in all_rotated(&stresses, &increments).iter().enumerate() {
+            assert_eq!(*turned, rotated(&stresses[point], &increments[point]));
+            // Q σ Qᵀ with Q = (I − W/2)⁻¹ (I + W/2).
+            let half = 0.25 * (increments[point][1][0] - increments[point][0][1]);
+            let forth = [[1.0, -half], [half, 1.0]];
+            let turn = product(&inverse(&[[1.0, half], [-half, 1.0]]).0, &forth);
+            let back = [[turn[0][0], turn[1][0]], [turn[0][1], turn[1][1]]];
+            let exact = product(&product(&turn, &stresses[point]), &back);
+            for (got, exact) in turned.as_flattened().iter().zip(exact.as_flattened()) {
+                assert!((got - exact).abs() < 1e-14, "{got} for {exact}");
+            }
+        }
+        assert_eq!(all_rotated(&[[[3.0]]], &[[[0.5]]]), [[[3.0]]], "a line does not turn");
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! takes what belongs across the run into what the point gives, and sums side by side what belongs to one node.
 
 use crate::mpm::body::Body;
-use crate::mpm::operators::block_rows::{BlockRows, Blocks, Run};
+use crate::mpm::operators::block_rows::{Blocks, Run};
 use crate::mpm::operators::line_sums::{LineSums, add_nodes, gradients_of, weights_of};
 use crate::mpm::operators::pairs::add_weighted;
 use crate::mpm::operators::stencil::with_stencils;
@@ -39,12 +39,21 @@ impl<const D: usize> Body<D> {
         self.map_points::<true, true, true>();
     }
 
-    fn map_points<const MASSES: bool, const VELOCITIES: bool, const FORCES: bool>(&mut self) {
+    /// What the points give of all of them, and nothing yet of what the nodes make of it.
+    pub(crate) fn sum_masses_velocities_and_forces(&mut self) {
+        self.sum_all_points::<true, true, true>();
+    }
+
+    fn sum_all_points<const MASSES: bool, const VELOCITIES: bool, const FORCES: bool>(&mut self) {
         let basis = std::mem::take(&mut self.basis);
         with_stencils!(&basis, stencils => {
             wide!(self.sum_points::<MASSES, VELOCITIES, FORCES, _>(stencils.blocks()));
         });
         self.basis = basis;
+    }
+
+    fn map_points<const MASSES: bool, const VELOCITIES: bool, const FORCES: bool>(&mut self) {
+        self.sum_all_points::<MASSES, VELOCITIES, FORCES>();
         if MASSES {
             self.nodes.take_masses(&self.material);
             if self.material.conductivity_mean == ConductivityMean::Chord {
@@ -115,13 +124,13 @@ impl<const D: usize> Body<D> {
                     );
                 }
                 if VELOCITIES {
-                    add_momenta(
-                        rows,
-                        &stride,
+                    rows.add_in_line(
                         count,
-                        balances,
+                        weights_of,
                         #[inline(always)]
-                        |lane| given.momenta(lane),
+                        |lane| of_line(&given.momenta(lane)),
+                        #[inline(always)]
+                        |first, window| add_pairs::<_, 0>(&mut balances[first..first + W], window),
                     );
                 }
                 if FORCES {
@@ -131,11 +140,7 @@ impl<const D: usize> Body<D> {
                         #[inline(always)]
                         |lane| of_line(&given.stresses(lane)[0]),
                         #[inline(always)]
-                        |first, window| {
-                            for (node, sum) in fours_of(balances)[first..first + W].iter_mut().zip(window) {
-                                (node[2], node[3]) = (node[2] + sum[0], node[3] + sum[1]);
-                            }
-                        },
+                        |first, window| add_pairs::<_, 2>(&mut balances[first..first + W], window),
                     );
                 }
                 continue;
@@ -208,8 +213,9 @@ impl<'a, const D: usize> Given<'a, D> {
         let initial = block_of(&points.initial_volume, block, 0.0);
         let ratio = block_of(&points.volume_ratio, block, 1.0);
         let share = block_of(&points.stressed_share, block, 1.0);
-        let conductivity = soil.law.conductivities(soil.hydraulic_conductivity, &ratio);
-        let (solid_fraction, unit_weight) = (1.0 - soil.porosity, soil.unit_weight_of_water());
+        let solid_fraction = 1.0 - soil.porosity;
+        let resistivity =
+            soil.law.resistivities(soil.unit_weight_of_water() / soil.hydraulic_conductivity, &ratio);
         let [mut grains, mut pores, mut stressed, mut drag] = [[0.0; LANES]; 4];
         for lane in 0..LANES {
             [grains[lane], pores[lane]] = volumes_of(initial[lane], ratio[lane], solid_fraction);
@@ -218,7 +224,7 @@ impl<'a, const D: usize> Given<'a, D> {
             stressed[lane] = initial[lane] * ratio[lane] * share[lane];
         }
         for lane in 0..LANES {
-            drag[lane] = pores[lane] * unit_weight / conductivity[lane];
+            drag[lane] = pores[lane] * resistivity[lane];
         }
         Self {
             grains,
@@ -277,7 +283,7 @@ impl<'a, const D: usize> Given<'a, D> {
 /// What a point of a line has of both phases.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn of_line<const D: usize>([one, two]: &[Vector<D>; 2]) -> [f64; 2] {
+pub(crate) fn of_line<const D: usize>([one, two]: &[Vector<D>; 2]) -> [f64; 2] {
     [one[0], two[0]]
 }
 
@@ -286,6 +292,17 @@ fn of_line<const D: usize>([one, two]: &[Vector<D>; 2]) -> [f64; 2] {
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 fn fours_of<const D: usize>(balances: &mut [[Vector<D>; 4]]) -> &mut [[f64; 4]] {
     balances.as_flattened_mut().as_flattened_mut().as_chunks_mut().0
+}
+
+/// Adds momenta, which are the first of the balances of a line's nodes, or forces, from the third on.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn add_pairs<const D: usize, const FROM: usize>(nodes: &mut [[Vector<D>; 4]], sums: &[[f64; 2]]) {
+    for (node, sum) in nodes.iter_mut().zip(sums) {
+        for phase in 0..2 {
+            node[FROM + phase][0] += sum[phase];
+        }
+    }
 }
 
 /// Adds a point's volumes and drag to a run of nodes.
@@ -305,7 +322,7 @@ fn add_masses_to_run<const D: usize, const W: usize>(
 /// Adds a point's momenta to a run of nodes.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn add_momenta_to_run<const D: usize, const W: usize>(
+pub(crate) fn add_momenta_to_run<const D: usize, const W: usize>(
     balances: &mut [[Vector<D>; 4]],
     run: &Run<D, W>,
     given: &[Vector<D>; 2],
@@ -339,41 +356,5 @@ fn add_forces_to_run<const D: usize, const W: usize>(
             add_weighted(sum.as_flattened_mut(), along, given[e].as_flattened());
         }
         [*mixture, *water] = sum;
-    }
-}
-
-/// Adds the momenta of some points to their nodes.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub(crate) fn add_momenta<const D: usize, const W: usize>(
-    rows: BlockRows<'_, D, W>,
-    stride: &[usize; D],
-    count: usize,
-    balances: &mut [[Vector<D>; 4]],
-    given: impl Fn(usize) -> [Vector<D>; 2],
-) {
-    if D == 1 {
-        rows.add_in_line(
-            count,
-            weights_of,
-            #[inline(always)]
-            |lane| of_line(&given(lane)),
-            #[inline(always)]
-            |first, window| {
-                for (node, sum) in fours_of(balances)[first..first + W].iter_mut().zip(window) {
-                    (node[0], node[1]) = (node[0] + sum[0], node[1] + sum[1]);
-                }
-            },
-        );
-        return;
-    }
-    for lane in 0..count {
-        let given = given(lane);
-        rows.visit_filled_runs(
-            stride,
-            lane,
-            #[inline(always)]
-            |run| add_momenta_to_run(balances, run, &given),
-        );
     }
 }

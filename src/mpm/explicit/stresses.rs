@@ -6,18 +6,17 @@
 use crate::elementary::ln_of_each;
 use crate::mpm::body::Body;
 use crate::mpm::explicit::deformation::{
-    Following, middle_gradient, relaxed, rotated, stretch_of, stretches_of,
+    Following, all_rotated, middle_gradient, relaxed, stretch_of, stretches_of,
 };
 use crate::mpm::method::Configuration;
-use crate::mpm::operators::block_rows::Blocks;
+use crate::mpm::operators::block_rows::{BlockRows, Blocks};
 use crate::mpm::operators::stencil::with_stencils;
 use crate::mpm::operators::strain_gradient::StrainOperator;
-use crate::mpm::state::lanes::{LANES, Lanes, block_of, blocks_of, put_block};
+use crate::mpm::state::lanes::{FOUR, some_mut, some_of};
 use crate::mpm::state::points::Points;
 use crate::mpm::wide::wide;
 use crate::soil::law::{Law, Stiffness};
-use crate::soil::tensor::{Tensor, identity, inverse, product};
-use std::ops::Range;
+use crate::soil::tensor::{Tensor, Vector, inverse, product};
 
 impl<const D: usize> Body<D> {
     /// Step 6: effective stress by the method's strain gradient; at finite strain also volume and
@@ -57,48 +56,23 @@ impl<const D: usize> Body<D> {
             law: self.material.law,
             stiffness: self.stiffness,
         };
-        for block in blocks_of(self.points.len()) {
-            let (rows, count) = (stencils.block(block.start / LANES), block.len().min(LANES));
-            let mut gradients = [[[0.0; D]; D]; LANES];
-            for lane in 0..count {
-                gradients[lane] = rows.gradient(&stride, lane, field);
-            }
-            if is_total {
-                let inverse = block_of(&self.points.inverse_deformation, &block, [[0.0; D]; D]);
-                for lane in 0..LANES {
-                    gradients[lane] = product(&gradients[lane], &inverse[lane]);
-                }
-            }
-            if is_at_middle {
-                for gradient in &mut gradients {
-                    *gradient = middle_gradient(gradient, dt);
-                }
-            }
-            let mut increments = gradients;
-            for increment in increments.as_flattened_mut().as_flattened_mut() {
-                *increment *= dt;
-            }
-            let mut dilations = None;
-            if let Some(rates) = dilation_rates {
-                let mut of_points = block_of(rates, &block, 0.0);
-                for lane in 0..LANES {
-                    let trace: f64 = (0..D).map(|d| gradients[lane][d][d]).sum();
-                    of_points[lane] = dt * (of_points[lane] - trace);
-                }
-                dilations = Some(of_points);
-            }
-            update.apply(&mut self.points, &block, increments, dilations);
+        let strained = Strained { stride, field, dt, is_total, is_at_middle, dilation_rates, update };
+        let count = self.points.len();
+        let whole = count / FOUR * FOUR;
+        for first in (0..whole).step_by(FOUR) {
+            strained.strain::<FOUR, W>(stencils.four(first), 0, first, &mut self.points);
+        }
+        for point in whole..count {
+            strained.strain::<1, W>(stencils.four(whole), point - whole, point, &mut self.points);
         }
     }
 
     /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
     pub(crate) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
-        let mut increments = [[[0.0; D]; D]; LANES];
-        increments[0] = *increment;
-        let (following, block) = (self.following(), point..point + 1);
-        let mut ratios = block_of(&self.points.volume_ratio, &block, 1.0);
-        deform(&mut self.points, &block, following, &increments, &mut ratios);
-        put_block(&mut self.points.volume_ratio, &block, &ratios);
+        let mut ratio = [self.points.volume_ratio[point]];
+        let following = self.following();
+        deform(&mut self.points, point, following, &[*increment], &mut ratio);
+        [self.points.volume_ratio[point]] = ratio;
     }
 
     #[inline]
@@ -115,6 +89,59 @@ impl<const D: usize> Body<D> {
     }
 }
 
+/// What strains the points.
+struct Strained<'a, const D: usize> {
+    stride: [usize; D],
+    /// Nodal velocity of the skeleton, m/s.
+    field: &'a [Vector<D>],
+    dt: f64,
+    is_total: bool,
+    is_at_middle: bool,
+    dilation_rates: Option<&'a [f64]>,
+    update: StressUpdate,
+}
+
+impl<const D: usize> Strained<'_, D> {
+    /// Strains `N` points from a first one on, which is a lane of the rows.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn strain<const N: usize, const W: usize>(
+        &self,
+        rows: BlockRows<'_, D, W>,
+        lane: usize,
+        first: usize,
+        points: &mut Points<D>,
+    ) {
+        let dt = self.dt;
+        let mut gradients = rows.gradients::<N>(&self.stride, lane, self.field);
+        if self.is_total {
+            let inverse = some_of::<_, N>(&points.inverse_deformation, first);
+            for point in 0..N {
+                gradients[point] = product(&gradients[point], &inverse[point]);
+            }
+        }
+        if self.is_at_middle {
+            for gradient in &mut gradients {
+                *gradient = middle_gradient(gradient, dt);
+            }
+        }
+        let mut increments = gradients;
+        for increment in increments.as_flattened_mut().as_flattened_mut() {
+            *increment *= dt;
+        }
+        let mut dilations = None;
+        if let Some(rates) = self.dilation_rates {
+            let mut of_points = *some_of::<_, N>(rates, first);
+            for point in 0..N {
+                let trace: f64 = (0..D).map(|d| gradients[point][d][d]).sum();
+                of_points[point] = dt * (of_points[point] - trace);
+            }
+            dilations = Some(of_points);
+        }
+        self.update.apply(points, first, increments, dilations);
+    }
+}
+
 /// What a strain does to a point.
 #[derive(Clone, Copy)]
 struct StressUpdate {
@@ -126,32 +153,32 @@ struct StressUpdate {
 }
 
 impl StressUpdate {
-    /// Volumes, domains and stresses of a block of points from their increments of the displacement gradient, and
+    /// Volumes, domains and stresses of some points, from a first one on, from their increments of the displacement gradient, and
     /// from what B-bar adds to their volumes.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    fn apply<const D: usize>(
+    fn apply<const D: usize, const N: usize>(
         &self,
         points: &mut Points<D>,
-        block: &Range<usize>,
-        mut increments: [Tensor<D>; LANES],
-        dilations: Option<[f64; LANES]>,
+        first: usize,
+        mut increments: [Tensor<D>; N],
+        dilations: Option<[f64; N]>,
     ) {
-        let before = block_of(&points.volume_ratio, block, 1.0);
+        let before = *some_of::<_, N>(&points.volume_ratio, first);
         let mut ratios = before;
         if self.deforms {
-            deform(points, block, self.following, &increments, &mut ratios);
+            deform(points, first, self.following, &increments, &mut ratios);
         }
         if self.law.is_hyperelastic() {
-            put_block(&mut points.volume_ratio, block, &ratios);
+            *some_mut(&mut points.volume_ratio, first) = ratios;
             let logarithms = ln_of_each(&ratios);
-            let mut stresses = block_of(&points.inverse_deformation, block, identity());
-            for lane in 0..LANES {
-                let deformation = inverse(&stresses[lane]).0;
-                stresses[lane] =
-                    self.stiffness.neo_hookean_stress(&deformation, ratios[lane], logarithms[lane]);
+            let inverses = some_of::<_, N>(&points.inverse_deformation, first);
+            let stresses = some_mut::<_, N>(&mut points.effective_stress, first);
+            for point in 0..N {
+                let deformation = inverse(&inverses[point]).0;
+                stresses[point] =
+                    self.stiffness.neo_hookean_stress(&deformation, ratios[point], logarithms[point]);
             }
-            put_block(&mut points.effective_stress, block, &stresses);
             return;
         }
         if let Some(dilations) = dilations {
@@ -167,7 +194,7 @@ impl StressUpdate {
                 }
             }
         }
-        put_block(&mut points.volume_ratio, block, &ratios);
+        *some_mut(&mut points.volume_ratio, first) = ratios;
         let mut changes = increments;
         for change in &mut changes {
             *change = self.stiffness.stress(change);
@@ -180,35 +207,32 @@ impl StressUpdate {
                 }
             }
         }
-        let mut stresses = block_of(&points.effective_stress, block, [[0.0; D]; D]);
+        let stresses = some_mut::<_, N>(&mut points.effective_stress, first);
         if self.deforms && D > 1 {
-            for (stress, increment) in stresses.iter_mut().zip(&increments) {
-                *stress = rotated(stress, increment);
-            }
+            *stresses = all_rotated(stresses, &increments);
         }
-        for lane in 0..LANES {
-            let modulus = self.law.modulus_ratio(before[lane], ratios[lane]);
+        for point in 0..N {
+            let modulus = self.law.modulus_ratio(before[point], ratios[point]);
             for d in 0..D {
                 for e in 0..D {
-                    stresses[lane][d][e] += modulus * changes[lane][d][e];
+                    stresses[point][d][e] += modulus * changes[point][d][e];
                 }
             }
         }
-        put_block(&mut points.effective_stress, block, &stresses);
     }
 }
 
-/// Volume ratios of a block of points, exact in the logarithmic strain, and what follows them.
+/// Volume ratios of some points, exact in the logarithmic strain, and what follows them.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn deform<const D: usize>(
+fn deform<const D: usize, const N: usize>(
     points: &mut Points<D>,
-    block: &Range<usize>,
+    first: usize,
     following: Following,
-    increments: &[Tensor<D>; LANES],
-    ratios: &mut Lanes,
+    increments: &[Tensor<D>; N],
+    ratios: &mut [f64; N],
 ) {
-    let mut strains = [[0.0; D]; LANES];
+    let mut strains = [[0.0; D]; N];
     for (strain, increment) in strains.iter_mut().zip(increments) {
         for d in 0..D {
             strain[d] = increment[d][d];
@@ -216,16 +240,15 @@ fn deform<const D: usize>(
     }
     let stretches = stretches_of(&strains);
     if following.takes_domain() {
-        let mut half_lengths = block_of(&points.half_length, block, [0.0; D]);
+        let half_lengths = some_mut::<_, N>(&mut points.half_length, first);
         for (half_length, stretch) in half_lengths.iter_mut().zip(&stretches) {
             for d in 0..D {
                 half_length[d] *= stretch[d];
             }
         }
-        put_block(&mut points.half_length, block, &half_lengths);
     }
     if following.takes_inverse() {
-        for (inverse, increment) in points.inverse_deformation[block.clone()].iter_mut().zip(increments) {
+        for (inverse, increment) in points.inverse_deformation[first..first + N].iter_mut().zip(increments) {
             *inverse = relaxed(inverse, increment);
         }
     }

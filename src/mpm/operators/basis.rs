@@ -140,21 +140,11 @@ fn build<const D: usize, const W: usize, S: ShapeFunction<W>>(
     ));
 }
 
-/// Rows of some points along a direction, at places in cells, of domains of half-lengths in m; returns the lowest
-/// node of each. Not inlined: what is written is known to be nothing that is read.
-#[inline(never)]
-fn fill_rows<const W: usize, S: ShapeFunction<W>>(
-    line: Line,
-    place: &Lanes,
-    half_length: &Lanes,
-    rows: &mut LaneRows<W>,
-) -> Lanes {
-    wide!(fill_lanes::<W, S>(line, place, half_length, rows))
-}
-
+/// Fills the rows of some points along a direction, at places in cells, of domains of half-lengths in m; returns the
+/// lowest node of each.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn fill_lanes<const W: usize, S: ShapeFunction<W>>(
+fn fill_rows<const W: usize, S: ShapeFunction<W>>(
     line: Line,
     place: &Lanes,
     half_length: &Lanes,

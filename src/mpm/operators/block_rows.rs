@@ -3,7 +3,7 @@
 
 use crate::mpm::operators::pairs::{add_weighted, weighted_sum};
 use crate::mpm::state::grid::power;
-use crate::mpm::state::lanes::{LANES, Lanes};
+use crate::mpm::state::lanes::{FOUR, LANES, Lanes, some_of};
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Rows of some neighbouring points, `[direction]`.
@@ -39,7 +39,14 @@ impl<'a, const D: usize, const W: usize> Blocks<'a, D, W> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn block(&self, number: usize) -> BlockRows<'a, D, W> {
-        BlockRows { all: *self, rows: &self.rows[number], first: &self.first[number], start: number * LANES }
+        BlockRows { all: *self, rows: &self.rows[number], first: &self.first[number], block: number, from: 0 }
+    }
+
+    /// Rows of up to four points from one on whose number is a multiple of four.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn four(&self, start: usize) -> BlockRows<'a, D, W> {
+        BlockRows { from: start % LANES, ..self.block(start / LANES) }
     }
 
     /// Visits a point's block run by run. A run is one slice of a nodal field, so that its bounds are checked once.
@@ -78,21 +85,52 @@ pub struct BlockRows<'a, const D: usize, const W: usize> {
     /// Rows of the points, but of those with several blocks.
     pub rows: &'a RowBlock<D, W>,
     /// Flat index of the lowest node of each of their blocks.
-    pub first: &'a [usize; LANES],
-    start: usize,
+    first: &'a [usize; LANES],
+    block: usize,
+    /// The first of the points among those of the block, a multiple of four.
+    from: usize,
 }
 
 impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
+    /// Place of a point among those of the block.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn place(&self, lane: usize) -> usize {
+        // What the compiler knows of it spares the bounds.
+        (self.from & (LANES - FOUR)) + lane
+    }
+
+    /// Flat index of the lowest node of a point's block.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn first(&self, lane: usize) -> usize {
+        self.first[self.place(lane)]
+    }
+
+    /// Weight of a point's node along a line, by its number in the row.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn weight(&self, node: usize, lane: usize) -> f64 {
+        self.rows[0].weights[node][self.place(lane)]
+    }
+
+    /// Gradient of its weight, 1/m.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn gradient_along(&self, node: usize, lane: usize) -> f64 {
+        self.rows[0].gradients[node][self.place(lane)]
+    }
+
     /// Visits the blocks of a point run by run.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn visit_runs(&self, stride: &[usize; D], lane: usize, mut run_visitor: impl FnMut(&Run<D, W>)) {
         // On a line a point has one block, and the compiler knows.
         if D == 1 || self.all.parts == 1 {
-            visit_rows(stride, self.rows, self.first[lane], lane, &mut run_visitor);
+            visit_rows(stride, self.rows, self.first(lane), self.place(lane), &mut run_visitor);
             return;
         }
-        let point = self.start + lane;
+        let point = self.block * LANES + self.place(lane);
         for block in point * self.all.parts..(point + 1) * self.all.parts {
             let (number, lane) = (block / LANES, block % LANES);
             visit_rows(stride, &self.all.rows[number], self.all.first[number][lane], lane, &mut run_visitor);
@@ -152,6 +190,87 @@ impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
             },
         );
         values
+    }
+
+    /// Gradients of a nodal vector field at some points, from a lane on, `[point][component][direction]`.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn gradients<const N: usize>(
+        &self,
+        stride: &[usize; D],
+        lane: usize,
+        field: &[Vector<D>],
+    ) -> [Tensor<D>; N] {
+        let mut gradients = [[[0.0; D]; D]; N];
+        let first = self.first(lane);
+        let is_together = (1..N).all(|other| self.first(lane + other) == first);
+        if N == 1 || D > 2 || !is_together || (D > 1 && self.all.parts > 1) {
+            for (other, gradient) in gradients.iter_mut().enumerate() {
+                *gradient = self.gradient(stride, lane + other, field);
+            }
+            return gradients;
+        }
+        // Points of the same nodes side by side: each number of a node is read once for all of them.
+        let lane = self.place(lane);
+        let row = |rows: &[Lanes; W], k: usize| *some_of::<_, N>(&rows[k], lane);
+        let along = &self.rows[0];
+        if D == 1 {
+            let nodes = &field[first..first + W];
+            let mut slopes = [0.0; N];
+            for k in 0..W {
+                let gradient = row(&along.gradients, k);
+                for point in 0..N {
+                    slopes[point] += gradient[point] * nodes[k][0];
+                }
+            }
+            for point in 0..N {
+                gradients[point][0][0] = slopes[point];
+            }
+            return gradients;
+        }
+        let up = &self.rows[D - 1];
+        // In a direction of one cell two of the nodes have no part in anything.
+        let mut is_used = [true; W];
+        for k in 0..W {
+            is_used[k] = row(&along.weights, k) != [0.0; N] || row(&along.gradients, k) != [0.0; N];
+        }
+        // `[direction][component][point]`.
+        let mut slopes = [[[0.0; N]; D]; 2];
+        for run in 0..W {
+            let start = first + run * stride[D - 1];
+            let nodes = &field[start..start + W];
+            let mut sums = [[[0.0; N]; D]; 2];
+            for k in 0..W {
+                if !is_used[k] {
+                    continue;
+                }
+                let (gradient, weight) = (row(&along.gradients, k), row(&along.weights, k));
+                for d in 0..D {
+                    for point in 0..N {
+                        sums[0][d][point] += gradient[point] * nodes[k][d];
+                    }
+                    for point in 0..N {
+                        sums[1][d][point] += weight[point] * nodes[k][d];
+                    }
+                }
+            }
+            let across = [row(&up.weights, run), row(&up.gradients, run)];
+            for direction in 0..2 {
+                for d in 0..D {
+                    for point in 0..N {
+                        slopes[direction][d][point] += across[direction][point] * sums[direction][d][point];
+                    }
+                }
+            }
+        }
+        for point in 0..N {
+            for d in 0..D {
+                for direction in 0..D {
+                    gradients[point][d][direction] = slopes[direction][d][point];
+                }
+            }
+        }
+        gradients
     }
 
     /// Gradient of a nodal vector field at the point, `[component][direction]`.

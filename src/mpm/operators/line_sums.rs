@@ -7,6 +7,7 @@
 use crate::mpm::operators::block_rows::{BlockRows, LaneRows};
 use crate::mpm::operators::pairs::add_weighted;
 use crate::mpm::state::lanes::Lanes;
+use std::ops::Range;
 
 /// Weights of some rows.
 #[inline(always)]
@@ -23,8 +24,9 @@ pub fn gradients_of<const W: usize>(rows: &LaneRows<W>) -> &[Lanes; W] {
 }
 
 impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
-    /// Adds what each of so many points of the block gives, by its place in it, to its nodes, `N` numbers a node: times the
-    /// weights or the gradients of its rows. Of one dimension alone.
+    /// Sums what each of so many points of the block gives, by its place in it, to its nodes, `N` numbers a node: times the
+    /// weights or the gradients of its rows. `add` is told the lowest of some nodes with what they take. Of one dimension
+    /// alone.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn add_in_line<const N: usize>(
@@ -35,11 +37,11 @@ impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
         mut add: impl FnMut(usize, &[[f64; N]; W]),
     ) {
         let rows = rows_of(&self.rows[0]);
-        let (mut window, mut first) = ([[0.0; N]; W], self.first[0]);
-        for (lane, own) in self.first.iter().enumerate().take(count) {
-            if *own != first {
+        let (mut window, mut first) = ([[0.0; N]; W], self.first(0));
+        for (lane, own) in (0..count).map(|lane| (lane, self.first(lane))) {
+            if own != first {
                 add(first, &window);
-                (window, first) = ([[0.0; N]; W], *own);
+                (window, first) = ([[0.0; N]; W], own);
             }
             let given = given(lane);
             for k in 0..W {
@@ -59,19 +61,18 @@ impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
         given: impl Fn(usize) -> [[f64; 4]; 2],
     ) {
         let rows = &self.rows[0];
-        let (mut window, mut first) = (Window::<W>::EMPTY, self.first[0]);
-        for (lane, own) in self.first.iter().enumerate().take(count) {
-            if *own != first {
+        let (mut window, mut first) = (Windows::<W>::EMPTY, self.first(0));
+        for (lane, own) in (0..count).map(|lane| (lane, self.first(lane))) {
+            if own != first {
                 window.add_to(&mut sums, first);
-                (window, first) = (Window::EMPTY, *own);
+                (window, first) = (Windows::EMPTY, own);
             }
             let [masses, balances] = given(lane);
             for k in 0..W {
                 let (weight, gradient) = (rows.weights[k][lane], rows.gradients[k][lane]);
                 add_weighted(&mut window.masses[k], weight, &masses);
                 let along = [weight, weight, gradient, gradient];
-                window.balances[k] =
-                    std::array::from_fn(|i| window.balances[k][i] + along[i] * balances[i]);
+                window.balances[k] = std::array::from_fn(|i| window.balances[k][i] + along[i] * balances[i]);
             }
         }
         window.add_to(&mut sums, first);
@@ -88,12 +89,12 @@ pub struct LineSums<'a> {
 
 /// The same of the few nodes that neighbouring points give to.
 #[derive(Clone, Copy)]
-struct Window<const W: usize> {
+struct Windows<const W: usize> {
     masses: [[f64; 4]; W],
     balances: [[f64; 4]; W],
 }
 
-impl<const W: usize> Window<W> {
+impl<const W: usize> Windows<W> {
     const EMPTY: Self = Self { masses: [[0.0; 4]; W], balances: [[0.0; 4]; W] };
 
     #[inline(always)]
@@ -101,6 +102,47 @@ impl<const W: usize> Window<W> {
     fn add_to(&self, sums: &mut LineSums<'_>, first: usize) {
         add_nodes(&mut sums.masses[first..first + W], &self.masses);
         add_nodes(&mut sums.balances[first..first + W], &self.balances);
+    }
+}
+
+/// What neighbouring points have given to the same few nodes, `N` numbers a node, while points are taken one after the
+/// other.
+#[derive(Clone, Copy)]
+pub struct Window<const W: usize, const N: usize> {
+    /// The lowest of the nodes.
+    first: usize,
+    sums: [[f64; N]; W],
+}
+
+impl<const W: usize, const N: usize> Window<W, N> {
+    /// Nothing is given yet.
+    pub const EMPTY: Self = Self { first: 0, sums: [[0.0; N]; W] };
+
+    /// Takes what a point gives to its nodes, whose lowest is told, times the weight of each. Before it begins with
+    /// others, it adds what it holds to those that it was of.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn take(
+        &mut self,
+        first: usize,
+        weight: impl Fn(usize) -> f64,
+        given: [f64; N],
+        add: impl FnMut(Range<usize>, &[[f64; N]; W]),
+    ) {
+        if first != self.first {
+            self.close(add);
+            *self = Self { first, ..Self::EMPTY };
+        }
+        for k in 0..W {
+            add_weighted(&mut self.sums[k], weight(k), &given);
+        }
+    }
+
+    /// Adds what it holds to its nodes.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub fn close(&self, mut add: impl FnMut(Range<usize>, &[[f64; N]; W])) {
+        add(self.first..self.first + W, &self.sums);
     }
 }
 
@@ -117,7 +159,7 @@ pub fn add_nodes<const N: usize>(nodes: &mut [[f64; N]], window: &[[f64; N]]) {
 
 #[cfg(test)]
 mod tests {
-    use super::LineSums;
+    use super::{LineSums, Window, add_nodes};
     use crate::mpm::operators::row::Row;
     use crate::mpm::operators::stencil::Stencils;
     use crate::mpm::state::grid::Grid;
@@ -128,44 +170,62 @@ mod tests {
         let (grid, count) = (Grid::new(0.5, [12]), LANES + 9);
         let mut stencils = Stencils::<1, 3>::with_points(count);
         let first_of = |point: usize| [2, 2, 2, 3, 3, 7, 5][point % 7] + point / 7;
+        let weights_of = |point: usize| [0.25, 0.5, 0.25 + point as f64];
+        let gradients = [-1.0, 0.25, 0.75];
+        let (nodes, given) = (grid.node_count(), |point: usize| [point as f64, 1.0]);
+        let (mut expected, mut expected_slopes) = (vec![[0.0; 2]; nodes], vec![[0.0; 2]; nodes]);
         for point in 0..count {
-            let weights = [0.25, 0.5, 0.25 + point as f64];
-            let row = Row { first: first_of(point), weights, gradients: [-1.0, 0.25, 0.75] };
-            stencils.set(&grid, point, &[row]);
-        }
-        let mut expected = vec![[0.0; 2]; grid.node_count()];
-        let mut masses = vec![[0.0; 4]; grid.node_count()];
-        let (mut momenta, mut forces) = (vec![0.0; 2 * grid.node_count()], vec![0.0; 2 * grid.node_count()]);
-        let (mut sums, mut slopes) = (vec![0.0; 2 * grid.node_count()], vec![0.0; 2 * grid.node_count()]);
-        for point in 0..count {
-            for (k, weight) in [0.25, 0.5, 0.25 + point as f64].into_iter().enumerate() {
-                expected[first_of(point) + k][0] += weight * point as f64;
-                expected[first_of(point) + k][1] += weight;
+            let weights = weights_of(point);
+            stencils.set(&grid, point, &[Row { first: first_of(point), weights, gradients }]);
+            for k in 0..3 {
+                for i in 0..2 {
+                    expected[first_of(point) + k][i] += weights[k] * given(point)[i];
+                    // Rows are given per cell, of half a metre.
+                    expected_slopes[first_of(point) + k][i] += 2.0 * gradients[k] * given(point)[i];
+                }
             }
         }
-        let blocks = stencils.blocks();
+        let [mut sums, mut slopes, mut in_turn] =
+            [vec![[0.0; 2]; nodes], vec![[0.0; 2]; nodes], vec![[0.0; 2]; nodes]];
+        let (mut masses, mut balances) = (vec![[0.0; 4]; nodes], vec![[0.0; 4]; nodes]);
+        let (blocks, mut window) = (stencils.blocks(), Window::<3, 2>::EMPTY);
         for block in blocks_of(count) {
             let rows = blocks.block(block.start / LANES);
-            let given = |lane: usize| [(block.start + lane) as f64, 1.0];
-            rows.add_in_line(block.len(), &mut sums, super::weights_of, given);
-            rows.add_in_line(block.len(), &mut slopes, super::gradients_of, given);
-            let all = LineSums {
-                masses: &mut masses,
-                momenta: momenta.as_chunks_mut().0,
-                forces: forces.as_chunks_mut().0,
-            };
-            rows.add_all_in_line(block.len(), all, |lane| {
-                ([given(lane)[0], 2.0, 0.0, 0.0], given(lane), given(lane))
+            let of_lane = |lane: usize| given(block.start + lane);
+            rows.add_in_line(block.len(), super::weights_of, of_lane, |first, window| {
+                add_nodes(&mut sums[first..first + 3], window);
             });
+            rows.add_in_line(block.len(), super::gradients_of, of_lane, |first, window| {
+                add_nodes(&mut slopes[first..first + 3], window);
+            });
+            let all = LineSums { masses: &mut masses, balances: &mut balances };
+            rows.add_all_in_line(block.len(), all, |lane| {
+                let [one, other] = of_lane(lane);
+                [[one, 2.0 * other, 0.0, 0.0], [one, other, one, other]]
+            });
+            for lane in 0..block.len() {
+                let weight = |node: usize| rows.weight(node, lane);
+                window.take(rows.first(lane), weight, of_lane(lane), |nodes, window| {
+                    add_nodes(&mut in_turn[nodes], window);
+                });
+            }
         }
-        assert_eq!((&sums, &slopes), (&momenta, &forces), "in one walk or in several");
-        for (masses, sums) in masses.iter().zip(sums.as_chunks::<2>().0) {
-            assert_eq!(*masses, [sums[0], 2.0 * sums[1], 0.0, 0.0]);
+        window.close(|nodes, window| add_nodes(&mut in_turn[nodes], window));
+        for node in 0..nodes {
+            let ([one, other], [slope, other_slope]) = (sums[node], slopes[node]);
+            assert_eq!(masses[node], [one, 2.0 * other, 0.0, 0.0], "in one walk or in several");
+            assert_eq!(balances[node], [one, other, slope, other_slope], "in one walk or in several");
+            for i in 0..2 {
+                for (got, expected) in [
+                    (sums[node][i], expected[node][i]),
+                    (in_turn[node][i], expected[node][i]),
+                    (slopes[node][i], expected_slopes[node][i]),
+                ] {
+                    assert!((got - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{got} for {expected}");
+                }
+            }
         }
-        for (got, expected) in sums.iter().zip(expected.as_flattened()) {
-            assert!((got - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{got} for {expected}");
-        }
-        let all: f64 = slopes.iter().sum();
+        let all: f64 = slopes.as_flattened().iter().sum();
         assert!(all.abs() < 1e-9, "gradients of a point add up to nothing: {all}");
     }
 }

@@ -74,14 +74,18 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         for (block, (rows, (firsts, places))) in
             self.rows.iter_mut().zip(firsts.iter_mut().zip(places.chunks(LANES))).enumerate()
         {
-            firsts.fill(0);
+            // Whole numbers, which loops over lanes multiply and add as they do others.
+            let mut nodes = [0.0; LANES];
             for direction in 0..D {
                 let place = lanes_of(places, direction, GHOST_LAYERS as f64);
                 let lowest = fill(block * LANES, direction, &place, &mut rows[direction]);
-                let stride = grid.node_stride()[direction];
-                for (first, lowest) in firsts.iter_mut().zip(&lowest) {
-                    *first += stride * index_of(*lowest);
+                let stride = grid.node_stride()[direction] as f64;
+                for (node, lowest) in nodes.iter_mut().zip(&lowest) {
+                    *node += stride * lowest;
                 }
+            }
+            for (first, node) in firsts.iter_mut().zip(&nodes) {
+                *first = index_of(*node);
             }
         }
     }

@@ -167,16 +167,11 @@ fn composite_row<const D: usize>(
     composite(at, along, lower, upper)
 }
 
-/// Rows of some points along a direction, at places in cells both of whose neighbours are there; returns the lowest
-/// node of each. Not inlined: what is written is known to be nothing that is read.
-#[inline(never)]
-fn fill_composite_rows<const D: usize>(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
-    wide!(fill_composite_lanes::<D>(line, place, rows))
-}
-
+/// Fills the rows of some points along a direction, at places in cells both of whose neighbours are there; returns the
+/// lowest node of each.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn fill_composite_lanes<const D: usize>(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
+fn fill_composite_rows<const D: usize>(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
     let mut lowest = [0.0; LANES];
     for lane in 0..LANES {
         let cell = line.cell_at(place[lane]);
@@ -194,14 +189,9 @@ fn fill_composite_lanes<const D: usize>(line: Line, place: &Lanes, rows: &mut La
 }
 
 /// The same in a direction of one cell, which has no neighbours.
-#[inline(never)]
-fn fill_linear_rows(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
-    wide!(fill_linear_lanes(line, place, rows))
-}
-
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn fill_linear_lanes(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
+fn fill_linear_rows(line: Line, place: &Lanes, rows: &mut LaneRows<4>) -> Lanes {
     let mut lowest = [0.0; LANES];
     for lane in 0..LANES {
         let cell = line.cell_at(place[lane]);
@@ -262,6 +252,7 @@ fn composite(place: f64, cell: usize, has_lower: bool, has_upper: bool) -> Row<4
 mod tests {
     use super::*;
     use crate::mpm::operators::row::moments;
+    use crate::mpm::state::lanes::FOUR;
     use crate::mpm::state::points::Points;
     use proptest::prelude::*;
 
@@ -293,6 +284,33 @@ mod tests {
                 (blocks.gradient(stride, point, &field), blocks.value(stride, point, &field))
             };
             assert_eq!(of(&built), of(&expected), "point {point}");
+        }
+        let (blocks, stride) = (built.blocks(), grid.node_stride());
+        for first in (0..points.len()).step_by(FOUR) {
+            let together = blocks.four(first).gradients::<FOUR>(stride, 0, &field);
+            for (point, gradient) in together.iter().enumerate() {
+                assert_eq!(*gradient, blocks.gradient(stride, first + point, &field), "with others or alone");
+            }
+        }
+    }
+
+    #[test]
+    fn points_of_a_line_have_the_same_gradients_with_others_and_alone() {
+        let grid = Grid::new(0.5, [6]);
+        let mut stencils = Stencils::<1, 4>::with_points(12);
+        let field: Vec<Vector<1>> = (0..grid.node_count()).map(|node| [(1.3 * node as f64).cos()]).collect();
+        for point in 0..12 {
+            // Four of one cell, four of two, and four of which the last is beside them.
+            let cell = [4, 4, 4, 4, 5, 5, 6, 6, 7, 7, 7, 6][point];
+            let row = composite(cell as f64 + 0.07 * (1 + point) as f64, cell, true, true);
+            stencils.set(&grid, point, &[row]);
+        }
+        let (blocks, stride) = (stencils.blocks(), grid.node_stride());
+        for first in [0, 4, 8] {
+            let together = blocks.four(first).gradients::<FOUR>(stride, 0, &field);
+            for (point, gradient) in together.iter().enumerate() {
+                assert_eq!(*gradient, blocks.gradient(stride, first + point, &field));
+            }
         }
     }
 

@@ -25,6 +25,8 @@ pub struct Cells<const D: usize> {
     point_count: Vec<usize>,
     /// Runs of neighbouring points that share a cell, with it.
     runs: Vec<(usize, Range<usize>)>,
+    /// Initial volume of the points of each run, m^D.
+    initial_volume: Vec<f64>,
     /// Whether the runs and the counts are those of the points' cells as they stand.
     are_counted: bool,
     /// Whether points may belong to another cell than the one that they lie in.
@@ -72,6 +74,7 @@ impl<const D: usize> Cells<D> {
             first_node,
             point_count: vec![0; count],
             runs: Vec::with_capacity(points),
+            initial_volume: Vec::with_capacity(points),
             are_counted: false,
             has_strays: false,
             reached: vec![false; count],
@@ -98,6 +101,10 @@ impl<const D: usize> Cells<D> {
             for (cell, run) in &self.runs {
                 self.point_count[*cell] += run.len();
             }
+            self.initial_volume.clear();
+            let of_run =
+                |(_, run): &(usize, Range<usize>)| points.initial_volume[run.clone()].iter().sum::<f64>();
+            self.initial_volume.extend(self.runs.iter().map(of_run));
             self.list_occupied();
             self.are_counted = true;
         }
@@ -209,16 +216,17 @@ impl<const D: usize> Cells<D> {
             self.porosity.fill(0.0);
             self.volumes_of = Some(self.occupations);
         }
-        for (cell, run) in &self.runs {
-            let (mut volume, mut pores) =
-                if is_at_once { (0.0, 0.0) } else { (self.volume[*cell], self.porosity[*cell]) };
-            for (initial, ratio) in initial_volume[run.clone()].iter().zip(&ratios[run.clone()]) {
-                volume += initial * ratio;
-                // n V = (J − (1 − n_0)) V_0
-                pores += initial * (ratio - solid_fraction);
+        for ((cell, run), initial) in self.runs.iter().zip(&self.initial_volume) {
+            let of_points = initial_volume[run.clone()].iter().zip(&ratios[run.clone()]);
+            let volume: f64 = of_points.map(|(initial, ratio)| initial * ratio).sum();
+            // n V = V − (1 − n_0) V_0
+            let pores = volume - solid_fraction * initial;
+            if is_at_once {
+                (self.volume[*cell], self.porosity[*cell]) = (volume, pores / volume);
+            } else {
+                self.volume[*cell] += volume;
+                self.porosity[*cell] += pores;
             }
-            (self.volume[*cell], self.porosity[*cell]) =
-                (volume, if is_at_once { pores / volume } else { pores });
         }
         if !is_at_once {
             for cell in &self.occupied {
@@ -361,6 +369,10 @@ impl<const D: usize> Cells<D> {
     /// the field.
     #[inline]
     pub fn centre_divergence(&self, grid: &Grid<D>, cell: usize, field: &[Vector<D>]) -> f64 {
+        if D == 1 {
+            let ends = &field[self.divergence_node[cell]..][..2];
+            return (ends[1][0] - ends[0][0]) * share_of_corner(grid);
+        }
         let mut divergence = 0.0;
         for (corner, node) in grid.corners(self.divergence_node[cell]).enumerate() {
             for direction in 0..D {

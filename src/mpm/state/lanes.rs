@@ -7,6 +7,10 @@ use std::ops::Range;
 /// of whatever registers there are.
 pub const LANES: usize = 16;
 
+/// Points that are taken from their nodes to their stresses side by side: all that they have of it stays in registers,
+/// which it does for so many. What is left of them is taken one by one, by the same function.
+pub const FOUR: usize = 4;
+
 /// One number of each of some points.
 pub type Lanes = [f64; LANES];
 
@@ -15,9 +19,7 @@ pub type Lanes = [f64; LANES];
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 pub(crate) fn lanes_of<const D: usize>(vectors: &[Vector<D>], component: usize, instead: f64) -> Lanes {
     let mut lanes = [instead; LANES];
-    if D == 1
-        && let Some(whole) = vectors.first_chunk::<LANES>()
-    {
+    if let Some(whole) = vectors.first_chunk::<LANES>() {
         for lane in 0..LANES {
             lanes[lane] = whole[lane][component];
         }
@@ -68,6 +70,20 @@ pub(crate) fn put_block<T: Copy>(field: &mut [T], points: &Range<usize>, block: 
 #[inline(never)]
 fn put_part<T: Copy>(field: &mut [T], block: &[T; LANES]) {
     field.copy_from_slice(&block[..field.len()]);
+}
+
+/// `N` neighbours of a field from one on, all of which there are: their number is known to the loops over them.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn some_of<T, const N: usize>(field: &[T], first: usize) -> &[T; N] {
+    field[first..].first_chunk().expect("a field that holds them all")
+}
+
+/// The same, to be written.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn some_mut<T, const N: usize>(field: &mut [T], first: usize) -> &mut [T; N] {
+    field[first..].first_chunk_mut().expect("a field that holds them all")
 }
 
 #[cfg(test)]

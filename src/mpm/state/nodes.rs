@@ -1,6 +1,7 @@
 //! Nodal fields: lumped masses, forces, velocities and accelerations of both phases.
 
 use crate::mpm::state::grid::Grid;
+use crate::mpm::state::lanes::{some_mut, some_of};
 use crate::soil::material::Material;
 use crate::soil::tensor::Vector;
 use std::ops::Range;
@@ -137,6 +138,35 @@ impl<const D: usize> Support<D> {
     }
 }
 
+/// Does a work for all nodes that carry mass, four or two side by side where as many follow each other: from a first one
+/// on, for a number that the compiler knows. What one work leaves at a node is at hand for the next.
+macro_rules! each_of_runs {
+    ($nodes:expr, |$first:ident, $count:ident| $work:expr) => {
+        let runs = std::mem::take(&mut $nodes.runs);
+        $crate::mpm::wide::wide!({
+            for run in &runs {
+                let mut $first = run.start;
+                while $first + 4 <= run.end {
+                    const $count: usize = 4;
+                    $work;
+                    $first += 4;
+                }
+                while $first + 2 <= run.end {
+                    const $count: usize = 2;
+                    $work;
+                    $first += 2;
+                }
+                if $first < run.end {
+                    const $count: usize = 1;
+                    $work;
+                }
+            }
+        });
+        $nodes.runs = runs;
+    };
+}
+pub(crate) use each_of_runs;
+
 impl<const D: usize> Nodes<D> {
     /// Zero fields on a grid, with the supports of its faces; `cell_mass` is the mass of a full
     /// cell, kg.
@@ -209,68 +239,89 @@ impl<const D: usize> Nodes<D> {
         self.solid_mass.is_empty()
     }
 
-    /// Begins new [`sums`](Self::sums) of masses, of momenta and of forces; those of the forces begin with what acts
-    /// from outside.
+    /// Begins new [`sums`](Self::sums) of masses, and of momenta and forces or of one of them.
     pub fn clear_sums(&mut self, masses: bool, momenta: bool, forces: bool) {
         if masses {
             self.sums.masses.fill([0.0; 4]);
         }
-        match (momenta, forces) {
-            (true, true) => {
-                for (sums, external) in self.sums.balances.iter_mut().zip(&self.external_force) {
-                    *sums = [[0.0; D], [0.0; D], *external, [0.0; D]];
-                }
+        if momenta && forces {
+            self.sums.balances.fill([[0.0; D]; 4]);
+        } else if momenta || forces {
+            let which = if momenta { 0..2 } else { 2..4 };
+            for of_node in &mut self.sums.balances {
+                of_node[which.clone()].fill([0.0; D]);
             }
-            (true, false) => {
-                for [solid, water, ..] in &mut self.sums.balances {
-                    (*solid, *water) = ([0.0; D], [0.0; D]);
-                }
-            }
-            (false, true) => {
-                for ([.., mixture, water], external) in
-                    self.sums.balances.iter_mut().zip(&self.external_force)
-                {
-                    (*mixture, *water) = (*external, [0.0; D]);
-                }
-            }
-            (false, false) => {}
         }
     }
 
     /// Turns the points' [`sums`](Self::sums) into masses, volumes, porosities and drag of the soil.
     pub fn take_masses(&mut self, soil: &Material) {
         self.take_grains(soil.grain_density);
-        let count = self.len();
-        let masses = &self.sums.masses[..count];
-        let (solid_mass, per_solid_mass) = (&self.solid_mass[..count], &mut self.per_solid_mass[..count]);
-        let (water_mass, per_water_mass) = (&mut self.water_mass[..count], &mut self.per_water_mass[..count]);
-        let (volumes, porosity) = (&mut self.volume[..count], &mut self.porosity[..count]);
-        let drags = &mut self.drag[..count];
-        for run in &self.runs {
-            for node in run.start..run.end.min(count) {
-                let [grain_volume, pore_volume, drag, _] = masses[node];
-                let (water, volume) = (soil.water_density * pore_volume, grain_volume + pore_volume);
-                // The divisions side by side: one takes as long as all of them.
-                let [n, per_solid, per_water] =
-                    [[pore_volume, volume], [1.0, solid_mass[node]], [1.0, water]]
-                        .map(|[over, under]| over / under);
-                (water_mass[node], volumes[node], drags[node]) = (water, volume, drag);
-                (porosity[node], per_solid_mass[node], per_water_mass[node]) = (n, per_solid, per_water);
-            }
+        each_of_runs!(self, |first, N| self.masses_of::<N>(first, soil));
+    }
+
+    /// The same of some nodes.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub(crate) fn masses_of<const N: usize>(&mut self, first: usize, soil: &Material) {
+        let sums = some_of::<_, N>(&self.sums.masses, first);
+        let (mut water_mass, mut volume, mut drag) = ([0.0; N], [0.0; N], [0.0; N]);
+        let (mut porosity, mut per_solid, mut per_water) = ([0.0; N], [0.0; N], [0.0; N]);
+        let solid_mass = some_of::<_, N>(&self.solid_mass, first);
+        for node in 0..N {
+            let [grain_volume, pore_volume, drag_of_node, _] = sums[node];
+            water_mass[node] = soil.water_density * pore_volume;
+            volume[node] = grain_volume + pore_volume;
+            porosity[node] = pore_volume;
+            drag[node] = drag_of_node;
         }
+        for node in 0..N {
+            porosity[node] /= volume[node];
+        }
+        for node in 0..N {
+            per_solid[node] = 1.0 / solid_mass[node];
+        }
+        for node in 0..N {
+            per_water[node] = 1.0 / water_mass[node];
+        }
+        *some_mut(&mut self.water_mass, first) = water_mass;
+        *some_mut(&mut self.volume, first) = volume;
+        *some_mut(&mut self.drag, first) = drag;
+        *some_mut(&mut self.porosity, first) = porosity;
+        *some_mut(&mut self.per_solid_mass, first) = per_solid;
+        *some_mut(&mut self.per_water_mass, first) = per_water;
     }
 
     /// Mass of the grains, and the runs of the nodes that carry some: found anew only where they have changed.
-    fn take_grains(&mut self, grain_density: f64) {
-        let mut stand = self.is_empty_between;
-        let found = self.solid_mass.iter_mut().zip(&self.sums.masses).zip(&self.carries);
-        for ((solid_mass, [grain_volume, ..]), carries) in found {
-            *solid_mass = grain_density * grain_volume;
-            stand &= (*solid_mass > self.mass_cut_off) == *carries;
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub(crate) fn take_grains(&mut self, grain_density: f64) {
+        let (mut stand, cut_off) = (self.is_empty_between, self.mass_cut_off);
+        let (of_nodes, rest) = self.solid_mass.as_chunks_mut::<4>();
+        let (sums, rest_of_sums) = self.sums.masses.as_chunks::<4>();
+        let (carry, rest_carry) = self.carries.as_chunks::<4>();
+        for ((masses, sums), carry) in of_nodes.iter_mut().zip(sums).zip(carry) {
+            for node in 0..4 {
+                masses[node] = grain_density * sums[node][0];
+            }
+            for node in 0..4 {
+                stand &= (masses[node] > cut_off) == carry[node];
+            }
+        }
+        for ((mass, [grain_volume, ..]), carries) in rest.iter_mut().zip(rest_of_sums).zip(rest_carry) {
+            *mass = grain_density * grain_volume;
+            stand &= (*mass > cut_off) == *carries;
         }
         if stand {
             return;
         }
+        self.find_grains();
+    }
+
+    /// The runs of the nodes that carry grains.
+    #[cold]
+    #[inline(never)]
+    fn find_grains(&mut self) {
         self.find_runs();
         for field in [&mut self.water_mass, &mut self.volume, &mut self.drag] {
             for (mass, carries) in field.iter_mut().zip(&self.carries) {
@@ -284,48 +335,93 @@ impl<const D: usize> Nodes<D> {
 
     /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held or empty.
     pub fn take_velocities(&mut self, soil: &Material) {
-        let count = self.len();
-        let sums = &self.sums.balances[..count];
-        let (per_solid_mass, free) = (&self.per_solid_mass[..count], &self.free[..count]);
-        let (per_water_mass, water_free) = (&self.per_water_mass[..count], &self.water_free[..count]);
-        let (solid_velocity, water_velocity) =
-            (&mut self.solid_velocity[..count], &mut self.water_velocity[..count]);
-        for run in &self.runs {
-            for node in run.start..run.end.min(count) {
-                let [solid, water, ..] = sums[node];
-                let per_grain_volume = soil.grain_density * per_solid_mass[node];
-                let per_pore_volume = soil.water_density * per_water_mass[node];
-                for d in 0..D {
-                    solid_velocity[node][d] = solid[d] * (free[node][d] * per_grain_volume);
-                    water_velocity[node][d] = water[d] * (water_free[node][d] * per_pore_volume);
-                }
-            }
-        }
+        each_of_runs!(self, |first, N| self.velocities_of::<N>(first, soil));
     }
 
-    /// Forces from the points' [`sums`](Self::sums).
-    pub fn take_forces(&mut self) {
-        let count = self.len();
-        let sums = &self.sums.balances[..count];
-        let (mixture, water) = (&mut self.mixture_force[..count], &mut self.water_force[..count]);
-        for run in &self.runs {
-            for node in run.start..run.end.min(count) {
-                [_, _, mixture[node], water[node]] = sums[node];
+    /// The same of some nodes.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub(crate) fn velocities_of<const N: usize>(&mut self, first: usize, soil: &Material) {
+        let sums = some_of::<_, N>(&self.sums.balances, first);
+        let (per_solid, free) =
+            (some_of::<_, N>(&self.per_solid_mass, first), some_of::<_, N>(&self.free, first));
+        let (per_water, water_free) =
+            (some_of::<_, N>(&self.per_water_mass, first), some_of::<_, N>(&self.water_free, first));
+        let [mut solid, mut water] = [[[0.0; D]; N]; 2];
+        for node in 0..N {
+            for d in 0..D {
+                solid[node][d] = sums[node][0][d] * (free[node][d] * (soil.grain_density * per_solid[node]));
             }
         }
+        for node in 0..N {
+            for d in 0..D {
+                water[node][d] =
+                    sums[node][1][d] * (water_free[node][d] * (soil.water_density * per_water[node]));
+            }
+        }
+        *some_mut(&mut self.solid_velocity, first) = solid;
+        *some_mut(&mut self.water_velocity, first) = water;
+    }
+
+    /// `v_s + n (v_w − v_s)` of some nodes.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub(crate) fn flux_of<const N: usize>(&mut self, first: usize) {
+        let (solid, water) =
+            (some_of::<_, N>(&self.solid_velocity, first), some_of::<_, N>(&self.water_velocity, first));
+        let porosity = some_of::<_, N>(&self.porosity, first);
+        let mut flux = [[0.0; D]; N];
+        for node in 0..N {
+            for d in 0..D {
+                flux[node][d] = solid[node][d] + porosity[node] * (water[node][d] - solid[node][d]);
+            }
+        }
+        *some_mut(&mut self.flux, first) = flux;
+    }
+
+    /// Forces from the points' [`sums`](Self::sums) and from what acts from outside.
+    pub fn take_forces(&mut self) {
+        each_of_runs!(self, |first, N| self.forces_of::<N>(first));
+    }
+
+    /// The same of some nodes.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub(crate) fn forces_of<const N: usize>(&mut self, first: usize) {
+        let sums = some_of::<_, N>(&self.sums.balances, first);
+        let [mut mixture, mut water] = [[[0.0; D]; N]; 2];
+        let external = some_of::<_, N>(&self.external_force, first);
+        for node in 0..N {
+            for d in 0..D {
+                mixture[node][d] = external[node][d] + sums[node][2][d];
+            }
+        }
+        for node in 0..N {
+            water[node] = sums[node][3];
+        }
+        *some_mut(&mut self.mixture_force, first) = mixture;
+        *some_mut(&mut self.water_force, first) = water;
     }
 
     /// Velocities of skeleton and water and their accelerations, `[node]`, side by side for the points that take all of
     /// them.
     pub fn gather_motion(&mut self) {
-        let count = self.len();
-        let (solid, water) = (&self.solid_velocity[..count], &self.water_velocity[..count]);
-        let (solid_rate, water_rate) = (&self.solid_acceleration[..count], &self.water_acceleration[..count]);
-        let motion = &mut self.motion[..count];
-        for run in &self.runs {
-            for node in run.start..run.end.min(count) {
-                motion[node] = [solid[node], water[node], solid_rate[node], water_rate[node]];
-            }
+        each_of_runs!(self, |first, N| self.motion_of::<N>(first));
+    }
+
+    /// The same of some nodes.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    pub(crate) fn motion_of<const N: usize>(&mut self, first: usize) {
+        let (solid, water) =
+            (some_of::<_, N>(&self.solid_velocity, first), some_of::<_, N>(&self.water_velocity, first));
+        let (solid_rate, water_rate) = (
+            some_of::<_, N>(&self.solid_acceleration, first),
+            some_of::<_, N>(&self.water_acceleration, first),
+        );
+        let motion = some_mut::<_, N>(&mut self.motion, first);
+        for node in 0..N {
+            motion[node] = [solid[node], water[node], solid_rate[node], water_rate[node]];
         }
     }
 
@@ -438,6 +534,63 @@ mod tests {
             assert_eq!(
                 (nodes.volume[4], nodes.drag[4], nodes.water_mass[4] > 0.0),
                 (3.0 * whole, 5.0 * whole, has_mass)
+            );
+        }
+    }
+
+    #[test]
+    fn nodes_side_by_side_are_what_they_are_one_by_one() {
+        let (grid, soil) = (Grid::new(0.1, [7, 3]), Material::default());
+        let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1e-3);
+        for (node, (masses, balances)) in
+            nodes.sums.masses.iter_mut().zip(&mut nodes.sums.balances).enumerate()
+        {
+            let seed = node as f64;
+            // Runs of one, two, three and seven nodes.
+            let is_there = node % 12 < 7 && node / 12 % 2 == 0 || [18, 19, 21].contains(&(node % 24));
+            if is_there {
+                *masses = [1.5 + seed.sin(), 1.2 + (0.7 * seed).cos(), 2.0 + (1.3 * seed).sin(), 0.0];
+            }
+            for (i, number) in balances.as_flattened_mut().iter_mut().enumerate() {
+                *number = (seed + 0.37 * i as f64).sin();
+            }
+            nodes.external_force[node] = [seed.cos(), 0.5];
+        }
+        nodes.take_masses(&soil);
+        nodes.take_velocities(&soil);
+        nodes.take_forces();
+        let lengths: std::collections::BTreeSet<usize> =
+            nodes.runs.iter().map(ExactSizeIterator::len).collect();
+        assert_eq!(lengths.into_iter().collect::<Vec<_>>(), [1, 2, 7]);
+        let runs = nodes.runs.clone();
+        let together = nodes.clone();
+        nodes.runs = runs.into_iter().flatten().map(|node| node..node + 1).collect();
+        let one_by_one = nodes.runs.clone();
+        for field in [&mut nodes.volume, &mut nodes.porosity, &mut nodes.drag, &mut nodes.per_water_mass] {
+            field.fill(f64::NAN);
+        }
+        for node in one_by_one {
+            nodes.masses_of::<1>(node.start, &soil);
+            nodes.velocities_of::<1>(node.start, &soil);
+            nodes.forces_of::<1>(node.start);
+            let at = node.start;
+            for (field, same) in [
+                (&nodes.volume, &together.volume),
+                (&nodes.porosity, &together.porosity),
+                (&nodes.drag, &together.drag),
+                (&nodes.per_water_mass, &together.per_water_mass),
+                (&nodes.per_solid_mass, &together.per_solid_mass),
+            ] {
+                assert_eq!(field[at].to_bits(), same[at].to_bits());
+            }
+            assert_eq!(nodes.mixture_force[at], together.mixture_force[at]);
+            assert_eq!(nodes.water_force[at], together.water_force[at]);
+            assert_eq!(nodes.solid_velocity[at], together.solid_velocity[at]);
+            let [_, _, mixture, _] = nodes.sums.balances[at];
+            assert_eq!(
+                nodes.mixture_force[at][1],
+                0.5 + mixture[1],
+                "what acts from outside is among the forces"
             );
         }
     }

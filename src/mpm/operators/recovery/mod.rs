@@ -46,7 +46,7 @@ impl<const D: usize> RecoveryOperator<D> {
             (false, Recovery::Nodal) => Self::NodalField(NodalField::with_nodes(grid.node_count())),
             (false, Recovery::Constant | Recovery::Patch) => Self::Own,
             (true, Recovery::Constant | Recovery::NullSpace) => Self::Constant,
-            (true, Recovery::Patch) => Self::Patch(PatchRows::with_points(points, grid.cell_count())),
+            (true, Recovery::Patch) => Self::Patch(PatchRows::with_points(points, grid)),
             (true, Recovery::Nodal) => Self::Nodal(NodalMeans::with_nodes(grid.node_count())),
         }
     }

@@ -6,8 +6,8 @@
 //! beyond `2π/3`, a negative stiffness that no step survives.
 
 use crate::mpm::state::cells::Cells;
-use crate::mpm::state::grid::{GHOST_LAYERS, Grid, SIXTH, index_of, power};
-use crate::mpm::state::lanes::{LANES, Lanes, lanes_of};
+use crate::mpm::state::grid::{GHOST_LAYERS, Grid, SIXTH, power};
+use crate::mpm::state::lanes::{FOUR, LANES, Lanes, lanes_of, some_of};
 use crate::mpm::wide::wide;
 use crate::soil::tensor::{Vector, solve_symmetric};
 use std::ops::Range;
@@ -47,15 +47,17 @@ pub struct PatchRows<const D: usize> {
 }
 
 impl<const D: usize> PatchRows<D> {
-    /// Room for `points` points, in so many cells.
-    pub fn with_points(points: usize, cells: usize) -> Self {
+    /// Room for `points` points on a grid.
+    pub fn with_points(points: usize, grid: &Grid<D>) -> Self {
+        // Along a direction of one cell nothing is ever fitted.
+        let lines = grid.cells.map(|cells| if cells == 1 { LineRows::ALONE } else { LineRows::default() });
         Self {
             first: vec![0; points],
-            lines: vec![[LineRows::default(); D]; points.div_ceil(LANES)],
+            lines: vec![lines; points.div_ceil(LANES)],
             is_fitted: vec![false; points],
             fitted: vec![[0.0; MOST_CELLS]; points],
             has_fitted: false,
-            neighbours: vec![Neighbours::All; cells],
+            neighbours: vec![Neighbours::All; grid.cell_count()],
             occupations: None,
         }
     }
@@ -97,13 +99,22 @@ impl<const D: usize> PatchRows<D> {
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     fn build_lines(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
         let lowest: usize = grid.cell_stride().iter().sum();
-        let points = cells.of_point.chunks(LANES).zip(cells.place.chunks(LANES));
-        let out = self.lines.iter_mut().zip(self.first.chunks_mut(LANES));
-        for ((homes, places), (lines, firsts)) in points.zip(out) {
-            // The cells that they lie in, which are not always those that they belong to.
-            let mut at = [0.0; LANES];
+        for (first, home) in self.first.iter_mut().zip(&cells.of_point) {
+            *first = home - lowest;
+        }
+        // The cells that points lie in are not always those that they belong to.
+        if D > 1 && cells.has_strays() {
+            for (first, place) in self.first.iter_mut().zip(&cells.place) {
+                *first = grid.flat_cell(&grid.cell_at(place)) - lowest;
+            }
+        }
+        let homes = cells.of_point.chunks(LANES);
+        for ((lines, places), homes) in self.lines.iter_mut().zip(cells.place.chunks(LANES)).zip(homes) {
             for d in 0..D {
-                let (line, stride) = (grid.line(d), grid.cell_stride()[d] as f64);
+                if grid.cells[d] == 1 {
+                    continue;
+                }
+                let line = grid.line(d);
                 let place = lanes_of(places, d, GHOST_LAYERS as f64);
                 let mut along = place;
                 for along in &mut along {
@@ -114,24 +125,7 @@ impl<const D: usize> PatchRows<D> {
                         *cell = *home as f64;
                     }
                 }
-                if D > 1 && cells.has_strays() {
-                    for (at, along) in at.iter_mut().zip(&along) {
-                        *at += stride * along;
-                    }
-                }
-                if grid.cells[d] == 1 {
-                    lines[d] = LineRows::ALONE;
-                } else {
-                    fill::<D>(&mut lines[d], &along, &place);
-                }
-            }
-            for (first, home) in firsts.iter_mut().zip(homes) {
-                *first = home - lowest;
-            }
-            if D > 1 && cells.has_strays() {
-                for (first, at) in firsts.iter_mut().zip(&at) {
-                    *first = index_of(*at) - lowest;
-                }
+                fill::<D>(&mut lines[d], &along, &place);
             }
         }
     }
@@ -151,7 +145,7 @@ impl<const D: usize> PatchRows<D> {
                 // Rows of a direction of one cell are made so.
                 for d in (0..D).filter(|d| sides[*d] != (true, true) && grid.cells[*d] > 1) {
                     for point in points.clone() {
-                        self.lines[point / LANES][d].cut(point % LANES, sides[d]);
+                        self.lines[point / LANES][d].cut::<D>(point % LANES, sides[d]);
                     }
                 }
             }
@@ -169,20 +163,57 @@ impl<const D: usize> PatchRows<D> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn recover(&self, grid: &Grid<D>, field: &[f64], out: &mut [f64], put: impl Fn(&mut f64, f64)) {
-        if D > 1 || self.has_fitted {
-            for (point, place) in out.iter_mut().enumerate() {
-                put(place, self.value(grid, point, field));
+        let whole = if self.has_fitted { 0 } else { out.len() / FOUR * FOUR };
+        let (together, rest) = out.split_at_mut(whole);
+        for (group, places) in together.as_chunks_mut::<FOUR>().0.iter_mut().enumerate() {
+            let point = group * FOUR;
+            let firsts = some_of::<_, FOUR>(&self.first, point);
+            if firsts.iter().all(|first| *first == firsts[0]) {
+                let values = self.values_together(grid, point, field);
+                for (place, value) in places.iter_mut().zip(values) {
+                    put(place, value);
+                }
+                continue;
             }
-            return;
-        }
-        let blocks = self.lines.iter().zip(self.first.chunks(LANES)).zip(out.chunks_mut(LANES));
-        for ((lines, firsts), places) in blocks {
-            let line = &lines[0];
-            for (lane, (first, place)) in firsts.iter().zip(places).enumerate().take(LANES) {
-                let weights = std::array::from_fn(|k| line.line[k][lane]);
-                put(place, product(&weights, &field[*first..first + BLOCK]));
+            for (which, place) in places.iter_mut().enumerate() {
+                put(place, self.value(grid, point + which, field));
             }
         }
+        for (which, place) in rest.iter_mut().enumerate() {
+            put(place, self.value(grid, whole + which, field));
+        }
+    }
+
+    /// Values at neighbouring points of the same cells, whose rows are products of lines, side by side.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn values_together(&self, grid: &Grid<D>, point: usize, field: &[f64]) -> [f64; FOUR] {
+        let (lines, lane, first) = (&self.lines[point / LANES], point % LANES, self.first[point]);
+        let row = |rows: &[Lanes; BLOCK], k: usize| *some_of::<_, FOUR>(&rows[k], lane);
+        let along = |rows: &[Lanes; BLOCK], cells: &[f64]| {
+            let rows: [[f64; FOUR]; BLOCK] = [row(rows, 0), row(rows, 1), row(rows, 2)];
+            let mut values = [0.0; FOUR];
+            for point in 0..FOUR {
+                values[point] =
+                    rows[0][point] * cells[0] + rows[1][point] * cells[1] + rows[2][point] * cells[2];
+            }
+            values
+        };
+        if D == 1 {
+            return along(&lines[0].line, &field[first..first + BLOCK]);
+        }
+        let (up, stride) = (&lines[D - 1], grid.cell_stride()[D - 1]);
+        let mut values = [0.0; FOUR];
+        for k in 0..BLOCK {
+            let cells = &field[first + k * stride..first + k * stride + BLOCK];
+            let (of_line, of_shares) = (along(&lines[0].line, cells), along(&lines[0].shares, cells));
+            let (share, line) = (row(&up.shares, k), row(&up.line, k));
+            for point in 0..FOUR {
+                values[point] +=
+                    share[point] * of_line[point] + (line[point] - share[point]) * of_shares[point];
+            }
+        }
+        values
     }
 
     /// Value at a point of a field given at the cells.
@@ -308,7 +339,7 @@ impl LineRows {
 
     /// The row of a point some of whose cells are empty: the line through two, or the value of the only one.
     #[inline]
-    fn cut(&mut self, lane: usize, sides: (bool, bool)) {
+    fn cut<const D: usize>(&mut self, lane: usize, sides: (bool, bool)) {
         let offset = self.offsets[lane];
         let (line, mut shares) = match sides {
             (true, true) => return,
@@ -316,13 +347,14 @@ impl LineRows {
             (true, false) => ([offset, 1.0 - offset, 0.0], [offset - 1.0, offset, 0.0]),
             (false, false) => ([0.0, 1.0, 0.0], [0.0, 1.0, 0.0]),
         };
-        if sides != (false, false) {
+        // A column has no use for the shares.
+        if D > 1 && sides != (false, false) {
             let is_there = [sides.0, true, sides.1];
             for k in 0..BLOCK {
                 shares[k] = if is_there[k] { distance_weight(shares[k]) } else { 0.0 };
             }
-            let sum: f64 = shares.iter().sum();
-            shares = shares.map(|weight| weight / sum);
+            let per_sum = 1.0 / shares.iter().sum::<f64>();
+            shares = shares.map(|weight| weight * per_sum);
         }
         for k in 0..BLOCK {
             (self.line[k][lane], self.shares[k][lane]) = (line[k], shares[k]);
@@ -336,14 +368,9 @@ impl LineRows {
 /// The spline is the cubic B-spline, whose four values around a point have the moments 1, 0 and 1/3.
 /// The patch lacks the outermost, `u³/6` at the distance `2 − u` on the near side, `u = |offset|`,
 /// which gives its own moments, and the fit's weights from them.
-#[inline(never)]
-fn fill<const D: usize>(rows: &mut LineRows, cells: &Lanes, place: &Lanes) {
-    wide!(fill_lanes::<D>(rows, cells, place));
-}
-
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn fill_lanes<const D: usize>(rows: &mut LineRows, cells: &Lanes, place: &Lanes) {
+fn fill<const D: usize>(rows: &mut LineRows, cells: &Lanes, place: &Lanes) {
     for lane in 0..LANES {
         let offset = cells[lane] + 0.5 - place[lane];
         let u = offset.abs();
