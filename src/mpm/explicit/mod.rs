@@ -41,7 +41,6 @@ impl<const D: usize> Body<D> {
             self.take_slopes();
             self.nodes.gather_motion();
         }
-        enter(Phase::Motion);
         if settings.mapping_back {
             self.advance_points_and_map_back(kick, dt, settings.flip); // steps 4 and 5
         } else {

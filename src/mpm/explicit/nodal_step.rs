@@ -43,6 +43,7 @@ impl<const D: usize> Body<D> {
             nodes.advance_of::<N>(first, kick, dt);
             nodes.motion_of::<N>(first);
         });
+        enter(Phase::Motion);
     }
 
     /// Accelerations of both phases from the forces on the nodes, with the water's inertia per volume of water
@@ -181,6 +182,7 @@ mod tests {
     use super::*;
     use crate::mpm::explicit::ExplicitSettings;
     use crate::mpm::method::{Configuration, Method};
+    use crate::mpm::operators::rigid_plate::RigidPlate;
     use crate::scene::SceneKind;
     use crate::scene::column::Column;
     use crate::scene::problem::column_problem;
@@ -227,5 +229,24 @@ mod tests {
                 assert_eq!((&at_once.points, &at_once.nodes), (&in_turn.points, &in_turn.nodes));
             }
         }
+    }
+
+    #[test]
+    fn nodes_that_something_ties_or_gives_to_are_not_left_alone() {
+        let alone = || both::<2>(&ExplicitSettings::default())[0].clone();
+        assert!(alone().leaves_nodes_alone());
+        let mut tied = alone();
+        let volumes = tied.points.initial_volume.iter().copied();
+        tied.plate = Some(RigidPlate::of(1.0, &tied.grid, &tied.nodes, volumes));
+        assert!(!tied.leaves_nodes_alone());
+        let mut sloped = alone();
+        sloped.bring_slopes();
+        assert!(!sloped.leaves_nodes_alone());
+        let mut sloped = alone();
+        sloped.slope_stresses();
+        assert!(!sloped.leaves_nodes_alone());
+        let mut frozen = alone();
+        frozen.configuration = Configuration::Frozen;
+        assert!(!frozen.leaves_nodes_alone());
     }
 }
