@@ -73,7 +73,7 @@
 //! | :-- | :-- |
 //! | 1, grid | `src/mpm/explicit/mod.rs:reset_grid`, `src/mpm/explicit/points_to_nodes.rs:map_masses_velocities_and_forces` |
 //! | 2, accelerations | `src/mpm/explicit/points_to_nodes.rs:map_forces`, `src/mpm/explicit/mod.rs:nodal_accelerations` |
-//! | 3, nodal velocities | `src/mpm/explicit/mod.rs:nodal_velocities` |
+//! | 3, nodal velocities | `src/mpm/explicit/nodal_step.rs:nodal_velocities` |
 //! | 4, points | `src/mpm/explicit/nodes_to_points.rs:advance_points` |
 //! | 5, mapping back | `src/mpm/explicit/nodes_to_points.rs:advance_points_and_map_back`, `src/mpm/explicit/points_to_nodes.rs:map_velocities` |
 //! | 6, effective stress | `src/mpm/explicit/stresses.rs:update_effective_stress` |
