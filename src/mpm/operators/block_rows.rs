@@ -192,7 +192,8 @@ impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
         values
     }
 
-    /// Gradients of a nodal vector field at some points, from a lane on, `[point][component][direction]`.
+    /// Gradients of a nodal vector field at some points, from a lane on, `[point][component][direction]`: side by side
+    /// where they have the same nodes.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     pub fn gradients<const N: usize>(
@@ -210,35 +211,58 @@ impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
             }
             return gradients;
         }
-        // Points of the same nodes side by side: each number of a node is read once for all of them.
-        let lane = self.place(lane);
-        let row = |rows: &[Lanes; W], k: usize| *some_of::<_, N>(&rows[k], lane);
-        let along = &self.rows[0];
-        if D == 1 {
-            let nodes = &field[first..first + W];
-            let mut slopes = [0.0; N];
-            for k in 0..W {
-                let gradient = row(&along.gradients, k);
-                for point in 0..N {
-                    slopes[point] += gradient[point] * nodes[k][0];
+        let slopes: [[[f64; N]; D]; 2] = if D == 1 {
+            self.slopes_on_a_line(lane, &field[first..first + W])
+        } else {
+            self.slopes_in_the_plane(lane, first, stride[D - 1], field)
+        };
+        for point in 0..N {
+            for d in 0..D {
+                for direction in 0..D {
+                    gradients[point][d][direction] = slopes[direction][d][point];
                 }
             }
-            for point in 0..N {
-                gradients[point][0][0] = slopes[point];
-            }
-            return gradients;
         }
-        let up = &self.rows[D - 1];
+        gradients
+    }
+
+    /// Slopes at points of the same nodes of a line, `[direction][component][point]`: each number of a node is read once
+    /// for all of them.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn slopes_on_a_line<const N: usize>(&self, lane: usize, nodes: &[Vector<D>]) -> [[[f64; N]; D]; 2] {
+        let (lane, mut slopes) = (self.place(lane), [[[0.0; N]; D]; 2]);
+        for k in 0..W {
+            let gradient = some_of::<_, N>(&self.rows[0].gradients[k], lane);
+            for point in 0..N {
+                slopes[0][0][point] += gradient[point] * nodes[k][0];
+            }
+        }
+        slopes
+    }
+
+    /// The same in the plane, from the lowest of the nodes.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+    fn slopes_in_the_plane<const N: usize>(
+        &self,
+        lane: usize,
+        first: usize,
+        up: usize,
+        field: &[Vector<D>],
+    ) -> [[[f64; N]; D]; 2] {
+        let lane = self.place(lane);
+        let row = |rows: &[Lanes; W], k: usize| *some_of::<_, N>(&rows[k], lane);
+        let (along, across) = (&self.rows[0], &self.rows[D - 1]);
         // In a direction of one cell two of the nodes have no part in anything.
         let mut is_used = [true; W];
         for k in 0..W {
             is_used[k] = row(&along.weights, k) != [0.0; N] || row(&along.gradients, k) != [0.0; N];
         }
-        // `[direction][component][point]`.
         let mut slopes = [[[0.0; N]; D]; 2];
         for run in 0..W {
-            let start = first + run * stride[D - 1];
-            let nodes = &field[start..start + W];
+            let nodes = &field[first + run * up..first + run * up + W];
+            // The slope along the run, and the value.
             let mut sums = [[[0.0; N]; D]; 2];
             for k in 0..W {
                 if !is_used[k] {
@@ -254,7 +278,7 @@ impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
                     }
                 }
             }
-            let across = [row(&up.weights, run), row(&up.gradients, run)];
+            let across = [row(&across.weights, run), row(&across.gradients, run)];
             for direction in 0..2 {
                 for d in 0..D {
                     for point in 0..N {
@@ -263,14 +287,7 @@ impl<const D: usize, const W: usize> BlockRows<'_, D, W> {
                 }
             }
         }
-        for point in 0..N {
-            for d in 0..D {
-                for direction in 0..D {
-                    gradients[point][d][direction] = slopes[direction][d][point];
-                }
-            }
-        }
-        gradients
+        slopes
     }
 
     /// Gradient of a nodal vector field at the point, `[component][direction]`.
