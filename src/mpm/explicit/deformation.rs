@@ -66,19 +66,12 @@ pub fn stretches_of<const D: usize, const N: usize>(strains: &[Vector<D>; N]) ->
     stretches
 }
 
-/// A stress turned with the material over a step of displacement gradient `A`: `Q σ Qᵀ` with the
+/// Stresses of some points turned with the material over a step of displacement gradient `A`: `Q σ Qᵀ` with the
 /// rotation `Q = (I − W/2)⁻¹(I + W/2)`, `W = skew A` (Hughes & Winget 1980). Together with the rate
 /// form it is Jaumann's stress rate, and exactly objective under a rigid rotation.
-#[inline]
-pub fn rotated<const D: usize>(stress: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
-    let [turned] = all_rotated(&[*stress], &[*increment]);
-    turned
-}
-
-/// The same of some points side by side.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub fn all_rotated<const D: usize, const N: usize>(
+pub fn rotated<const D: usize, const N: usize>(
     stresses: &[Tensor<D>; N],
     increments: &[Tensor<D>; N],
 ) -> [Tensor<D>; N] {
@@ -163,12 +156,12 @@ mod tests {
         // Q with tan(θ/2) = w/2 turns by θ.
         let spin = 2.0 * (0.5 * angle).tan();
         for _ in 0..1000 {
-            stress = rotated(&stress, &[[0.0, -spin], [spin, 0.0]]);
+            [stress] = rotated(&[stress], &[[[0.0, -spin], [spin, 0.0]]]);
         }
         for (got, exact) in stress.iter().flatten().zip([-2.0, -1.0, -1.0, 5.0]) {
             assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
         }
-        let stretched = rotated(&stress, &[[0.1, 0.3], [0.3, -0.2]]);
+        let [stretched] = rotated(&[stress], &[[[0.1, 0.3], [0.3, -0.2]]]);
         assert_eq!(stretched, stress, "a strain without spin turns nothing");
     }
 
@@ -178,8 +171,8 @@ mod tests {
             |seed: f64| [[(1.1 * seed).sin(), (2.3 * seed).cos()], [(0.7 * seed).cos(), (1.9 * seed).sin()]];
         let stresses: [Tensor<2>; 4] = std::array::from_fn(|point| tensor(1.0 + point as f64));
         let increments: [Tensor<2>; 4] = std::array::from_fn(|point| tensor(7.0 - point as f64));
-        for (point, turned) in all_rotated(&stresses, &increments).iter().enumerate() {
-            assert_eq!(*turned, rotated(&stresses[point], &increments[point]));
+        for (point, turned) in rotated(&stresses, &increments).iter().enumerate() {
+            assert_eq!([*turned], rotated(&[stresses[point]], &[increments[point]]));
             // Q σ Qᵀ with Q = (I − W/2)⁻¹ (I + W/2).
             let half = 0.25 * (increments[point][1][0] - increments[point][0][1]);
             let forth = [[1.0, -half], [half, 1.0]];
@@ -190,7 +183,7 @@ mod tests {
                 assert!((got - exact).abs() < 1e-14, "{got} for {exact}");
             }
         }
-        assert_eq!(all_rotated(&[[[3.0]]], &[[[0.5]]]), [[[3.0]]], "a line does not turn");
+        assert_eq!(rotated(&[[[3.0]]], &[[[0.5]]]), [[[3.0]]], "a line does not turn");
     }
 
     #[test]

@@ -6,7 +6,7 @@
 use crate::elementary::ln_of_each;
 use crate::mpm::body::Body;
 use crate::mpm::explicit::deformation::{
-    Following, all_rotated, middle_gradient, relaxed, stretch_of, stretches_of,
+    Following, middle_gradient, relaxed, rotated, stretch_of, stretches_of,
 };
 use crate::mpm::method::Configuration;
 use crate::mpm::operators::block_rows::{BlockRows, Blocks};
@@ -209,7 +209,7 @@ impl StressUpdate {
         }
         let stresses = some_mut::<_, N>(&mut points.effective_stress, first);
         if self.deforms && D > 1 {
-            *stresses = all_rotated(stresses, &increments);
+            *stresses = rotated(stresses, &increments);
         }
         for point in 0..N {
             let modulus = self.law.modulus_ratio(before[point], ratios[point]);

@@ -101,7 +101,6 @@ impl<const D: usize> Cells<D> {
             for (cell, run) in &self.runs {
                 self.point_count[*cell] += run.len();
             }
-            self.initial_volume.clear();
             let of_run =
                 |(_, run): &(usize, Range<usize>)| points.initial_volume[run.clone()].iter().sum::<f64>();
             self.initial_volume.extend(self.runs.iter().map(of_run));
@@ -136,6 +135,7 @@ impl<const D: usize> Cells<D> {
     /// of points cross several cells.
     fn find_runs(&mut self) {
         self.runs.clear();
+        self.initial_volume.clear();
         let mut start = 0;
         while let Some(cell) = self.of_point.get(start) {
             let rest = self.of_point[start..].iter();
@@ -206,6 +206,10 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Sums volumes over each cell's points.
+    ///
+    /// # Panics
+    ///
+    /// Where the points were not [located](Self::locate) last, but in some other way.
     pub fn sum_volumes(&mut self, points: &Points<D>, initial_porosity: f64) {
         let solid_fraction = 1.0 - initial_porosity;
         let (initial_volume, ratios) = (&points.initial_volume[..], &points.volume_ratio[..points.len()]);
@@ -216,6 +220,7 @@ impl<const D: usize> Cells<D> {
             self.porosity.fill(0.0);
             self.volumes_of = Some(self.occupations);
         }
+        assert_eq!(self.runs.len(), self.initial_volume.len(), "an initial volume per run");
         for ((cell, run), initial) in self.runs.iter().zip(&self.initial_volume) {
             let of_points = initial_volume[run.clone()].iter().zip(&ratios[run.clone()]);
             let volume: f64 = of_points.map(|(initial, ratio)| initial * ratio).sum();
@@ -468,6 +473,17 @@ mod tests {
         cells.inverse_deformation[cell] = [[0.5, 0.25], [0.125, 2.0]];
         let expected = 2.0 * 0.5 + 7.0 * 0.125 + 5.0 * 0.25 - 0.5 * 2.0;
         assert!((cells.deformed_centre_divergence(&grid, cell, &field) - expected).abs() < 1e-13);
+    }
+
+    #[test]
+    #[should_panic(expected = "an initial volume per run")]
+    fn volumes_of_runs_that_are_not_known_are_not_summed() {
+        let (grid, points) = (Grid::new(0.5, [3]), Points::lattice(0.5, [3], 2));
+        let mut cells = Cells::new(&grid, points.len());
+        cells.locate(&grid, &points, 0.3);
+        let holders = cells.clone();
+        cells.locate_among(&grid, &points.position, &holders, |_| false);
+        cells.sum_volumes(&points, 0.3);
     }
 
     #[test]
