@@ -81,12 +81,16 @@ impl<const D: usize> TwoLayers<D> {
         for node in runs.iter().cloned().flatten() {
             let per_grain_volume = body.material.grain_density * per_solid_mass[node];
             for d in 0..D {
-                solid_velocity[node][d] = self.sums.momenta[node][d] * (free[node][d] * per_grain_volume);
+                let brought = self.sums.momenta[node][d] * per_grain_volume;
+                solid_velocity[node][d] = free[node][d] * brought;
+                self.sums.held_velocity[node][d] = (1.0 - free[node][d]) * brought;
             }
         }
     }
 
-    /// Maps the velocity of the water to the nodes, weighted with mass; water that no soil holds goes with the soil.
+    /// Maps the velocity of the water to the nodes, weighted with mass: what a support takes from the skeleton there it
+    /// takes from the water too, for a sliding water has only what it moves against the skeleton
+    /// ([`sliding_share`](crate::mpm::state::nodes::sliding_share)). Water that no soil holds goes with the soil.
     pub(crate) fn map_water_velocities(&mut self) {
         let water = &self.water;
         let momenta = water.velocity.iter().enumerate();
@@ -97,7 +101,8 @@ impl<const D: usize> TwoLayers<D> {
         for (node, momentum) in self.sums.momenta.iter().enumerate() {
             for d in 0..D {
                 nodes.water_velocity[node][d] = if nodes.water_mass[node] > 0.0 {
-                    momentum[d] * (nodes.water_free[node][d] * nodes.per_water_mass[node])
+                    let brought = momentum[d] * nodes.per_water_mass[node];
+                    nodes.water_free[node][d] * (brought - self.sums.held_velocity[node][d])
                 } else {
                     nodes.solid_velocity[node][d]
                 };

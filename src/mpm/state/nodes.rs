@@ -138,6 +138,18 @@ impl<const D: usize> Support<D> {
     }
 }
 
+/// Share of the skeleton's velocity, as its points bring it to a node, that the water's is taken against there: one where
+/// the skeleton is held and the water slides past it, else zero.
+///
+/// What holds the skeleton takes the velocity of the points around from the node; the water keeps only what it has
+/// beyond them. Were it to keep all of it, mapping back would put a flux between the phases there that no pressure
+/// drives and no drag stops, step by step (docs/theory.md, section 3).
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn sliding_share(free: f64, water_free: f64) -> f64 {
+    water_free * (1.0 - free)
+}
+
 /// Does a work for all nodes that carry mass, four or two side by side where as many follow each other: from a first one
 /// on, for a number that the compiler knows. What one work leaves at a node is at hand for the next.
 macro_rules! each_of_runs {
@@ -333,7 +345,8 @@ impl<const D: usize> Nodes<D> {
         self.is_empty_between = true;
     }
 
-    /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held or empty.
+    /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held or empty, and the water's
+    /// against that of the skeleton where the latter alone is held ([`sliding_share`]).
     pub fn take_velocities(&mut self, soil: &Material) {
         each_of_runs!(self, |first, N| self.velocities_of::<N>(first, soil));
     }
@@ -350,13 +363,20 @@ impl<const D: usize> Nodes<D> {
         let [mut solid, mut water] = [[[0.0; D]; N]; 2];
         for node in 0..N {
             for d in 0..D {
-                solid[node][d] = sums[node][0][d] * (free[node][d] * (soil.grain_density * per_solid[node]));
+                solid[node][d] = sums[node][0][d] * (soil.grain_density * per_solid[node]);
             }
         }
         for node in 0..N {
             for d in 0..D {
-                water[node][d] =
-                    sums[node][1][d] * (water_free[node][d] * (soil.water_density * per_water[node]));
+                let slides = sliding_share(free[node][d], water_free[node][d]);
+                water[node][d] = sums[node][1][d]
+                    * (water_free[node][d] * (soil.water_density * per_water[node]))
+                    - slides * solid[node][d];
+            }
+        }
+        for node in 0..N {
+            for d in 0..D {
+                solid[node][d] *= free[node][d];
             }
         }
         *some_mut(&mut self.solid_velocity, first) = solid;
@@ -508,6 +528,28 @@ mod tests {
         assert_eq!((nodes.free[base], nodes.water_free[base]), ([0.0, 0.0], [1.0, 0.0]));
         let above = grid.flat_node(&[3, 3]);
         assert_eq!(nodes.free[above], [1.0, 1.0]);
+    }
+
+    #[test]
+    fn water_on_a_rough_base_moves_as_it_does_against_the_skeleton_around() {
+        let (grid, soil) = (Grid::new(0.1, [3, 3]), Material::default());
+        let mut nodes = Nodes::new(&grid, &Support::oedometer().on_rough_base(), 1.0);
+        for (masses, balances) in nodes.sums.masses.iter_mut().zip(&mut nodes.sums.balances) {
+            *masses = [2.0, 0.5, 0.0, 0.0];
+            // Velocities 3 and 5 m/s of the skeleton, 3.25 and 7 m/s of the water.
+            [balances[0], balances[1]] = [[6.0, 10.0], [1.625, 3.5]];
+        }
+        nodes.take_masses(&soil);
+        nodes.take_velocities(&soil);
+        let of = |row: usize| {
+            let node = grid.flat_node(&[3, row]);
+            [nodes.solid_velocity[node], nodes.water_velocity[node]]
+        };
+        let [at_base, above] = [of(2), of(3)];
+        let expected = [[[0.0, 0.0], [0.25, 0.0]], [[3.0, 5.0], [3.25, 7.0]]];
+        for (got, expected) in [at_base, above].as_flattened().iter().zip(expected.as_flattened()) {
+            assert!((0..2).all(|d| (got[d] - expected[d]).abs() < 1e-14), "{got:?} for {expected:?}");
+        }
     }
 
     #[test]
