@@ -164,7 +164,18 @@ pub(crate) fn checked_time_factor(time_factor: f64) -> Result<f64, ExactError> {
     }
 }
 
-/// Passes a relative depth `0 ≤ zeta ≤ 1` on, refuses any other.
+/// Share of a height by which round-off may put a place of a body outside of it: a place is a sum of cells, and each
+/// product of a cell's size loses half of its last bit.
+const EDGE_TOLERANCE: f64 = 1e-12;
+
+/// Passes a relative depth `0 ≤ zeta ≤ 1` on, and one beside it by round-off as the edge that it is meant to be;
+/// refuses any other.
 pub(crate) fn checked_depth(zeta: f64) -> Result<f64, ExactError> {
-    if (0.0..=1.0).contains(&zeta) { Ok(zeta) } else { Err(ExactError::Depth(zeta)) }
+    held_within(zeta, 1.0).ok_or(ExactError::Depth(zeta))
+}
+
+/// A place between 0 and a height; one outside of it by round-off is on the edge, any other none.
+pub(crate) fn held_within(place: f64, height: f64) -> Option<f64> {
+    let tolerance = EDGE_TOLERANCE * height;
+    (-tolerance..=height + tolerance).contains(&place).then(|| place.clamp(0.0, height))
 }

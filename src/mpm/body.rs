@@ -51,6 +51,9 @@ pub struct Problem<const D: usize> {
     /// Gravity, m/s², that skeleton and water weigh with, where they do; the pressures of the points are those
     /// beyond the hydrostatic one, and their stresses are those of the weight.
     pub weight: Option<f64>,
+    /// Effective stresses of the weight at the points, Pa, where these integrate it inexactly and the start is to be in
+    /// balance all the same; none elsewhere.
+    pub balanced_weight: Vec<Tensor<D>>,
     /// Whether the body is to find its undrained equilibrium under the load before it starts.
     pub undrained_start: bool,
     /// Time over which the load grows linearly, s; 0 where it acts at once.
@@ -76,6 +79,7 @@ impl<const D: usize> Problem<D> {
         let points = &mut self.points;
         points.pressure.iter_mut().for_each(|pressure| *pressure *= factor);
         points.effective_stress.iter_mut().flatten().flatten().for_each(|stress| *stress *= factor);
+        self.balanced_weight.iter_mut().flatten().flatten().for_each(|stress| *stress *= factor);
         points.solid_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
         points.water_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
         if let Some(water) = &mut self.water {
@@ -115,6 +119,9 @@ pub struct Body<const D: usize> {
     pub plate: Option<RigidPlate>,
     /// Weight of skeleton and water; the pressures of the points are total ones then.
     pub weight: Option<SelfWeight>,
+    /// What the weight of points off their lattice leaves unbalanced at the nodes, and they carry: `[node][phase]`, m/s²
+    /// upward positive, of the mixture and of the pore water; none where points integrate it exactly.
+    pub weight_carried: Vec<[Vector<D>; 2]>,
     /// What acts on every point from outside.
     pub forcing: Option<Forced<D>>,
     /// `N` and `∇N` between points and nodes.
@@ -159,6 +166,7 @@ impl<const D: usize> Body<D> {
             load_shape,
             plate_load,
             weight,
+            balanced_weight,
             initial_gradient,
             forcing,
             ..
@@ -185,6 +193,7 @@ impl<const D: usize> Body<D> {
                 .stretching(configuration.moves_points() && !method.domains_follow()),
             plate: None,
             weight: weight.map(|gravity| SelfWeight::of(gravity, &points)),
+            weight_carried: Vec::new(),
             forcing: forcing.map(|acting| Forced::of(acting, &grid, &points)),
             basis: if domains.is_some() { corner_stencils(count) } else { method.basis.stencils(count) },
             domains,
@@ -209,6 +218,9 @@ impl<const D: usize> Body<D> {
         body.add_hydrostatic_pressure();
         body.build_operators();
         body.map_masses();
+        if !balanced_weight.is_empty() {
+            body.carry_what_weight_leaves(balanced_weight);
+        }
         if let Some(load) = plate_load {
             let volumes = body.points.initial_volume.iter().copied();
             body.plate = Some(RigidPlate::of(load, &body.grid, &body.nodes, volumes));

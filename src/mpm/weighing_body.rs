@@ -3,6 +3,7 @@
 use crate::mpm::body::Body;
 use crate::mpm::method::Configuration;
 use crate::mpm::operators::self_weight::SelfWeight;
+use crate::soil::tensor::{Tensor, Vector};
 
 impl<const D: usize> Body<D> {
     /// Hydrostatic pressure at a point, Pa, at its present height; zero where nothing weighs.
@@ -48,10 +49,45 @@ impl<const D: usize> Body<D> {
             nodes.mixture_force[node][up] -= mass * weight.gravity;
             nodes.water_force[node][up] -= water_density * nodes.volume[node] * weight.gravity;
         }
+        for (node, [mixture, water]) in self.weight_carried.iter().enumerate() {
+            let mass = nodes.solid_mass[node] + nodes.water_mass[node];
+            for d in 0..D {
+                nodes.mixture_force[node][d] += mass * mixture[d];
+                nodes.water_force[node][d] += water_density * nodes.volume[node] * water[d];
+            }
+        }
         let free_water = water_density * weight.gravity * self.settled_under(weight);
         if free_water != 0.0 {
             self.surface.press(free_water, &self.grid, &self.points, &mut self.nodes);
         }
+    }
+
+    /// Lets the nodes carry what the stresses of the weight and the hydrostatic pressure leave unbalanced of it: domains off
+    /// their lattice overlap, and splines are integrated by few points, so that a soil at rest would flow from the start.
+    /// The start is in balance then, as after a geostatic step; what is carried is kept as a share of gravity, and goes
+    /// with the masses of the nodes.
+    pub(crate) fn carry_what_weight_leaves(&mut self, stresses: Vec<Tensor<D>>) {
+        let mut resting = self.clone();
+        resting.surface.load = 0.0;
+        resting.apply_loads();
+        resting.points.effective_stress = stresses;
+        for point in 0..resting.points.len() {
+            resting.points.pressure[point] = self.hydrostatic_pressure(point);
+        }
+        resting.map_forces();
+        let nodes = &resting.nodes;
+        let shares = |node: usize| -> [Vector<D>; 2] {
+            let (free, water_free) = (nodes.free[node], nodes.water_free[node]);
+            let mass = nodes.solid_mass[node] + nodes.water_mass[node];
+            let water = self.material.water_density * nodes.volume[node];
+            // A node without mass is free of nothing.
+            let share = |free: f64, force: f64, mass: f64| if free > 0.0 { -force / mass } else { 0.0 };
+            [
+                std::array::from_fn(|d| share(free[d], nodes.mixture_force[node][d], mass)),
+                std::array::from_fn(|d| share(water_free[d], nodes.water_force[node][d], water)),
+            ]
+        };
+        self.weight_carried = (0..nodes.len()).map(shares).collect();
     }
 
     /// Depth of the surface under the free water level, m.

@@ -72,12 +72,14 @@ impl Arrangement {
         height / ((cells - 1) as f64 + self.filling)
     }
 
-    /// Moves the points of a full lattice of `cells` cells to their places.
+    /// Moves the points of a full lattice of `cells` cells to their places; what a shift would take out of the body
+    /// stays on its edge.
     pub fn arrange<const D: usize>(&self, points: &mut Points<D>, cell_size: f64, cells: usize) {
         if self.is_lattice() {
             return;
         }
         let top_cell = (cells - 1) as f64 * cell_size;
+        let surface = top_cell + self.filling * cell_size;
         for point in 0..points.len() {
             let up = D - 1;
             let mut height = points.initial_position[point][up];
@@ -89,6 +91,7 @@ impl Arrangement {
             let spacing = 2.0 * points.half_length[point][up];
             let row = row_of(points.initial_position[point][up], spacing);
             height += spacing * (self.offset + self.jitter * scatter(row));
+            height = height.clamp(0.0, surface);
             points.initial_position[point][up] = height;
             points.position[point][up] = height;
         }
@@ -155,5 +158,15 @@ mod tests {
         let spread = shifts.iter().map(|shift| shift * shift).sum::<f64>() / shifts.len() as f64;
         assert!(mean.abs() < 0.05 && (0.02..0.04).contains(&spread), "{mean} {spread}: uniform has 0.03");
         assert_eq!(points, arranged(jitter, 50, 2).1);
+    }
+
+    #[test]
+    fn what_a_shift_takes_out_of_the_body_stays_on_its_edge() {
+        for (offset, jitter) in [(0.5, 0.5), (-0.5, 0.5), (0.3, 0.3)] {
+            let (_, points) = arranged(Arrangement { offset, jitter, ..Arrangement::default() }, 30, 2);
+            let heights: Vec<f64> = points.position.iter().map(|place| place[0]).collect();
+            assert!(heights.iter().all(|height| (0.0..=1.0 + 1e-15).contains(height)), "{offset} {jitter}");
+            assert!(heights.is_sorted(), "rows keep their order");
+        }
     }
 }

@@ -132,6 +132,16 @@ pub fn column_problem<const D: usize>(
     let water =
         column.points.has_two_layers().then_some(if of_water == 0 { points_per_cell } else { of_water });
     let water = water.map(layer_of).transpose()?;
+    // A column at rest is there to show what a method leaves unbalanced.
+    let is_integrated = column.points.is_lattice() && !method.basis.is_spline();
+    let balanced_weight = if column.self_weight && !is_integrated && !scene.is_at_rest() {
+        let mut weighing =
+            Points::<D> { effective_stress: vec![[[0.0; D]; D]; points.len()], ..points.clone() };
+        add_initial_stress(&mut weighing, &column_parameters(column, soil));
+        weighing.effective_stress
+    } else {
+        Vec::new()
+    };
     let forcing = scene
         .model()
         .map(|model| manufactured::forcing(model, column, soil, &points.initial_position))
@@ -164,6 +174,7 @@ pub fn column_problem<const D: usize>(
         },
         plate_load: scene.has_plates().then_some(column.load),
         weight,
+        balanced_weight,
         undrained_start: scene.start_is_solved(),
         loading_time: column.loading_time,
         initial_gradient,
@@ -183,6 +194,39 @@ fn add_initial_stress<const D: usize>(points: &mut Points<D>, parameters: &Colum
         let vertical = parameters.initial_stress(depth);
         for d in 0..D {
             points.effective_stress[point][d][d] += if d + 1 == D { vertical } else { lateral * vertical };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::arrangement::Arrangement;
+
+    #[test]
+    fn points_of_any_height_and_arrangement_lie_in_the_body() {
+        let (soil, method) = (Material::default(), Method::named("GC-SRI-patch").expect("known"));
+        for number in 1..=300 {
+            let height = 0.05 + 0.01051 * f64::from(number);
+            let (offset, jitter) =
+                ([0.0, 0.3, 0.5, -0.5][number as usize % 4], [0.0, 0.5, 0.3][number as usize % 3]);
+            for scene in SceneKind::ALL.into_iter().filter(|scene| !scene.is_manufactured()) {
+                let mut column = Column { height, ..scene.default_column() };
+                column.horizontal_extent = height;
+                column.points = Arrangement { offset, jitter, ..Arrangement::default() };
+                let cells = 3 + number as usize % 5;
+                let problem = SceneProblem::of(scene, &column, &soil, method, cells, 2);
+                let problem = problem.unwrap_or_else(|error| panic!("{} {height}: {error}", scene.name()));
+                let is_inside = match &problem {
+                    SceneProblem::Column(problem) => {
+                        problem.points.position.iter().all(|place| problem.grid.holds(place))
+                    }
+                    SceneProblem::Plane(problem) => {
+                        problem.points.position.iter().all(|place| problem.grid.holds(place))
+                    }
+                };
+                assert!(is_inside, "{} {height} {offset} {jitter}", scene.name());
+            }
         }
     }
 }

@@ -307,6 +307,7 @@ fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
         pressure_scale: one.pressure_scale,
         forcing: None,
         is_bounded: true,
+        balanced_weight: Vec::new(),
     }
 }
 

@@ -126,3 +126,24 @@ fn impossible_questions_are_refused() {
     let error = layer.undrained().unwrap().fields(0.5, 1.5).unwrap_err();
     assert_eq!(error.to_string(), "the point at 1.5 lies outside the layer, whose height is 1");
 }
+
+#[test]
+fn the_surface_of_a_layer_of_any_height_is_in_it() {
+    for number in 1..=400 {
+        let height = 0.003 + 0.008 * f64::from(number);
+        let parameters = ColumnParameters { height, ..ColumnParameters::default() };
+        let layer = CosineLayer::new(&parameters, height, Base::Rough, Water::Compressible).unwrap();
+        assert!(layer.accuracy(0.0).is_ok(), "{height}");
+        let state = layer.undrained().unwrap();
+        // Places as a mesh makes them: so many cells of a size, or of a share of the height.
+        for cells in [3, 7, 10, 49] {
+            let size = height / f64::from(cells);
+            for y in [size * f64::from(cells), f64::from(cells) * height / f64::from(cells)] {
+                assert!(state.amplitudes(y).is_ok(), "{y} of {height}");
+            }
+        }
+        assert!(
+            state.amplitudes(height * (1.0 + 1e-9)).is_err() && state.amplitudes(-1e-9 * height).is_err()
+        );
+    }
+}

@@ -9,7 +9,7 @@ use nalgebra::Complex;
 
 use crate::elementary;
 use crate::exact::cosine_layer::elastic::{Constants, ElasticSolution, Local, Regime};
-use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
+use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor, held_within, positive};
 use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::large_strain::diffusion::Water;
 use crate::exact::parameters::{Base, ColumnParameters};
@@ -219,9 +219,7 @@ impl LayerState {
     /// When `y` is outside the layer.
     pub fn amplitudes(&self, y: f64) -> Result<LayerFields, ExactError> {
         let height = self.constants.height;
-        if !(0.0..=height).contains(&y) {
-            return Err(ExactError::OutsideLayer { y, height });
-        }
+        let y = held_within(y, height).ok_or(ExactError::OutsideLayer { y, height })?;
         let mut sum = LayerFields::default();
         for (solution, weight) in &self.parts {
             let part = self.real_part(solution, &solution.at(y), *weight);

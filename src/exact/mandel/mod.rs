@@ -12,7 +12,7 @@ mod eigenmode_series;
 mod ratios;
 
 use crate::elementary;
-use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor};
+use crate::exact::exact_error::{ExactError, checked_depth, checked_time_factor, held_within};
 use crate::exact::field_values::{Accuracy, FieldValues};
 use crate::exact::mandel::ratios::{Groups, MandelRatios};
 use crate::exact::parameters::ColumnParameters;
@@ -54,9 +54,7 @@ impl Mandel {
     /// When `time_factor` is negative or not finite, or the distance outside [0, 1].
     pub fn ratios(&self, time_factor: f64, distance: f64) -> Result<MandelRatios, ExactError> {
         let time = self.groups.storage_ratio * checked_time_factor(time_factor)?;
-        if !(0.0..=1.0).contains(&distance) {
-            return Err(ExactError::Distance(distance));
-        }
+        let distance = held_within(distance, 1.0).ok_or(ExactError::Distance(distance))?;
         if time < SERIES_FROM {
             return Ok(early::ratios(&self.groups, time, distance));
         }
