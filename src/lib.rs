@@ -189,6 +189,7 @@ pub use mpm::explicit::{Drag, ExplicitSettings};
 pub use mpm::method::{Basis, Configuration, Method};
 pub use mpm::run::integrator::IntegratorKind;
 pub use mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
+pub use mpm::run::results::snapshot::Snapshot;
 pub use mpm::run::{Kernel, Schedule, TimeStepRule};
 pub use scene::SceneKind;
 pub use scene::column::Column;
@@ -197,7 +198,9 @@ pub use soil::continuity::Continuity;
 pub use soil::law::Law;
 pub use soil::material::Material;
 
-// What the benches time one by one.
+// What the benches time one by one, and what a random sweep asks before it runs a case.
+#[doc(hidden)]
+pub use case::work_estimate::estimated_seconds;
 #[doc(hidden)]
 pub use mpm::assembled::step::AssembledStep;
 #[doc(hidden)]

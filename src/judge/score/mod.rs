@@ -182,7 +182,7 @@ impl Score {
         } else {
             parameters.final_settlement()
         };
-        // The components one after the other: the L2 norm of the list is that of the vectors.
+        // The components one after the other.
         let displacement = one_after_the_other(&state.displacement, &state.horizontal_displacement);
         let exact_displacement = one_after_the_other(
             &exact.displacement[..state.displacement.len()],
@@ -203,7 +203,9 @@ impl Score {
             let volumes = &volumes[..computed.len()];
             let resolution = resolution(reference, time_factor);
             let name = reference.name();
-            let field = FieldError { time_factor, quantity, sample, reference: name, scale, resolution };
+            let components = if state.volume.len() < computed.len() { 2 } else { 1 };
+            let field =
+                FieldError { time_factor, quantity, sample, reference: name, scale, components, resolution };
             let known = self.errors.len();
             self.errors.extend(field.rows(computed, exact, volumes));
             if self.errors.len() == known {

@@ -29,6 +29,8 @@ pub struct FieldError<'a> {
     pub reference: &'a str,
     /// What absolute errors are divided by, in the unit of the field.
     pub scale: f64,
+    /// Components of the field, which stand one after the other: a mean is over the volume, and over it once.
+    pub components: usize,
     /// Share of the scale down to which the reference tells a field from zero: see [`resolution`].
     pub resolution: f64,
 }
@@ -61,10 +63,19 @@ impl FieldError<'_> {
                     norm,
                     reference: self.reference.to_owned(),
                     value: relative?,
-                    absolute: absolute? / self.scale,
+                    absolute: absolute? * of_components(norm, self.components) / self.scale,
                 })
             },
         )
+    }
+}
+
+/// What the mean of a norm over all components makes of that over the volume, in which components add up.
+fn of_components(norm: Norm, components: usize) -> f64 {
+    match norm {
+        Norm::L1 => components as f64,
+        Norm::L2 => (components as f64).sqrt(),
+        Norm::Linf | Norm::Relative => 1.0,
     }
 }
 
@@ -117,7 +128,8 @@ pub fn snapshot_errors(
     ] {
         let exact = exact_samples(case, reference, time_factor, samples)?;
         let displacements = (displacement_components(samples), displacement_components(&exact));
-        let volumes = samples.volume.repeat(if samples.plane.is_some() { 2 } else { 1 });
+        let directions = if samples.plane.is_some() { 2 } else { 1 };
+        let volumes = samples.volume.repeat(directions);
         let (pressure, pressure_volume) = samples.pressures();
         for (quantity, computed, exact, volume, scale) in [
             (Quantity::Pressure, pressure, exact.pressures().0, pressure_volume, load),
@@ -131,7 +143,9 @@ pub fn snapshot_errors(
             (Quantity::Displacement, &displacements.0, &displacements.1, &volumes, final_settlement),
         ] {
             let reference = reference.name();
-            let field = FieldError { time_factor, quantity, sample, reference, scale, resolution };
+            let components = if quantity == Quantity::Displacement { directions } else { 1 };
+            let field =
+                FieldError { time_factor, quantity, sample, reference, scale, components, resolution };
             rows.extend(field.rows(computed, exact, volume));
         }
     }

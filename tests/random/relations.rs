@@ -1,0 +1,272 @@
+//! Pairs of cases that theory makes equal: two kernels, two dimensions, two formulations, two units of length.
+
+use crate::draw::{self, Soil};
+use crate::laws::Violation;
+use crate::numbers::Numbers;
+use crate::options::{Options, rounded};
+use crate::solved::{End, Solved};
+use oedometer::{Kernel, Record};
+
+/// What is compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Relation {
+    /// Point by point, and as one sparse map.
+    Kernels,
+    /// In one dimension on the start lattice GIMP's weights are the hat's, whatever the domains follow.
+    HatAndGimp,
+    /// There constant recovery from the cells is full integration.
+    CellsAndPoints,
+    /// A column in the plane, and in one dimension.
+    Dimensions,
+    /// Weights on the initial configuration at a strain of nothing, and points that stay.
+    TotalAndFrozen,
+    /// Metres, seconds and kilograms of another size: powers of two, so that no digit is rounded otherwise.
+    Units,
+    /// A load of twice the size in a linear soil.
+    Load,
+}
+
+const RELATIONS: [Relation; 7] = [
+    Relation::Kernels,
+    Relation::HatAndGimp,
+    Relation::CellsAndPoints,
+    Relation::Dimensions,
+    Relation::TotalAndFrozen,
+    Relation::Units,
+    Relation::Load,
+];
+
+/// A pair.
+pub struct Related {
+    pub relation: Relation,
+    pub base: Options,
+    other: Options,
+}
+
+/// The pair of an index.
+pub fn drawn(seed: u64, index: u64) -> Related {
+    let numbers = &mut Numbers::of(!seed, index);
+    let relation = numbers.one_of(&RELATIONS);
+    // Draws until one fits: most do.
+    for attempt in 0.. {
+        let base = draw::drawn(!seed, index.wrapping_mul(1000) + attempt);
+        if let Some((base, other)) = pair(relation, base, numbers) {
+            return Related { relation, base, other };
+        }
+    }
+    unreachable!("some case fits every relation")
+}
+
+/// The pair that a relation makes of a drawn case, where it fits.
+fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<(Options, Options)> {
+    let is_small = base.scene != "xie-leo" && !base.scene.starts_with("manufactured");
+    let is_column =
+        !base.scene.starts_with("manufactured") && !matches!(base.scene, "cosine-layer" | "mandel");
+    let is_line = is_column && base.value("column.dimensions").is_none();
+    let is_lattice = ["points.jitter", "points.offset", "points.filling", "points.layers"]
+        .iter()
+        .all(|key| base.value(key).is_none());
+    let bare =
+        !base.method.starts_with("TL-") && !base.method.starts_with('u') && !base.method.ends_with("-cells");
+    let has_weight = base.value("column.self_weight").is_some();
+    let mut other = base.clone();
+    let deforms = base.scene == "xie-leo" || !bare;
+    // Steps by an estimated error are taken or not by its last digit.
+    let has_same_steps = !matches!(base.time_step, Some(("tolerance", _)));
+    let fits = match relation {
+        Relation::Kernels => is_small && bare && base.integrator == "explicit",
+        Relation::HatAndGimp => {
+            base.method = "MPM".to_owned();
+            other.method = "GIMP".to_owned();
+            is_small && is_line && is_lattice
+        }
+        Relation::CellsAndPoints => {
+            base.method = "GIMP".to_owned();
+            other.method = "GIMP-SRI".to_owned();
+            is_small && is_line && is_lattice
+        }
+        Relation::Dimensions => {
+            let height: f64 = base.number("column.height").unwrap_or(1.0);
+            take_seconds(&mut base, height);
+            other = base.clone();
+            other.set("column.dimensions", 2);
+            let across = numbers.count(1, 3);
+            other.set_number("column.width", height * across as f64 / base.cells as f64);
+            for options in [&mut base, &mut other] {
+                strain_by(options, 1e-6);
+            }
+            // B-bar shares a volume out among the directions that there are, cells that remember fit their parabolas
+            // over them: other methods in each dimension.
+            let is_same = !(deforms && (base.method.contains("Bbar") || base.method.ends_with("-cells")));
+            is_line && is_same && base.cells <= 24 && has_same_steps
+        }
+        Relation::TotalAndFrozen => {
+            other.method = format!("TL-{}", base.method);
+            for options in [&mut base, &mut other] {
+                strain_by(options, 1e-6);
+            }
+            is_small
+                && bare
+                && base.scene != "mandel"
+                && base.scene != "at-rest"
+                && !has_weight
+                && has_same_steps
+        }
+        Relation::Units => {
+            rescale(&mut other, numbers);
+            !base.scene.starts_with("manufactured")
+        }
+        Relation::Load => {
+            for key in ["column.load", "layer.load"] {
+                if let Some(load) = base.number(key) {
+                    other.set_number(key, 0.25 * load);
+                }
+            }
+            is_small && bare && base.scene != "at-rest" && !has_weight
+        }
+    };
+    fits.then_some((base, other))
+}
+
+/// Steps in seconds for explicit skeletons: the critical step is another in the plane.
+fn take_seconds(options: &mut Options, height: f64) {
+    let cell = height / options.cells as f64;
+    let (Some(soil), Some((_, share))) = (Soil::of(options), options.time_step) else { return };
+    let limit = match options.integrator {
+        "explicit" => soil.explicit_step(cell, options.value("integrator.drag") == Some("explicit")),
+        "semi-implicit" => soil.skeleton_step(cell),
+        _ => return,
+    };
+    options.time_step = Some(("seconds", rounded(0.5 * share * limit)));
+}
+
+/// A load that strains a small-strain scene by so much: of far less, positions and volumes have no digits.
+fn strain_by(options: &mut Options, strain: f64) {
+    if let Some(soil) = Soil::of(options).filter(|_| options.scene != "xie-leo") {
+        let key = if options.scene == "cosine-layer" { "layer.load" } else { "column.load" };
+        options.set_rounded(key, strain * soil.oedometric_modulus());
+    }
+}
+
+/// The same problem in other units: lengths, times and masses by powers of two.
+fn rescale(options: &mut Options, numbers: &mut Numbers) {
+    let power = |numbers: &mut Numbers| 2_f64.powi(i32::try_from(numbers.count(0, 4)).expect("small") - 2);
+    let (length, time, mass) = (power(numbers), power(numbers), power(numbers));
+    let stress = mass / (length * time * time);
+    let density = mass / (length * length * length);
+    for (key, factor) in [
+        ("column.height", length),
+        ("column.width", length),
+        ("layer.height", length),
+        ("layer.length", length),
+        ("column.load", stress),
+        ("layer.load", stress),
+        ("material.youngs_modulus", stress),
+        ("material.water_bulk_modulus", stress),
+        ("material.grain_density", density),
+        ("material.water_density", density),
+        ("material.hydraulic_conductivity", length / time),
+        ("material.gravity", length / (time * time)),
+    ] {
+        if let Some(value) = options.number(key) {
+            options.set_number(key, factor * value);
+        }
+    }
+    if let Some(("seconds", seconds)) = options.time_step {
+        options.time_step = Some(("seconds", time * seconds));
+    }
+}
+
+/// Difference over load and final settlement that rounding explains.
+fn tolerance(related: &Related) -> f64 {
+    // A pressure is the water's stiffness times strains that cancel.
+    let stiffness = Soil::of(&related.base).map_or(1.0, |soil| soil.stiffness_ratio());
+    let round_off = 1e-6 + 1e5 * f64::EPSILON * stiffness;
+    // Inertia of an implicit step divides differences of positions by its square.
+    let has_inertia =
+        related.base.integrator == "implicit" && related.base.value("integrator.formulation").is_some();
+    let round_off = if has_inertia { 100.0 * round_off } else { round_off };
+    match related.relation {
+        Relation::Units | Relation::Load => 1e-9,
+        // Strains of 1e-6, and Newton's tolerance in every step.
+        Relation::TotalAndFrozen => 1e-4 + round_off,
+        _ => round_off,
+    }
+}
+
+/// Solves both and compares them.
+pub fn held(related: &Related) -> (String, Vec<Violation>) {
+    let Related { relation, base, other } = related;
+    let one = Solved::of(base);
+    if !matches!(one.end, End::Sound | End::Warned(_)) {
+        return (one.end.kind(), Vec::new());
+    }
+    let second = match relation {
+        Relation::Kernels => Solved::by(base, Kernel::PointWise),
+        _ => Solved::of(other),
+    };
+    let kind = format!("{relation:?}");
+    let with = if *relation == Relation::Kernels { "--point-wise".to_owned() } else { other.command() };
+    let violation =
+        |said: String| vec![Violation::of("relation", format!("{relation:?}: {said}; with\n    {with}"))];
+    match (&one.record, &second.record, &second.end) {
+        (Some(a), Some(b), End::Sound | End::Warned(_)) => {
+            let (difference, what) = largest_difference(a, b);
+            if difference <= tolerance(related) {
+                (kind, Vec::new())
+            } else {
+                (kind, violation(format!("{what} differs by {difference:.2e}")))
+            }
+        }
+        (_, _, End::Refused(_) | End::TooLong) => (second.end.kind(), Vec::new()),
+        // One of two may be nearer to the end of its pores or of Newton's patience, and says so.
+        (_, _, End::Failed(_)) if base.scene == "xie-leo" || *relation == Relation::TotalAndFrozen => {
+            (second.end.kind(), Vec::new())
+        }
+        (_, _, end) => (kind, violation(format!("the second ends {end:?}"))),
+    }
+}
+
+/// Largest difference of any error and of any state, over load and final settlement, and where it is.
+fn largest_difference(a: &Record, b: &Record) -> (f64, String) {
+    let mut largest = (0.0, String::new());
+    let mut see = |difference: f64, what: String| {
+        if !(difference <= largest.0) {
+            largest = (difference, what);
+        }
+    };
+    for row in &a.errors {
+        let same = b.errors.iter().find(|other| {
+            (other.quantity, other.sample, other.norm) == (row.quantity, row.sample, row.norm)
+                && other.reference == row.reference
+                && (other.time_factor / row.time_factor - 1.0).abs() < 1e-12
+        });
+        let difference = same.map_or(f64::INFINITY, |same| (same.absolute - row.absolute).abs());
+        let (quantity, sample) = (row.quantity.name(), row.sample.name());
+        see(difference, format!("the error of the {quantity} at {sample}, T_v = {:e},", row.time_factor));
+    }
+    for (index, (one, other)) in states(a).into_iter().zip(states(b)).enumerate() {
+        for (what, one, other) in [("settlement", one.0, other.0), ("largest pressure", one.1, other.1)] {
+            see((one - other).abs(), format!("the {what} at output {index}"));
+        }
+    }
+    see((a.snapshots.len() as f64 - b.snapshots.len() as f64).abs(), "the number of outputs".to_owned());
+    largest
+}
+
+/// Settlement over `m_v q H`, and the largest pressure over the load, at every output.
+fn states(record: &Record) -> Vec<(f64, f64)> {
+    let case = &record.case;
+    let weight = case.material.grain_density * case.material.gravity * case.column.height;
+    let load = if case.column.self_weight || case.scene.is_at_rest() {
+        case.column.load.max(weight)
+    } else {
+        case.column.load
+    };
+    let whole = load / case.material.oedometric_modulus() * case.column.height;
+    let of = |snapshot: &oedometer::Snapshot| {
+        let largest = snapshot.points.pressures().0.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
+        (snapshot.settlement / whole, largest / load)
+    };
+    record.snapshots.iter().map(of).collect()
+}
