@@ -118,17 +118,25 @@ impl<'a> Path<'a> {
         if measure.reference == NO_REFERENCE {
             return self.values(measure).differences();
         }
-        let asked = |record: &&&Record| record.case.time_factors.contains(&measure.time_factor);
-        let records: Vec<&Record> = self.records.iter().filter(asked).copied().collect();
-        let level = |record: &Record, error| SeriesLevel { size: level_size(record, self.axis), error };
+        let records = self.asked(measure);
+        let level = |record: &Record, error: Option<f64>| SeriesLevel {
+            size: level_size(record, self.axis),
+            error: error.map(f64::abs),
+        };
         let levels = if measure.reference == NEXT_FINER {
             let neighbours = records.windows(2);
             neighbours.map(|pair| level(pair[0], difference_of(pair[0], pair[1], measure))).collect()
         } else {
-            let error_of = |record| measure.error(record).map(|row| row.value.abs());
+            let error_of = |record| measure.error(record).map(|row| row.value);
             records.iter().map(|record| level(record, error_of(record))).collect()
         };
         ErrorSeries::new(levels)
+    }
+
+    /// The runs whose case asks for the time of a measure, from coarse to fine.
+    fn asked(&self, measure: &Measure) -> Vec<&'a Record> {
+        let asked = |record: &&&Record| record.case.time_factors.contains(&measure.time_factor);
+        self.records.iter().filter(asked).copied().collect()
     }
 
     /// The series with orders and class.
@@ -161,12 +169,26 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// The errors with their signs, where they are of a single number.
+    /// The errors with their signs, where they are of a single number; a value without a reference has its differences
+    /// from level to level.
     fn signed(&self, measure: &Measure) -> Vec<f64> {
+        if measure.reference == NO_REFERENCE {
+            return self
+                .values(measure)
+                .signed_differences()
+                .into_iter()
+                .filter_map(|level| level.1)
+                .collect();
+        }
         if measure.norm != Norm::Relative {
             return Vec::new();
         }
-        self.records.iter().filter_map(|record| Some(measure.error(record)?.value)).collect()
+        if measure.reference == NEXT_FINER {
+            let asked = self.asked(measure);
+            let neighbours = asked.windows(2);
+            return neighbours.filter_map(|pair| difference_of(pair[0], pair[1], measure)).collect();
+        }
+        self.asked(measure).into_iter().filter_map(|record| Some(measure.error(record)?.value)).collect()
     }
 
     /// Settlement over the exact one at each level, for the errors of displacements: a locked body
@@ -236,11 +258,11 @@ impl<'a> Path<'a> {
     }
 }
 
-/// Difference of a run from the next finer one, whose places are the same.
+/// Difference of a run from the next finer one, whose places are the same; of a settlement with its sign.
 fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f64> {
     let (coarse, fine) = (record.snapshot(measure.time_factor)?, finer.snapshot(measure.time_factor)?);
     if measure.quantity == Quantity::Settlement {
-        return Some((coarse.settlement / fine.settlement - 1.0).abs());
+        return Some(coarse.settlement / fine.settlement - 1.0);
     }
     let (coarse, fine) = [coarse, fine].map(|one| measure.sample.of(one).unwrap_or(&one.nodes)).into();
     let (computed, exact) = (measure.quantity.field(coarse)?, measure.quantity.field(fine)?);

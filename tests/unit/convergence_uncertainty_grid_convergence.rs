@@ -18,7 +18,7 @@ fn the_published_example_is_met() {
     let third = [(1.0, 6.0042), (2.0, 5.9624), (2.0 * 2.143, 6.0909)];
     let found = three_grids(third, None).unwrap();
     assert_eq!((found.behaviour, found.estimate), (Behaviour::Oscillatory, None));
-    assert!((found.half_range - 0.06425).abs() < 1e-12);
+    assert!((found.range - 0.1285).abs() < 1e-12);
 }
 
 #[test]

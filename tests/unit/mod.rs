@@ -4,6 +4,8 @@
 mod architecture;
 mod case_work_estimate;
 mod convergence_classes;
+mod convergence_known_truth;
+mod convergence_second_opinion;
 mod documented_tables;
 mod judge_verdicts;
 mod measure_of_runs;

@@ -6,9 +6,12 @@
 //!    missing, too few or too close (`not-evaluable`), a body that hardly moves (`locked`);
 //! 2. a finest error of round-off, and a limit that is not zero (`floor-limited`; `pre-asymptotic` where
 //!    only three levels say so), before any growth;
-//! 3. growth (`divergent`), plateaus (`floor-limited`; `pre-asymptotic` on three levels), ups and downs
+//! 3. signs that change on the finest window (`oscillatory`; `pre-asymptotic` for a single change), growth
+//!    (`divergent`), plateaus (`floor-limited`; `pre-asymptotic` on three levels), ups and downs
 //!    (`oscillatory`, `divergent`), alternating orders (`oscillatory`);
 //! 4. what is left falls steadily, and is judged on its finest window in [`window`](crate::convergence::class::finest_window).
+//!
+//! A single level that all others contradict is named beside any class.
 //!
 //! Last, evidence of a reference no better than the smallest error makes a class of step 4, or a
 //! `pre-asymptotic` one, `not-evaluable`.
@@ -18,6 +21,7 @@ use crate::convergence::class::finest_window::judge_window;
 use crate::convergence::class::{Class, Classification, Context};
 use crate::convergence::fit::approach_to_limit::{Limit, limit_of};
 use crate::convergence::fit::cancelling_terms::fit_cancelling;
+use crate::convergence::fit::odd_level::odd_level;
 use crate::convergence::limiter::LimiterKind;
 use crate::convergence::orders::{WINDOW, pair_orders};
 use crate::convergence::series::{ErrorSeries, Undefined};
@@ -138,12 +142,29 @@ impl EvaluableSeries<'_> {
         let found = self
             .round_off(context)
             .or_else(|| self.limit())
+            .or_else(|| self.changes_of_sign())
             .or_else(|| self.growth())
             .or_else(|| self.plateau())
             .or_else(|| self.ups_and_downs())
             .or_else(|| self.alternation())
             .unwrap_or_else(|| judge_window(self));
-        self.poor_reference(context, &found).unwrap_or(found)
+        let found = self.poor_reference(context, &found).unwrap_or(found);
+        self.with_odd_level(found)
+    }
+
+    /// The classification with a level that the others contradict named: the window of the finest levels may not see it.
+    fn with_odd_level(&self, found: Classification) -> Classification {
+        let Some(odd) = odd_level(self.points) else { return found };
+        let reason = format!(
+            "{}; the level of size {} stands alone: its error is {} times what the others say",
+            found.reason,
+            short(odd.size),
+            short(odd.factor)
+        );
+        let advice = found.advice.unwrap_or_else(|| {
+            format!("look whether the level of size {} is a run of the same case", short(odd.size))
+        });
+        Classification { reason, advice: Some(advice), ..found }
     }
 
     /// A limit that is not zero, approached from either side.
@@ -160,6 +181,35 @@ impl EvaluableSeries<'_> {
     fn seen_floor(&self) -> Option<Classification> {
         let still = self.plateau().filter(|still| still.class == Class::FloorLimited);
         still.or_else(|| fit_cancelling(self.points).ok().map(|fit| self.cancelled(&fit)))
+    }
+
+    /// Errors that change their sign on the finest window: between one of either sign there is no order. Once may be
+    /// a passage through zero on the way to somewhere; twice is to and fro. A change before the window is
+    /// that of levels too coarse to count.
+    fn changes_of_sign(&self) -> Option<Classification> {
+        let changes = |values: &[(f64, f64)]| {
+            values.windows(2).filter(|pair| pair[0].1.signum() != pair[1].1.signum()).count()
+        };
+        let window = &self.values[self.values.len() - WINDOW..];
+        if changes(window) == 0 {
+            return None;
+        }
+        let values: Vec<String> = self.values.iter().map(|value| short(value.1)).collect();
+        let values = values.join(", ");
+        let times = changes(&self.values);
+        Some(if times > 1 {
+            advised(
+                Class::Oscillatory,
+                format!("the sign changes {times} times from level to level: {values}"),
+                "look for cell crossing, waves or a start that differs from level to level",
+            )
+        } else {
+            advised(
+                Class::PreAsymptotic,
+                format!("the sign changes on the finest window, and no order leads through zero: {values}"),
+                "add a finer level: it tells a passage through zero from one to and fro",
+            )
+        })
     }
 
     /// Rises that no fall makes up for.

@@ -9,6 +9,7 @@ use crate::convergence::orders::{WINDOW, log_ratio, slope_of};
 use crate::convergence::series::{ErrorSeries, Undefined};
 use crate::elementary;
 use crate::wording::{order, short};
+use std::f64::consts::LN_2;
 
 /// A series that can be evaluated, with what the checks share.
 pub struct EvaluableSeries<'a> {
@@ -20,6 +21,8 @@ pub struct EvaluableSeries<'a> {
     pub pairs: Vec<f64>,
     /// Least-squares order on the finest window.
     pub order: f64,
+    /// By how much the order between levels rises over the finest window, per halving of the size.
+    pub drift: f64,
     /// Formal order, where known.
     pub formal: Option<f64>,
     /// What may put a floor under the errors.
@@ -57,6 +60,13 @@ fn put_down_to(limiter: Option<&Limiter>) -> String {
     }
 }
 
+/// Change of the order from the last pair but one to the last, per halving of the size. An order between two
+/// levels is that of the place half way between them in ln *h*, so that the two lie half of the window apart.
+fn drift_per_halving(window: &[(f64, f64)], pairs: &[f64]) -> f64 {
+    let ([first, .., last], [.., coarse, fine]) = (window, pairs) else { return f64::NAN };
+    (fine - coarse) * LN_2 / (0.5 * log_ratio(first.0, last.0))
+}
+
 impl<'a> EvaluableSeries<'a> {
     /// A series of (size, error) with what is known of it.
     ///
@@ -80,11 +90,13 @@ impl<'a> EvaluableSeries<'a> {
         ));
         limiters.extend(known(LimiterKind::RoundOff, "round-off", context.round_off));
         let window = &points[points.len().saturating_sub(WINDOW)..];
+        let pairs: Vec<f64> = points.windows(2).map(pair).collect();
         Ok(Self {
             points,
             values: with_signs(points, &context.signed),
-            pairs: points.windows(2).map(pair).collect(),
             order: slope_of(window)?.order,
+            drift: drift_per_halving(window, &pairs),
+            pairs,
             formal: context.formal_order,
             limiters,
         })
@@ -93,6 +105,21 @@ impl<'a> EvaluableSeries<'a> {
     /// Size and error of the finest level.
     pub fn finest(&self) -> (f64, f64) {
         self.points.last().copied().unwrap_or((f64::NAN, f64::NAN))
+    }
+
+    /// Share of the finest error that a floor has to have if it is what lowers the order over the finest window,
+    /// 0 where the order does not fall.
+    ///
+    /// Of `C h^p + F` with the share `s = F/e` the order is `q = p (1 − s)`, and falls by `d = p² s (1 − s)` per unit of
+    /// ln *h*: so that `p = q + d/q` and `s = d/(q² + d)`, half way between the last two levels. The slower the
+    /// order, the smaller the drift that tells.
+    pub fn floor_that_would_bend(&self) -> f64 {
+        let [.., (before, _), (finest, _)] = *self.points else { return f64::NAN };
+        let fall = (-self.drift / LN_2).max(0.0);
+        let order = self.pairs.last().map_or(f64::NAN, |last| last.max(0.0));
+        let half_way = fall / (order * order + fall);
+        let without_floor = order + fall / order;
+        half_way / (half_way + (1.0 - half_way) * elementary::powf(finest / before, 0.5 * without_floor))
     }
 
     /// Size and error of the coarsest level.
@@ -181,8 +208,17 @@ impl<'a> EvaluableSeries<'a> {
                 self.points.len(),
                 short(height)
             ),
-            "add a finer level: a floor shows itself on four",
+            if self.points.len() < FLOOR_LEVELS {
+                "add a finer level: a floor shows itself on four"
+            } else {
+                "add a finer level: a floor stops the error, a lower order does not"
+            },
         )
+    }
+
+    /// Whether a power and a floor fit the levels far better than a power alone.
+    pub fn has_significant_floor(&self) -> bool {
+        fit_floor(&ErrorSeries::of(self.points)).is_ok_and(|fit| fit.significant)
     }
 
     /// A floor-limited classification with the floor fitted, its cause and advice.

@@ -8,7 +8,8 @@ use crate::wording::{order, orders, short};
 /// An observed order within this of the formal one is the formal one.
 pub const FORMAL_TOLERANCE: f64 = 0.25;
 
-/// Two pair orders within this of each other have settled.
+/// An order that changes by no more than this per halving of the size has settled. Levels that lie closer change it by
+/// less from pair to pair, however far it still has to go.
 pub const SETTLED: f64 = 0.1;
 
 /// A second term that makes up less of the finest error than this does not govern it.
@@ -33,9 +34,12 @@ pub fn judge_window(case: &EvaluableSeries) -> Classification {
 fn with_formal(case: &EvaluableSeries, formal: f64, coarse: f64, fine: f64) -> Classification {
     let window = format!("order {} on the finest window ({})", order(case.order), orders(&[coarse, fine]));
     let wanted = order(formal);
-    let drift = fine - coarse;
-    let falls_away = fine < formal - 0.1 && drift < -0.5 * SETTLED;
-    let stays_below = case.order < formal - FORMAL_TOLERANCE && drift < 0.5 * SETTLED;
+    let drift = case.drift;
+    // An order below 1 is bent by a floor in proportion: its drift goes with its square.
+    let tolerance = FORMAL_TOLERANCE * formal.min(1.0);
+    let falls_away = fine < formal - 0.1 * formal.min(1.0)
+        && (drift < -0.5 * SETTLED || case.floor_that_would_bend() > 0.5 * GOVERNS);
+    let stays_below = case.order < formal - tolerance && drift < 0.5 * SETTLED;
     let bend = || explain(case.points, Some(formal));
     if falls_away || stays_below {
         if let Some(found) = bend().and_then(|bend| governed(case, &bend, &window)) {
@@ -46,7 +50,7 @@ fn with_formal(case: &EvaluableSeries, formal: f64, coarse: f64, fine: f64) -> C
             return contaminated(reason, "a term of that order governs every level");
         }
     }
-    let near = |value: f64| (value - formal).abs() <= FORMAL_TOLERANCE;
+    let near = |value: f64| (value - formal).abs() <= tolerance;
     if near(coarse) && near(fine) && near(case.order) && drift.abs() <= FORMAL_TOLERANCE {
         return plain(Class::Asymptotic, format!("{window}, formal {wanted}"));
     }
@@ -73,9 +77,10 @@ fn without_formal(case: &EvaluableSeries, coarse: f64, fine: f64) -> Classificat
         let reason = format!("{window}: no method here has an order above {ABSURD}");
         return plain(Class::Superconvergent, reason);
     }
-    let drift = fine - coarse;
+    let drift = case.drift;
     let fall = case.pairs.first().map_or(0.0, |first| first - fine);
-    if fall > 0.3 || drift < -SETTLED {
+    let may_be_floor = case.floor_that_would_bend() > GOVERNS;
+    if fall > 0.3 || drift < -SETTLED || may_be_floor {
         let bend = explain(case.points, None);
         let settled = |bend: &Bend| (fine - bend.terms().low).abs() <= SETTLED;
         let found = bend
@@ -85,7 +90,7 @@ fn without_formal(case: &EvaluableSeries, coarse: f64, fine: f64) -> Classificat
             return found;
         }
     }
-    if drift.abs() <= SETTLED {
+    if drift.abs() <= SETTLED && !may_be_floor {
         return plain(Class::Asymptotic, format!("{window}, no formal order known"));
     }
     unsettled(format!("{window}: not settled"))
@@ -101,7 +106,10 @@ fn governed(case: &EvaluableSeries, bend: &Bend, window: &str) -> Option<Classif
     }
     let percent = 100.0 * share;
     match bend {
-        Bend::Floor(_) if case.points.len() < FLOOR_LEVELS => {
+        // Without a formal order a lower power on four levels looks like a floor, unless the floor fits by far.
+        Bend::Floor(_)
+            if case.points.len() < FLOOR_LEVELS || case.formal.is_none() && !case.has_significant_floor() =>
+        {
             Some(case.may_be_limited(window, terms.low_coefficient))
         }
         Bend::Floor(_) => {

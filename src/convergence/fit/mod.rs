@@ -5,4 +5,5 @@ pub mod bending_order;
 pub mod cancelling_terms;
 pub mod floor;
 pub mod least_squares;
+pub mod odd_level;
 pub mod two_terms;

@@ -43,9 +43,11 @@ pub struct ThreeGrids {
     /// `R · ln r32 / ln r21`, which is `R` for equal ratios of sizes and below 1 exactly when a
     /// positive order exists. `None` where `φ3 = φ2`.
     pub convergence_ratio: Option<f64>,
-    /// Half the range of the three values, an uncertainty for oscillatory behaviour (Stern et
-    /// al. 2001), in the unit of the value.
-    pub half_range: f64,
+    /// Range of the three values, `max |φi − φj|`, in the unit of the value. Three times that is the uncertainty of values
+    /// that do not converge monotonically (Eça & Hoekstra 2009, *Computers & Fluids* 38, 1580–1591). Half of it, after Stern
+    /// et al. (2001), is one only of values that swing about their limit by no more than they did, and does not cover
+    /// those whose differences go to and fro on a way that is not at its end.
+    pub range: f64,
     /// The estimate, for monotone convergence only.
     pub estimate: Option<GridConvergence>,
 }
@@ -94,7 +96,7 @@ pub fn three_grids(grids: [(f64, f64); 3], formal_order: Option<f64>) -> Result<
     }
     let (r21, r32) = (h2 / h1, h3 / h2);
     let (fine, coarse) = (f2 - f1, f3 - f2);
-    let half_range = 0.5 * f1.max(f2).max(f3) - 0.5 * f1.min(f2).min(f3);
+    let range = f1.max(f2).max(f3) - f1.min(f2).min(f3);
     if !fine.is_finite() || !coarse.is_finite() {
         return Err(Undefined::NotFinite { size: h1 });
     }
@@ -103,7 +105,7 @@ pub fn three_grids(grids: [(f64, f64); 3], formal_order: Option<f64>) -> Result<
     let mut found = ThreeGrids {
         behaviour: Behaviour::Equal,
         convergence_ratio: ratio.is_finite().then_some(ratio),
-        half_range,
+        range,
         estimate: None,
     };
     if fine.abs() <= round_off || coarse.abs() <= round_off {

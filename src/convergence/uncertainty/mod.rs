@@ -31,7 +31,7 @@ pub enum Estimator {
     LeastSquares,
     /// Grid convergence index of the finest three levels (Celik et al. 2008).
     GridConvergenceIndex,
-    /// Three times half the range of three values that go to and fro (Stern et al. 2001).
+    /// Three times the range of three values that go to and fro (Eça & Hoekstra 2009).
     Range,
 }
 
@@ -61,13 +61,19 @@ impl ValueSeries {
         Self { levels }
     }
 
-    /// Differences of each level from the next finer one. They fall with the order of the values.
-    pub fn differences(&self) -> ErrorSeries {
+    /// Differences of each level from the next finer one, with the size of the coarser. They fall with the order of the
+    /// values; values that go to and fro have differences of either sign.
+    pub fn signed_differences(&self) -> Vec<(f64, Option<f64>)> {
         let difference = |pair: &[(f64, Option<f64>)]| {
-            let error = pair[0].1.zip(pair[1].1).map(|(coarse, fine)| (coarse - fine).abs());
-            SeriesLevel { size: pair[0].0, error }
+            (pair[0].0, pair[0].1.zip(pair[1].1).map(|(coarse, fine)| coarse - fine))
         };
-        ErrorSeries::new(self.levels.windows(2).map(difference).collect())
+        self.levels.windows(2).map(difference).collect()
+    }
+
+    /// Their absolute values, a series of errors.
+    pub fn differences(&self) -> ErrorSeries {
+        let level = |(size, error): (f64, Option<f64>)| SeriesLevel { size, error: error.map(f64::abs) };
+        ErrorSeries::new(self.signed_differences().into_iter().map(level).collect())
     }
 
     /// The uncertainty of the finest value, by the formal order of the method.
@@ -100,7 +106,7 @@ impl ValueSeries {
             (None, Some(index)) => {
                 (Estimator::GridConvergenceIndex, index.index_fine, Some(index.extrapolated))
             }
-            (None, None) => (Estimator::Range, SAFETY_ASSUMED * finest_three.half_range, None),
+            (None, None) => (Estimator::Range, SAFETY_ASSUMED * finest_three.range, None),
         };
         Ok(NumericalUncertainty {
             estimator,
@@ -180,6 +186,31 @@ mod tests {
         assert_eq!(of(&FOUR, smooth).map(|found| found.estimator), Ok(Estimator::LeastSquares));
         let to_and_fro = |h: f64| if h == 0.125 { 0.9 } else { 1.0 + h };
         assert_eq!(of(&FOUR[..3], to_and_fro).map(|found| found.estimator), Ok(Estimator::Range));
+    }
+
+    /// Values on a way of first or second order whose middle one is off, so that they go to and fro: half their range
+    /// misses the error of the finest by up to a factor of 4.5, three times the range covers it.
+    #[test]
+    fn three_values_that_go_to_and_fro_are_covered() {
+        let (mut cases, mut by_half_the_range) = (0, 0);
+        for ratio in [1.2, 1.5, 2.0_f64, 4.0] {
+            for order in [1, 2] {
+                for off in [-3.0, -1.0, -0.6, -0.3, 0.3, 0.6, 1.0, 3.0] {
+                    let sizes = [ratio * ratio, ratio, 1.0];
+                    let value = |h: f64| 5.0 + h.powi(order) * if h == ratio { 1.0 + off } else { 1.0 };
+                    let Ok(found) = of(&sizes, value) else { continue };
+                    if found.finest_three.behaviour != Behaviour::Oscillatory {
+                        continue;
+                    }
+                    assert_eq!(found.estimator, Estimator::Range);
+                    let error = (found.finest() - 5.0).abs();
+                    assert!(found.uncertainty >= error, "{ratio} {order} {off}: {}", found.uncertainty);
+                    cases += 1;
+                    by_half_the_range += usize::from(0.5 * found.finest_three.range >= error);
+                }
+            }
+        }
+        assert!(cases > 30 && by_half_the_range < cases / 2 + 10, "{by_half_the_range} of {cases}");
     }
 
     #[test]
