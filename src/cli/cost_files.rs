@@ -30,7 +30,7 @@ pub fn learned_from(studies: &[Study], tier: Tier, folder: &Path) -> anyhow::Res
 /// When the file is no table of costs.
 pub fn costs_of(file: Option<&Path>) -> anyhow::Result<CostTable> {
     let Some(path) = file else { return Ok(CostTable::default()) };
-    let text = std::fs::read_to_string(path)
+    let text = input_file::read_text(path)
         .map_err(|error| Ended::usage(format!("cannot read the costs {}: {error}", path.display())))?;
     CostTable::parse(&text).map_err(|error| Ended::usage(format!("{}: {error}", path.display())))
 }

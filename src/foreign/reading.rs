@@ -3,6 +3,7 @@
 use crate::case::Case;
 use crate::case::quantity::Sample;
 use crate::formats::import_error::ImportError;
+use crate::formats::input_file;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::Preset;
 use crate::import::raw_row::SolvedBody;
@@ -12,7 +13,6 @@ use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
 use crate::study::solver::Solver;
 use clap::ValueEnum;
-use std::fs::File;
 use std::path::PathBuf;
 
 /// A result as it was read.
@@ -70,7 +70,7 @@ pub enum MappingError {
 pub fn mapping_of(solver: &Solver, is_plane: bool) -> Result<Mapping, MappingError> {
     let own = solver.mapping.as_ref().map(|name| {
         let path = solver.folder.join(name);
-        match std::fs::read_to_string(&path) {
+        match input_file::read_text(&path) {
             Ok(text) => Ok(StudySource { name: path.display().to_string(), text }),
             Err(source) => Err(MappingError::Io { path, source }),
         }
@@ -157,7 +157,7 @@ fn digest_of(files: &[PathBuf]) -> String {
     let mut hasher = blake3::Hasher::new();
     for path in files {
         // A file that vanishes meanwhile is told when it is read.
-        let _ = File::open(path).and_then(|file| hasher.update_reader(file).map(|_| ()));
+        let _ = input_file::open(path).and_then(|file| hasher.update_reader(file).map(|_| ()));
     }
     hasher.finalize().to_hex()[..16].to_owned()
 }

@@ -1,6 +1,7 @@
 //! What is appended to VTK's XML files behind an underscore: base64, or raw bytes, which stay on disk until an array of
 //! them is asked for.
 
+use crate::formats::input_file;
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -104,7 +105,7 @@ impl Opened {
     /// # Errors
     /// When it cannot be read.
     pub fn open(path: &Path) -> io::Result<Self> {
-        let mut file = File::open(path)?;
+        let mut file = input_file::open(path)?;
         let length = file.metadata()?.len();
         let mut bytes = Vec::new();
         let mut seen = 0;

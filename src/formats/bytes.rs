@@ -1,7 +1,6 @@
 //! Numbers from bytes: scalars of both byte orders, base64, zlib, all within a budget.
 
-use flate2::read::{DeflateDecoder, ZlibDecoder};
-use std::io::Read;
+use flate2::{Decompress, FlushDecompress, Status};
 
 /// Most bytes that one byte of deflate can become (zlib's technical notes), with some air.
 const DEFLATE_RATIO: u64 = 1040;
@@ -283,9 +282,9 @@ pub fn base64(text: &[u8]) -> Result<Vec<u8>, String> {
 /// Unpacks zlib's format into bytes of a known length, appended.
 ///
 /// # Errors
-/// When they are not that many, or no zlib at all.
+/// When they are not that many, their checksum (Adler-32) is another, or it is no zlib at all.
 pub fn unzlib(packed: &[u8], length: usize, into: &mut Vec<u8>) -> Result<(), String> {
-    unpack(ZlibDecoder::new(packed), packed.len(), length, into)
+    unpack(Decompress::new(true), packed, length, into)
 }
 
 /// The same of bare deflate, as in a zip.
@@ -293,23 +292,37 @@ pub fn unzlib(packed: &[u8], length: usize, into: &mut Vec<u8>) -> Result<(), St
 /// # Errors
 /// As above.
 pub fn inflate(packed: &[u8], length: usize, into: &mut Vec<u8>) -> Result<(), String> {
-    unpack(DeflateDecoder::new(packed), packed.len(), length, into)
+    unpack(Decompress::new(false), packed, length, into)
 }
 
-fn unpack(reader: impl Read, packed: usize, length: usize, into: &mut Vec<u8>) -> Result<(), String> {
-    if length as u64 > DEFLATE_RATIO * packed as u64 {
-        return Err(format!("{packed} packed bytes cannot hold the {length} that they claim"));
+/// Unpacks up to the end that the packed data state themselves, behind which zlib holds the bytes against their
+/// checksum: one that is never reached was never held.
+fn unpack(mut unpacker: Decompress, packed: &[u8], length: usize, into: &mut Vec<u8>) -> Result<(), String> {
+    if length as u64 > DEFLATE_RATIO * packed.len() as u64 {
+        return Err(format!("{} packed bytes cannot hold the {length} that they claim", packed.len()));
     }
     let before = into.len();
-    into.reserve_exact(length);
-    let most = length as u64 + 1;
-    reader.take(most).read_to_end(into).map_err(|error| format!("its packed data are damaged: {error}"))?;
-    let found = into.len() - before;
-    if found != length {
-        let more = if found > length { "more" } else { "less" };
-        return Err(format!("its packed data hold {more} than the {length} bytes that they claim"));
+    // One more shows that there is more.
+    into.reserve_exact(length + 1);
+    let mut rest = packed;
+    loop {
+        let (taken, made) = (unpacker.total_in(), unpacker.total_out());
+        let status = unpacker.decompress_vec(rest, into, FlushDecompress::None);
+        let status = status.map_err(|error| format!("its packed data are damaged: {error}"))?;
+        let found = into.len() - before;
+        let moved = unpacker.total_in() - taken;
+        rest = &rest[usize::try_from(moved).unwrap_or(rest.len()).min(rest.len())..];
+        if status == Status::StreamEnd && found == length {
+            return Ok(());
+        }
+        if status == Status::StreamEnd || found > length {
+            let more = if found > length { "more" } else { "less" };
+            return Err(format!("its packed data hold {more} than the {length} bytes that they claim"));
+        }
+        if moved == 0 && unpacker.total_out() == made {
+            return Err("its packed data end before their checksum: the file is cut".to_owned());
+        }
     }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -1,18 +1,29 @@
 //! HDF5: data sets by their paths, states over times, and tables of records.
+//!
+//! The groups are walked once: to find a data set by its path, the library walks its group anew.
 
 use crate::formats::bytes::{Budget, Scalar};
 use crate::formats::frame::{Array, Association, Frame, Wanted};
-use hdf5_pure::{Datatype, DatatypeByteOrder, File, Group};
+use crate::formats::input_file;
+use hdf5_pure::{ChunkCacheConfig, Dataset, Datatype, DatatypeByteOrder, File, FileAccessProperties, Group};
+use std::collections::HashMap;
 use std::path::Path;
 
 /// Deepest group that is looked into.
 const DEEPEST: usize = 16;
-/// Most data sets of a file that are looked at.
-const MOST: usize = 10_000;
+/// Most data sets and groups of a file that are looked at.
+const MOST: usize = 200_000;
+/// Most data sets that are read as one state.
+const MOST_OF_A_STATE: usize = 10_000;
 
 /// An open file.
 pub struct Store {
-    file: File,
+    sets: Vec<Listed>,
+    /// Places in the list by path.
+    by_path: HashMap<String, usize>,
+    /// Data sets and groups that were looked at, however often.
+    pub(super) looked_at: usize,
+    size: usize,
     budget: Budget,
 }
 
@@ -20,6 +31,7 @@ pub struct Store {
 struct Listed {
     path: String,
     shape: Vec<u64>,
+    set: Dataset,
 }
 
 impl Store {
@@ -28,9 +40,27 @@ impl Store {
     /// # Errors
     /// When it is damaged.
     pub fn open(path: &Path) -> Result<Self, String> {
-        let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
-        let budget = Budget::of_file(bytes.len());
-        Ok(Self { file: File::from_bytes(bytes).map_err(|error| damaged(&error))?, budget })
+        let bytes = input_file::read(path).map_err(|error| error.to_string())?;
+        let size = bytes.len();
+        // Unpacked pieces are not kept: a data set keeps its own, and there may be thousands of them.
+        let pieces = ChunkCacheConfig::new().with_max_bytes(0).with_max_slots(0);
+        let access = FileAccessProperties::new().with_chunk_cache(pieces);
+        let file = File::from_bytes_with_options(bytes, access).map_err(|error| damaged(&error))?;
+        let mut store = Self {
+            sets: Vec::new(),
+            by_path: HashMap::new(),
+            looked_at: 0,
+            size,
+            budget: Budget::of_file(size),
+        };
+        store.list(&file.root(), "", 0)?;
+        store.by_path = store.sets.iter().enumerate().map(|(place, set)| (set.path.clone(), place)).collect();
+        Ok(store)
+    }
+
+    /// Begins another state: each may become as much in memory as the file allows.
+    pub fn renew_budget(&mut self) {
+        self.budget = Budget::of_file(self.size);
     }
 
     /// Shape of a data set, and the numbers of all its rows or of some: first, and how many.
@@ -39,8 +69,9 @@ impl Store {
     /// When there is no such set, or it is damaged or too large.
     pub fn numbers(&mut self, path: &str, rows: Option<(u64, u64)>) -> Result<(Vec<u64>, Vec<f64>), String> {
         let named = |why: String| format!("the data set `{path}`: {why}");
-        let set = self.file.dataset(path).map_err(|error| named(damaged(&error)))?;
-        let shape = set.shape().map_err(|error| named(damaged(&error)))?;
+        let known = self.by_path.get(path.trim_matches('/'));
+        let listed = known.and_then(|place| self.sets.get(*place));
+        let Listed { shape, set, .. } = listed.ok_or_else(|| named("it is not in the file".to_owned()))?;
         let per_row = product(shape.get(1..).unwrap_or_default()).map_err(named)?;
         let (first, count) = rows.unwrap_or((0, shape.first().copied().unwrap_or(1)));
         let total = per_row.checked_mul(count).ok_or_else(|| named("it claims too much".to_owned()))?;
@@ -54,7 +85,7 @@ impl Store {
         if numbers.len() as u64 != total {
             return Err(named(format!("it holds {} numbers, and {total} are declared", numbers.len())));
         }
-        Ok((shape, numbers))
+        Ok((shape.clone(), numbers))
     }
 
     /// Times of the states of a file, where it has a list of them.
@@ -62,10 +93,9 @@ impl Store {
     /// # Errors
     /// When it is damaged.
     pub fn times(&mut self) -> Result<Vec<f64>, String> {
-        let all = self.listed()?;
-        let is_list = |set: &&Listed| is_named(set, &["times", "time"]) && set.shape.len() == 1;
-        match all.iter().find(is_list) {
-            Some(set) => Ok(self.numbers(&set.path, None)?.1),
+        let is_list = |set: &&Listed| is_named(&set.path, &["times", "time"]) && set.shape.len() == 1;
+        match self.sets.iter().find(is_list).map(|set| set.path.clone()) {
+            Some(path) => Ok(self.numbers(&path, None)?.1),
             None => Ok(Vec::new()),
         }
     }
@@ -75,21 +105,29 @@ impl Store {
     /// # Errors
     /// When it is damaged or too large.
     pub fn frame(&mut self, place: usize, wanted: Wanted) -> Result<Frame, String> {
+        self.renew_budget();
+        if self.sets.len() > MOST_OF_A_STATE {
+            return Err(format!(
+                "it has more than {MOST_OF_A_STATE} data sets: name them by an XDMF beside it"
+            ));
+        }
         let times = self.times()?;
         let steps = times.len() as u64;
         let mut frame = Frame { time: times.get(place).copied(), ..Frame::default() };
-        for set in self.listed()? {
-            if is_named(&set, &["times", "time"]) || set.shape.is_empty() {
+        for number in 0..self.sets.len() {
+            let Listed { path, shape: whole, .. } = &self.sets[number];
+            let (path, whole) = (path.clone(), whole.clone());
+            if is_named(&path, &["times", "time"]) || whole.is_empty() {
                 continue;
             }
-            if self.records(&set, wanted, &mut frame)? {
+            if self.records(number, wanted, &mut frame)? {
                 continue;
             }
-            let is_place = is_named(&set, &["geometry", "coordinates", "points", "nodes"]);
-            let name = set.path.rsplit('/').next().unwrap_or_default().to_owned();
-            let by_time = steps > 0 && set.shape[0] == steps;
-            let is_once = set.shape[0] == 1 && set.shape.len() > 1 && is_place;
-            let shape = if by_time || is_once { &set.shape[1..] } else { &set.shape[..] };
+            let is_place = is_named(&path, &["geometry", "coordinates", "points", "nodes"]);
+            let name = path.rsplit('/').next().unwrap_or_default().to_owned();
+            let by_time = steps > 0 && whole[0] == steps;
+            let is_once = whole[0] == 1 && whole.len() > 1 && is_place;
+            let shape = if by_time || is_once { &whole[1..] } else { &whole[..] };
             let tuples =
                 usize::try_from(shape.first().copied().unwrap_or(1)).map_err(|_| "it claims too much")?;
             let components =
@@ -100,14 +138,14 @@ impl Store {
                 _ => None,
             };
             if is_place && (2..=3).contains(&components) {
-                let numbers = self.numbers(&set.path, rows)?.1;
+                let numbers = self.numbers(&path, rows)?.1;
                 let third = |place: &[f64]| place.get(2).copied().unwrap_or(0.0);
                 frame.coordinates =
                     numbers.chunks_exact(components).map(|at| [at[0], at[1], third(at)]).collect();
             }
             let mut array = Array { name, on: Association::Points, components, tuples, values: Vec::new() };
             if wanted.has(&array.name) {
-                array.values = self.numbers(&set.path, rows)?.1;
+                array.values = self.numbers(&path, rows)?.1;
             }
             frame.arrays.push(array);
         }
@@ -118,10 +156,10 @@ impl Store {
     }
 
     /// Takes the columns of a table of records; whether the set is one.
-    fn records(&mut self, listed: &Listed, wanted: Wanted, frame: &mut Frame) -> Result<bool, String> {
-        let set = self.file.dataset(&listed.path).map_err(|error| damaged(&error))?;
+    fn records(&mut self, number: usize, wanted: Wanted, frame: &mut Frame) -> Result<bool, String> {
+        let Listed { shape, set, .. } = &self.sets[number];
         let Ok(Datatype::Compound { size, members }) = set.datatype() else { return Ok(false) };
-        let rows = product(&listed.shape)?;
+        let rows = product(shape)?;
         let tuples = usize::try_from(rows).map_err(|_| "it claims too much")?;
         let any = members.iter().any(|member| wanted.has(&member.name));
         let bytes = if any {
@@ -153,31 +191,35 @@ impl Store {
         Ok(true)
     }
 
-    fn listed(&self) -> Result<Vec<Listed>, String> {
-        let mut all = Vec::new();
-        list(&self.file.root(), "", 0, &mut all)?;
-        Ok(all)
+    /// Lists what is in a group, and in the groups in it.
+    fn list(&mut self, group: &Group, path: &str, depth: usize) -> Result<(), String> {
+        for (name, set) in group.iter_datasets().map_err(|error| damaged(&error))? {
+            self.look()?;
+            let shape = set.shape().map_err(|error| damaged(&error))?;
+            self.sets.push(Listed { path: format!("{path}{name}"), shape, set });
+        }
+        for (name, below) in group.iter_groups().map_err(|error| damaged(&error))? {
+            self.look()?;
+            if depth == DEEPEST {
+                return Err(format!("it has groups deeper than {DEEPEST}"));
+            }
+            self.list(&below, &format!("{path}{name}/"), depth + 1)?;
+        }
+        Ok(())
+    }
+
+    fn look(&mut self) -> Result<(), String> {
+        self.looked_at += 1;
+        if self.looked_at > MOST {
+            Err(format!("it has more than {MOST} data sets and groups"))
+        } else {
+            Ok(())
+        }
     }
 }
 
-fn list(group: &Group, path: &str, depth: usize, all: &mut Vec<Listed>) -> Result<(), String> {
-    if depth > DEEPEST || all.len() > MOST {
-        return Err(format!("it has groups deeper than {DEEPEST}, or more than {MOST} data sets"));
-    }
-    for name in group.datasets().map_err(|error| damaged(&error))? {
-        let set = group.dataset(&name).map_err(|error| damaged(&error))?;
-        let shape = set.shape().map_err(|error| damaged(&error))?;
-        all.push(Listed { path: format!("{path}{name}"), shape });
-    }
-    for name in group.groups().map_err(|error| damaged(&error))? {
-        let below = group.group(&name).map_err(|error| damaged(&error))?;
-        list(&below, &format!("{path}{name}/"), depth + 1, all)?;
-    }
-    Ok(())
-}
-
-fn is_named(set: &Listed, names: &[&str]) -> bool {
-    let name = set.path.rsplit('/').next().unwrap_or_default().to_ascii_lowercase();
+fn is_named(path: &str, names: &[&str]) -> bool {
+    let name = path.rsplit('/').next().unwrap_or_default().to_ascii_lowercase();
     names.contains(&name.as_str())
 }
 

@@ -1,6 +1,7 @@
 //! What to name instead, where a user named what cannot be scored: a folder, one step of many, files of another program.
 
 use crate::formats::frame::Frame;
+use crate::formats::input_file;
 use std::path::{Path, PathBuf};
 
 /// Entries of a folder that are looked at.
@@ -57,7 +58,7 @@ pub fn collection_of(file: &Path) -> Option<PathBuf> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let names_it = |path: &&PathBuf| {
         let is_small = path.metadata().is_ok_and(|about| about.len() <= LARGEST);
-        is_small && std::fs::read(path).is_ok_and(|text| text.windows(name.len()).any(|part| part == name))
+        is_small && input_file::read(path).is_ok_and(|text| text.windows(name.len()).any(|part| part == name))
     };
     let files = files_of(folder);
     let collections =

@@ -11,6 +11,7 @@ pub mod hdf5;
 pub mod hdf5;
 pub mod hints;
 pub mod import_error;
+pub mod input_file;
 pub mod legacy_vtk;
 pub mod numpy;
 pub mod steps;
@@ -20,6 +21,7 @@ pub mod vtu;
 #[expect(dead_code, reason = "only what refuses is tried here; a build without the feature uses all of it")]
 mod without_hdf5;
 pub mod xdmf;
+pub mod xdmf_states;
 pub mod xml;
 
 #[cfg(test)]

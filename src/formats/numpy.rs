@@ -1,7 +1,7 @@
 //! Arrays of `NumPy`: `.npy`, and `.npz`, a zip of them.
 //!
 //! Format: "NEP 1"; zip: PKWARE's APPNOTE, with the entries of 64 bits that `NumPy` writes. Objects that were pickled are
-//! programs and not read; they are skipped with a word.
+//! programs and not read; they are skipped with a word. Every member is held against its checksum.
 
 use crate::formats::bytes::{Budget, Scalar, inflate, short};
 use crate::formats::frame::{Array, Association, Frame, Wanted};
@@ -149,7 +149,9 @@ fn by_rows(values: &[f64], shape: &[usize]) -> Vec<f64> {
 /// A member of a zip.
 struct Entry {
     name: String,
-    method: u16,
+    method: u64,
+    /// Checksum of what it unpacks to: CRC-32.
+    checksum: u64,
     packed: u64,
     size: u64,
     start: u64,
@@ -171,12 +173,14 @@ fn entries_of(bytes: &[u8]) -> Result<Vec<Entry>, String> {
     let from = bytes.len().saturating_sub(66_000);
     let end = bytes[from..].windows(4).rposition(|mark| mark == b"PK\x05\x06");
     let end = from + end.ok_or("it has no list of members at its end: the file is cut")?;
+    let mut list_end = end;
     let mut count = number::<2>(bytes, end + 10)?;
     let mut at = number::<4>(bytes, end + 16)?;
     if at == 0xffff_ffff || count == 0xffff {
         let wide = bytes[from..end].windows(4).rposition(|mark| mark == b"PK\x06\x06");
         let wide = from + wide.ok_or("its list of members is cut")?;
         (count, at) = (number::<8>(bytes, wide + 32)?, number::<8>(bytes, wide + 48)?);
+        list_end = wide;
     }
     let mut entries = Vec::new();
     let mut at = place(at)?;
@@ -184,7 +188,7 @@ fn entries_of(bytes: &[u8]) -> Result<Vec<Entry>, String> {
         if number::<4>(bytes, at)? != 0x0201_4b50 {
             return Err("its list of members is damaged".to_owned());
         }
-        let method = u16::try_from(number::<2>(bytes, at + 10)?).unwrap_or_default();
+        let (method, checksum) = (number::<2>(bytes, at + 10)?, number::<4>(bytes, at + 16)?);
         let (mut packed, mut size) = (number::<4>(bytes, at + 20)?, number::<4>(bytes, at + 24)?);
         let name_length = place(number::<2>(bytes, at + 28)?)?;
         let extra_length = place(number::<2>(bytes, at + 30)?)?;
@@ -194,8 +198,12 @@ fn entries_of(bytes: &[u8]) -> Result<Vec<Entry>, String> {
         let extra = bytes.get(at + 46 + name_length..at + 46 + name_length + extra_length);
         let extra = extra.ok_or("its list of members is cut")?;
         widen(extra, [&mut size, &mut packed, &mut start])?;
-        entries.push(Entry { name: String::from_utf8_lossy(name).into_owned(), method, packed, size, start });
+        let name = String::from_utf8_lossy(name).into_owned();
+        entries.push(Entry { name, method, checksum, packed, size, start });
         at += 46 + name_length + extra_length + comment_length;
+    }
+    if at != list_end {
+        return Err(format!("its list of members does not end behind the {count} that it counts"));
     }
     Ok(entries)
 }
@@ -226,19 +234,32 @@ impl Entry {
         if number::<4>(bytes, start)? != 0x0403_4b50 {
             return Err("it does not begin where the list says".to_owned());
         }
-        let skip = 30 + place(number::<2>(bytes, start + 26)?)? + place(number::<2>(bytes, start + 28)?)?;
+        let name_length = place(number::<2>(bytes, start + 26)?)?;
+        let skip = 30 + name_length + place(number::<2>(bytes, start + 28)?)?;
+        let name = bytes.get(start + 30..start + 30 + name_length).ok_or("it is cut")?;
+        if String::from_utf8_lossy(name) != self.name || number::<2>(bytes, start + 8)? != self.method {
+            return Err("it is not what the list says: the file is damaged".to_owned());
+        }
         let end = (start + skip).checked_add(place(self.packed)?);
         let packed = end.and_then(|end| bytes.get(start + skip..end)).ok_or("it is cut")?;
-        match self.method {
-            0 if self.size == self.packed => Ok(packed.into()),
+        let content: std::borrow::Cow<'a, [u8]> = match self.method {
+            0 if self.size == self.packed => packed.into(),
             8 => {
                 let mut content = Vec::new();
                 inflate(packed, place(self.size)?, &mut content)?;
-                Ok(content.into())
+                content.into()
             }
-            0 => Err(format!("it is not packed, and {} bytes are {}", self.packed, self.size)),
-            method => Err(format!("it is packed by method {method}; NumPy writes 0 and 8")),
+            0 => return Err(format!("it is not packed, and {} bytes are {}", self.packed, self.size)),
+            method => return Err(format!("it is packed by method {method}; NumPy writes 0 and 8")),
+        };
+        let found = u64::from(crc32fast::hash(&content));
+        if found != self.checksum {
+            return Err(format!(
+                "its checksum is {found:08x}, and {:08x} was written: the file is damaged",
+                self.checksum
+            ));
         }
+        Ok(content)
     }
 }
 

@@ -6,7 +6,9 @@ use crate::formats::frame::{Frame, Wanted};
 use crate::formats::hdf5::Store;
 use crate::formats::hints::of_folder;
 use crate::formats::import_error::ImportError;
-use crate::formats::{legacy_vtk, numpy, vtu, xdmf};
+use crate::formats::input_file;
+use crate::formats::xdmf::Document;
+use crate::formats::{legacy_vtk, numpy, vtu};
 use std::collections::{HashMap, HashSet};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -55,10 +57,7 @@ impl Kind {
         if about.is_dir() {
             return Err(ImportError::table(path, of_folder(path)));
         }
-        if !about.is_file() {
-            return Err(ImportError::table(path, "it is no file: a device or a pipe may never end"));
-        }
-        std::fs::File::open(path).map_err(io)?.take(LOOK).read_to_end(&mut head).map_err(io)?;
+        input_file::open(path).map_err(io)?.take(LOOK).read_to_end(&mut head).map_err(io)?;
         Ok(Self::of_head(&head))
     }
 
@@ -168,7 +167,8 @@ impl Listing<'_> {
                 return Ok(());
             }
             Kind::Xdmf => {
-                let times = xdmf::times(&read(path)?).map_err(refused)?;
+                let times =
+                    Document::of(path, &read(path)?).and_then(|file| file.times()).map_err(refused)?;
                 self.steps.extend(times.iter().enumerate().map(|(place, own)| step(place, own.or(time))));
                 return Ok(());
             }
@@ -232,7 +232,54 @@ fn size_of_all(files: &[PathBuf]) -> usize {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
-    std::fs::read(path).map_err(|source| ImportError::Io { path: path.to_owned(), source })
+    input_file::read(path).map_err(|source| ImportError::Io { path: path.to_owned(), source })
+}
+
+/// Reads states one after the other. A document or a store of many states is read once for all that follow each other,
+/// for a state takes a small part of it.
+#[derive(Default)]
+pub struct Frames {
+    open: Option<(PathBuf, Opened)>,
+    /// How many documents and stores were read.
+    pub opened: usize,
+}
+
+/// A file of several states.
+enum Opened {
+    Hdf5(Store),
+    Xdmf(Document),
+}
+
+impl Frames {
+    /// Reads a state.
+    ///
+    /// # Errors
+    /// What is damaged, cut or claims too much.
+    pub fn frame(&mut self, step: &Step, wanted: Wanted) -> Result<Frame, ImportError> {
+        let path = step.file.as_path();
+        let refused = |why: String| ImportError::table(path, why);
+        if !matches!(step.kind, Kind::Hdf5 | Kind::Xdmf) {
+            return frame_of(step, wanted);
+        }
+        let (file, mut opened) = match self.open.take().filter(|(file, _)| file == path) {
+            Some(open) => open,
+            None => {
+                self.opened += 1;
+                let opened = if step.kind == Kind::Hdf5 {
+                    Opened::Hdf5(Store::open(path).map_err(refused)?)
+                } else {
+                    Opened::Xdmf(Document::of(path, &read(path)?).map_err(refused)?)
+                };
+                (path.to_owned(), opened)
+            }
+        };
+        let frame = match &mut opened {
+            Opened::Hdf5(store) => store.frame(step.place, wanted),
+            Opened::Xdmf(document) => document.frame(step.place, wanted),
+        };
+        self.open = Some((file, opened));
+        frame.map_err(refused)
+    }
 }
 
 /// Reads a state.
@@ -250,10 +297,7 @@ pub fn frame_of(step: &Step, wanted: Wanted) -> Result<Frame, ImportError> {
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             numpy::read_npy(&read(path)?, &name, wanted).map_err(refused)
         }
-        Kind::Hdf5 => {
-            Store::open(path).and_then(|mut store| store.frame(step.place, wanted)).map_err(refused)
-        }
-        Kind::Xdmf => xdmf::read(path, &read(path)?, step.place, wanted).map_err(refused),
+        Kind::Hdf5 | Kind::Xdmf => Frames::default().frame(step, wanted),
         Kind::Blocks => blocks(path, wanted, 0, &mut None),
         Kind::Table | Kind::Collection | Kind::Series => Err(refused("it holds no arrays".to_owned())),
     }

@@ -1,15 +1,18 @@
 //! XDMF: states over time whose numbers stand in the file itself or in HDF5 beside it.
 //!
-//! Format: "XDMF Model and Format", xdmf.org; a state without places and cells has those of the state before it,
-//! which is what the references of meshio and `OpenGeoSys` mean.
+//! Format: "XDMF Model and Format", xdmf.org. Which mesh is whose is told by `xdmf_states`.
 
 use crate::formats::bytes::{Budget, count, counts, numbers_of_text};
 use crate::formats::collections::{beside, time_of};
 use crate::formats::frame::{Array, Association, Cells, Frame, Wanted};
 use crate::formats::hdf5::Store;
 use crate::formats::vtu::places;
+use crate::formats::xdmf_states::{State, states_of};
 use crate::formats::xml::{Element, tree_of};
 use std::path::{Path, PathBuf};
+
+/// Most stores that stay open: a state names a few, and each is in memory.
+const MOST_STORES: usize = 4;
 
 /// Cells: name, code among mixed cells, points, type of VTK.
 const TOPOLOGIES: [(&str, usize, usize, u8); 15] = [
@@ -30,73 +33,69 @@ const TOPOLOGIES: [(&str, usize, usize, u8); 15] = [
     ("polyline", 2, 2, 3),
 ];
 
-/// Times of the states of a file, in order.
-///
-/// # Errors
-/// When it is no sound XML, or has no state.
-pub fn times(bytes: &[u8]) -> Result<Vec<Option<f64>>, String> {
-    let root = tree_of(bytes)?;
-    grids_of(&root)?.iter().map(|grid| time_of_grid(grid)).collect()
+/// A document with its states, and the stores that these name.
+pub struct Document {
+    path: PathBuf,
+    root: Element,
+    states: Vec<State>,
+    /// Stores that are open, with their files: those that were asked for last.
+    stores: Vec<(PathBuf, Store)>,
+    /// How often a store was read.
+    pub(super) opened: usize,
+    /// Bytes of the document.
+    size: usize,
 }
 
-fn time_of_grid(grid: &Element) -> Result<Option<f64>, String> {
-    grid.child("Time").map(|time| time_of(time.attribute("Value"))).transpose()
-}
+impl Document {
+    /// The document of a file.
+    ///
+    /// # Errors
+    /// When it is no sound XML, has no state, or a state names a mesh that is not there.
+    pub fn of(path: &Path, bytes: &[u8]) -> Result<Self, String> {
+        let root = tree_of(bytes)?;
+        let states = states_of(&root)?;
+        Ok(Self { path: path.to_owned(), root, states, stores: Vec::new(), opened: 0, size: bytes.len() })
+    }
 
-/// Grids that are states: not the collections that hold them.
-fn grids_of(root: &Element) -> Result<Vec<&Element>, String> {
-    let mut all = Vec::new();
-    root.all("Grid", &mut all);
-    all.retain(|grid| grid.attribute("GridType") != "Collection" && grid.attribute("GridType") != "Tree");
-    // meshio keeps the mesh as a grid of its own beside the collection.
-    let has_times = all.iter().any(|grid| grid.child("Time").is_some());
-    if has_times {
-        all.retain(|grid| grid.child("Time").is_some());
+    /// Times of the states, in order.
+    ///
+    /// # Errors
+    /// When one is no number.
+    pub fn times(&self) -> Result<Vec<Option<f64>>, String> {
+        self.states.iter().map(|state| self.time(state)).collect()
     }
-    if all.is_empty() { Err("it has no grid".to_owned()) } else { Ok(all) }
-}
 
-/// Reads the state of a place in the list of times.
-///
-/// # Errors
-/// What is damaged, cut or claims too much.
-pub fn read(path: &Path, bytes: &[u8], place: usize, wanted: Wanted) -> Result<Frame, String> {
-    let root = tree_of(bytes)?;
-    let grids = grids_of(&root)?;
-    let grid = *grids.get(place).ok_or_else(|| format!("it has {} states", grids.len()))?;
-    let mut reading = Reading { path, stores: Vec::new(), budget: Budget::of_file(bytes.len()) };
-    let mut frame = Frame { time: time_of_grid(grid)?, ..Frame::default() };
-    let before = |name: &str| {
-        let own = grid.child(name).into_iter();
-        let mut all = Vec::new();
-        root.all(name, &mut all);
-        own.chain(all).next()
-    };
-    if let Some(geometry) = before("Geometry") {
-        frame.coordinates = reading.coordinates(geometry)?;
+    fn time(&self, state: &State) -> Result<Option<f64>, String> {
+        let time = self.root.at(&state.grid).and_then(|grid| grid.child("Time"));
+        time.map(|time| time_of(time.attribute("Value"))).transpose()
     }
-    if let Some(topology) = before("Topology") {
-        frame.cells = reading.cells(topology, frame.coordinates.len())?;
-    }
-    for attribute in grid.children.iter().filter(|child| child.name == "Attribute") {
-        let on = match attribute.attribute("Center").to_ascii_lowercase().as_str() {
-            "cell" => Association::Cells,
-            "grid" => Association::Whole,
-            _ => Association::Points,
-        };
-        let name = attribute.attribute("Name").to_owned();
-        let Some(item) = attribute.child("DataItem") else { continue };
-        let shape = shape_of(item)?;
-        let components = shape.get(1..).unwrap_or_default().iter().product::<usize>().max(1);
-        let tuples = shape.first().copied().unwrap_or(1);
-        let mut array = Array { name, on, components, tuples, values: Vec::new() };
-        if wanted.has(&array.name) {
-            array.values =
-                reading.numbers(item).map_err(|why| format!("the array `{}`: {why}", array.name))?;
+
+    /// Reads the state of a place in the list of times.
+    ///
+    /// # Errors
+    /// What is damaged, cut or claims too much.
+    pub fn frame(&mut self, place: usize, wanted: Wanted) -> Result<Frame, String> {
+        let state = self.states.get(place).ok_or_else(|| format!("it has {} states", self.states.len()))?;
+        let mut frame = Frame { time: self.time(state)?, ..Frame::default() };
+        for (_, store) in &mut self.stores {
+            store.renew_budget();
         }
-        frame.arrays.push(array);
+        let budget = Budget::of_file(self.size);
+        let (path, stores, opened) = (&self.path, &mut self.stores, &mut self.opened);
+        let mut reading = Reading { path, stores, opened, budget };
+        let element = |path: &Option<Vec<usize>>| path.as_ref().and_then(|path| self.root.at(path));
+        if let Some(geometry) = element(&state.geometry) {
+            frame.coordinates = reading.coordinates(geometry)?;
+        }
+        if let Some(topology) = element(&state.topology) {
+            frame.cells = reading.cells(topology, frame.coordinates.len())?;
+        }
+        let children = self.root.at(&state.grid).map_or(&[][..], |grid| &grid.children);
+        for attribute in children.iter().filter(|child| child.name == "Attribute") {
+            frame.arrays.extend(reading.array(attribute, wanted)?);
+        }
+        Ok(frame)
     }
-    Ok(frame)
 }
 
 /// Dimensions of an item.
@@ -110,12 +109,31 @@ fn shape_of(item: &Element) -> Result<Vec<usize>, String> {
 
 struct Reading<'a> {
     path: &'a Path,
-    /// Stores that are open, with their files: a state names a few.
-    stores: Vec<(PathBuf, Store)>,
+    stores: &'a mut Vec<(PathBuf, Store)>,
+    opened: &'a mut usize,
     budget: Budget,
 }
 
 impl Reading<'_> {
+    /// An array, with its values where they are wanted; none where it has no data.
+    fn array(&mut self, attribute: &Element, wanted: Wanted) -> Result<Option<Array>, String> {
+        let on = match attribute.attribute("Center").to_ascii_lowercase().as_str() {
+            "cell" => Association::Cells,
+            "grid" => Association::Whole,
+            _ => Association::Points,
+        };
+        let name = attribute.attribute("Name").to_owned();
+        let Some(item) = attribute.child("DataItem") else { return Ok(None) };
+        let shape = shape_of(item)?;
+        let components = shape.get(1..).unwrap_or_default().iter().product::<usize>().max(1);
+        let tuples = shape.first().copied().unwrap_or(1);
+        let mut array = Array { name, on, components, tuples, values: Vec::new() };
+        if wanted.has(&array.name) {
+            array.values = self.numbers(item).map_err(|why| format!("the array `{}`: {why}", array.name))?;
+        }
+        Ok(Some(array))
+    }
+
     fn coordinates(&mut self, geometry: &Element) -> Result<Vec<[f64; 3]>, String> {
         let item = geometry.child("DataItem").ok_or("its geometry has no data")?;
         let numbers = self.numbers(item)?;
@@ -214,12 +232,17 @@ impl Reading<'_> {
         let (file, inside) = place.split_once(":/").ok_or_else(|| format!("`{place}` names no data set"))?;
         let file = beside(self.path, file.trim());
         let is_open = |(open, _): &(PathBuf, Store)| *open == file;
-        let at = self.stores.iter().position(is_open).unwrap_or(self.stores.len());
-        if at == self.stores.len() {
+        let known = self.stores.iter().position(is_open);
+        let open = if let Some(known) = known {
+            self.stores.remove(known)
+        } else {
             let store = Store::open(&file).map_err(|why| format!("{}: {why}", file.display()))?;
-            self.stores.push((file, store));
-        }
-        let store = &mut self.stores[at].1;
+            self.stores.truncate(MOST_STORES - 1);
+            *self.opened += 1;
+            (file, store)
+        };
+        self.stores.insert(0, open);
+        let store = &mut self.stores[0].1;
         let rows = match (start.first(), size.first()) {
             (Some(start), Some(size)) => Some((*start as u64, *size as u64)),
             _ => None,

@@ -33,6 +33,11 @@ impl Element {
         self.children.iter().find(|child| child.name == name)
     }
 
+    /// The element at the end of places among children, one after the other.
+    pub fn at(&self, path: &[usize]) -> Option<&Self> {
+        path.iter().try_fold(self, |element, place| element.children.get(*place))
+    }
+
     /// All elements of a name in it, in order, at any depth.
     pub fn all<'a>(&'a self, name: &str, into: &mut Vec<&'a Self>) {
         for child in &self.children {

@@ -1,6 +1,7 @@
 //! A table of somebody else's, opened: its header, and what is told of it by its name.
 
 use crate::formats::import_error::ImportError;
+use crate::formats::input_file;
 use crate::import::mapping::TableLayout;
 use std::fs::File;
 use std::path::Path;
@@ -21,7 +22,7 @@ impl<'a> CsvTable<'a> {
     /// When it cannot be read, or has no header.
     pub fn open(path: &'a Path, layout: &TableLayout) -> Result<Self, ImportError> {
         let io = |source| ImportError::Io { path: path.to_owned(), source };
-        let file = File::open(path).map_err(io)?;
+        let file = input_file::open(path).map_err(io)?;
         let as_byte = |mark: char| u8::try_from(mark).unwrap_or(b',');
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(as_byte(layout.delimiter))

@@ -4,7 +4,7 @@ use crate::case::quantity::Sample;
 use crate::formats::frame::{Association, Frame, Wanted};
 use crate::formats::hints::collection_of;
 use crate::formats::import_error::ImportError;
-use crate::formats::steps::{Kind, Step, frame_of, steps_of};
+use crate::formats::steps::{Frames, Kind, Step, steps_of};
 use crate::import::frame_rows::{FrameReader, Start, cells_over_height, wanted_names};
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::SolvedBody;
@@ -139,6 +139,7 @@ struct Reading {
 pub fn runs_of_arrays(given: &[Given], mapping: &Mapping, body: SolvedBody) -> Result<Vec<Run>, ImportError> {
     let names = wanted_names(mapping);
     let mut readings: Vec<Reading> = Vec::new();
+    let mut frames = Frames::default();
     for path in given.iter().flat_map(|one| &one.files) {
         let mut notes = Vec::new();
         let steps = steps_of(path, &mut notes)?;
@@ -150,7 +151,7 @@ pub fn runs_of_arrays(given: &[Given], mapping: &Mapping, body: SolvedBody) -> R
                     "it is a table among files with arrays: score them apart",
                 ));
             }
-            let frame = frame_of(&step, Wanted(&names))?;
+            let frame = frames.frame(&step, Wanted(&names))?;
             let cells = cells_over_height(&frame, mapping, body.height);
             let key = key_of(&step, is_one_of_many, &frame, cells);
             let place = readings.iter().position(|one| one.key == key).unwrap_or_else(|| {

@@ -2,8 +2,9 @@
 
 use super::bytes::base64;
 use super::frame::{Frame, Wanted};
-use super::steps::{Kind, frame_of, steps_of};
-use super::{legacy_vtk, numpy, vtu, xdmf, xml};
+use super::steps::{Frames, Kind, frame_of, steps_of};
+use super::xdmf::Document;
+use super::{legacy_vtk, numpy, vtu, xml};
 use flate2::{Compression, write::ZlibEncoder};
 use proptest::prelude::*;
 use std::collections::BTreeSet;
@@ -289,7 +290,7 @@ fn read_any(path: &Path, bytes: &[u8]) {
         "vtu" => drop(vtu::read(bytes, wanted)),
         "vtk" => drop(legacy_vtk::read(bytes, wanted)),
         "npz" => drop(numpy::read_npz(bytes, wanted)),
-        "xdmf" => drop(xdmf::read(path, bytes, 1, wanted)),
+        "xdmf" => drop(Document::of(path, bytes).and_then(|mut file| file.frame(1, wanted))),
         "pvd" => drop(xml::tree_of(bytes)),
         "series" => drop(super::collections::of_series(path, bytes)),
         _ => {
@@ -415,5 +416,184 @@ fn kinds_are_known_by_their_content() {
         (b"{ \"files\" : [] }", Kind::Series),
     ] {
         assert_eq!(Kind::of_head(head), kind);
+    }
+}
+
+/// A document of states, each with what stands in its grid.
+fn xdmf_of(states: impl Iterator<Item = String>) -> String {
+    let grids: String = states
+        .enumerate()
+        .map(|(number, inside)| format!("<Grid><Time Value=\"{}\"/>{inside}</Grid>\n", number + 1))
+        .collect();
+    format!("<Xdmf><Domain><Grid GridType=\"Collection\">{grids}</Grid></Domain></Xdmf>")
+}
+
+fn pressure_of(item: &str) -> String {
+    format!("<Attribute Name=\"p\" Center=\"Node\">{item}</Attribute>")
+}
+
+#[test]
+fn a_state_without_a_mesh_has_that_of_the_state_before_and_not_of_the_first() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("a.xdmf");
+    let heights = |list: &str| {
+        format!("<Geometry Type=\"XY\"><DataItem Dimensions=\"2 2\">{list}</DataItem></Geometry>")
+    };
+    let own = [heights("0 0 0 1"), heights("0 1 0 0"), String::new()];
+    let pressure = pressure_of("<DataItem Dimensions=\"2\">3 0</DataItem>");
+    std::fs::write(&path, xdmf_of(own.iter().map(|mesh| format!("{mesh}{pressure}")))).expect("a file");
+    let names = all_names();
+    let steps = steps_of(&path, &mut Vec::new()).expect("three states");
+    let height = |step: usize| frame_of(&steps[step], Wanted(&names)).expect("a state").coordinates[0][1];
+    assert_eq!([height(0), height(1), height(2)], [0.0, 1.0, 1.0]);
+}
+
+/// Work is counted, for time is the machine's business.
+#[test]
+fn a_document_of_many_states_is_read_once() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("a.xdmf");
+    let one = pressure_of("<DataItem Dimensions=\"1\">0.5</DataItem>");
+    std::fs::write(&path, xdmf_of((0..5000).map(|_| one.clone()))).expect("a file");
+    let names = all_names();
+    let steps = steps_of(&path, &mut Vec::new()).expect("states");
+    let mut frames = Frames::default();
+    for step in &steps {
+        assert_eq!(frames.frame(step, Wanted(&names)).expect("a state").arrays[0].values, [0.5]);
+    }
+    assert_eq!((steps.len(), frames.opened), (5000, 1));
+}
+
+/// As meshio writes: a data set a state, all in one store.
+#[cfg(feature = "hdf5")]
+#[test]
+fn a_store_of_many_data_sets_is_walked_once() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let mut builder = hdf5_pure::FileBuilder::new();
+    let sets = 2000;
+    for set in 0..sets {
+        builder.create_dataset(&format!("data{set}")).with_f64_data(&[f64::from(set), 1.0]);
+    }
+    builder.write(folder.path().join("a.h5")).expect("a file");
+    let mut store = super::hdf5::Store::open(&folder.path().join("a.h5")).expect("a store");
+    for set in 0..sets {
+        assert_eq!(store.numbers(&format!("/data{set}"), None).expect("there").1, [f64::from(set), 1.0]);
+    }
+    let names = all_names();
+    assert_eq!(store.frame(0, Wanted(&names)).expect("a state").arrays.len(), 2000);
+    assert_eq!(store.looked_at, 2000);
+    let item = |set: i32| {
+        pressure_of(&format!("<DataItem Format=\"HDF\" Dimensions=\"2\">a.h5:/data{set}</DataItem>"))
+    };
+    let path = folder.path().join("a.xdmf");
+    std::fs::write(&path, xdmf_of((0..sets).map(item))).expect("a file");
+    let mut document = Document::of(&path, &std::fs::read(&path).expect("a file")).expect("a document");
+    for state in [0, 7, 1999] {
+        let frame = document.frame(state, Wanted(&names)).expect("a state");
+        assert_eq!(frame.arrays[0].values, [state as f64, 1.0]);
+    }
+    assert_eq!(document.opened, 1);
+}
+
+#[cfg(all(unix, feature = "hdf5"))]
+#[test]
+fn a_document_that_names_a_device_or_a_pipe_is_refused_at_once() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let pipe = folder.path().join("pipe");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
+    let names = all_names();
+    for file in ["/dev/zero", "pipe", "/dev/stdin"] {
+        let item = format!("<DataItem Format=\"HDF\" Dimensions=\"2\">{file}:/p</DataItem>");
+        let path = folder.path().join("a.xdmf");
+        std::fs::write(&path, xdmf_of(std::iter::once(pressure_of(&item)))).expect("a file");
+        let steps = steps_of(&path, &mut Vec::new()).expect("one state");
+        let refused = frame_of(&steps[0], Wanted(&names)).map(|_| ()).map_err(|error| error.to_string());
+        // Where the tests' own input is a file, it is a file.
+        let is_told = |why: &str| why.contains("a device or a pipe may never end") || file == "/dev/stdin";
+        assert!(refused.as_ref().is_err_and(|why| is_told(why)), "{file}: {refused:?}");
+    }
+}
+
+/// A zip of an array, packed or not, as `NumPy` writes it.
+fn npz(is_packed: bool) -> Vec<u8> {
+    let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (4,), }";
+    let length = u16::try_from(header.len()).expect("short").to_le_bytes();
+    let numbers =
+        [0.5_f64, 1.5, 2.5, 3.5].iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>();
+    let content = [b"\x93NUMPY\x01\x00", &length[..], header.as_bytes(), &numbers].concat();
+    let packed = if is_packed {
+        let mut encoder = flate2::write::DeflateEncoder::new(Vec::new(), Compression::default());
+        encoder.write_all(&content).expect("in memory");
+        encoder.finish().expect("in memory")
+    } else {
+        content.clone()
+    };
+    let size = |bytes: &[u8]| u32::try_from(bytes.len()).expect("small").to_le_bytes();
+    let method = [if is_packed { 8_u8 } else { 0 }, 0];
+    let name = b"p.npy";
+    let about = [
+        &method[..],
+        &[0; 4],
+        &crc32fast::hash(&content).to_le_bytes(),
+        &size(&packed),
+        &size(&content),
+        &[5, 0, 0, 0],
+    ]
+    .concat();
+    let local = [b"PK\x03\x04\x14\x00\x00\x00", &about[..], name, &packed].concat();
+    let listed = [b"PK\x01\x02\x14\x00\x14\x00\x00\x00", &about[..], &[0; 14], name].concat();
+    let end = [b"PK\x05\x06\0\0\0\0\x01\0\x01\0", &size(&listed)[..], &size(&local), &[0; 2]].concat();
+    [local, listed, end].concat()
+}
+
+#[test]
+fn one_changed_byte_of_what_has_a_checksum_is_refused_or_changes_nothing() {
+    let names = all_names();
+    let way = Way {
+        format: "appended",
+        is_raw: true,
+        is_packed: true,
+        is_wide: false,
+        is_single: false,
+        is_big: false,
+        block: 64,
+    };
+    let vtu = way.file(&[0.5, 1.5, 2.5, 3.5]);
+    // Behind the underscore stand counts and packed blocks.
+    let start = vtu.windows(2).position(|mark| mark == b"\n_").expect("a mark") + 2;
+    let end = vtu.windows(3).rposition(|mark| mark == b"\n</").expect("an end") - b"\n</AppendedData>".len();
+    let read_vtu =
+        |bytes: &[u8]| vtu::read(bytes, Wanted(&names)).map(|frame| (frame.arrays, frame.coordinates));
+    let read_npz =
+        |bytes: &[u8]| numpy::read_npz(bytes, Wanted(&names)).map(|frame| (frame.arrays, Vec::new()));
+    type Read<'a> = &'a dyn Fn(&[u8]) -> Result<(Vec<super::frame::Array>, Vec<[f64; 3]>), String>;
+    for (what, sound, range, read) in [
+        ("VTU", vtu.clone(), start..end, &read_vtu as Read<'_>),
+        ("NPZ", npz(false), 0..npz(false).len(), &read_npz),
+        ("packed NPZ", npz(true), 0..npz(true).len(), &read_npz),
+    ] {
+        let expected = read(&sound).expect("a sound file");
+        assert_eq!(expected.0[0].values, [0.5, 1.5, 2.5, 3.5], "{what}");
+        let mut refused = 0;
+        for place in range.clone() {
+            for change in [0x01, 0x10, 0x80, 0xff] {
+                let mut bytes = sound.clone();
+                bytes[place] ^= change;
+                match read(&bytes) {
+                    Ok(found) => assert_eq!(found, expected, "{what}: byte {place} ^ {change}"),
+                    Err(_) => refused += 1,
+                }
+            }
+        }
+        assert!(refused > 2 * range.len(), "{what}: {refused} of {}", 4 * range.len());
+    }
+    // A checksum that is cut off was never held.
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+    encoder.write_all(&[7; 100]).expect("in memory");
+    let packed = encoder.finish().expect("in memory");
+    let unpacked = |bytes: &[u8]| super::bytes::unzlib(bytes, 100, &mut Vec::new());
+    assert_eq!(unpacked(&packed), Ok(()));
+    for cut in 1..=4 {
+        assert!(unpacked(&packed[..packed.len() - cut]).is_err_and(|why| why.contains("checksum")), "{cut}");
     }
 }

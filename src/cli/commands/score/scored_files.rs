@@ -3,6 +3,7 @@
 use crate::case::Case;
 use crate::cli::exit::Ended;
 use crate::cli::stream::say;
+use crate::formats::input_file;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::Preset;
 use crate::import::raw_row::SolvedBody;
@@ -110,7 +111,7 @@ fn mapping_of(typed: &Typed, case: &Case, is_tables: bool) -> anyhow::Result<Map
 }
 
 fn source_of(path: &Path) -> anyhow::Result<StudySource> {
-    let text = std::fs::read_to_string(path)
+    let text = input_file::read_text(path)
         .map_err(|error| Ended::usage(format!("cannot read the mapping {}: {error}", path.display())))?;
     Ok(StudySource { name: path.display().to_string(), text })
 }
