@@ -129,11 +129,13 @@ impl Samples<'_> {
             }
         }
         let mut states = rows.states().map_err(|error| error.to_string())?;
+        if let Some(at) = self.settlement.iter().position(|settlement| !settlement.is_finite()) {
+            return Err(format!("arrays: [{at}]: `settlement` is {}", self.settlement[at]));
+        }
         if !self.settlement.is_empty() {
             for state in &mut states {
                 let at = self.time.iter().position(|time| *time == state.time);
-                state.surface_displacement =
-                    at.map(|at| -self.settlement[at]).filter(|down| down.is_finite());
+                state.surface_displacement = at.map(|at| -self.settlement[at]);
             }
         }
         Ok(states)
@@ -208,6 +210,17 @@ mod tests {
         let mut holed = found.pressure.clone();
         holed[3] = f64::NAN;
         assert!(with(&holed).is_err_and(|told| told.contains("[0][3]") && told.contains("NaN")));
+        // One that is none is no settlement that nobody gave.
+        let settlement = [f64::NAN, 1e-6];
+        let samples = Samples {
+            time: &found.time,
+            height: &height,
+            pressure: &found.pressure,
+            settlement: &settlement,
+            ..Samples::default()
+        };
+        let told = score("terzaghi", &samples, "centres", None, &load).expect_err("no number");
+        assert!(told.contains("[0]: `settlement` is NaN"), "{told}");
         assert!(with(&found.pressure[1..]).is_err_and(|told| told.contains("39 numbers for 2 times")));
     }
 }

@@ -3,6 +3,7 @@
 use crate::campaign::costs::CostTable;
 use crate::case::tier::Tier;
 use crate::cli::exit::{Ended, Exit};
+use crate::formats::input_file;
 use crate::record::store::RecordStore;
 use crate::study::check::Study;
 use std::path::Path;

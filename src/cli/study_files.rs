@@ -1,6 +1,8 @@
 //! Study files, read and named before any work begins: every result is kept under the name of its study.
 
 use crate::cli::exit::Ended;
+use crate::formats::input_file;
+use crate::formats::input_file::LARGEST_TEXT;
 use crate::study::diagnostic::nearest;
 use crate::study::file::StudySource;
 use crate::study::name::{name_of, refused_name};
@@ -8,9 +10,6 @@ use crate::study::shipped::{shipped_names, shipped_study};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-
-/// Largest study file, bytes. A study of a million cases takes less, and a device never ends.
-const MOST_BYTES: u64 = 16_000_000;
 
 /// The texts of study files whose names are plain and differ.
 pub fn read_all(paths: &[PathBuf]) -> anyhow::Result<Vec<StudySource>> {
@@ -97,17 +96,24 @@ fn read(path: &Path) -> anyhow::Result<StudySource> {
     }
     let refused =
         |error: std::io::Error| Ended::usage(format!("cannot read the study {}: {error}", path.display()));
-    let mut text = Vec::new();
-    let file = File::open(path).map_err(refused)?;
-    file.take(MOST_BYTES + 1).read_to_end(&mut text).map_err(refused)?;
-    if text.len() as u64 > MOST_BYTES {
-        return Err(Ended::usage(format!(
-            "{} has more than {} MB: that is no study file",
-            path.display(),
-            MOST_BYTES / 1_000_000
-        )));
+    let text = if is_own_stream(path) { read_stream(path) } else { input_file::read_text(path) };
+    Ok(StudySource { name: path.display().to_string(), text: text.map_err(refused)? })
+}
+
+/// Whether a path is one of this program's own open files: its standard input, or what a shell makes of `<(…)`. Any
+/// other pipe waits for a writer that may never come.
+fn is_own_stream(path: &Path) -> bool {
+    let is_listed = ["/dev/fd", "/proc/self/fd"].iter().any(|folder| path.starts_with(folder));
+    (is_listed || path == Path::new("/dev/stdin")) && !path.is_file()
+}
+
+/// The text of a stream, up to the largest study.
+fn read_stream(path: &Path) -> std::io::Result<String> {
+    let mut text = String::new();
+    File::open(path)?.take(LARGEST_TEXT + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > LARGEST_TEXT {
+        let why = format!("it has more than {} MB: that is no study", LARGEST_TEXT / 1_000_000);
+        return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, why));
     }
-    let text = String::from_utf8(text)
-        .map_err(|_| Ended::usage(format!("cannot read the study {}: it is not UTF-8", path.display())))?;
-    Ok(StudySource { name: path.display().to_string(), text })
+    Ok(text)
 }

@@ -6,14 +6,21 @@ use crate::formats::import_error::ImportError;
 use crate::formats::input_file;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::Preset;
+use crate::import::opened_csv::not_ended;
 use crate::import::raw_row::SolvedBody;
-use crate::import::runs::{are_tables, files_of, run_of_tables, runs_of_arrays};
+use crate::import::runs::{Run, are_tables, files_of, run_of_tables, runs_of_arrays};
 use crate::import::table::SampledState;
 use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
 use crate::study::solver::Solver;
+use crate::wording::short;
 use clap::ValueEnum;
 use std::path::PathBuf;
+
+/// Multiple of the load that no pressure reaches.
+const IMPOSSIBLE: f64 = 100.0;
+/// Places closer than this share of the height are one.
+const SAME_PLACE: f64 = 1e-6;
 
 /// A result as it was read.
 #[derive(Debug)]
@@ -127,14 +134,76 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
     let Some(run) = runs.into_iter().next() else {
         return Err(Unread::Unreadable("the files hold no state".to_owned()));
     };
+    let open = run.sample.filter(|_| mapping.is_sample_open);
+    let sample = open.unwrap_or(mapping.sample);
+    if let Some(why) = unfit(case, sample, &run) {
+        return Err(Unread::Unreadable(why));
+    }
     if let Some(cells) = run.cells.filter(|cells| *cells != case.cells) {
         return Err(Unread::Unreadable(format!(
             "the mesh of the result has {cells} cells over the height, and the case asks for {}",
             case.cells
         )));
     }
-    let open = run.sample.filter(|_| mapping.is_sample_open);
-    Ok(ReadResult { states: run.states, sample: open.unwrap_or(mapping.sample), notes: run.notes, digest })
+    Ok(ReadResult { states: run.states, sample, notes: run.notes, digest })
+}
+
+/// Why a result that could be read is none of its case: cut, a quantity gone, another mesh's, beyond all that the load
+/// can bring about. The first that applies.
+fn unfit(case: &Case, sample: Sample, run: &Run) -> Option<String> {
+    if let Some(file) = run.unended.first() {
+        return Some(not_ended(file));
+    }
+    let when =
+        |place: usize| format!("T_v = {}", short(run.states[place].time / case.seconds_per_time_factor()));
+    if let Some(absent) = run.expected.absent(&run.states).first() {
+        return Some(absent.sentence(when));
+    }
+    run.states.iter().enumerate().find_map(|(place, state)| {
+        let why = other_mesh(case, sample, state).or_else(|| beyond_the_load(case, state))?;
+        Some(format!("at {}, {why}", when(place)))
+    })
+}
+
+/// Whether nodes or centres stand at more heights than the cells of the case have: a finer mesh's are whole, too.
+fn other_mesh(case: &Case, sample: Sample, state: &SampledState) -> Option<String> {
+    let most = match sample {
+        Sample::Nodes => case.cells + 1,
+        Sample::Centres => case.cells,
+        Sample::Points | Sample::Surface => return None,
+    };
+    let heights = distinct(&state.initial_height, case.column.height);
+    (heights > most).then(|| {
+        format!(
+            "the {} of the result stand at {heights} heights, and {} cells have {most}: it is another mesh's, or its \
+             places are no {} (`sample` in the mapping; `rows` chooses corners)",
+            sample.name(),
+            case.cells,
+            sample.name()
+        )
+    })
+}
+
+/// How many places differ.
+fn distinct(places: &[f64], extent: f64) -> usize {
+    let mut sorted = places.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup_by(|later, earlier| *later - *earlier <= SAME_PLACE * extent);
+    sorted.len()
+}
+
+/// Whether a pressure is beyond all that the load can bring about, of a body without weight of its own.
+fn beyond_the_load(case: &Case, state: &SampledState) -> Option<String> {
+    let most = IMPOSSIBLE * case.column.load.abs();
+    if case.column.self_weight || most == 0.0 {
+        return None;
+    }
+    let place = state.pressure.iter().position(|pressure| pressure.abs() > most)?;
+    Some(format!(
+        "a pressure is {:.3e} Pa, more than {IMPOSSIBLE} times the load of {} Pa",
+        state.pressure[place],
+        short(case.column.load)
+    ))
 }
 
 /// An error of the import, told apart where it is about a value that is no finite number.

@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+/// Longest reason that is told, bytes.
+const LONGEST: usize = 4000;
+
 /// Why a result cannot be taken.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
@@ -50,6 +53,13 @@ pub enum ImportError {
 impl ImportError {
     /// An error of a table.
     pub fn table(path: &Path, reason: impl Into<String>) -> Self {
-        Self::Table { path: path.to_owned(), reason: reason.into() }
+        let mut reason = reason.into();
+        // What it quotes of a file may be the whole of it.
+        if reason.len() > LONGEST {
+            let end = (0..=LONGEST).rev().find(|end| reason.is_char_boundary(*end)).unwrap_or(0);
+            reason.truncate(end);
+            reason.push('…');
+        }
+        Self::Table { path: path.to_owned(), reason }
     }
 }

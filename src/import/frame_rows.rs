@@ -374,6 +374,17 @@ impl Columns<'_> {
         self.on
     }
 
+    /// Names of the quantities that the state has, by the keys of a mapping.
+    pub fn quantities(&self) -> Vec<&'static str> {
+        let all = [
+            ("p", self.pressure.is_some()),
+            ("effective_stress", self.stress.is_some()),
+            ("u_y", self.displacement.is_some()),
+            ("u_x", self.horizontal.is_some()),
+        ];
+        all.into_iter().filter_map(|(name, is_there)| is_there.then_some(name)).collect()
+    }
+
     const fn kind_of_row(&self) -> &'static str {
         if matches!(self.on, Association::Cells) { "cell" } else { "point" }
     }

@@ -3,6 +3,7 @@
 //! Programs differ in units, signs, the origins of their coordinates and the place where they keep
 //! the time; a mapping file declares all of these, and nothing is guessed from the numbers.
 
+pub mod expected;
 pub mod frame_rows;
 pub mod mapping;
 pub mod opened_csv;

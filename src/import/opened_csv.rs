@@ -1,10 +1,15 @@
 //! A table of somebody else's, opened: its header, and what is told of it by its name.
 
+use crate::formats::bytes::short;
 use crate::formats::import_error::ImportError;
 use crate::formats::input_file;
 use crate::import::mapping::TableLayout;
 use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
+
+/// Names of columns that a message lists.
+const MOST_NAMES: usize = 30;
 
 /// An open table.
 pub struct CsvTable<'a> {
@@ -41,7 +46,10 @@ impl<'a> CsvTable<'a> {
 
     /// All columns, as a message lists them.
     pub fn names(&self) -> String {
-        self.header.iter().map(|column| format!("`{column}`")).collect::<Vec<_>>().join(", ")
+        let names = self.header.iter().take(MOST_NAMES).map(|column| format!("`{}`", short(column)));
+        let more = self.header.len().saturating_sub(MOST_NAMES);
+        let more = (more > 0).then(|| format!("and {more} more"));
+        names.chain(more).collect::<Vec<_>>().join(", ")
     }
 
     /// The next line into a record that is kept; none at the end.
@@ -52,6 +60,32 @@ impl<'a> CsvTable<'a> {
         let read = self.reader.read_record(record);
         read.map_err(|source| ImportError::Csv { path: self.path.to_owned(), source })
     }
+}
+
+/// Whether the last line of a table ends. A table that is cut inside its last number is a sound one of another number.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn is_ended(path: &Path) -> Result<bool, ImportError> {
+    let last = || {
+        let mut file = input_file::open(path)?;
+        if file.metadata()?.len() == 0 {
+            return Ok(b'\n');
+        }
+        let mut last = [0];
+        file.seek(SeekFrom::End(-1))?;
+        file.read_exact(&mut last).map(|()| last[0])
+    };
+    let last = last().map_err(|source| ImportError::Io { path: path.to_owned(), source })?;
+    Ok([b'\n', b'\r'].contains(&last))
+}
+
+/// A sentence on a table whose last line does not end.
+pub fn not_ended(path: &Path) -> String {
+    format!(
+        "{} does not end with an end of line: it may be cut inside its last number; end the last line, too",
+        path.display()
+    )
 }
 
 /// Line of a record in its file, from 1.

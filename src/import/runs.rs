@@ -5,8 +5,10 @@ use crate::formats::frame::{Association, Frame, Wanted};
 use crate::formats::hints::collection_of;
 use crate::formats::import_error::ImportError;
 use crate::formats::steps::{Frames, Kind, Step, steps_of};
+use crate::import::expected::Expected;
 use crate::import::frame_rows::{FrameReader, Start, cells_over_height, wanted_names};
 use crate::import::mapping::Mapping;
+use crate::import::opened_csv::is_ended;
 use crate::import::raw_row::SolvedBody;
 use crate::import::rows::Rows;
 use crate::import::sample_row::take_rows;
@@ -38,6 +40,10 @@ pub struct Run {
     pub notes: Vec<String>,
     /// What the samples are, where the files show it.
     pub sample: Option<Sample>,
+    /// What every state must have.
+    pub expected: Expected,
+    /// Tables whose last line does not end: they may be cut inside a number.
+    pub unended: Vec<PathBuf>,
 }
 
 /// Files of arguments; `*` and `?` stand for what a shell would put there.
@@ -118,7 +124,13 @@ pub fn run_of_tables(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -
     for (place, path) in files.iter().enumerate() {
         take_rows(path, place, mapping, body, &mut rows)?;
     }
-    let mut run = Run { files, states: rows.states()?, ..Run::default() };
+    let states = rows.states()?;
+    let mut run = Run { files, expected: Expected::of_states(&states), states, ..Run::default() };
+    for file in &run.files {
+        if !is_ended(file)? {
+            run.unended.push(file.clone());
+        }
+    }
     run.finish(mapping, body)?;
     Ok(run)
 }
@@ -155,7 +167,7 @@ pub fn runs_of_arrays(given: &[Given], mapping: &Mapping, body: SolvedBody) -> R
             let cells = cells_over_height(&frame, mapping, body.height);
             let key = key_of(&step, is_one_of_many, &frame, cells);
             let place = readings.iter().position(|one| one.key == key).unwrap_or_else(|| {
-                let run = Run { cells, ..Run::default() };
+                let run = Run { cells, expected: Expected::promised(mapping), ..Run::default() };
                 readings.push(Reading { key, run, start: None, rows: Rows::default(), steps: 0 });
                 readings.len() - 1
             });
@@ -224,6 +236,7 @@ impl Reading {
             }
         }
         self.run.notes.extend(frame.notes.iter().cloned());
+        self.run.expected.add(columns.quantities());
         reader.take_rows(&columns, time, self.start.as_ref(), &mut self.rows)?;
         if !self.run.files.contains(&step.named) {
             self.run.files.push(step.named.clone());
@@ -297,7 +310,9 @@ impl Run {
     fn finish(&mut self, mapping: &Mapping, body: SolvedBody) -> Result<(), ImportError> {
         let Some(series) = &mapping.settlement else { return Ok(()) };
         let folder = self.files.first().and_then(|file| file.parent()).unwrap_or(Path::new(""));
-        let matched = attach(series, folder, &mut self.states, mapping, body)?;
+        let (matched, file) = attach(series, folder, &mut self.states, mapping, body)?;
+        self.unended.extend((!is_ended(&file)?).then_some(file));
+        self.expected.settlement = matched > 0;
         self.notes.push(format!(
             "settlement from {} at {matched} of {} times, the nearest within 0.1 % each",
             series.file,

@@ -1,5 +1,6 @@
 //! One file's rows in SI, with the signs of this program.
 
+use crate::formats::bytes::short;
 use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::opened_csv::{CsvTable, line_of};
@@ -155,8 +156,8 @@ impl RowReader<'_> {
         match typed.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
             _ => {
-                let column = self.header.get(place).unwrap_or_default();
-                Err(self.error(format!("`{typed}` in the column `{column}` is no finite number")))
+                let column = short(self.header.get(place).unwrap_or_default());
+                Err(self.error(format!("`{}` in the column `{column}` is no finite number", short(typed))))
             }
         }
     }

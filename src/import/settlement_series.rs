@@ -1,5 +1,6 @@
 //! A settlement curve in a file of its own.
 
+use crate::formats::bytes::short;
 use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::mapping_parts::SettlementSeries;
@@ -7,12 +8,12 @@ use crate::import::mapping::units::VerticalSense;
 use crate::import::opened_csv::{CsvTable, line_of};
 use crate::import::raw_row::SolvedBody;
 use crate::import::table::SampledState;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How far, relative, a time of the curve may lie from that of a state.
 const NEAR: f64 = 1e-3;
 
-/// Gives each state the displacement of the surface at the curve's nearest time; how many got one.
+/// Gives each state the displacement of the surface at the curve's nearest time; how many got one, and the curve's file.
 ///
 /// # Errors
 /// What cannot be read or is no number.
@@ -22,7 +23,7 @@ pub fn attach(
     states: &mut [SampledState],
     mapping: &Mapping,
     frame: SolvedBody,
-) -> Result<usize, ImportError> {
+) -> Result<(usize, PathBuf), ImportError> {
     let beside = folder.join(&series.file);
     let path = if beside.is_file() { beside } else { Path::new(&series.file).to_owned() };
     let mut table = CsvTable::open(&path, &mapping.csv)?;
@@ -43,7 +44,7 @@ pub fn attach(
             typed.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| ImportError::Row {
                 path: path.clone(),
                 line: line_of(&record),
-                reason: format!("`{typed}` is no finite number"),
+                reason: format!("`{}` is no finite number", short(typed)),
             })
         };
         let seconds = mapping.units.time.seconds(number(time)?, frame.seconds_per_time_factor);
@@ -57,5 +58,5 @@ pub fn attach(
             nearest.filter(|point| off(point) <= NEAR * state.time).map(|(_, displacement)| *displacement);
         matched += usize::from(state.surface_displacement.is_some());
     }
-    Ok(matched)
+    Ok((matched, path))
 }

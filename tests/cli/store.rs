@@ -131,7 +131,15 @@ fn a_study_comes_from_a_pipe_and_never_from_what_does_not_end() {
     let folder = folder_with(STUDY);
     let told = call(folder.path(), &["plan", "/dev/zero"]);
     assert_eq!((told.code, told.out.as_str()), (2, ""), "{}", told.err);
-    assert!(told.err.contains("/dev/zero has more than 16 MB: that is no study file"), "{}", told.err);
+    assert!(
+        told.err.contains("the study /dev/zero: it is no file: a device or a pipe may never end"),
+        "{}",
+        told.err
+    );
+    let made = Command::new("mkfifo").arg(folder.path().join("pipe.toml")).status().expect("mkfifo");
+    assert!(made.success());
+    let told = call(folder.path(), &["plan", "pipe.toml"]);
+    assert!(told.code == 2 && told.err.contains("a device or a pipe may never end"), "{}", told.err);
     let large = format!("{STUDY}# {}", "x".repeat(16_000_000));
     fs::write(folder.path().join("large.toml"), large).expect("a file");
     assert_eq!(call(folder.path(), &["plan", "large.toml"]).code, 2);

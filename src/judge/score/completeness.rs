@@ -43,6 +43,12 @@ pub enum Lack {
     ZerosInside,
     /// Nobody said which units and signs the columns have.
     Undeclared,
+    /// A quantity is gone at a time.
+    QuantityMissing,
+    /// The last line of a table does not end.
+    EndMissing,
+    /// A value is far beyond what the load can bring about.
+    ValueImpossible,
 }
 
 impl Lack {
@@ -58,6 +64,9 @@ impl Lack {
             Self::TimeMissing => "time-missing",
             Self::ZerosInside => "zeros-inside",
             Self::Undeclared => "undeclared",
+            Self::QuantityMissing => "quantity-missing",
+            Self::EndMissing => "end-missing",
+            Self::ValueImpossible => "value-impossible",
         }
     }
 }

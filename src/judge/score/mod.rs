@@ -13,7 +13,8 @@ use crate::exact::exact_error::ExactError;
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
-use crate::judge::score::completeness::Finding;
+use crate::judge::score::completeness::{Finding, Lack, short};
+use crate::judge::score::score_series::SeriesRow;
 use crate::judge::score::times::time_factors;
 use crate::measure::fields::error_contributions::largest_contribution;
 use crate::measure::fields::exact_fields::{ExactFields, SamplePlaces};
@@ -25,6 +26,9 @@ use std::collections::HashMap;
 /// Share of the height, and of the length, within which a sample counts as at the surface, and as
 /// under the crest.
 const RIM: f64 = 1e-6;
+
+/// Multiple of the load, of the final settlement, or of the largest exact value that no result has.
+const IMPOSSIBLE: f64 = 100.0;
 
 /// The place that carries most of a field's error.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -61,6 +65,9 @@ pub struct Score {
     pub diagnosis: Vec<String>,
     /// What has no relative error, for the exact value is zero or below round-off.
     pub unresolved: Vec<Unresolved>,
+    /// Orders and classes over the meshes beside this result, the same for each of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub series: Vec<SeriesRow>,
     /// Which way fields are off the first reference.
     #[serde(skip)]
     pub leanings: Vec<Leaning>,
@@ -212,6 +219,13 @@ impl Score {
                 self.unresolved.push(compared.unresolved(quantity, sample));
             }
             if is_first {
+                self.warnings.extend(impossible_value(
+                    compared,
+                    quantity,
+                    (computed, exact),
+                    scale,
+                    &self.warnings,
+                ));
                 let cosine = cosine_of_error(computed, exact, volumes);
                 self.leanings.push(Leaning { time_factor, quantity, cosine });
                 self.worst.extend(compared.worst_place(quantity, computed, exact, volumes));
@@ -230,6 +244,29 @@ impl Score {
     pub fn index(&self) -> ErrorIndex<'_> {
         ErrorIndex { rows: self.errors.iter().map(|row| (key(row), row)).collect() }
     }
+}
+
+/// The value farthest beyond what the load can bring about, where one is: one finding a quantity.
+fn impossible_value(
+    compared: &ScoredState<'_>,
+    quantity: Quantity,
+    (computed, exact): (&[f64], &[f64]),
+    scale: f64,
+    known: &[Finding],
+) -> Option<Finding> {
+    let begin = format!("{} of ", quantity.name());
+    let is_known =
+        |finding: &&Finding| finding.name == Lack::ValueImpossible && finding.sentence.starts_with(&begin);
+    let largest = |list: &[f64]| list.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let (found, bound) = (largest(computed), IMPOSSIBLE * largest(exact).max(scale.abs()));
+    (found > bound && known.iter().find(is_known).is_none()).then(|| Finding {
+        name: Lack::ValueImpossible,
+        sentence: format!(
+            "{begin}{found:.3e} at T_v = {}: more than {IMPOSSIBLE} times what the load brings about ({:.3e})",
+            short(compared.time_factor),
+            bound / IMPOSSIBLE
+        ),
+    })
 }
 
 /// Two lists as one: a million samples are copied only where they must be.

@@ -18,9 +18,55 @@ const ROUND_OFF: f64 = 1e-12;
 /// field.
 const CLEAR: f64 = 0.7;
 
+/// A series as programs read it.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct SeriesRow {
+    /// Time factor of the group.
+    pub time_factor: f64,
+    /// What.
+    pub quantity: Quantity,
+    /// Where.
+    pub sample: Sample,
+    /// In which norm.
+    pub norm: Norm,
+    /// Against which reference.
+    pub reference: String,
+    /// Cells over the height, coarsest first.
+    pub cells: Vec<usize>,
+    /// Errors on these meshes; none where a result lacks it.
+    pub errors: Vec<Option<f64>>,
+    /// Order, where the class allows one.
+    pub order: Option<f64>,
+    /// Class.
+    pub class: &'static str,
+    /// Why.
+    pub reason: String,
+}
+
+impl ScoredSeries {
+    /// The series with the cells of its meshes.
+    pub fn row(&self, cells: &[usize]) -> SeriesRow {
+        let ErrorRow { time_factor, quantity, sample, norm, ref reference, .. } = self.measure;
+        SeriesRow {
+            time_factor,
+            quantity,
+            sample,
+            norm,
+            reference: reference.clone(),
+            cells: cells.to_vec(),
+            errors: self.series.levels().iter().map(|level| level.error).collect(),
+            order: self.classification.order,
+            class: self.classification.class.name(),
+            reason: self.classification.reason.clone(),
+        }
+    }
+}
+
 /// A series of one error over results on finer and finer meshes, with its class.
 #[derive(Clone, Debug)]
 pub struct ScoredSeries {
+    /// The group of its times.
+    pub group: usize,
     /// What the errors are of; its time is that of the group, its value that on the coarsest mesh.
     pub measure: ErrorRow,
     /// Largest difference between the times of the meshes and that of the group, relative.
@@ -61,7 +107,7 @@ pub fn series_of(levels: &[(usize, &Score)], times: &TimeGroups, height: f64) ->
         .filter_map(|key| {
             let rows = found.get(key)?;
             let time_factor = times.time_factors[key.0];
-            one_series(rows, levels, time_factor, height)
+            one_series(rows, levels, (key.0, time_factor), height)
         })
         .collect()
 }
@@ -70,7 +116,7 @@ pub fn series_of(levels: &[(usize, &Score)], times: &TimeGroups, height: f64) ->
 fn one_series(
     rows: &[Option<&ErrorRow>],
     levels: &[(usize, &Score)],
-    time_factor: f64,
+    (group, time_factor): (usize, f64),
     height: f64,
 ) -> Option<ScoredSeries> {
     let first = rows.iter().flatten().next()?;
@@ -88,6 +134,7 @@ fn one_series(
     let differences =
         rows.iter().flatten().map(|row| (row.time_factor - time_factor).abs() / time_factor.abs());
     Some(ScoredSeries {
+        group,
         measure: ErrorRow { time_factor, ..(*first).clone() },
         time_difference: differences.filter(|difference| difference.is_finite()).fold(0.0, f64::max),
         classification: classify(&series, &context),

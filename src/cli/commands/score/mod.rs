@@ -14,13 +14,16 @@ use crate::cli::overrides::StudyLines;
 use crate::cli::stream::{print_data, say};
 use crate::import::mapping::convention::{CONVENTION, PLANE_CONVENTION};
 use crate::import::mapping::preset::Preset;
-use crate::judge::score::Score;
+use crate::judge::score::score_series::ScoredSeries;
 use crate::record::ERROR_COLUMNS;
 use crate::render::tables::scores;
 use crate::scene::SceneKind;
 use crate::study::check::Study;
 use crate::study::check::checker::Purpose;
 use std::path::PathBuf;
+
+/// Columns behind those of the errors, of results on several meshes.
+const SERIES_COLUMNS: [&str; 3] = ["cells", "order", "class"];
 
 /// Arguments of `score`.
 #[derive(Debug, clap::Args)]
@@ -117,18 +120,24 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         tolerance,
         are_cells_found: arguments.cells.is_none(),
     };
-    let results = Results::of(runs, &held)?;
+    let mut results = Results::of(runs, &held)?;
+    let series = results.series(case);
+    if let Some((series, cells)) = &series {
+        results.keep_series(series, cells);
+    }
     match arguments.format {
         TableFormat::Json => print_data(&json_of(&results.scores())?)?,
-        TableFormat::Csv => print_data(&errors_csv(&results.scores(), &names)?)?,
+        TableFormat::Csv => {
+            print_data(&errors_csv(&results, &names, series.as_ref().map(|(series, _)| &series[..]))?)?
+        }
         _ => {
             let mut tables = Vec::new();
             for one in &results.all {
                 let title = format!("{}: {}", case.scene.name(), one.name());
                 tables.push(scores::errors_table(&one.score, &title));
             }
-            if let Some((series, cells)) = results.series(case) {
-                tables.push(scores::series_table(&series, &cells));
+            if let Some((series, cells)) = &series {
+                tables.push(scores::series_table(series, cells));
             }
             print_tables(&tables, arguments.format)?;
         }
@@ -181,13 +190,31 @@ fn groups_of(case: &Case) -> String {
     )
 }
 
-/// The errors as CSV, of several results with the name of each in front.
-fn errors_csv(scores: &[&Score], results: &[PathBuf]) -> anyhow::Result<String> {
-    let several = scores.len() > 1;
-    let header = several.then_some("result").into_iter().chain(ERROR_COLUMNS);
-    let rows = scores.iter().zip(results).flat_map(|(score, result)| {
-        let name = several.then(|| result.display().to_string());
-        score.errors.iter().map(move |row| name.clone().into_iter().chain(row.csv_fields()).collect())
+/// The errors as CSV, of several results with the name of each in front; of several meshes with their cells, and the
+/// order and class of the main norms behind.
+fn errors_csv(
+    results: &Results,
+    names: &[PathBuf],
+    series: Option<&[ScoredSeries]>,
+) -> anyhow::Result<String> {
+    let several = results.all.len() > 1;
+    let of_series = series.map_or(&[][..], |_| &SERIES_COLUMNS);
+    let header =
+        several.then_some("result").into_iter().chain(ERROR_COLUMNS).chain(of_series.iter().copied());
+    let rows = results.all.iter().zip(names).enumerate().flat_map(|(place, (one, name))| {
+        let name = several.then(|| name.display().to_string());
+        one.score.errors.iter().map(move |row| {
+            let known = series.map(|series| series_fields(results.series_of_row(place, row, series)));
+            name.clone().into_iter().chain(row.csv_fields()).chain(known.into_iter().flatten()).collect()
+        })
     });
     csv_of(header, rows)
+}
+
+/// The fields of [`SERIES_COLUMNS`]: empty where a norm has no series, the order where the class allows none.
+fn series_fields(found: Option<(usize, &ScoredSeries)>) -> [String; 3] {
+    let Some((cells, series)) = found else { return Default::default() };
+    let class = &series.classification;
+    let order = class.order.map_or(String::new(), |order| format!("{order:.16e}"));
+    [cells.to_string(), order, class.class.name().to_owned()]
 }

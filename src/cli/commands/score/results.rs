@@ -5,7 +5,9 @@ use crate::case::quantity::Quantity;
 use crate::cli::exit::{Ended, Exit};
 use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::ReferenceKind;
+use crate::import::expected::Expected;
 use crate::import::mapping::Mapping;
+use crate::import::opened_csv::not_ended;
 use crate::import::runs::Run;
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::{Finding, Lack, Whole, missing_times, uneven_meshes};
@@ -15,8 +17,10 @@ use crate::judge::score::score_series::{ScoredSeries, series_of};
 use crate::judge::score::times::TimeGroups;
 use crate::judge::score::times::time_factors;
 use crate::judge::score::{Score, score};
+use crate::record::ErrorRow;
 use crate::scene::column::column_parameters;
 use crate::sorting;
+use crate::wording::short;
 use std::path::PathBuf;
 
 /// What results are held against, and how they are read.
@@ -45,6 +49,8 @@ pub struct Read {
     pub score: Score,
     /// What is not there to be seen.
     pub notes: Vec<String>,
+    expected: Expected,
+    unended: Vec<PathBuf>,
 }
 
 /// All results, in the order in which they were given.
@@ -132,6 +138,35 @@ impl Results {
         self.all.iter().map(|one| &one.score).collect()
     }
 
+    /// The place of a result's error in the list of its series, and the result's cells: by what it is of, for the
+    /// meshes have times of their own.
+    pub fn series_of_row<'a>(
+        &self,
+        result: usize,
+        row: &ErrorRow,
+        series: &'a [ScoredSeries],
+    ) -> Option<(usize, &'a ScoredSeries)> {
+        let rank = self.order.iter().position(|place| *place == result)?;
+        let one = &self.all[result];
+        let time =
+            one.score.samples.iter().position(|(time, _)| time.to_bits() == row.time_factor.to_bits())?;
+        let group = self.times.groups[rank][time]?;
+        let is_own = |series: &&ScoredSeries| {
+            let of = &series.measure;
+            series.group == group
+                && (of.quantity, of.sample, of.norm) == (row.quantity, row.sample, row.norm)
+                && of.reference == row.reference
+        };
+        Some((one.cells?, series.iter().find(is_own)?))
+    }
+
+    /// Puts the series into every score, for programs that read them.
+    pub fn keep_series(&mut self, series: &[ScoredSeries], cells: &[usize]) {
+        for one in &mut self.all {
+            one.score.series = series.iter().map(|series| series.row(cells)).collect();
+        }
+    }
+
     /// The series over meshes with their numbers of cells, where those were told.
     pub fn series(&self, case: &Case) -> Option<(Vec<ScoredSeries>, Vec<usize>)> {
         let levels: Vec<(usize, &Score)> = self
@@ -150,8 +185,8 @@ impl Results {
 
 impl Read {
     fn of(run: Run) -> Self {
-        let Run { files, cells, states, notes, .. } = run;
-        Self { files, cells, states, score: Score::default(), notes }
+        let Run { files, cells, states, notes, expected, unended, .. } = run;
+        Self { files, cells, states, score: Score::default(), notes, expected, unended }
     }
 
     /// Its files.
@@ -168,7 +203,8 @@ impl Read {
     fn assess(&mut self, held: &Held, parameters: &ColumnParameters) -> anyhow::Result<()> {
         let missing = std::mem::take(&mut self.score.warnings);
         self.score = score(parameters, held.references, &self.states, held.mapping.sample)?;
-        self.score.warnings = missing;
+        self.score.warnings.splice(0..0, missing);
+        self.score.warnings.extend(self.gone(parameters));
         self.score.warnings.extend(held.mapping.taken_for_granted().map(|taken| Finding {
             name: Lack::Undeclared,
             sentence: format!(
@@ -198,6 +234,16 @@ impl Read {
         }
         self.note_absences(held);
         Ok(())
+    }
+
+    /// What is missing at a time that was scored, and tables that may be cut.
+    fn gone(&self, parameters: &ColumnParameters) -> Vec<Finding> {
+        let when = |place: usize| format!("T_v = {}", short(parameters.time_factor(self.states[place].time)));
+        let absent = self.expected.absent(&self.states).into_iter();
+        let absent = absent.map(|one| Finding { name: Lack::QuantityMissing, sentence: one.sentence(when) });
+        let unended =
+            self.unended.iter().map(|file| Finding { name: Lack::EndMissing, sentence: not_ended(file) });
+        absent.chain(unended).collect()
     }
 
     /// What a reader might look for in vain.
