@@ -19,8 +19,10 @@ fn score(arguments: &[&str]) -> Told {
 /// Values of the rows of a quantity and norm, by time; of several results one after the other.
 fn values(told: &Told, row: &str) -> Vec<f64> {
     assert_eq!(told.code, 0, "{}", told.err);
+    let header = told.out.lines().next().expect("a header");
+    let column = header.split(',').position(|name| name == "value").expect("a column of values");
     let rows = told.out.lines().filter(|line| line.contains(row));
-    rows.map(|line| line.rsplit(',').next().expect("a value").parse().expect("a number")).collect()
+    rows.map(|line| line.split(',').nth(column).expect("a value").parse().expect("a number")).collect()
 }
 
 /// Whether numbers are those of a table, to the half of its last digit; a sign counts.
