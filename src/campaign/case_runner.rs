@@ -69,6 +69,9 @@ impl<'a> CaseRunner<'a> {
         case: &Case,
         store: Option<&RecordStore>,
     ) -> Result<Vec<WallSample>, ExactError> {
+        if self.study.holds_back(case) {
+            return Ok(Vec::new());
+        }
         if case.is_attached() {
             let timed = self.attached(case, store, true, &|_, _| true)?;
             return Ok(if is_stopped(&timed) { Vec::new() } else { timed.wall });
@@ -97,6 +100,7 @@ impl<'a> CaseRunner<'a> {
         };
         let of_case = |one: &&Attachment<'_>| Some(one.solver().attached) == case.method.attached;
         match self.attachments.iter().find(of_case) {
+            Some(attachment) if self.study.holds_back(case) => attachment.held_back(case, &wish),
             Some(attachment) => attachment.run(case, &wish),
             None => run_case(case, wish.references, Kernel::Fastest, alone, observe),
         }

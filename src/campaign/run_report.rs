@@ -108,6 +108,8 @@ pub struct Tally {
     pub failed: usize,
     /// Those that failed and were not expected to.
     pub unforeseen: usize,
+    /// Those of them that were not begun, for nobody has allowed their programs to be started.
+    pub held_back: usize,
     /// Cases that were not begun or not ended, for the run was stopped.
     pub left: usize,
 }
@@ -118,6 +120,7 @@ impl Tally {
         self.recorded += 1;
         if record.status != Status::Ok {
             self.failed += 1;
+            self.held_back += usize::from(record.status.is_skipped() && study.holds_back(&record.case));
             self.unforeseen += usize::from(!(record.status.is_skipped() || study.foresees(record)));
         }
     }
@@ -127,6 +130,7 @@ impl Tally {
         self.recorded += other.recorded;
         self.failed += other.failed;
         self.unforeseen += other.unforeseen;
+        self.held_back += other.held_back;
         self.left += other.left;
     }
 }

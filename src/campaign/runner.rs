@@ -293,6 +293,8 @@ fn run_and_keep(
         Ok(Err(source)) => return Some(Err(RunError::Case { label: case.label(), source })),
         Err(_) => return Some(Err(RunError::Crashed { label: case.label() })),
     };
+    // What is on disk of a case that was not allowed to begin stays.
+    let store = store.filter(|_| !runner.study().holds_back(case));
     if let Some(Err(error)) = store.map(|store| store.write(&record)) {
         // A full disk stays full: what could not be kept is not computed.
         stopped.store(true, Ordering::Relaxed);

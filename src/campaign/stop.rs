@@ -1,6 +1,6 @@
 //! The word that a run has to end: Ctrl-C, or the signal that a scheduler sends before it kills a job.
 //!
-//! Ctrl-C and a closed terminal end at once what is at work, an attached solver with all that it has started among
+//! Ctrl-C, Ctrl-\ and a closed terminal end at once what is at work, an attached solver with all that it has started among
 //! it; what is finished is kept. A second Ctrl-C ends this program where it stands. SIGTERM lets what is at work come
 //! to its end for a while.
 
@@ -40,9 +40,9 @@ pub fn heed_signals() -> std::io::Result<()> {
 /// Signals of a person: those that were ignored when this program began stay so (`nohup`).
 #[cfg(unix)]
 fn end_at_once() -> impl Iterator<Item = i32> {
-    use signal_hook::consts::{SIGHUP, SIGINT};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT};
     let ignored = ignored_signals();
-    [SIGINT, SIGHUP].into_iter().filter(move |signal| ignored & (1 << (signal - 1)) == 0)
+    [SIGINT, SIGHUP, SIGQUIT].into_iter().filter(move |signal| ignored & (1 << (signal - 1)) == 0)
 }
 
 #[cfg(not(unix))]

@@ -3,6 +3,7 @@
 
 use crate::cli::exit::{Ended, Exit};
 use crate::record::whole_file::write_whole;
+use crate::render::escape::document;
 use std::ffi::OsString;
 use std::fs::{self, OpenOptions};
 use std::io::Write;
@@ -13,6 +14,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// A sentence with the path, when the file system refuses.
 pub fn write_document(path: &Path, text: &str) -> anyhow::Result<()> {
+    let text = &document(text);
     let is_link = fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink());
     let target = fs::metadata(path);
     match target {
@@ -34,7 +36,7 @@ pub fn write_document(path: &Path, text: &str) -> anyhow::Result<()> {
 /// # Errors
 /// A sentence with the path, when the file system refuses.
 pub fn append(path: &Path, text: &str) -> anyhow::Result<()> {
-    through(path, OpenOptions::new().create(true).append(true), text)
+    through(path, OpenOptions::new().create(true).append(true), &document(text))
 }
 
 fn through(path: &Path, options: &OpenOptions, text: &str) -> anyhow::Result<()> {

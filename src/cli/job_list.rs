@@ -27,6 +27,8 @@ pub struct JobList {
     pub tasks: u64,
     /// By what they are parted.
     pub parting: Parting,
+    /// Whether the studies may start their attached solvers.
+    pub allow_solvers: bool,
     /// File of the costs, where they are parted by those.
     pub costs: Option<PathBuf>,
 }
@@ -71,6 +73,9 @@ impl JobList {
         if self.parting == Parting::Cost {
             words.push("--balance".to_owned());
             words.extend(self.costs.iter().flat_map(|file| ["--costs".to_owned(), quoted_path(file)]));
+        }
+        if self.allow_solvers {
+            words.push("--allow-solvers".to_owned());
         }
         words.push("--resume".to_owned());
         words.join(" ")
@@ -135,6 +140,7 @@ mod tests {
             tier: Tier::Ci,
             tasks: 8,
             parting: Parting::Cost,
+            allow_solvers: false,
             costs: Some("costs.csv".into()),
         };
         assert_eq!(

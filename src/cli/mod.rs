@@ -17,6 +17,7 @@ pub mod stream;
 pub mod study_files;
 pub mod study_tables;
 pub mod time_notes;
+pub mod trust;
 
 use crate::cli::commands::{
     accept, check, completions, exact, explain, list, merge, new, plan, records, report, run, schema, score,

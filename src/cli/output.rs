@@ -1,6 +1,7 @@
 //! Tables on standard output: their formats, and colour on a terminal only.
 
-use crate::cli::stream::print_data;
+use crate::cli::stream::{print_as_it_is, print_data};
+use crate::render::escape::{csv_field, document};
 use crate::render::table::Table;
 use clap::ValueEnum;
 use std::io::IsTerminal;
@@ -29,7 +30,7 @@ pub fn print_tables(tables: &[Table], format: TableFormat) -> anyhow::Result<()>
         }
     };
     let text = tables.iter().map(write).collect::<Result<Vec<_>, _>>()?.join("\n");
-    print_data(&if format == TableFormat::Table { coloured(&text) } else { text })
+    if format == TableFormat::Table { print_coloured(&text) } else { print_data(&text) }
 }
 
 /// A CSV of a header and rows.
@@ -40,7 +41,7 @@ pub fn csv_of<F: AsRef<[u8]>>(
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(header)?;
     for row in rows {
-        writer.write_record(row)?;
+        writer.write_record(row.iter().map(|field| csv_field(field).into_owned()))?;
     }
     Ok(String::from_utf8(writer.into_inner()?)?)
 }
@@ -52,7 +53,7 @@ pub fn json_of(value: &impl serde::Serialize) -> anyhow::Result<String> {
 
 /// The rows of a table by their headers, in the words of its CSV.
 fn rows_of(table: &Table) -> anyhow::Result<Vec<serde_json::Map<String, serde_json::Value>>> {
-    let text = table.to_csv()?;
+    let text = table.to_plain_csv()?;
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers()?.clone();
     reader
@@ -69,8 +70,16 @@ fn rows_of(table: &Table) -> anyhow::Result<Vec<serde_json::Map<String, serde_js
         .collect()
 }
 
+/// Prints text for people, the marks of judgements in colour.
+///
+/// # Errors
+/// When the device refuses.
+pub fn print_coloured(text: &str) -> anyhow::Result<()> {
+    print_as_it_is(&coloured(&document(text)))
+}
+
 /// The marks of judgements in colour, where standard output is a terminal that wants it.
-pub fn coloured(text: &str) -> String {
+fn coloured(text: &str) -> String {
     if wants_colour(std::io::stdout().is_terminal(), |name| std::env::var(name).ok()) {
         text.replace('✓', "\x1b[32m✓\x1b[0m").replace('✗', "\x1b[31m✗\x1b[0m")
     } else {

@@ -3,6 +3,7 @@
 //! output is one, for data are lost; what cannot be said on standard error stays unsaid and stops nothing.
 
 use crate::cli::exit::{Ended, Exit};
+use crate::render::escape::document;
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Result, Write};
 
@@ -14,11 +15,19 @@ macro_rules! say {
 }
 pub(crate) use say;
 
-/// Writes data to standard output, down to the last byte.
+/// Writes data to standard output, down to the last byte; what would steer a terminal is not passed on.
 ///
 /// # Errors
 /// When the device refuses; a pipe that nobody reads any more is no error.
 pub fn print_data(text: &str) -> anyhow::Result<()> {
+    print_as_it_is(&document(text))
+}
+
+/// The same with what this program itself says to a terminal.
+///
+/// # Errors
+/// The same.
+pub fn print_as_it_is(text: &str) -> anyhow::Result<()> {
     written(write_out(std::io::stdout().lock(), text))
 }
 
@@ -58,9 +67,9 @@ fn write_out(mut out: impl Write, text: &str) -> Result<()> {
     out.flush()
 }
 
-/// Says words and an end of line on standard error, if anyone listens.
+/// Says words and an end of line on standard error, if anyone listens; what would steer a terminal is not passed on.
 pub fn say_line(words: Arguments<'_>) {
-    let _ = writeln!(std::io::stderr().lock(), "{words}");
+    let _ = writeln!(std::io::stderr().lock(), "{}", document(&words.to_string()));
 }
 
 #[cfg(test)]

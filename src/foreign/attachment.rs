@@ -21,6 +21,7 @@ use crate::record::attached_run::AttachedRun;
 use crate::record::machines::Machine;
 use crate::record::{Record, Status, WallSample};
 use crate::study::solver::Solver;
+use crate::wording::typed;
 use regex_lite::Regex;
 use std::path::{Path, PathBuf};
 use std::sync::{Condvar, Mutex, OnceLock, PoisonError};
@@ -44,7 +45,7 @@ pub struct Attachment<'a> {
     solver: &'a Solver,
     /// What its result means, or why that cannot be told.
     mapping: Result<Mapping, String>,
-    version: OnceLock<Option<String>>,
+    version: OnceLock<Version>,
     gate: Gate,
 }
 
@@ -59,6 +60,13 @@ pub struct Wish<'a> {
     pub alone: bool,
     /// Whether the case is still wanted.
     pub is_wanted: &'a dyn Fn() -> bool,
+}
+
+/// What a solver says of its version, or why that is not known.
+#[derive(Default)]
+struct Version {
+    line: Option<String>,
+    trouble: Option<String>,
 }
 
 /// What a run left: its states at the outputs, or how it failed.
@@ -88,8 +96,9 @@ impl<'a> Attachment<'a> {
         let _passed = self.gate.pass();
         let mut about = AttachedRun {
             command: self.solver.command.clone(),
-            version: self.version(wish).map(str::to_owned),
+            version: self.version(wish).line.clone(),
             warmed_up: self.solver.warm_up,
+            notes: self.version(wish).trouble.clone().into_iter().collect(),
             ..AttachedRun::default()
         };
         let mut wall = Vec::new();
@@ -114,6 +123,15 @@ impl<'a> Attachment<'a> {
         }
         let nothing = || ending::of_incomplete("the solver was not run");
         Self::record(case, wish, known.ok_or_else(nothing), about, wall)
+    }
+
+    /// The record of a case whose program may not be started: it was skipped.
+    ///
+    /// # Errors
+    /// When the exact solutions refuse the case's parameters.
+    pub fn held_back(&self, case: &Case, wish: &Wish<'_>) -> Result<Record, ExactError> {
+        let about = AttachedRun { command: self.solver.command.clone(), ..AttachedRun::default() };
+        Self::record(case, wish, Err(ending::of_held_back()), about, Vec::new())
     }
 
     /// What is there already.
@@ -158,8 +176,8 @@ impl<'a> Attachment<'a> {
             machine: Some(Machine::this()),
         });
         let left = self.left(case, mapping, &finished, &staged, &filling);
-        if finished.left_processes {
-            note(about, "it left processes behind, which were ended".to_owned());
+        if let Some(sentence) = ending::of_processes(&finished) {
+            note(about, sentence);
         }
         let failed = left.as_ref().err().is_some();
         if failed {
@@ -223,22 +241,29 @@ impl<'a> Attachment<'a> {
         last(&finished.output).or_else(|| last(&finished.errors))
     }
 
-    /// What the solver says of its version, asked once.
-    fn version(&self, wish: &Wish<'_>) -> Option<&str> {
+    /// What the solver says of its version, asked once, within the time of a run.
+    fn version(&self, wish: &Wish<'_>) -> &Version {
         let ask = || {
             if self.solver.version.is_empty() {
-                return None;
+                return Version::default();
             }
             let words = words_of(self.solver, &self.solver.version, str::to_owned);
-            let timeout = Duration::from_secs_f64(VERSION_SECONDS);
+            let seconds = self.solver.timeout.min(VERSION_SECONDS);
+            let timeout = Duration::from_secs_f64(seconds);
             let folder = &self.solver.folder;
             let order = Order { words: &words, environment: &[], folder, timeout };
             let found = process::run(&order, wish.is_wanted);
-            let line =
-                found.output.lines().chain(found.errors.lines()).find(|line| !line.trim().is_empty())?;
-            Some(line.trim().chars().take(LONGEST_VERSION).collect())
+            if matches!(found.ending, Ending::TimedOut) {
+                let trouble =
+                    format!("its version is not known: that command did not end within {} s", typed(seconds));
+                return Version { line: None, trouble: Some(trouble) };
+            }
+            let mut lines = found.output.lines().chain(found.errors.lines());
+            let line = lines.find(|line| !line.trim().is_empty());
+            let line = line.map(|line| line.trim().chars().take(LONGEST_VERSION).collect());
+            Version { line, trouble: None }
         };
-        self.version.get_or_init(ask).as_deref()
+        self.version.get_or_init(ask)
     }
 
     fn record(

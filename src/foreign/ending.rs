@@ -16,6 +16,7 @@
 use crate::foreign::output_tail::last_lines;
 use crate::foreign::process::{Ending, Finished};
 use crate::foreign::reading::Unread;
+use crate::foreign::started_processes::named;
 use crate::mpm::run::results::outcome::{Failure, FailureKind};
 use crate::study::solver::Solver;
 use crate::wording::typed;
@@ -37,8 +38,13 @@ pub fn of_process(run: &Finished, solver: &Solver) -> Option<Failure> {
             FailureKind::TimedOut,
             format!(
                 "the solver did not end within the {} s that the study gives it, and was ended with all that it had \
-                 started; its own, or `timeout` is too short",
-                typed(solver.timeout)
+                 started{}; its own, or `timeout` is too short",
+                typed(solver.timeout),
+                if run.found.lives_on.is_empty() {
+                    String::new()
+                } else {
+                    format!(", but for what could not be ended, {}", named(&run.found.lives_on))
+                }
             ),
         ),
         Ending::Stopped => return Some(of_stopped()),
@@ -54,9 +60,25 @@ pub fn of_process(run: &Finished, solver: &Solver) -> Option<Failure> {
     Some(Failure::of_attached(kind, what + &last_words(run)))
 }
 
+/// A sentence on processes that a run left behind, or that could not be ended.
+pub fn of_processes(run: &Finished) -> Option<String> {
+    let found = &run.found;
+    if !found.lives_on.is_empty() {
+        return Some(format!("processes of it could not be ended: {}", named(&found.lives_on)));
+    }
+    let left = matches!(run.ending, Ending::Ended(_)) && !found.seen.is_empty();
+    left.then(|| format!("it left processes behind, which were ended: {}", named(&found.seen)))
+}
+
 /// The end of a run that nobody wanted any more: Ctrl-C, or another result that could not be kept.
 pub fn of_stopped() -> Failure {
     Failure::of_attached(FailureKind::Stopped, "stopped from outside".to_owned())
+}
+
+/// The end of a run that was not begun, for nobody has allowed the study to start programs.
+pub fn of_held_back() -> Failure {
+    let reason = "nobody has allowed this study to start programs; `--allow-solvers` does".to_owned();
+    Failure::of_attached(FailureKind::Skipped, reason)
 }
 
 /// The end of a program by its status; none where it ended well.

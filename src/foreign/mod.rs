@@ -9,4 +9,5 @@ pub mod process;
 pub mod reading;
 pub mod repeats;
 pub mod staging;
+pub mod started_processes;
 pub mod wholeness;

@@ -1,6 +1,7 @@
 //! One run of a program: in a folder and a process group of its own, without input, bounded in time and output.
 
 use crate::foreign::output_tail::Listener;
+use crate::foreign::started_processes::{Family, Found, MARK, Mark};
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -55,8 +56,8 @@ pub struct Finished {
     pub output: String,
     /// The end of its standard error.
     pub errors: String,
-    /// Whether it left processes behind, which were ended.
-    pub left_processes: bool,
+    /// What of it lived when its end had come or was made: processes that it left behind, where it ended by itself.
+    pub found: Found,
 }
 
 /// The end of a process with what it took.
@@ -70,14 +71,16 @@ struct Reaped {
 /// Runs a program to its end, to the end of its time, or until `is_wanted` says no.
 pub fn run(order: &Order<'_>, is_wanted: &dyn Fn() -> bool) -> Finished {
     let start = Instant::now();
-    let mut child = match started(order) {
+    let mark = Mark::new();
+    let mut child = match started(order, &mark) {
         Ok(child) => child,
         Err(error) => return Finished::not_started(error),
     };
     let listeners = (child.stdout.take().map(Listener::to), child.stderr.take().map(Listener::to));
-    let group = Group::of(&child);
+    let family = Family::of(&child, mark);
     let end = reaped(child);
     let deadline = start + order.timeout;
+    let mut found = Found::default();
     let (ending, reaped) = loop {
         let left = deadline.saturating_duration_since(Instant::now());
         match end.recv_timeout(left.min(LOOK)) {
@@ -91,18 +94,19 @@ pub fn run(order: &Order<'_>, is_wanted: &dyn Fn() -> bool) -> Finished {
             (!is_wanted()).then_some(Ending::Stopped)
         };
         if let Some(over) = over {
-            group.kill();
+            found = family.end();
             break (Some(over), end.recv_timeout(GONE).ok());
         }
     };
     let (output, errors) = listeners;
-    let mut left_processes = false;
-    for listener in [&output, &errors].into_iter().flatten() {
-        if !listener.ends_within(STREAMS) {
-            left_processes = ending.is_none();
-            group.kill();
-            listener.ends_within(STREAMS);
-        }
+    let streams = [&output, &errors];
+    if ending.is_none() {
+        // What it started may be about to end with it.
+        let _ = streams.iter().filter_map(|one| one.as_ref()).all(|listener| listener.ends_within(STREAMS));
+        found = family.end();
+    }
+    for listener in streams.into_iter().flatten() {
+        listener.ends_within(STREAMS);
     }
     let text = |listener: Option<Listener>| listener.map_or_else(String::new, |listener| listener.text());
     let seconds = reaped.as_ref().map_or_else(|| start.elapsed(), |reaped| reaped.at - start).as_secs_f64();
@@ -115,7 +119,7 @@ pub fn run(order: &Order<'_>, is_wanted: &dyn Fn() -> bool) -> Finished {
         peak_memory,
         output: text(output),
         errors: text(errors),
-        left_processes,
+        found,
     }
 }
 
@@ -128,7 +132,7 @@ impl Finished {
             peak_memory: None,
             output: String::new(),
             errors: String::new(),
-            left_processes: false,
+            found: Found::default(),
         }
     }
 }
@@ -141,7 +145,7 @@ fn ended(reaped: Option<Reaped>) -> Ending {
     }
 }
 
-fn started(order: &Order<'_>) -> std::io::Result<Child> {
+fn started(order: &Order<'_>, mark: &Mark) -> std::io::Result<Child> {
     let Some((program, arguments)) = order.words.split_first() else {
         return Err(std::io::Error::other("the command is empty"));
     };
@@ -149,6 +153,7 @@ fn started(order: &Order<'_>) -> std::io::Result<Child> {
     command
         .args(arguments)
         .envs(order.environment.iter().map(|(name, value)| (name, value)))
+        .env(MARK, mark.text())
         .current_dir(order.folder)
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
@@ -189,38 +194,6 @@ fn reap(child: &mut Child) -> Reaped {
 fn reap(child: &mut Child) -> Reaped {
     let status = child.wait();
     Reaped { at: Instant::now(), status, cpu_seconds: None, peak_memory: None }
-}
-
-/// The processes that a program has started, itself among them.
-struct Group {
-    #[cfg(unix)]
-    leader: rustix::process::Pid,
-    #[cfg(not(unix))]
-    leader: u32,
-}
-
-impl Group {
-    #[cfg(unix)]
-    fn of(child: &Child) -> Self {
-        Self { leader: rustix::process::Pid::from_child(child) }
-    }
-
-    #[cfg(not(unix))]
-    fn of(child: &Child) -> Self {
-        Self { leader: child.id() }
-    }
-
-    /// Ends them all; those that are gone already are none.
-    #[cfg(unix)]
-    fn kill(&self) {
-        let _ = rustix::process::kill_process_group(self.leader, rustix::process::Signal::KILL);
-    }
-
-    #[cfg(not(unix))]
-    fn kill(&self) {
-        let arguments = ["/T", "/F", "/PID", &self.leader.to_string()].map(str::to_owned);
-        let _ = Command::new("taskkill").args(arguments).output();
-    }
 }
 
 #[cfg(all(test, unix))]

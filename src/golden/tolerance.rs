@@ -69,9 +69,72 @@ impl GoldenFile {
     }
 }
 
+impl GoldenFile {
+    /// The same values with tolerances that measured spreads widen and nothing narrows: what somebody has widened by
+    /// hand stays wide.
+    #[must_use]
+    pub fn widened_by(self, spread: BTreeMap<String, f64>) -> Self {
+        let (relative, absolute) = (self.relative_tolerance, self.absolute_tolerance);
+        let measured = self.with_spread(spread);
+        Self {
+            relative_tolerance: measured.relative_tolerance.max(relative),
+            absolute_tolerance: measured.absolute_tolerance.max(absolute),
+            ..measured
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn spreads_widen_in_any_order_and_never_narrow_not_even_what_was_widened_by_hand() {
+        let mut seed = 3_u64;
+        let mut dice = |count: u64| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) % count
+        };
+        let name = |case: u64| format!("MPM cells={case} | pressure points l2 terzaghi T_v=0.1");
+        for _ in 0..300 {
+            let mut measured = || -> BTreeMap<String, f64> {
+                let groups = (0..dice(4)).map(|_| {
+                    let group = spread_group(&name(dice(3))).expect("a group");
+                    (group, 10.0_f64.powi(-6 - i32::try_from(dice(8)).expect("small")))
+                });
+                groups.collect()
+            };
+            let (first, second) = (measured(), measured());
+            let by_hand = GoldenFile {
+                relative_tolerance: [1e-9, 1e-12][usize::try_from(dice(2)).expect("small")],
+                absolute_tolerance: [1e-10, 1e-13][usize::try_from(dice(2)).expect("small")],
+                ..GoldenFile::of("s", &[], "test")
+            };
+            let steps = [
+                by_hand.clone(),
+                by_hand.clone().widened_by(first.clone()),
+                by_hand.clone().widened_by(first.clone()).widened_by(second.clone()),
+                by_hand
+                    .clone()
+                    .widened_by(first.clone())
+                    .widened_by(second.clone())
+                    .widened_by(BTreeMap::new()),
+            ];
+            let other_way = by_hand.clone().widened_by(second.clone()).widened_by(first.clone());
+            for case in 0..3 {
+                for size in [0.0, 1e-3, 1.0] {
+                    let all: Vec<f64> = steps.iter().map(|file| file.tolerance(&name(case), size)).collect();
+                    assert!(all.is_sorted(), "{all:?} narrows: {first:?} {second:?}");
+                    assert_eq!(other_way.tolerance(&name(case), size), all[3], "{first:?} {second:?}");
+                }
+            }
+            // Kept in a file and read back it allows the same.
+            let folder = tempfile::TempDir::new().expect("a folder");
+            other_way.write(folder.path()).expect("written");
+            let read = GoldenFile::read(folder.path(), "s").expect("read");
+            assert_eq!(read.tolerance(&name(0), 1.0), other_way.tolerance(&name(0), 1.0));
+        }
+    }
 
     const ERROR: &str = "MPM cells=4 | pressure points l2 terzaghi T_v=0.1";
 

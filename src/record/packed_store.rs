@@ -4,7 +4,7 @@ use crate::record::csv::packed_table::{RowsOf, packed_rows};
 use crate::record::csv::rows_at_hand::RowsAtHand;
 use crate::record::csv::tidy;
 use crate::record::pack::FOLDER;
-use crate::record::pack::index::{Damage, Index, Place};
+use crate::record::pack::index::{Damage, Index, Place, WINDOW};
 use crate::record::pack::member::{Header, Kind, packed, unpacked};
 use crate::record::pack::writer::Writer;
 use crate::record::provenance::Provenance;
@@ -19,6 +19,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 #[derive(Debug)]
 pub struct PackedStore {
     study: PathBuf,
+    /// Bytes that are looked through at once behind damage.
+    window: u64,
     state: Mutex<State>,
 }
 
@@ -75,7 +77,12 @@ impl From<&Header> for Entry {
 impl PackedStore {
     /// The packs below the folder of a study's results.
     pub fn new(study: &Path) -> Self {
-        Self { study: study.to_owned(), state: Mutex::default() }
+        Self::with_window(study, WINDOW)
+    }
+
+    /// The same, looking through so many bytes at once behind damage.
+    pub fn with_window(study: &Path, window: u64) -> Self {
+        Self { study: study.to_owned(), window, state: Mutex::default() }
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -91,7 +98,7 @@ impl PackedStore {
     fn with_index<T>(&self, ask: impl FnOnce(&mut Index) -> T) -> T {
         let mut state = self.state();
         let folder = self.study.join(FOLDER);
-        ask(state.index.get_or_insert_with(|| Index::of(&folder).unwrap_or_default()))
+        ask(state.index.get_or_insert_with(|| Index::of_with(&folder, self.window).unwrap_or_default()))
     }
 
     /// Whether there is any record.
@@ -147,6 +154,15 @@ impl PackedStore {
     /// Every pack with the bytes of it that are whole.
     pub fn packs(&self) -> Vec<(PathBuf, u64)> {
         self.with_index(|index| index.packs().map(|(path, end)| (path.to_owned(), end)).collect())
+    }
+
+    /// Where the newest record of a case, or its newest wall times, lie.
+    #[cfg(test)]
+    pub fn place(&self, case: u64, of_wall: bool) -> Option<(PathBuf, Place)> {
+        self.with_index(|index| {
+            let place = if of_wall { index.wall(case) } else { index.record(case) }?;
+            Some((index.packs().nth(place.pack as usize)?.0.to_owned(), place))
+        })
     }
 
     fn unpacked(&self, place: Place) -> Option<String> {
@@ -280,7 +296,7 @@ impl PackedStore {
         if let Some(writer) = writer {
             return Ok(writer.generation());
         }
-        let index = index.get_or_insert_with(|| Index::of(&folder).unwrap_or_default());
+        let index = index.get_or_insert_with(|| Index::of_with(&folder, self.window).unwrap_or_default());
         let opened =
             Writer::open(&self.study, index).map_err(self.refused("make the folder or a pack in"))?;
         Ok(writer.insert(opened).generation())

@@ -296,10 +296,17 @@ impl RecordStore {
     /// # Errors
     /// When the file system refuses.
     pub fn write_wall(&self, record: &Record) -> Result<(), StoreError> {
-        if self.is_packed {
+        if self.is_packed && self.packs.entry(number_of(&record.hash)).is_none() {
+            // That of a study which has grown since has files of its own: times alone would belong to nothing.
+            self.write(record)
+        } else if self.is_packed {
             self.packs.write_wall(record)
         } else {
             single_files::write_wall(&self.folder, record)
         }
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/record_store_model.rs"]
+mod model;

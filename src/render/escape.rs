@@ -1,5 +1,49 @@
-//! Text made safe for the document it goes into.
+//! Text made safe for the document it goes into. Titles, names of files and headers of tables come from anywhere: what
+//! steers a terminal, turns the direction of a line or breaks it is never passed on.
 use crate::render::script::{ScriptLevel, ScriptRun, runs};
+use std::borrow::Cow;
+
+/// Stands for a letter that would not be seen.
+const UNSEEN: char = '\u{fffd}';
+
+/// Whether a letter does something to the text around it instead of standing in it: controls but for the end of a line
+/// and the tabulator, what turns the direction of writing, separators of lines and paragraphs, marks of byte order, and
+/// tags.
+fn is_unseen(c: char) -> bool {
+    matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        || matches!(c, '\u{feff}' | '\u{e0000}'..='\u{e007f}')
+        || (c.is_control() && c != '\n' && c != '\t')
+}
+
+/// A document as it may leave this program: a whole text for a terminal, a page or a file.
+pub(crate) fn document(text: &str) -> Cow<'_, str> {
+    if text.contains(is_unseen) { text.replace(is_unseen, "\u{fffd}").into() } else { text.into() }
+}
+
+/// Text on one line.
+pub(crate) fn one_line(text: &str) -> String {
+    text.chars().map(of_one_line).collect()
+}
+
+fn of_one_line(c: char) -> char {
+    match c {
+        '\n' | '\t' => ' ',
+        c if is_unseen(c) => UNSEEN,
+        c => c,
+    }
+}
+
+/// A field of CSV with words: a spreadsheet reads one that begins with `=`, `+`, `-` or `@` as a formula, and one behind
+/// an apostrophe as words. Numbers stay as they are.
+pub(crate) fn csv_field(text: &str) -> Cow<'_, str> {
+    let is_of_numbers = |rest: &str| rest.chars().all(|c| c.is_ascii_digit() || ".eE+- %±".contains(c));
+    let is_formula = match text.chars().next() {
+        Some('=' | '@' | '\t' | '\r' | '\n' | '＝' | '＋' | '－' | '＠') => true,
+        Some('+' | '-') => !is_of_numbers(&text[1..]) && text.parse::<f64>().is_err(),
+        _ => false,
+    };
+    if is_formula { format!("'{text}").into() } else { text.into() }
+}
 
 /// Text for HTML, with real subscripts and superscripts.
 pub(crate) fn html(text: &str) -> String {
@@ -26,7 +70,7 @@ pub(crate) fn plain_html(text: &str) -> String {
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
-            c if c.is_control() && c != '\n' && c != '\t' => {}
+            c if is_unseen(c) => out.push(UNSEEN),
             c => out.push(c),
         }
     }
@@ -35,7 +79,7 @@ pub(crate) fn plain_html(text: &str) -> String {
 
 /// Text for one line of GitHub's Markdown.
 pub(crate) fn markdown(text: &str) -> String {
-    let chars: Vec<char> = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let chars: Vec<char> = text.chars().map(of_one_line).collect();
     let mut out = String::with_capacity(text.len());
     for (i, &c) in chars.iter().enumerate() {
         let inside_word =
@@ -71,6 +115,7 @@ pub(crate) fn latex(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars().filter(|c| !c.is_control()) {
         match c {
+            c if is_unseen(c) => out.push('?'),
             '\\' => out.push_str("\\textbackslash{}"),
             '~' => out.push_str("\\textasciitilde{}"),
             '^' => out.push_str("\\textasciicircum{}"),
@@ -105,8 +150,35 @@ mod tests {
             "&lt;a href=&quot;x&quot;&gt;T<sub>v</sub> &amp; 10<sup>−3</sup>"
         );
         assert_eq!(latex_text("T_v = 0.1 & h²"), "T\\textsubscript{v} = 0.1 \\& h\\textsuperscript{2}");
-        assert_eq!(plain_html("a\u{0}'b"), "a&#39;b");
+        assert_eq!(plain_html("a\u{0}'b"), "a\u{fffd}&#39;b");
         assert_eq!(markdown("a|b *c* <i> T_v _x_"), "a\\|b \\*c\\* &lt;i&gt; T_v \\_x\\_");
+        assert_eq!(markdown("a\u{1b}[2J\u{202e}b"), "a\u{fffd}\\[2J\u{fffd}b");
         assert_eq!(markdown("# not a heading\n- nor a list"), "\\# not a heading - nor a list");
+    }
+
+    #[test]
+    fn no_document_has_what_is_not_seen() {
+        for unseen in
+            ['\u{1b}', '\u{7}', '\r', '\u{7f}', '\u{9b}', '\u{202e}', '\u{2066}', '\u{200f}', '\u{2028}']
+        {
+            let text = format!("a{unseen}[31m\n\tb");
+            assert_eq!(document(&text), "a\u{fffd}[31m\n\tb", "{unseen:?}");
+            let shown = [one_line(&text), html(&text), plain_html(&text), markdown(&text), latex(&text)];
+            assert!(shown.iter().all(|shown| !shown.contains(unseen)), "{unseen:?}: {shown:?}");
+        }
+        let plain = "T_v = 0.1 − σ′ über 水 👩\u{200d}🔬\n\t";
+        assert!(matches!(document(plain), Cow::Borrowed(text) if text == plain), "words stay");
+        assert_eq!(one_line("a\tb\nc"), "a b c");
+    }
+
+    #[test]
+    fn words_that_a_spreadsheet_would_compute_stay_words_and_numbers_numbers() {
+        for formula in ["=1+1", "@SUM(A1)", "+cmd|' /C calc'!A0", "-2+3+A1", "\t=1", "-x", "＝1"] {
+            assert_eq!(csv_field(formula), format!("'{formula}"));
+        }
+        for number in ["-1.5e-3", "+2", "-inf", "-NaN", "-0.48 %", "-1.0 ± 0.1", "-", "1=2", "a@b", "", "−3"]
+        {
+            assert_eq!(csv_field(number), number);
+        }
     }
 }

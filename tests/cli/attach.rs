@@ -109,7 +109,10 @@ fn each_end_has_its_status_and_the_rest_of_the_sweep_goes_on() {
     assert!(told.err.contains("skip: 1 cases were skipped"), "{}", told.err);
     // A study that is called as its solver: the words of a case are its own before its study's.
     fs::copy(folder.path().join("ends.toml"), folder.path().join("soft.toml")).expect("copied");
-    let told = call(folder.path(), &["explain", "soft cells=10", "soft.toml", "--records", "none"]);
+    let none = call(folder.path(), &["explain", "soft cells=10", "soft.toml", "--records", "none"]);
+    assert!(none.code == 4 && none.err.contains("starts no solver"), "{}", none.err);
+    assert_eq!(call(folder.path(), &["run", "soft.toml"]).code, 3);
+    let told = call(folder.path(), &["explain", "soft cells=10", "soft.toml"]);
     assert!(told.code == 0 && told.out.contains("soft cells=10"), "{}", told.err);
     // What only this program's integrators take stands in no row of another solver.
     let foreign = all.iter().find(|row| field(row, "method") == "soft").expect("a row");

@@ -2,7 +2,7 @@
 //! kept, and `--resume` goes on.
 #![cfg(target_os = "linux")]
 
-use crate::program::{OF_A_CI, PROGRAM, call};
+use crate::program::{ALLOWED, OF_A_CI, PROGRAM, call};
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -63,6 +63,7 @@ fn start(at: &Path, arguments: &[&str]) -> Child {
     }
     command
         .current_dir(at)
+        .envs([ALLOWED])
         .args(arguments)
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
@@ -165,12 +166,40 @@ fn a_check_that_is_ended_judges_nothing() {
     assert_eq!(code, Some(6), "{said}");
     assert!(said.contains("told to end: nothing is judged"), "{said}");
     assert!(!solver.iter().any(|process| runs(process)), "{solver:?} run on");
-    // The same of one case alone.
-    fs::remove_file(at.join("started")).expect("it was there");
-    let child = start(at, &["explain", "slow cells=4", "s.toml"]);
-    let solver = processes(at);
-    send("INT", &child);
-    let (code, said) = end_of(child);
-    assert!(code == Some(6) && said.contains("told to end"), "{code:?}: {said}");
-    assert!(!solver.iter().any(|process| runs(process)), "{solver:?} run on");
+}
+
+#[test]
+fn a_quit_and_a_closed_terminal_end_a_solver_with_what_left_its_group() {
+    for signal in ["QUIT", "HUP"] {
+        let folder = folder();
+        let at = folder.path();
+        fs::write(
+            at.join("adapter.sh"),
+            ADAPTER.replace("    sleep 600 &", "    setsid sleep 600 >&- 2>&- &"),
+        )
+        .expect("a file");
+        let child = start(at, &["run", "s.toml", "--jobs", "2"]);
+        let solver = processes(at);
+        until("both", || solver.iter().all(|process| runs(process)));
+        send(signal, &child);
+        let (code, said) = end_of(child);
+        assert_eq!(code, Some(6), "{signal}: {said}");
+        assert!(!solver.iter().any(|process| runs(process)), "{signal}: {solver:?} run on");
+    }
+}
+
+#[test]
+fn what_a_solver_leaves_without_group_streams_and_environment_is_ended_and_named() {
+    let folder = folder();
+    let at = folder.path();
+    let adapter = ADAPTER.replace("if [ -e \"$2/slow\" ]; then", "env -i setsid -f sh -c \"echo \\$\\$ > '$2/left'; exec \
+         sleep 600\" </dev/null >/dev/null 2>&1\nwhile [ ! -s \"$2/left\" ]; do sleep 0.01; done\nif false; then");
+    fs::write(at.join("adapter.sh"), adapter).expect("a file");
+    let told = call(at, &["run", "s.toml", "--jobs", "1"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    let left = fs::read_to_string(at.join("left")).expect("it was started");
+    assert!(!runs(left.trim()), "{left} runs on");
+    let explained = call(at, &["explain", "slow cells=4", "s.toml"]).words();
+    let sentence = format!("it left processes behind, which were ended: {} (sleep)", left.trim());
+    assert!(explained.contains(&sentence), "{explained}");
 }

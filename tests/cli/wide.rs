@@ -1,6 +1,6 @@
 //! Many cases: packed records, shares, tables that are made without reading everything again.
 
-use crate::program::{PROGRAM, Told, call, folder_with, table_without_times};
+use crate::program::{PROGRAM, Told, call, call_with, folder_with, table_without_times};
 use oedometer::{Case, Failure, FailureKind, Record, RecordStore, Status, Study, StudySource, Tier};
 use std::collections::BTreeSet;
 use std::fs;
@@ -359,6 +359,96 @@ fn the_scripts_of_a_cluster_are_shown_without_a_cluster() {
     }
     assert!(!at.join("out").exists(), "nothing is written");
     assert_eq!(run(at, &["--tasks", "6"]).code, 2, "shares of an engine that is not named");
+}
+
+/// Programs of a scheduler that takes three tasks an array, note what they are asked, and refuse the n-th submission.
+#[cfg(unix)]
+fn fake_slurm(at: &Path, refused: usize) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let bin = at.join("bin");
+    fs::create_dir_all(&bin).expect("a folder");
+    let asked = at.join("asked");
+    let sbatch = format!(
+        "n=$(grep -c sbatch {0} 2>/dev/null); echo sbatch \"$@\" >> {0}\n[ \"$n\" = {refused} ] && {{ echo no room >&2; exit \
+         1; }}\necho $((101 + n))",
+        asked.display()
+    );
+    for (name, script) in [
+        ("scontrol", "echo 'Configuration data'; echo 'MaxArraySize            = 4'".to_owned()),
+        ("sbatch", sbatch),
+        ("scancel", format!("echo scancel \"$@\" >> {}", asked.display())),
+        ("squeue", "true".to_owned()),
+    ] {
+        fs::write(bin.join(name), format!("#!/bin/sh\n{script}\n")).expect("a file");
+        fs::set_permissions(bin.join(name), fs::Permissions::from_mode(0o755)).expect("rights");
+    }
+    format!("{}:{}", bin.display(), std::env::var("PATH").unwrap_or_default())
+}
+
+#[test]
+#[cfg(unix)]
+fn more_tasks_than_an_array_takes_are_several_arrays_of_the_same_shares() {
+    let folder = folder_with(STUDY);
+    let at = folder.path();
+    let path = fake_slurm(at, 9);
+    let with = |words: &[&str]| {
+        let all = [&["run", "short.toml", "--engine", "slurm", "--tasks", "8"][..], words].concat();
+        call_with(at, &[("PATH", path.as_str())], &all)
+    };
+    let told = with(&["--dry-run"]);
+    for part in [
+        "this Slurm takes at most 3 tasks an array: 8 tasks are 3 arrays",
+        "--shard $((SLURM_ARRAY_TASK_ID + ${1:-0}))/8 --balance",
+        "# array=$(sbatch --parsable --array=1-3 out/slurm/array.sh)\n",
+        "# array2=$(sbatch --parsable --array=1-3 out/slurm/array.sh 3)\n",
+        "# array3=$(sbatch --parsable --array=1-2 out/slurm/array.sh 6)\n",
+        "--dependency=afterany:$array:$array2:$array3 out/slurm/merge.sh",
+    ] {
+        assert!(told.code == 0 && told.out.contains(part), "no {part} in {}{}", told.out, told.err);
+    }
+    let few = call_with(
+        at,
+        &[("PATH", path.as_str())],
+        &["run", "short.toml", "--engine", "slurm", "--tasks", "3", "--dry-run"],
+    );
+    assert!(
+        few.out.contains("--shard $SLURM_ARRAY_TASK_ID/3") && !few.out.contains("takes at most"),
+        "{}",
+        few.out
+    );
+    let told = with(&["--detach"]);
+    assert!(told.code == 0 && told.err.contains("8 tasks are 3 arrays"), "{}", told.err);
+    let asked = fs::read_to_string(at.join("asked")).expect("what was asked");
+    let asked: Vec<&str> = asked.lines().collect();
+    assert_eq!(asked.len(), 4, "{asked:?}");
+    assert!(asked[3].contains("--dependency=afterany:101:102:103 "), "{asked:?}");
+    // The scheduler gives each task its number and the script its argument: together they are all of the shares.
+    for (task, before) in (0..8).map(|share| (share % 3 + 1, share / 3 * 3)) {
+        let mut task_of = Command::new("bash");
+        task_of.current_dir(at).arg("out/slurm/array.sh").env("SLURM_ARRAY_TASK_ID", format!("{task}"));
+        let output = task_of.args((before > 0).then(|| before.to_string())).output().expect("bash");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let told = call(at, &["plan", "short.toml", "--missing", "out"]);
+    assert!(told.err.contains("no case is missing"), "{}", told.err);
+}
+
+#[test]
+#[cfg(unix)]
+fn what_was_submitted_of_a_campaign_that_is_refused_in_part_is_taken_back() {
+    let folder = folder_with(STUDY);
+    let at = folder.path();
+    let path = fake_slurm(at, 2);
+    let told = call_with(
+        at,
+        &[("PATH", path.as_str())],
+        &["run", "short.toml", "--engine", "slurm", "--tasks", "8", "--detach"],
+    );
+    assert!(told.code == 3 && told.err.contains("no room"), "{}", told.err);
+    let asked = fs::read_to_string(at.join("asked")).expect("what was asked");
+    let back: Vec<&str> = asked.lines().filter(|line| line.starts_with("scancel")).collect();
+    assert_eq!(back, ["scancel 101", "scancel 102"], "{asked}");
+    assert!(!at.join("out/slurm/job").exists(), "nothing is under way");
 }
 
 /// The share 2/2 of a whole run in packs of its own, each record changed on its way.

@@ -77,6 +77,19 @@ mod runs {
     }
 
     #[test]
+    fn a_version_that_hangs_takes_no_longer_than_a_run_may() {
+        let clock = std::time::Instant::now();
+        let record = run(&format!("{ROWS} > result.csv"), |solver| {
+            solver.version = ["sh", "-c", "echo 7; exec sleep 600"].map(str::to_owned).to_vec();
+            solver.timeout = 2.0;
+        });
+        let about = record.attached.expect("what it was");
+        assert_eq!((record.status, about.version), (Status::Ok, None));
+        assert!(about.notes[0].contains("did not end within 2 s"), "{:?}", about.notes);
+        assert!(clock.elapsed().as_secs() < 50, "the time that any version has");
+    }
+
+    #[test]
     fn a_state_near_an_output_is_held_against_the_solution_at_its_own_time() {
         let error = |time: &str| {
             let record = run(&format!("{} > result.csv", ROWS.replace("8.175", time)), |_| {});

@@ -19,7 +19,10 @@ fn a_program_without_input_ends_by_itself_and_is_heard() {
     let found = shell("cat; echo $ATTACHED; pwd; echo trouble >&2; exit 3", 60.0);
     assert!(matches!(&found.ending, Ending::Ended(status) if status.code() == Some(3)), "{found:?}");
     assert_eq!((found.output.as_str(), found.errors.as_str()), ("yes\n/\n", "trouble\n"));
-    assert!(!found.left_processes && found.peak_memory.is_some_and(|bytes| bytes > 100_000), "{found:?}");
+    assert!(
+        found.found == Found::default() && found.peak_memory.is_some_and(|bytes| bytes > 100_000),
+        "{found:?}"
+    );
 }
 
 #[test]
@@ -41,8 +44,61 @@ fn what_is_left_behind_is_ended_too_and_told() {
     let clock = Instant::now();
     let found = shell("sleep 600 & echo done", 300.0);
     assert!(matches!(&found.ending, Ending::Ended(status) if status.success()), "{found:?}");
-    assert!(found.left_processes && clock.elapsed() < Duration::from_secs(120));
+    assert!(!found.found.seen.is_empty() && clock.elapsed() < Duration::from_secs(120));
     assert_eq!(found.output, "done\n");
+}
+
+/// A process that says who it is and would live on for long, without the streams of its parent.
+#[cfg(target_os = "linux")]
+fn left_behind(how: &str, with: &str) -> (Finished, i32, tempfile::TempDir) {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let told = folder.path().join("told");
+    let lived = format!("sh -c 'echo $$ > {0}.new; mv {0}.new {0}; exec sleep 600'", told.display());
+    let script = format!("{how} {lived} </dev/null >/dev/null 2>&1 & {with}");
+    let script = script.replace("TOLD", &told.display().to_string());
+    let found = shell(&script, 20.0);
+    let id = std::fs::read_to_string(&told).expect("it was started").trim().parse().expect("a number");
+    (found, id, folder)
+}
+
+#[cfg(target_os = "linux")]
+fn lives(id: i32) -> bool {
+    let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
+    stat.rsplit(')').next().and_then(|rest| rest.split_whitespace().next()).is_some_and(|state| state != "Z")
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn what_leaves_its_group_or_closes_its_streams_is_found_named_and_ended() {
+    let wait = "while [ ! -e TOLD ]; do sleep 0.01; done";
+    for how in ["", "setsid", "setsid setsid -f", "nohup"] {
+        let (found, id, _folder) = left_behind(how, wait);
+        assert!(matches!(&found.ending, Ending::Ended(status) if status.success()), "{how}: {found:?}");
+        assert!(
+            found.found.seen.iter().any(|seen| seen.id == id && seen.name == "sleep"),
+            "{how}: {found:?}"
+        );
+        assert!(found.found.lives_on.is_empty() && !lives(id), "{how}: {found:?}");
+    }
+    let (found, id, _folder) = left_behind("setsid", &format!("{wait}; kill -SEGV $$"));
+    assert!(matches!(&found.ending, Ending::Ended(status) if status.signal() == Some(11)), "{found:?}");
+    assert!(!lives(id), "it crashed and left {id}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn what_left_the_group_of_a_hung_program_is_ended_with_it() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let told = folder.path().join("told");
+    let script =
+        format!("setsid sh -c 'echo $$ > {}; exec sleep 600' >/dev/null 2>&1 & sleep 600", told.display());
+    let found = shell(&script, 1.0);
+    let id: i32 = std::fs::read_to_string(&told).expect("started").trim().parse().expect("a number");
+    assert!(matches!(found.ending, Ending::TimedOut) && !lives(id), "{found:?}");
+    assert!(
+        found.found.lives_on.is_empty() && found.found.seen.iter().any(|seen| seen.id == id),
+        "{found:?}"
+    );
 }
 
 #[test]

@@ -40,6 +40,22 @@ fn a_solver_stands_among_the_methods_and_integrators_do_not_multiply_it() {
 }
 
 #[test]
+fn variables_that_no_system_passes_on_are_refused() {
+    let folder = folder();
+    let refused = |more: &str| {
+        let text = text(&format!("{SOLVER}{more}\n"), "method = [\"toy\"]\ncells = [4]");
+        checked(folder.path(), &text).err().unwrap_or_default()
+    };
+    for more in ["env = { \"A=B\" = \"1\" }", "env = { \"\" = \"1\" }", "env = { \"A\\u0000\" = \"1\" }"] {
+        assert!(refused(more).contains("is no name of a variable"), "{more}: {}", refused(more));
+    }
+    for more in ["env = { A = \"a\\u0000b\" }", "version = [\"sh\", \"\\u0000\"]"] {
+        assert!(refused(more).contains("NUL"), "{more}: {}", refused(more));
+    }
+    assert_eq!(refused("env = { A = \"b=c\" }"), "", "a value may have one");
+}
+
+#[test]
 fn the_identity_follows_the_adapter_and_the_command_and_no_path_or_time() {
     let hash = |folder: &Path, solver: &str| {
         let sweep = "method = [\"toy\"]\ncells = [4]";

@@ -6,6 +6,7 @@ use crate::cli::commands::run::{jobs_of, load};
 use crate::cli::destination::is_on;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
+use crate::cli::trust::TrustArguments;
 use crate::golden::tolerance::spread_by_group;
 use crate::golden::{GoldenFile, values_of};
 use crate::judge::study_check::StudyCheck;
@@ -37,6 +38,8 @@ pub struct Arguments {
     /// Cases at the same time; all cores where not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
+    #[command(flatten)]
+    trust: TrustArguments,
 }
 
 /// Runs the CI tier, as it is and with last digits changed, and writes values and tolerances.
@@ -46,7 +49,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     refuse_without_origin()?;
     let reason = arguments.reason.trim();
-    let studies = load(&arguments.studies)?;
+    let mut studies = load(&arguments.studies)?;
+    arguments.trust.mark_all(&mut studies, &arguments.studies)?;
     let records = run_quietly(&studies, jobs_of(arguments.jobs))?;
     refuse_failing(&studies, &records, arguments.despite_failing)?;
     if arguments.references {

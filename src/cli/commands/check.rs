@@ -1,16 +1,17 @@
 //! `oedometer check`: the CI tier again, judged by its expectations and by its golden values.
 
 use crate::campaign::run_options::{RunOptions, Selected};
-use crate::campaign::run_report::RunReport;
+use crate::campaign::run_report::{RunReport, Tally};
 use crate::campaign::runner::run_studies_thinned;
 use crate::case::tier::Tier;
 use crate::cli::commands::run::{jobs_of, load_or_shipped};
 use crate::cli::destination::{append, is_on, path_in, write_document};
 use crate::cli::exit::{Ended, Exit, sentence};
-use crate::cli::output::{TableFormat, coloured, json_of};
+use crate::cli::output::{TableFormat, json_of, print_coloured};
 use crate::cli::progress::StudyBar;
 use crate::cli::stream::{print_data, say};
 use crate::cli::study_files;
+use crate::cli::trust::{self, TrustArguments};
 use crate::golden::case_changes::CaseChange;
 use crate::golden::compare::Difference;
 use crate::golden::difference_groups::DifferenceGroup;
@@ -56,6 +57,8 @@ pub struct Arguments {
     /// workflows
     #[arg(long)]
     annotate: bool,
+    #[command(flatten)]
+    trust: TrustArguments,
     /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]
     format: TableFormat,
@@ -63,8 +66,9 @@ pub struct Arguments {
 
 /// Runs, judges, compares and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let studies = load_or_shipped(&arguments.studies)?;
-    let checks = checks_of(arguments, &studies)?;
+    let mut studies = load_or_shipped(&arguments.studies)?;
+    arguments.trust.mark(&mut studies, &arguments.studies);
+    let (checks, tally) = checks_of(arguments, &studies)?;
     if checks.is_empty() {
         return Err(Ended::with(Exit::NothingSelected, "no study has a case in the CI tier"));
     }
@@ -87,11 +91,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     for error in &refused {
         say!("{}", sentence(error));
     }
-    Ok(if verdict == Exit::Pass { refused.first().map_or(Exit::Pass, Exit::of) } else { verdict })
+    let end = if verdict == Exit::Pass { refused.first().map_or(Exit::Pass, Exit::of) } else { verdict };
+    Ok(trust::end_with(tally, end))
 }
 
-/// The studies that have cases in the CI tier, and the exact solutions where they are wanted.
-fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<Vec<StudyCheck>> {
+/// The studies that have cases in the CI tier, and the exact solutions where they are wanted; how their cases ended.
+fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<(Vec<StudyCheck>, Tally)> {
     let read = |name: &str| golden_of(arguments.golden.as_deref(), name, &arguments.studies);
     let mut checks = Vec::new();
     if arguments.references || arguments.studies.is_empty() {
@@ -107,13 +112,15 @@ fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<Vec<Stu
         }
     };
     let reports = run_all(studies, jobs_of(arguments.jobs), &thin_alone)?;
+    let mut tally = Tally::default();
     for ((study, golden), report) in studies.iter().zip(golden).zip(&reports) {
+        tally.join(report.tally);
         if !(report.records.is_empty() && report.errors.is_empty()) {
             let check = StudyCheck::new(study, &report.records, Tier::Ci, golden);
             checks.push(check.with_errors(&report.errors));
         }
     }
-    Ok(checks)
+    Ok((checks, tally))
 }
 
 /// The golden values of a study: from a folder; for a study from inside the program from there, where no folder was
@@ -210,7 +217,7 @@ fn print(checks: &[StudyCheck], arguments: &Arguments) -> anyhow::Result<()> {
     let text = match arguments.format {
         TableFormat::Table => {
             let text = |check: &StudyCheck| verdicts::text_of(check, file_of(&check.study).as_deref());
-            coloured(&checks.iter().map(text).collect::<String>())
+            return print_coloured(&checks.iter().map(text).collect::<String>());
         }
         TableFormat::Markdown => verdicts::markdown_of(checks, file_of)?,
         TableFormat::Csv => verdicts::all_judgements(checks).to_csv()?,

@@ -30,7 +30,8 @@ pub struct Arguments {
     /// Study files or names of shipped studies; every shipped one where none is named
     #[arg(value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
-    /// Folder of results: a record that this program made is taken from there, else the case is run
+    /// Folder of results: a record that this program made is taken from there, else the case is solved; no other program
+    /// is ever started
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
     /// Folder of the golden values
@@ -131,9 +132,22 @@ fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a S
     }
 }
 
-/// The stored record, if this very program made it; else the case is run and nothing is kept.
+/// The stored record, if this very program made it; else the case is solved and nothing is kept. Of a case of an attached
+/// solver that is run the record is taken as it is, for nothing is started here.
 fn record_of(study: &Study, case: &Case, results: &Path) -> anyhow::Result<Record> {
-    if let Some(record) = RecordStore::new(results, &study.name).finished(case) {
+    let store = RecordStore::new(results, &study.name);
+    if study.solver_of(case).is_some_and(|solver| !solver.is_given()) {
+        return store.kept(case).ok_or_else(|| {
+            let reason = format!(
+                "there is no record of `{}` in {}, and `explain` starts no solver: `oedometer run … --case {}` does",
+                case.label(),
+                store.folder().display(),
+                case.hash()
+            );
+            Ended::with(Exit::NothingSelected, reason)
+        });
+    }
+    if let Some(record) = store.finished(case) {
         return Ok(record);
     }
     let record = CaseRunner::of(study).run_alone(case, None)?;

@@ -5,10 +5,10 @@ use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::cli::study_tables::{Beside, write_machines, write_table};
-use crate::record::Record;
 use crate::record::csv::table_file::TableForm;
 use crate::record::origins::Origins;
 use crate::record::store::RecordStore;
+use crate::record::{Record, WallSample};
 use crate::study::check::Study;
 use std::path::PathBuf;
 
@@ -138,6 +138,20 @@ fn bring(study: &Study, case: &Case, target: &RecordStore, others: &[RecordStore
     Ok(true)
 }
 
+/// Adds the wall times of another store that are not here yet. A time that one store has twice was measured twice; what
+/// two stores have in common is one measurement that was copied.
+fn add_wall(wall: &mut Vec<WallSample>, others: Vec<WallSample>) {
+    let mut here = wall.clone();
+    for sample in others {
+        match here.iter().position(|one| *one == sample) {
+            Some(known) => {
+                here.swap_remove(known);
+            }
+            None => wall.push(sample),
+        }
+    }
+}
+
 /// The one record of a case that target and other stores have, with the wall times of all.
 fn record_of(
     study: &Study,
@@ -173,13 +187,55 @@ fn record_of(
                     ));
                 }
                 let is_of_one_build = record.provenance.is_of_one_build_with(&other.provenance);
-                for sample in other.wall.into_iter().filter(|_| is_of_one_build) {
-                    if !record.wall.contains(&sample) {
-                        record.wall.push(sample);
-                    }
+                if is_of_one_build {
+                    add_wall(&mut record.wall, other.wall);
                 }
             }
         }
     }
     Ok(found.map(|(record, _)| record))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn times(wall: &[WallSample]) -> Vec<f64> {
+        let mut seconds: Vec<f64> = wall.iter().map(|sample| sample.seconds).collect();
+        seconds.sort_by(f64::total_cmp);
+        seconds
+    }
+
+    #[test]
+    fn wall_times_are_merged_in_any_order_without_loss_and_once() {
+        let mut seed = 7_u64;
+        let mut dice = |count: u64| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) % count
+        };
+        for _ in 0..500 {
+            let mut store = || -> Vec<WallSample> {
+                let sample = |seconds| WallSample { seconds, alone: true, ..WallSample::default() };
+                (0..dice(5)).map(|_| sample(0.5 * dice(3) as f64)).collect()
+            };
+            let stores = [store(), store(), store()];
+            let merged = |order: [usize; 3]| {
+                let mut wall = stores[order[0]].clone();
+                order[1..].iter().for_each(|at| add_wall(&mut wall, stores[*at].clone()));
+                wall
+            };
+            let first = merged([0, 1, 2]);
+            for order in [[0, 2, 1], [1, 0, 2], [2, 1, 0], [1, 2, 0]] {
+                assert_eq!(times(&merged(order)), times(&first), "{stores:?}");
+            }
+            for sample in &first {
+                let count = |wall: &[WallSample]| wall.iter().filter(|one| *one == sample).count();
+                let most = stores.iter().map(|store| count(store)).max();
+                assert_eq!(Some(count(&first)), most, "a repeat is lost or counted twice: {stores:?}");
+            }
+            let mut again = first.clone();
+            add_wall(&mut again, first.clone());
+            assert_eq!(times(&again), times(&first), "the same store once more adds nothing");
+        }
+    }
 }

@@ -100,6 +100,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             results: results.unwrap_or_else(|| DEFAULT_RESULTS.into()),
             tier,
             tasks,
+            allow_solvers: false,
             parting: if arguments.balance { Parting::Cost } else { Parting::Hash },
             costs: arguments.costs.clone(),
         };

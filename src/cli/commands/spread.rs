@@ -9,6 +9,7 @@ use crate::cli::commands::run::{jobs_of, load_or_shipped};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
 use crate::cli::stream::print_data;
+use crate::cli::trust::TrustArguments;
 use crate::golden::tolerance::spread_by_group;
 use crate::golden::{GoldenFile, values_of};
 use crate::judge::scatter::{ValueScatter, spread_of};
@@ -39,6 +40,8 @@ pub struct Arguments {
     /// Cases at the same time in the run that is held against the sequential one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
+    #[command(flatten)]
+    trust: TrustArguments,
     /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]
     format: TableFormat,
@@ -49,7 +52,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.into.is_some() {
         refuse_without_origin()?;
     }
-    let studies = load_or_shipped(&arguments.studies)?;
+    let mut studies = load_or_shipped(&arguments.studies)?;
+    arguments.trust.mark_all(&mut studies, &arguments.studies)?;
     let mut spreads: Vec<ValueScatter> = Vec::new();
     for study in &studies {
         let one = records_of(study, 1)?;
@@ -78,7 +82,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             let spread = spread_by_group(&values, others.iter().map(|(_, other)| other));
             let golden =
                 GoldenFile::read(folder, &study.name).map_err(|error| Ended::usage(error.to_string()))?;
-            golden.with_spread(spread).write(folder)?;
+            golden.widened_by(spread).write(folder)?;
         }
     }
     if spreads.is_empty() {

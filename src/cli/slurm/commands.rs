@@ -5,10 +5,10 @@ use crate::record::whole_file::write_whole;
 use std::path::Path;
 use std::process::Command;
 
-/// An array and the merge that waits for it, by their numbers.
+/// The arrays of a campaign and the merge that waits for them, by their numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Job {
-    /// The array.
+    /// The arrays, mostly one; parted by commas.
     pub array: String,
     /// The merge.
     pub merge: String,
@@ -37,7 +37,25 @@ impl Job {
         let text = std::fs::read_to_string(path).ok()?;
         let mut lines = text.lines().map(str::to_owned);
         let job = Self { array: lines.next()?, merge: lines.next()? };
-        (tasks_of(&job.array).ok()? != Tasks::default()).then_some(job)
+        (job.tasks().ok()? != Tasks::default()).then_some(job)
+    }
+
+    /// The tasks of its arrays that are not over.
+    ///
+    /// # Errors
+    /// When Slurm does not answer.
+    pub fn tasks(&self) -> anyhow::Result<Tasks> {
+        let mut all = Tasks::default();
+        for array in self.array.split(',') {
+            let Tasks { running, waiting } = tasks_of(array)?;
+            all = Tasks { running: all.running + running, waiting: all.waiting + waiting };
+        }
+        Ok(all)
+    }
+
+    /// Whether somebody cancelled one of its arrays, or some of their tasks.
+    pub fn was_cancelled(&self) -> bool {
+        self.array.split(',').any(was_cancelled)
     }
 }
 
@@ -69,6 +87,21 @@ pub fn submit(command: &[String]) -> anyhow::Result<String> {
     Ok(number.to_owned())
 }
 
+/// Takes back what was submitted, as far as Slurm still knows it.
+pub fn cancel(jobs: &[String]) {
+    for job in jobs {
+        let _ = called(&words(&format!("scancel {job}")));
+    }
+}
+
+/// What the scheduler tells of its configuration.
+///
+/// # Errors
+/// When Slurm is not there or does not answer.
+pub fn told_of_configuration() -> anyhow::Result<String> {
+    called(&words("scontrol show config"))
+}
+
 /// The tasks of a job that are not over; none of one that Slurm knows no more.
 ///
 /// # Errors
@@ -97,7 +130,7 @@ fn counted(states: &str) -> Tasks {
 }
 
 /// Whether somebody cancelled a job, or some of its tasks.
-pub fn was_cancelled(job: &str) -> bool {
+fn was_cancelled(job: &str) -> bool {
     let told = called(&words(&format!("scontrol --oneliner show job {job}")));
     told.is_ok_and(|told| told.contains("JobState=CANCELLED"))
 }

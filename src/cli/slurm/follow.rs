@@ -1,6 +1,6 @@
 //! Waits for a job and tells how far the shares are.
 
-use crate::cli::slurm::commands::{Job, Tasks, tasks_of, was_cancelled};
+use crate::cli::slurm::commands::{Job, Tasks, tasks_of};
 use crate::cli::stream::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -31,7 +31,7 @@ pub fn follow(job: &Job, done: impl Fn() -> usize, all: usize) -> anyhow::Result
     bar.set_prefix(format!("job {}", job.array));
     let (mut pause, mut told, mut silent) = (FIRST, Instant::now(), 0);
     loop {
-        let tasks = tasks_of(&job.array).and_then(|array| Ok((array, tasks_of(&job.merge)?)));
+        let tasks = job.tasks().and_then(|array| Ok((array, tasks_of(&job.merge)?)));
         let (array, merge) = match tasks {
             Ok(tasks) => tasks,
             Err(error) if silent < MOST_SILENT && error.to_string().contains("was refused") => {
@@ -56,7 +56,7 @@ pub fn follow(job: &Job, done: impl Fn() -> usize, all: usize) -> anyhow::Result
         bar.set_message(message);
         if (array, merge) == (Tasks::default(), Tasks::default()) {
             bar.finish_and_clear();
-            return Ok(was_cancelled(&job.array));
+            return Ok(job.was_cancelled());
         }
         sleep(pause);
         pause = (pause * 3 / 2).min(LONGEST);

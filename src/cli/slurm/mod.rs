@@ -5,6 +5,7 @@
 //! requeued or submitted again goes on where the last one ended, and the shares stay the same.
 
 pub mod arguments;
+pub mod array_limit;
 pub mod commands;
 pub mod follow;
 pub mod scripts;
@@ -17,7 +18,8 @@ use crate::cli::cost_files::learned_from;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, missing_of};
 use crate::cli::slurm::arguments::{ClusterArguments, FOLDER};
-use crate::cli::slurm::commands::{Job, submit};
+use crate::cli::slurm::array_limit::ArrayLimit;
+use crate::cli::slurm::commands::{Job, cancel, submit};
 use crate::cli::slurm::follow::follow;
 use crate::cli::slurm::scripts::Scripts;
 use crate::cli::stream::{print_data, say};
@@ -55,7 +57,7 @@ pub fn run(
     results: &Path,
 ) -> anyhow::Result<Exit> {
     let campaign = Campaign::new(arguments, files, studies, tier, results, !arguments.dry_run)?;
-    let scripts = Scripts::new(arguments, &campaign.list, &campaign.name)?;
+    let scripts = Scripts::new(arguments, &campaign.list, &campaign.name, ArrayLimit::asked()?)?;
     let shares = campaign.shares_to_run();
     if arguments.dry_run {
         print_data(&scripts.shown(&shares))?;
@@ -124,6 +126,8 @@ impl<'a> Campaign<'a> {
         }
         let studies: Vec<(&Study, Vec<&Case>)> =
             studies.iter().map(|study| (study, study.cases(tier))).collect();
+        // Whoever may not start them has not come here.
+        let starts_solvers = studies.iter().any(|(study, _)| !study.solvers.is_empty());
         let count: usize = studies.iter().map(|(_, cases)| cases.len()).sum();
         if count == 0 {
             return Err(Ended::with(Exit::NothingSelected, "no case belongs to this tier"));
@@ -134,6 +138,7 @@ impl<'a> Campaign<'a> {
             tier,
             tasks: arguments.tasks.min(count as u64),
             parting: Parting::Cost,
+            allow_solvers: starts_solvers,
             costs: Some(costs_file),
         };
         list.tell_of_balance(&studies, &costs);
@@ -164,9 +169,21 @@ impl<'a> Campaign<'a> {
     }
 
     fn submitted(&self, scripts: &Scripts, shares: &BTreeSet<u64>, folder: &Path) -> anyhow::Result<Job> {
-        let array = submit(&scripts.array_command(shares))?;
-        let merge = submit(&scripts.merge_command(&array))?;
-        let job = Job { array, merge };
+        if let Some(note) = scripts.note(shares) {
+            say!("{}: {note}", self.name);
+        }
+        let mut arrays = Vec::new();
+        let merge = scripts
+            .array_commands(shares)
+            .iter()
+            .try_for_each(|command| {
+                arrays.push(submit(command)?);
+                Ok(())
+            })
+            .and_then(|()| submit(&scripts.merge_command(&arrays)));
+        // What was taken of a campaign that was refused in part would run beside the next attempt.
+        let merge = merge.inspect_err(|_: &anyhow::Error| cancel(&arrays))?;
+        let job = Job { array: arrays.join(","), merge };
         job.keep(&folder.join(JOB))?;
         let tasks = count_of(shares.len(), "task", "tasks");
         say!(

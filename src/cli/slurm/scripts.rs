@@ -3,6 +3,7 @@
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, quoted};
 use crate::cli::slurm::arguments::{ClusterArguments, FOLDER};
+use crate::cli::slurm::array_limit::{ArrayLimit, ArrayPart};
 use crate::record::whole_file::write_whole;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -15,6 +16,8 @@ const WARNING: u64 = 60;
 pub struct Scripts {
     array: String,
     merge: String,
+    limit: ArrayLimit,
+    tasks: u64,
     folder: PathBuf,
     /// The merge as this program calls itself for it.
     merge_words: Vec<String>,
@@ -25,7 +28,18 @@ impl Scripts {
     ///
     /// # Errors
     /// When the program does not know where it is.
-    pub fn new(arguments: &ClusterArguments, list: &JobList, name: &str) -> anyhow::Result<Self> {
+    pub fn new(
+        arguments: &ClusterArguments,
+        list: &JobList,
+        name: &str,
+        limit: ArrayLimit,
+    ) -> anyhow::Result<Self> {
+        // Of several arrays each is told how many shares stand before its own.
+        let share = if list.tasks > limit.most {
+            "$((SLURM_ARRAY_TASK_ID + ${1:-0}))"
+        } else {
+            "$SLURM_ARRAY_TASK_ID"
+        };
         let program = std::env::current_exe()?.to_string_lossy().into_owned();
         let folder = list.results.join(FOLDER);
         let logs = folder.join("logs").to_string_lossy().into_owned();
@@ -50,7 +64,7 @@ impl Scripts {
              exec {} --jobs \"${{SLURM_CPUS_PER_TASK:-1}}\"\n",
             head(name, of_array),
             list.tasks,
-            list.command(&program, "$SLURM_ARRAY_TASK_ID")
+            list.command(&program, share)
         );
         let mut merge_words = vec!["merge".to_owned()];
         merge_words.extend(list.files.iter().map(|file| file.to_string_lossy().into_owned()));
@@ -61,7 +75,7 @@ impl Scripts {
         let words: Vec<String> =
             std::iter::once(&program).chain(&merge_words).map(|word| quoted(word)).collect();
         let merge = format!("{}exec {}\n", head(&format!("{name}-merge"), of_merge), words.join(" "));
-        Ok(Self { array, merge, folder, merge_words })
+        Ok(Self { array, merge, limit, tasks: list.tasks, folder, merge_words })
     }
 
     fn path(&self, name: &str) -> String {
@@ -78,29 +92,48 @@ impl Scripts {
         Ok(())
     }
 
-    /// What submits the array of some shares.
-    pub fn array_command(&self, shares: &BTreeSet<u64>) -> Vec<String> {
-        let array = format!("--array={}", ranges(shares));
-        vec!["sbatch".to_owned(), "--parsable".to_owned(), array, self.path("array.sh")]
+    /// What submits the arrays of some shares, mostly one.
+    pub fn array_commands(&self, shares: &BTreeSet<u64>) -> Vec<Vec<String>> {
+        let of_part = |ArrayPart { tasks, before }: &ArrayPart| {
+            let array = format!("--array={}", ranges(tasks));
+            let mut words = vec!["sbatch".to_owned(), "--parsable".to_owned(), array, self.path("array.sh")];
+            words.extend((*before > 0).then(|| before.to_string()));
+            words
+        };
+        self.limit.parts(shares).iter().map(of_part).collect()
     }
 
-    /// What submits the merge behind an array, however that ends: it names the holes.
-    pub fn merge_command(&self, array: &str) -> Vec<String> {
-        let after = format!("--dependency=afterany:{array}");
+    /// What is said where the shares are more than one array takes.
+    pub fn note(&self, shares: &BTreeSet<u64>) -> Option<String> {
+        self.limit.sentence(self.tasks, self.limit.parts(shares).len())
+    }
+
+    /// What submits the merge behind arrays, however those end: it names the holes.
+    pub fn merge_command(&self, arrays: &[String]) -> Vec<String> {
+        let after = format!("--dependency=afterany:{}", arrays.join(":"));
         vec!["sbatch".to_owned(), "--parsable".to_owned(), after, self.path("merge.sh")]
     }
 
     /// Both as a person reads them.
     pub fn shown(&self, shares: &BTreeSet<u64>) -> String {
         let line = |words: Vec<String>| words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ");
+        let commands = self.array_commands(shares);
+        let name =
+            |number: usize| if number == 0 { "array".to_owned() } else { format!("array{}", number + 1) };
+        let variables: Vec<String> = (0..commands.len()).map(|number| format!("${}", name(number))).collect();
+        let arrays: String = commands
+            .into_iter()
+            .enumerate()
+            .map(|(number, words)| format!("# {}=$({})\n", name(number), line(words)))
+            .collect();
+        let merge = line(self.merge_command(&["ARRAYS".to_owned()])).replace("ARRAYS", &variables.join(":"));
         format!(
-            "# {}\n{}\n# {}\n{}\n# array=$({})\n# {}\n",
+            "# {}\n{}\n# {}\n{}\n{}{arrays}# {merge}\n",
             self.path("array.sh"),
             self.array,
             self.path("merge.sh"),
             self.merge,
-            line(self.array_command(shares)),
-            line(self.merge_command("ARRAY")).replace("ARRAY", "$array")
+            self.note(shares).map_or_else(String::new, |note| format!("# {note}\n")),
         )
     }
 

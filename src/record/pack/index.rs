@@ -2,6 +2,7 @@
 
 use crate::record::pack::ENDING;
 use crate::record::pack::member::{HEADER, Header, Kind, next_start};
+use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::fmt;
@@ -10,7 +11,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// Bytes that are looked through at once for the next header behind damage.
-const LOOK: u64 = 1 << 20;
+pub const WINDOW: u64 = 1 << 20;
 
 /// Where a member lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,8 +72,10 @@ impl fmt::Display for Damage {
 }
 
 /// The members of the packs of a folder.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Index {
+    /// Bytes that are looked through at once for the next header behind damage: more than a header has.
+    window: u64,
     packs: Vec<PathBuf>,
     /// How far each pack was read.
     ends: Vec<u64>,
@@ -113,13 +116,43 @@ fn read_at(file: &mut File, place: Place) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+impl Default for Index {
+    fn default() -> Self {
+        Self::looking(WINDOW)
+    }
+}
+
 impl Index {
+    /// An index without packs, which looks through so many bytes at once behind damage.
+    pub fn looking(window: u64) -> Self {
+        Self {
+            window: window.max(HEADER as u64 + 1),
+            packs: Vec::new(),
+            ends: Vec::new(),
+            records: HashMap::new(),
+            walls: HashMap::new(),
+            sources: Vec::new(),
+            numbers: HashMap::new(),
+            columns: None,
+            damages: Vec::new(),
+            newest: 0,
+        }
+    }
+
     /// Reads the headers of every pack in a folder; nothing where there is none.
     ///
     /// # Errors
     /// When a pack cannot be read.
     pub fn of(folder: &Path) -> io::Result<Self> {
-        let mut index = Self::default();
+        Self::of_with(folder, WINDOW)
+    }
+
+    /// The same with a window of its own.
+    ///
+    /// # Errors
+    /// When a pack cannot be read.
+    pub fn of_with(folder: &Path, window: u64) -> io::Result<Self> {
+        let mut index = Self::looking(window);
         for path in packs_in(folder) {
             let number = index.add_pack(path);
             index.read_on(number)?;
@@ -176,7 +209,7 @@ impl Index {
                 continue;
             }
             let last = last.take().unwrap_or(at);
-            let next = next_header(&mut file, last + 1, length)?;
+            let next = next_header(&mut file, last + 1, length, self.window)?;
             self.damages.push(Damage {
                 pack: path.clone(),
                 from: if next.is_some_and(|next| next < at) { last } else { at },
@@ -237,10 +270,6 @@ impl Index {
         Place { pack, offset, header: Header { kind, generation, case, program, build, length } }
     }
 
-    fn generation_of(&self, kept: Kept) -> u32 {
-        self.sources[kept.source as usize].generation
-    }
-
     /// The newest record of a case.
     pub fn record(&self, case: u64) -> Option<Place> {
         self.records.get(&case).map(|kept| self.place(case, *kept))
@@ -248,8 +277,15 @@ impl Index {
 
     /// The wall times of a case that were written alone, where they are newer than its record.
     pub fn wall(&self, case: u64) -> Option<Place> {
-        let (wall, record) = (self.walls.get(&case)?, self.records.get(&case)?);
-        (self.generation_of(*wall) >= self.generation_of(*record)).then(|| self.place(case, *wall))
+        let (wall, record) =
+            (self.place(case, *self.walls.get(&case)?), self.place(case, *self.records.get(&case)?));
+        // Of one run and one pack the place tells which came later.
+        let is_later = match wall.header.generation.cmp(&record.header.generation) {
+            Ordering::Less => false,
+            Ordering::Equal => wall.pack != record.pack || wall.offset > record.offset,
+            Ordering::Greater => true,
+        };
+        is_later.then_some(wall)
     }
 
     /// Every case with a record.
@@ -306,12 +342,12 @@ fn packs_in(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// The place of the next header from a byte on.
-fn next_header(file: &mut File, from: u64, length: u64) -> io::Result<Option<u64>> {
+fn next_header(file: &mut File, from: u64, length: u64, window: u64) -> io::Result<Option<u64>> {
     let mut at = from;
     while at + HEADER as u64 <= length {
         file.seek(SeekFrom::Start(at))?;
         let mut bytes = Vec::new();
-        BufReader::new(&mut *file).take(LOOK).read_to_end(&mut bytes)?;
+        BufReader::new(&mut *file).take(window).read_to_end(&mut bytes)?;
         let mut inner = 0;
         while let Some(next) = next_start(&bytes[inner..]) {
             let place = at + (inner + next) as u64;
@@ -322,7 +358,7 @@ fn next_header(file: &mut File, from: u64, length: u64) -> io::Result<Option<u64
             inner += next + 1;
         }
         // A header may lie across the end of what was looked through.
-        at += (LOOK - HEADER as u64).min(length);
+        at += (window - HEADER as u64).min(length);
     }
     Ok(None)
 }

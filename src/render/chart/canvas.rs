@@ -162,7 +162,7 @@ fn spots(points: &[Px]) -> Vec<(i32, i32)> {
 
 /// Text for an attribute or a title, as it is spelled.
 fn one_line(text: &str) -> String {
-    plain_html(&text.replace(char::is_control, ""))
+    plain_html(&text.replace(['\n', '\t'], ""))
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! What a figure draws, as rows of numbers.
 use crate::render::chart::describe::Chart;
+use crate::render::escape::csv_field;
 use crate::render::number;
 use std::fmt::Write;
 
@@ -7,7 +8,7 @@ impl Chart {
     /// The data of the figure as CSV: one row a point of a series, with all of its digits; of a field one row a
     /// cell, at its middle.
     pub fn data_csv(&self) -> String {
-        let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+        let quoted = |text: &str| format!("\"{}\"", csv_field(text).replace('"', "\"\""));
         let mut out = format!("series,{},{}", quoted(&self.x.label), quoted(&self.y.label));
         if let Some(field) = &self.field {
             let _ = write!(out, ",{}", quoted(&field.label));

@@ -59,7 +59,6 @@ fn link(words: &str, target: &str) -> String {
 
 /// A name in back quotes, as many as it takes; a table's bars are escaped even there.
 fn code(name: &str) -> String {
-    let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    let name = name.replace('|', "\\|");
+    let name = escape::one_line(name).replace('|', "\\|");
     if name.contains('`') { format!("`` {name} ``") } else { format!("`{name}`") }
 }

@@ -1,4 +1,5 @@
 //! Tables for a terminal, without colours.
+use crate::render::escape::one_line as line;
 use crate::render::render_error::RenderError;
 use crate::render::table::{Align, Table, marked};
 use comfy_table::{CellAlignment, ContentArrangement};
@@ -17,7 +18,7 @@ impl Table {
         grid.set_header(self.columns.iter().map(|c| line(&c.heading())));
         for row in &self.rows {
             grid.add_row(row.iter().map(|cell| match marked(cell, &footnotes) {
-                (text, Some(mark)) => format!("{text} [{mark}]"),
+                (text, Some(mark)) => format!("{} [{mark}]", line(&text)),
                 (text, None) => line(&text),
             }));
         }
@@ -50,9 +51,4 @@ impl Table {
         }
         Ok(out)
     }
-}
-
-/// One line, without what could steer a terminal.
-fn line(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

@@ -63,6 +63,7 @@ impl Checker<'_> {
         for text in texts {
             self.placeholders_are_known(text);
         }
+        self.words_can_be_passed_on(table);
         self.result_is_fresh(&table.result);
         for word in table.version.iter().flat_map(|list| list.get_ref()) {
             if let Some(name) = placeholders_of(word.get_ref()).next() {
@@ -114,6 +115,27 @@ impl Checker<'_> {
             if !known.contains(&name) {
                 let message = format!("no placeholder is called `{{{name}}}`");
                 self.complain(text.span(), message, one_of(name, &known));
+            }
+        }
+    }
+
+    /// No system passes on a zero letter, nor a variable's name with `=` in it: it would set another variable.
+    fn words_can_be_passed_on(&mut self, table: &SolverTable) {
+        let version = table.version.iter().flat_map(|list| list.get_ref());
+        for word in table.command.get_ref().iter().chain(version).chain(table.env.values()) {
+            if word.get_ref().contains('\0') {
+                self.complain(
+                    word.span(),
+                    "the letter NUL is in it, which no program can be told",
+                    "leave it out",
+                );
+            }
+        }
+        for (name, value) in &table.env {
+            if name.is_empty() || name.contains(['=', '\0']) {
+                let message = format!("`{}` is no name of a variable", name.escape_debug());
+                let help = "write the name and the value apart, like env = { OMP_NUM_THREADS = \"1\" }";
+                self.complain(value.span(), message, help);
             }
         }
     }

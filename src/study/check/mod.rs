@@ -65,6 +65,8 @@ pub struct Study {
     pub case_seconds: f64,
     /// Solvers of somebody else's that it attaches.
     pub solvers: Vec<Solver>,
+    /// Whether those may be started: no file can say so of itself, only whoever calls this program.
+    pub may_start_solvers: bool,
     /// Times each case is run alone for its wall time; 0 where it is not timed.
     pub timing_repeats: usize,
     /// What is odd and runs all the same, as a person reads it.
@@ -100,6 +102,11 @@ impl Study {
             Some(study) if checker.diagnostics.is_empty() => Ok(study),
             _ => Err(source.error(checker.diagnostics)),
         }
+    }
+
+    /// Whether a case would start a program that may not be started.
+    pub fn holds_back(&self, case: &Case) -> bool {
+        !self.may_start_solvers && self.solver_of(case).is_some_and(|solver| !solver.is_given())
     }
 
     /// The solver that a case is given to, where that is not this program.
@@ -200,6 +207,7 @@ impl Checker<'_> {
             case_expectations,
             case_seconds,
             solvers: std::mem::take(&mut self.solvers),
+            may_start_solvers: false,
             timing_repeats: self
                 .count(file.timing.repeats.as_deref(), "timing.repeats", 0..=1000)
                 .unwrap_or(0),

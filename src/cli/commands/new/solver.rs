@@ -62,7 +62,7 @@ pub fn write(folder: &Path, language: Language) -> anyhow::Result<Exit> {
     }
     let study = folder.join(study);
     say!(
-        "{} attaches {}, a small solver in the place of yours; next: oedometer check {}",
+        "{} attaches {}, a small solver in the place of yours; next: oedometer check {} --allow-solvers",
         study.display(),
         folder.join(file).display(),
         study.display()

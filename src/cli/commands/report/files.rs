@@ -8,6 +8,7 @@ use crate::judge::comparison::situation::{Ended, ends_of};
 use crate::record::whole_file::write_rebuildable;
 use crate::render::answers::making::Making;
 use crate::render::answers::{Answers, answer_page};
+use crate::render::escape::document;
 use crate::render::page::html_page::render_html;
 use crate::render::page::markdown_page::render_markdown;
 use crate::render::page::{Page, all_figures, slug, tables};
@@ -95,7 +96,7 @@ fn markdown_link(out: &Path, results: &[StudyResults<'_>], study: &str) -> Strin
 
 /// Whole or not at all, and not forced to the disk: after a loss of power the report is made again from its records.
 fn write_page(path: &Path, text: &str) -> anyhow::Result<()> {
-    Ok(write_rebuildable(path, text.as_bytes())?)
+    Ok(write_rebuildable(path, document(text).as_bytes())?)
 }
 
 /// Every figure of a page as SVG with its data as CSV, and every table as CSV and LaTeX.

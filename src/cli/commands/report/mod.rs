@@ -4,7 +4,7 @@ mod files;
 mod report_origin;
 
 use crate::campaign::run_options::RunOptions;
-use crate::campaign::run_report::RunReport;
+use crate::campaign::run_report::{RunReport, Tally};
 use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::cli::commands::check::{GOLDEN, refuse_unfinished};
@@ -14,6 +14,7 @@ use crate::cli::side_by_side::side_by_side;
 use crate::cli::stream::say;
 use crate::cli::study_files;
 use crate::cli::study_tables::Beside;
+use crate::cli::trust::{self, TrustArguments};
 use crate::golden::compare::{Difference, compare};
 use crate::golden::{GoldenFile, values_of};
 use crate::record::Record;
@@ -49,15 +50,21 @@ pub struct Arguments {
     /// Cases at the same time; all cores where not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
+    #[command(flatten)]
+    trust: TrustArguments,
 }
 
 /// Runs, renders and writes the answer page (`index.html`, `README.md`) and a page a study in `studies/`, each with
 /// its figures and tables as files.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let start = Instant::now();
-    let studies = load_or_shipped(&arguments.studies)?;
-    let reports =
-        if arguments.from_records { kept(&studies, arguments)? } else { run_missing(&studies, arguments)? };
+    let mut studies = load_or_shipped(&arguments.studies)?;
+    let reports = if arguments.from_records {
+        kept(&studies, arguments)?
+    } else {
+        arguments.trust.mark(&mut studies, &arguments.studies);
+        run_missing(&studies, arguments)?
+    };
     let with_records: Vec<(&Study, &RunReport)> =
         studies.iter().zip(&reports).filter(|(_, report)| !report.records.is_empty()).collect();
     let results = side_by_side(&with_records, |(study, report)| {
@@ -76,7 +83,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let written = files::write(&arguments.out, &results, changes.as_deref(), making, start)?;
     say!("the report is {}", written.display());
     let is_whole = reports.iter().all(|report| report.errors.is_empty());
-    Ok(if is_whole { Exit::Pass } else { Exit::CaseFailed })
+    let mut tally = Tally::default();
+    reports.iter().for_each(|report| tally.join(report.tally));
+    Ok(trust::end_with(tally, if is_whole { Exit::Pass } else { Exit::CaseFailed }))
 }
 
 /// What a study is called at the command line: its file, or its name where it came from inside the program and there

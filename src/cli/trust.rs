@@ -1,0 +1,162 @@
+//! Which studies may start programs: a study file is text from anywhere, and its `[[solver]]` tables name commands that
+//! run with the rights of whoever calls this program.
+//!
+//! Allowed are studies from inside this program, whatever `--allow-solvers` or its variable says, and what somebody at a
+//! terminal said yes to: that is remembered by a digest of the commands and of the adapter's files.
+
+use crate::campaign::run_report::Tally;
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::stream::say;
+use crate::cli::study_files;
+use crate::study::check::Study;
+use crate::study::check::check_solver::digest_of_file;
+use crate::study::solver::Solver;
+use crate::wording::count_of;
+use clap::builder::FalseyValueParser;
+use std::fs::{self, OpenOptions};
+use std::io::{BufRead, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+/// File of what was allowed, a digest and a study a line.
+const REMEMBERED: &str = "allowed-solvers";
+/// Longest answer that is read, bytes.
+const LONGEST_ANSWER: u64 = 100;
+/// Longest command that a question repeats, letters.
+const LONGEST_COMMAND: usize = 300;
+
+/// Whether studies may start programs.
+#[derive(Clone, Debug, clap::Args)]
+pub struct TrustArguments {
+    /// Start the programs that the studies name in `[[solver]]`: say so of studies that you wrote or have read
+    #[arg(long, env = "OEDOMETER_ALLOW_SOLVERS", hide_env_values = true, value_parser = FalseyValueParser::new())]
+    allow_solvers: bool,
+}
+
+impl TrustArguments {
+    /// Marks the studies that may start programs, asks where somebody is there to answer, and says of the others that
+    /// they do not.
+    pub fn mark(&self, studies: &mut [Study], named: &[PathBuf]) {
+        for study in studies {
+            study.may_start_solvers = self.may_start(study, named);
+            if !study.may_start_solvers {
+                say!(
+                    "{}: this study starts {} with your rights, and nobody has allowed that: its cases are not run. Read it, \
+                     then add --allow-solvers (in a CI: OEDOMETER_ALLOW_SOLVERS=1)",
+                    study.name,
+                    told(&starting(study))
+                );
+            }
+        }
+    }
+
+    fn may_start(&self, study: &Study, named: &[PathBuf]) -> bool {
+        let starting = starting(study);
+        starting.is_empty()
+            || self.allow_solvers
+            || study_files::is_shipped(&study.name, named)
+            || is_remembered(&digest_of(study, &starting))
+            || is_answered(study, &starting)
+    }
+
+    /// The same for a command that makes nothing of a part of a study.
+    ///
+    /// # Errors
+    /// When one may not start its programs.
+    pub fn mark_all(&self, studies: &mut [Study], named: &[PathBuf]) -> anyhow::Result<()> {
+        self.mark(studies, named);
+        if studies.iter().all(|study| study.may_start_solvers) {
+            return Ok(());
+        }
+        Err(Ended::with(Exit::IncompleteMerge, "nothing is done, for not every case may be run"))
+    }
+}
+
+/// The end of a command whose studies held cases back: it is not that of a whole run.
+pub fn end_with(tally: Tally, otherwise: Exit) -> Exit {
+    if tally.held_back == 0 {
+        return otherwise;
+    }
+    let cases = count_of(tally.held_back, "case was", "cases were");
+    say!("{cases} not run: nobody has allowed their programs to be started, and --allow-solvers does");
+    if otherwise == Exit::Pass { Exit::IncompleteMerge } else { otherwise }
+}
+
+/// The solvers of a study that its cases would start.
+fn starting(study: &Study) -> Vec<&Solver> {
+    let is_used = |solver: &&Solver| {
+        study.planned.iter().any(|planned| planned.case.method.attached == Some(solver.attached))
+    };
+    study.solvers.iter().filter(|solver| !solver.is_given()).filter(is_used).collect()
+}
+
+/// What would be started, in words that change nothing on a terminal.
+fn told(starting: &[&Solver]) -> String {
+    let of_one = |solver: &&Solver| {
+        let command: String = solver.command.join(" ").escape_debug().take(LONGEST_COMMAND).collect();
+        format!("`{command}` in {}", solver.folder.display().to_string().escape_debug())
+    };
+    starting.iter().map(of_one).collect::<Vec<_>>().join(" and ")
+}
+
+/// Digest of everything of a study that decides what is started: where it lies, commands, environments, and the contents
+/// of the adapters' files.
+fn digest_of(study: &Study, starting: &[&Solver]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let mut take = |text: &str| {
+        hasher.update(&(text.len() as u64).to_le_bytes());
+        hasher.update(text.as_bytes());
+    };
+    take(&study.name);
+    for solver in starting {
+        take(&solver.folder.to_string_lossy());
+        take(&format!("{:?}", (solver.attached, &solver.command, &solver.version, &solver.environment)));
+        for word in solver.command.iter().chain(&solver.version) {
+            if let Some(path) = solver.file(word) {
+                take(&digest_of_file(&path));
+            }
+        }
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
+/// Folder of what is remembered.
+fn folder() -> Option<PathBuf> {
+    let variable = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let state = variable("XDG_STATE_HOME")
+        .or_else(|| variable("LOCALAPPDATA"))
+        .or_else(|| Some(variable("HOME")?.join(".local/state")))?;
+    Some(state.join("oedometer"))
+}
+
+fn is_remembered(digest: &str) -> bool {
+    let text = folder().and_then(|folder| fs::read_to_string(folder.join(REMEMBERED)).ok());
+    text.is_some_and(|text| text.lines().any(|line| line.split_whitespace().next() == Some(digest)))
+}
+
+fn remember(folder: &Path, digest: &str, study: &str) -> std::io::Result<()> {
+    fs::create_dir_all(folder)?;
+    let mut file = OpenOptions::new().create(true).append(true).open(folder.join(REMEMBERED))?;
+    file.write_all(format!("{digest} {study}\n").as_bytes())
+}
+
+/// Whether somebody at a terminal says yes; that is remembered.
+fn is_answered(study: &Study, starting: &[&Solver]) -> bool {
+    if !(std::io::stdin().is_terminal() && std::io::stderr().is_terminal()) {
+        return false;
+    }
+    say!("{}: this study starts {} with your rights.", study.name, told(starting));
+    say!("Start it, now and as long as its commands and files stay as they are? Type `yes`:");
+    let mut answer = String::new();
+    let mut input = std::io::Read::take(std::io::stdin().lock(), LONGEST_ANSWER);
+    let is_yes = input.read_line(&mut answer).is_ok() && ["y", "yes"].contains(&answer.trim());
+    if let Some(folder) = folder().filter(|_| is_yes)
+        && let Err(error) = remember(&folder, &digest_of(study, starting), &study.name)
+    {
+        say!("that cannot be remembered in {}: {error}", folder.display());
+    }
+    is_yes
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/cli_trust.rs"]
+mod tests;

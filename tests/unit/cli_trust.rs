@@ -1,0 +1,53 @@
+use super::*;
+use crate::study::file::StudySource;
+
+fn study(folder: &Path, more: &str, sweep: &str) -> Study {
+    let text = format!(
+        "title = \"t\"\nscene = \"terzaghi\"\n[[solver]]\nname = \"toy\"\ncommand = [\"sh\", \"adapter.sh\"]\n\
+         result = \"{{out}}/a.csv\"\n{more}\n[[sweep]]\nmethod = [{sweep}]\nintegrator = [\"implicit\"]\ncells = [4]\n"
+    );
+    let name = folder.join("s.toml").display().to_string();
+    Study::check(&StudySource { name, text }).expect("sound")
+}
+
+#[test]
+fn what_is_remembered_follows_commands_environment_and_files_and_no_sweep() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let other = tempfile::TempDir::new().expect("a folder");
+    for at in [folder.path(), other.path()] {
+        fs::write(at.join("adapter.sh"), "true").expect("a file");
+    }
+    let digest = |at: &Path, more: &str, sweep: &str| {
+        let study = study(at, more, sweep);
+        digest_of(&study, &starting(&study))
+    };
+    let at = folder.path();
+    let own = digest(at, "", "\"toy\"");
+    assert_eq!(
+        digest(at, "timeout = 5\n", "\"MPM\", \"toy\""),
+        own,
+        "neither cases nor times start anything else"
+    );
+    assert_ne!(digest(at, "env = { A = \"1\" }\n", "\"toy\""), own);
+    assert_ne!(digest(at, "version = [\"sh\", \"-c\", \"true\"]\n", "\"toy\""), own);
+    assert_ne!(digest(other.path(), "", "\"toy\""), own, "in another folder it starts another file");
+    fs::write(at.join("adapter.sh"), "rm -r elsewhere").expect("a file");
+    assert_ne!(digest(at, "", "\"toy\""), own, "the adapter is another one");
+}
+
+#[test]
+fn a_study_starts_nothing_until_somebody_allows_it() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    fs::write(folder.path().join("adapter.sh"), "true").expect("a file");
+    let found = study(folder.path(), "", "\"toy\"");
+    assert!(!found.may_start_solvers && starting(&found).len() == 1);
+    assert!(starting(&study(folder.path(), "", "\"MPM\"")).is_empty(), "no case is of it");
+    let mut studies = [found];
+    let allow = |allow_solvers| TrustArguments { allow_solvers };
+    allow(true).mark(&mut studies, &["s.toml".into()]);
+    assert!(studies[0].may_start_solvers);
+    remember(&folder.path().join("state"), "abc", "s").expect("written");
+    remember(&folder.path().join("state"), "def", "s").expect("written");
+    let text = fs::read_to_string(folder.path().join("state").join(REMEMBERED)).expect("a file");
+    assert_eq!(text, "abc s\ndef s\n");
+}
