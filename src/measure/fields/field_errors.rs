@@ -170,7 +170,15 @@ mod tests {
 
     fn field(scale: f64, resolution: f64) -> FieldError<'static> {
         let (quantity, sample) = (Quantity::Pressure, Sample::Points);
-        FieldError { time_factor: 1.0, quantity, sample, reference: "terzaghi", scale, resolution }
+        FieldError {
+            time_factor: 1.0,
+            quantity,
+            sample,
+            reference: "terzaghi",
+            scale,
+            components: 1,
+            resolution,
+        }
     }
 
     #[test]
