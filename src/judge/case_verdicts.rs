@@ -5,6 +5,7 @@ use crate::convergence::class::evaluable_series::plain;
 use crate::judge::error_place::place_of_attached;
 use crate::judge::judgement::Judgement;
 use crate::judge::verdict::{Check, Verdict, VerdictOutcome, check};
+use crate::measure::largest::{larger, largest};
 use crate::measure::pressure_peak::pressure_peak;
 use crate::record::{Balance, LayerBalance, Record};
 use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
@@ -48,10 +49,7 @@ impl CaseDemand {
         checks.extend(self.status.as_ref().map(|wanted| status_found(wanted, record)));
         checks.extend(self.critical_step_within.map(|within| critical_step_found(within, record)));
         checks.extend(self.error.as_ref().map(|range| error_found(range, record)));
-        // What is no number stays.
-        let larger = |worst: f64, next: f64| if worst > next || worst.is_nan() { worst } else { next };
-        let worst =
-            |of: fn(&Balance) -> f64| record.balance.iter().map(|balance| of(balance).abs()).reduce(larger);
+        let worst = |of: fn(&Balance) -> f64| largest(record.balance.iter().map(|balance| of(balance).abs()));
         let drifts = [
             ("mass of solids", worst(|balance| balance.solid_mass_drift), self.solid_drift_below),
             ("water", worst(|balance| balance.water_imbalance), self.water_drift_below),
@@ -73,12 +71,9 @@ impl CaseDemand {
                 [0.0, within],
             )
         }));
-        let spurious = record.balance.iter().filter_map(|balance| balance.spurious_velocity).reduce(larger);
-        let largest_pressure = record
-            .balance
-            .iter()
-            .filter_map(|balance| balance.layers.as_ref()?.largest_pressure)
-            .reduce(larger);
+        let spurious = largest(record.balance.iter().filter_map(|balance| balance.spurious_velocity));
+        let largest_pressure =
+            largest(record.balance.iter().filter_map(|balance| balance.layers.as_ref()?.largest_pressure));
         let peak = pressure_peak(&record.case, &record.snapshots);
         let ranges = [
             ("spurious velocity over the conductivity", spurious, self.spurious_velocity),

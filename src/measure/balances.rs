@@ -4,6 +4,7 @@ use crate::case::Case;
 use crate::elementary;
 use crate::exact::exact_error::ExactError;
 use crate::exact::reference::Reference;
+use crate::measure::largest::largest;
 use crate::mpm::run::results::snapshot::Snapshot;
 use crate::record::{Balance, HistoryRow, LayerBalance, StartChecks};
 use crate::scene::column::column_parameters;
@@ -29,7 +30,7 @@ pub fn start_checks(
         points: samples.pressure.len() + samples.water.as_ref().map_or(0, |water| water.pressure.len()),
         points_expected: case.expected_points(),
         volume_error: start.totals.volume / case.column.volume() - 1.0,
-        undrained_pressure_error: off.fold(0.0, f64::max),
+        undrained_pressure_error: largest(off).unwrap_or(0.0),
         unbalanced_force: start.totals.unbalanced_force / load,
     })
 }

@@ -6,6 +6,7 @@ pub mod case_record;
 pub mod dimensionless_groups;
 pub mod fields;
 pub mod known_references;
+pub mod largest;
 pub mod other_measures;
 pub mod pressure_peak;
 pub mod record_checks;

@@ -178,6 +178,35 @@ fn water_bound(record: &Record) -> Option<f64> {
     Some(discretisation + storage / (1.0 + storage))
 }
 
+/// Of every check the one nearest to its bound, or the farthest beyond it, in the order of a record's;
+/// of those that no run judges the largest.
+pub fn worst_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<RecordCheck> {
+    let mut worst: Vec<RecordCheck> = Vec::new();
+    for record in records {
+        let at_outputs = record.balance.iter().flat_map(|balance| balance_checks(record, balance));
+        for check in start_checks(record).into_iter().chain(at_outputs) {
+            match worst.iter_mut().find(|other| other.what == check.what) {
+                Some(other) if is_worse(&check, other) => *other = check,
+                Some(_) => {}
+                None => worst.push(check),
+            }
+        }
+    }
+    worst
+}
+
+/// Whether a check says more against its run than another of the same kind; what is judged says more
+/// than what is not, and what is no number most of all.
+fn is_worse(one: &RecordCheck, other: &RecordCheck) -> bool {
+    let size = |check: &RecordCheck| match check.bound {
+        _ if check.value.is_nan() => (check.bound.is_some(), f64::INFINITY),
+        Some(bound) if bound > 0.0 => (true, check.value.abs() / bound),
+        Some(_) => (true, if check.holds() { 0.0 } else { f64::INFINITY }),
+        None => (false, check.value.abs()),
+    };
+    size(one) > size(other)
+}
+
 /// Sentences on all that is beyond its bound.
 pub fn complaints(record: &Record) -> Vec<String> {
     let told = |check: RecordCheck, when: &str| {

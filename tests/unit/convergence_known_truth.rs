@@ -25,7 +25,13 @@ impl Draw {
     }
 
     fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
-        choices[(self.between(0.0, choices.len() as f64) as usize).min(choices.len() - 1)]
+        choices[self.place(choices.len() as f64).min(choices.len() - 1)]
+    }
+
+    /// A whole number from 0 on, below another.
+    fn place(&mut self, below: f64) -> usize {
+        let at = self.between(0.0, below);
+        (1..).take_while(|number| f64::from(*number) <= at).count()
     }
 }
 
@@ -89,7 +95,7 @@ fn levels(ratio: f64, count: usize, error: impl Fn(f64) -> f64) -> Vec<(f64, f64
 
 /// Share of the second of two powers at the finest level, as the coefficient that gives it.
 fn coefficient(share: f64, ratio: f64, count: usize, first: f64, second: f64) -> f64 {
-    let finest = 0.125 / ratio.powi(count as i32 - 1);
+    let finest = 0.125 / ratio.powi(i32::try_from(count).expect("few") - 1);
     share / (1.0 - share) * finest.powf(first - second)
 }
 
@@ -208,7 +214,7 @@ const KINDS: [Kind; 19] = [
     ("one wrong level", |draw, ratio| {
         let (p, count) = (draw.one_of(&[1.0, 2.0]), draw.one_of(&[4, 5, 6]));
         let mut points = levels(ratio, count, |h| h.powf(p));
-        let place = draw.between(0.0, count as f64 - 1.001) as usize;
+        let place = draw.place(count as f64 - 1.001);
         points[place].1 *= draw.one_of(&[0.2, 0.5, 2.0, 5.0]);
         let named = Some(points[place].0);
         // Beyond the window the order is that of the finest levels, and the level is named beside it.

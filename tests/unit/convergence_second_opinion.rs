@@ -78,7 +78,8 @@ fn quantiles_are_integrals_of_the_density() {
         let simpson = |to: f64| {
             let steps = 20_000;
             let width = to / f64::from(steps);
-            let at = |step: i32| (f64::from(step) * width).cos().powi(freedom as i32 - 1);
+            let at =
+                |step: i32| (f64::from(step) * width).cos().powi(i32::try_from(freedom).expect("few") - 1);
             let weight =
                 |step: i32| if step == 0 || step == steps { 1.0 } else { f64::from(2 + 2 * (step % 2)) };
             (0..=steps).map(|step| weight(step) * at(step)).sum::<f64>() * width / 3.0
@@ -197,6 +198,9 @@ fn a_limit_is_the_one_of_normal_equations_on_the_last_four_levels() {
 /// A model of Eça & Hoekstra by normal equations: exponents, whether weighted, coefficients, deviation.
 type Model = (ErrorModel, bool, Vec<f64>, Vec<f64>, f64);
 
+/// Name, value over the size, and per cent of noise in the per cent of [`NOISE`].
+type Kind = (&'static str, fn(f64) -> f64, f64);
+
 fn models_of(values: &[(f64, f64)]) -> Vec<Model> {
     let count = values.len() as f64;
     let target: Vec<f64> = values.iter().map(|value| value.1).collect();
@@ -229,7 +233,7 @@ fn models_of(values: &[(f64, f64)]) -> Vec<Model> {
 #[test]
 fn every_error_model_of_eca_and_hoekstra_is_that_of_normal_equations() {
     // By the order that the power law finds: in range, above it, below it, and noise.
-    let kinds: [(&str, fn(f64) -> f64, f64); 5] = [
+    let kinds: [Kind; 5] = [
         ("in range", |h| 3.0 + 0.02 * h.powf(1.4), 0.02),
         ("too high", |h| 3.0 + 1e-4 * h.powi(4), 0.02),
         ("too high and first", |h| 3.0 + 1e-5 * h.powi(5) + 0.01 * h, 0.02),

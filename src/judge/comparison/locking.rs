@@ -7,6 +7,7 @@ use crate::convergence::class::Class;
 use crate::exact::exact_error::ExactError;
 use crate::judge::paths::paths;
 use crate::measure::fields::plane_field::PlaneField;
+use crate::measure::largest::largest;
 use crate::measure::wall_times::median;
 use crate::mpm::critical_step::formula;
 use crate::mpm::method::Method;
@@ -126,12 +127,14 @@ fn standing(
         })
         .filter_map(moved)
         .collect();
-    let least = stiff.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = stiff.iter().copied().fold(0.0, f64::max);
-    let ratio = |record: &&Record| record.case.material.poissons_ratio;
-    let hardest = on_mesh()
-        .max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
-        .filter(|record| ratio(record) > Material::default().poissons_ratio);
+    let spread = largest(stiff.iter().map(|error| -error)).zip(largest(stiff.iter().copied()));
+    let ratio = |record: &Record| record.case.material.poissons_ratio;
+    let largest_ratio =
+        largest(on_mesh().map(ratio)).filter(|most| *most > Material::default().poissons_ratio);
+    // Of runs with the same ratio the worst counts, in whatever order they stand.
+    let hardest = |of: &dyn Fn(&Record) -> Option<f64>| {
+        largest(on_mesh().filter(|record| Some(ratio(record)) == largest_ratio).filter_map(of))
+    };
     let explicit = own.iter().find(|record| record.case.is_explicit());
     let order = |quantity, sample| series_order(records, method, quantity, sample, reference);
     let field = match plain {
@@ -150,10 +153,9 @@ fn standing(
         displacement_order: order(Quantity::Displacement, Sample::Nodes).1,
         pressure_order: order(Quantity::Pressure, Sample::Points).1,
         class: order(Quantity::Displacement, Sample::Nodes).0,
-        spread: (stiff.len() > 1).then(|| most / least - 1.0),
-        stiff_skeleton: hardest.and_then(moved),
-        stiff_skeleton_pressure: hardest
-            .and_then(|record| error(record, Quantity::Pressure, Sample::Points, 0.0)),
+        spread: spread.filter(|_| stiff.len() > 1).map(|(minus_least, most)| most / -minus_least - 1.0),
+        stiff_skeleton: hardest(&moved),
+        stiff_skeleton_pressure: hardest(&|record| error(record, Quantity::Pressure, Sample::Points, 0.0)),
         critical_step: explicit.map(|record| {
             let soil = &record.case.material;
             let speed = formula::fastest_wave_speed(soil, soil.porosity);

@@ -4,6 +4,7 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::exact::reference::ReferenceKind;
 use crate::judge::comparison::work_precision::TimedRun;
+use crate::measure::largest::largest;
 use std::sync::LazyLock;
 
 /// Time factors of the comparison.
@@ -33,7 +34,7 @@ pub struct Peer {
 impl Peer {
     /// The worst of its errors, where it has all of them.
     pub fn worst_error(&self) -> Option<f64> {
-        self.errors.into_iter().collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
+        largest(self.errors.into_iter().collect::<Option<Vec<f64>>>()?)
     }
 }
 

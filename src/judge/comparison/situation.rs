@@ -9,6 +9,7 @@ use crate::judge::comparison::locking::{Standing, standings};
 use crate::judge::paths::first_norm;
 use crate::mpm::method::Method;
 use crate::mpm::run::TimeStepRule;
+use crate::mpm::run::results::outcome::FailureKind;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 use std::collections::{HashMap, HashSet};
@@ -140,7 +141,7 @@ pub enum End {
     Locked,
     /// So many runs by this failure.
     Failed {
-        /// Name of the first of the failures.
+        /// Name of the failure that most runs have.
         name: &'static str,
         /// Runs that failed.
         failed: usize,
@@ -230,15 +231,17 @@ fn end_of(records: &[&Record], reference: &str) -> Option<End> {
     // Where nothing failed nobody asks what was answered.
     let asked = if failed.is_empty() { &[][..] } else { &sound };
     let answered: HashSet<u64> = asked.iter().map(|record| without_step(record)).collect();
-    let mut failures = failed
+    let failures: Vec<FailureKind> = failed
         .iter()
-        .filter_map(|record| record.status.failure().filter(|_| !answered.contains(&without_step(record))));
-    if let Some(first) = failures.next() {
-        return Some(End::Failed {
-            name: first.kind.name(),
-            failed: 1 + failures.count(),
-            of: records.len(),
-        });
+        .filter(|record| !answered.contains(&without_step(record)))
+        .filter_map(|record| Some(record.status.failure()?.kind))
+        .collect();
+    let count = |kind: FailureKind| failures.iter().filter(|one| **one == kind).count();
+    // The last of those that are most: in reverse the first, whatever the order of the runs.
+    if let Some(most) =
+        FailureKind::ALL.into_iter().rev().max_by_key(|kind| count(*kind)).filter(|_| !failures.is_empty())
+    {
+        return Some(End::Failed { name: most.name(), failed: failures.len(), of: records.len() });
     }
     let finest = records.iter().map(|record| record.case.cells).max()?;
     let mut best: HashMap<u64, f64> = HashMap::new();

@@ -1,6 +1,7 @@
 //! Records of critical steps as maps: curves over the parameter that varies, one a method.
 
 use crate::case::Case;
+use crate::measure::largest::larger;
 use crate::record::Record;
 use crate::sorting;
 
@@ -90,7 +91,7 @@ pub fn maps_of(records: &[Record]) -> Vec<StabilityMap> {
         });
         let map = &mut maps[place];
         let deviation = found.deviation().map_or(0.0, f64::abs);
-        map.largest_deviation = map.largest_deviation.max(deviation);
+        map.largest_deviation = larger(map.largest_deviation, deviation);
         let name = record.case.method.to_string();
         let curve = map.curves.iter().position(|curve| curve.name == name).unwrap_or_else(|| {
             map.curves.push(MapCurve { name, points: Vec::new() });

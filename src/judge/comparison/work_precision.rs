@@ -3,6 +3,7 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::pareto::{CostLevel, CostPoint, LevelPrediction, front, predict_next};
 use crate::judge::paths::{Path, first_norm, paths};
+use crate::measure::largest::largest;
 use crate::measure::wall_times::{WallSpread, median, noise_floor, paired_ratio, spread};
 use crate::record::{Record, Status};
 use crate::sorting;
@@ -105,7 +106,7 @@ pub fn worst_error(record: &Record, reference: &str) -> Option<f64> {
     let later = record.case.time_factors.iter().filter(|factor| **factor > 0.0);
     let errors = later
         .map(|factor| Some(pressure(record.main_sample(), reference, *factor).error(record)?.value.abs()));
-    errors.collect::<Option<Vec<_>>>()?.into_iter().reduce(f64::max)
+    largest(errors.collect::<Option<Vec<_>>>()?)
 }
 
 fn pressure(sample: Sample, reference: &str, time_factor: f64) -> Measure {

@@ -109,7 +109,7 @@ fn quarter(mut figure: Figure, number: &str) -> Figure {
 }
 
 /// The largest error of the pressure at the points over all outputs, and its time factor.
-fn largest_error(record: &Record, reference: &str) -> Option<(f64, f64)> {
+pub(crate) fn largest_error(record: &Record, reference: &str) -> Option<(f64, f64)> {
     let times = record.case.time_factors.iter();
     let errors = times.filter_map(|time| {
         let measure = first_measure(Quantity::Pressure, Sample::Points, reference, *time);

@@ -7,6 +7,7 @@ use crate::convergence::class::Class;
 use crate::convergence::orders::WINDOW;
 use crate::elementary;
 use crate::judge::paths::{Path, SeriesSummary};
+use crate::measure::largest::largest;
 use crate::render::report::StudyResults;
 use crate::render::report::labels::first_measure;
 use crate::study::expectation::Axis;
@@ -203,7 +204,7 @@ impl Regime<'_> {
             (Quantity::Settlement, Sample::Surface),
         ]
         .map(|(quantity, sample)| self.error(one, quantity, sample, self.finest_cells));
-        errors.into_iter().collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
+        largest(errors.into_iter().collect::<Option<Vec<f64>>>()?)
     }
 
     /// The method of a name.

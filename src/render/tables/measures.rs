@@ -80,7 +80,7 @@ fn work_note(record: &Record) -> String {
     )
 }
 
-/// Start checks, balances at the end and dimensionless groups of a record; checks with their bounds.
+/// Start checks, balances, the worst of all outputs, and dimensionless groups of a record; checks with their bounds.
 pub fn checks_table(record: &Record) -> Table {
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     let mut add = |name: &str, value: Cell, bound: Cell| rows.push(vec![name.into(), value, bound]);
@@ -88,8 +88,7 @@ pub fn checks_table(record: &Record) -> Table {
     if let Some(start) = &record.start {
         add("points at the start", Cell::Count(start.points as u64), plain());
     }
-    let at_end = record.balance.last().map(|last| record_checks::balance_checks(record, last));
-    for check in record_checks::start_checks(record).iter().chain(at_end.iter().flatten()) {
+    for check in &record_checks::worst_of([record]) {
         add(check.what, Cell::Error(check.value), bound_cell(check));
     }
     for row in record.measures.iter().filter(|row| row.time_factor.is_none()) {

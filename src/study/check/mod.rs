@@ -306,6 +306,8 @@ impl Checker<'_> {
         factors
     }
 
+    /// The references that runs are held against, in the order of the scene, whose own comes first: a list of them is a
+    /// set.
     fn references(&mut self, table: &OutputTable, scene: SceneKind, column: &Column) -> Vec<ReferenceKind> {
         let own = scene.references_of(column);
         let Some(list) = &table.references else { return own.to_vec() };
@@ -314,7 +316,9 @@ impl Checker<'_> {
         for typed in list.get_ref() {
             let Some(index) = self.word(typed, "reference", &names) else { continue };
             let kind = scene.references()[index];
-            if own.contains(&kind) {
+            if references.contains(&kind) {
+                self.complain(typed.span(), format!("\"{kind}\" is listed twice"), "leave one of them out");
+            } else if own.contains(&kind) {
                 references.push(kind);
             } else {
                 self.complain(
@@ -324,6 +328,7 @@ impl Checker<'_> {
                 );
             }
         }
+        references.sort_by_key(|kind| own.iter().position(|one| one == kind));
         references
     }
 }

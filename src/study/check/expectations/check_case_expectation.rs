@@ -6,7 +6,7 @@ use crate::mpm::run::results::outcome::FailureKind;
 use crate::scene::SceneKind;
 use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
 use crate::study::check::checker::Checker;
-use crate::study::choice_tables::Placed;
+use crate::study::choice_tables::{Placed, Typed};
 use crate::study::expectation::Measure;
 use crate::study::file::{ExpectCaseTable, RangeTable};
 use toml::Spanned;
@@ -30,12 +30,11 @@ impl Checker<'_> {
         let bound = |c: &mut Self, typed: &Option<Placed<f64>>, name: &str| {
             typed.as_deref().map(|typed| c.positive(Some(typed), name, "", 1e-12))
         };
-        let pore_water = table.pore_water.as_ref().map(|range| {
-            let of = |typed: &Option<Placed<f64>>, default| {
-                typed.as_deref().map_or(default, |typed| *typed.get_ref())
-            };
-            [of(&range.get_ref().above, 0.0), of(&range.get_ref().below, f64::MAX)]
-        });
+        let mut within = |range: &Typed<RangeTable>| range.as_ref().map(|range| self.bounds(range));
+        let pore_water = within(&table.pore_water).map(|bounds| [bounds.above, bounds.below]);
+        let largest_pressure = within(&table.largest_pressure);
+        let peak_time_factor = within(&table.peak_time_factor);
+        let peak_pressure = within(&table.peak_pressure);
         let demand = CaseDemand {
             status,
             critical_step_within: bound(self, &table.critical_step_within, "critical_step_within"),
@@ -44,11 +43,11 @@ impl Checker<'_> {
             water_drift_below: bound(self, &table.water_drift_below, "water_drift_below"),
             pore_water,
             water_left_within: bound(self, &table.water_left_within, "water_left_within"),
-            largest_pressure: table.largest_pressure.as_ref().map(|range| bounds_of(range)),
+            largest_pressure,
             one_layer_within: bound(self, &table.one_layer_within, "one_layer_within"),
             spurious_velocity: self.spurious_velocity(table, scene),
-            peak_time_factor: table.peak_time_factor.as_ref().map(|range| bounds_of(range)),
-            peak_pressure: table.peak_pressure.as_ref().map(|range| bounds_of(range)),
+            peak_time_factor,
+            peak_pressure,
         };
         if demand == CaseDemand::default() && self.diagnostics.len() == before {
             self.complain(
@@ -73,7 +72,7 @@ impl Checker<'_> {
                 "a spurious velocity is told of the scene \"at-rest\"",
             );
         }
-        Some(bounds_of(range))
+        Some(self.bounds(range))
     }
 
     /// Bounds on one error of a case.
@@ -86,11 +85,13 @@ impl Checker<'_> {
     ) -> Option<ErrorRange> {
         let (quantity, sample, norm) =
             self.measured(table.quantity.as_deref(), table.sample.as_deref(), table.norm.as_deref())?;
-        let reference = self.expected_reference(table.reference.as_deref(), scene, references)?;
+        let typed = table.reference.as_deref();
+        let reference = self.expected_reference(typed, range.span(), scene, references)?;
         let Some(time_factor) = table.time_factor.as_ref().map(|typed| *typed.get_ref()) else {
             self.complain(range.span(), "the error names no time factor", "add `time_factor = 0.1`");
             return None;
         };
+        let Bounds { above, below } = self.bounds(range);
         Some(ErrorRange {
             measure: Measure {
                 quantity,
@@ -100,17 +101,26 @@ impl Checker<'_> {
                 time_factor,
                 probe: None,
             },
-            below: bounds_of(range).below,
-            above: bounds_of(range).above,
+            below,
+            above,
         })
     }
-}
 
-/// The bounds of a table; what is left out bounds nothing.
-fn bounds_of(range: &Spanned<RangeTable>) -> Bounds {
-    let RangeTable { above, below } = range.get_ref();
-    Bounds {
-        above: above.as_ref().map_or(0.0, |typed| *typed.get_ref()),
-        below: below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref()),
+    /// The bounds of a table, what is left out bounding nothing from above and 0 from below; a complaint where no value
+    /// lies between them.
+    fn bounds(&mut self, range: &Spanned<RangeTable>) -> Bounds {
+        let RangeTable { above, below } = range.get_ref();
+        let above = above.as_ref().map_or(0.0, |typed| *typed.get_ref());
+        let below = below.as_ref().map_or(f64::MAX, |typed| *typed.get_ref());
+        // What is no number is between none.
+        let has_values = above < below;
+        if !has_values {
+            self.complain(
+                range.span(),
+                format!("no value lies from {above} on and below {below}"),
+                "`above`, 0 where it is left out, must be smaller than `below`",
+            );
+        }
+        Bounds { above, below }
     }
 }

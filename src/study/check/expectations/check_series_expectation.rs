@@ -42,7 +42,10 @@ impl Checker<'_> {
         let reference = match own_word {
             Some(NEXT_FINER) if !self.can_be_held_against_itself(table, axis) => return None,
             Some(_) => None,
-            None => Some(self.expected_reference(table.reference.as_deref(), scene, references)?),
+            None => {
+                let place = entry.span();
+                Some(self.expected_reference(table.reference.as_deref(), place, scene, references)?)
+            }
         };
         let is_value = own_word == Some(NO_REFERENCE);
         self.value_is_one_number(entry, scene, quantity, is_value);
@@ -248,17 +251,41 @@ impl Checker<'_> {
         fits.iter().all(|fits| *fits).then_some((quantity, sample, norm))
     }
 
-    /// The reference of an expectation, the scene's own where it names none.
+    /// The reference of an expectation: the one that it names; else the scene's own where the runs are held against it, or
+    /// the only one that they are held against. Of others none is taken by the order in which they stand.
     pub(crate) fn expected_reference(
         &mut self,
         typed: Option<&Spanned<String>>,
+        place: Range<usize>,
         scene: SceneKind,
         references: &[ReferenceKind],
     ) -> Option<ReferenceKind> {
         let names: Vec<&str> = references.iter().map(|kind| kind.name()).collect();
-        match typed {
-            Some(word) => Some(references[self.word(word, "reference", &names)?]),
-            None => Some(scene.references()[0]),
+        if let Some(word) = typed {
+            return Some(references[self.word(word, "reference", &names)?]);
+        }
+        let own = scene.references().first().filter(|own| references.contains(own));
+        match (own, references) {
+            (Some(own), _) | (None, [own]) => Some(*own),
+            (None, []) => {
+                self.complain(
+                    place,
+                    "the runs are held against no reference, and the expectation names none",
+                    format!("add `reference = \"{NO_REFERENCE}\"`, or list some in `output.references`"),
+                );
+                None
+            }
+            (None, _) => {
+                self.complain(
+                    place,
+                    format!(
+                        "the runs are held against {}, and the expectation names none",
+                        names.join(" and ")
+                    ),
+                    format!("add `reference = \"{}\"`", names[0]),
+                );
+                None
+            }
         }
     }
 
