@@ -300,7 +300,8 @@ fn run_and_keep(
         stopped.store(true, Ordering::Relaxed);
         return Some(Err(error.into()));
     }
-    if let Some(failure) = record.status.failure() {
+    // One sentence tells of all that were not allowed to begin.
+    if let Some(failure) = record.status.failure().filter(|_| !runner.study().holds_back(case)) {
         let study = runner.study().name.clone();
         tell(Progress::Failed { study, label: case.label(), failure: failure.to_string() });
     }

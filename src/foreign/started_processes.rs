@@ -73,6 +73,9 @@ pub struct Family {
     leader: rustix::process::Pid,
     #[cfg(not(unix))]
     leader: u32,
+    /// When it began, in the system's ticks: nothing older is of this run.
+    #[cfg(target_os = "linux")]
+    since: Option<u64>,
 }
 
 impl Family {
@@ -82,7 +85,13 @@ impl Family {
         let leader = rustix::process::Pid::from_child(child);
         #[cfg(not(unix))]
         let leader = child.id();
-        Self { mark, leader }
+        Self {
+            mark,
+            leader,
+            // Nobody has asked for its end yet, so that it is there, be it over.
+            #[cfg(target_os = "linux")]
+            since: i32::try_from(child.id()).ok().and_then(Process::of).map(|process| process.start),
+        }
     }
 
     /// Ends all that lives, and says what that was.
@@ -170,6 +179,10 @@ struct Process {
     parent: i32,
     group: i32,
     session: i32,
+    /// When it began, in ticks since the system did.
+    start: u64,
+    /// Whether it has ended.
+    is_over: bool,
 }
 
 #[cfg(target_os = "linux")]
@@ -177,10 +190,11 @@ impl Process {
     /// All that live.
     fn all() -> Vec<Self> {
         let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
-        entries.filter_map(|entry| Self::of(entry.file_name().to_str()?.parse().ok()?)).collect()
+        let all = entries.filter_map(|entry| Self::of(entry.file_name().to_str()?.parse().ok()?));
+        all.filter(|process| !process.is_over).collect()
     }
 
-    /// One that lives: neither ended and not asked for yet, nor gone.
+    /// One that lives, or has ended and was not asked for yet.
     fn of(id: i32) -> Option<Self> {
         let bytes = std::fs::read(format!("/proc/{id}/stat")).ok()?;
         let text = String::from_utf8_lossy(&bytes);
@@ -188,10 +202,12 @@ impl Process {
         let (head, rest) = text.rsplit_once(')')?;
         let name = head.split_once('(')?.1.to_owned();
         let mut fields = rest.split_whitespace();
-        let is_gone = matches!(fields.next()?, "Z" | "X" | "x");
+        let is_over = matches!(fields.next()?, "Z" | "X" | "x");
         let mut number = || fields.next()?.parse().ok();
         let (parent, group, session) = (number()?, number()?, number()?);
-        (!is_gone).then_some(Self { seen: Seen { id, name }, parent, group, session })
+        // The 22nd of all fields.
+        let start = fields.nth(15)?.parse().ok()?;
+        Some(Self { seen: Seen { id, name }, parent, group, session, start, is_over })
     }
 
     /// The mark of the run that it belongs to, where its environment has one and can be read.
@@ -217,7 +233,8 @@ impl Family {
             let is_marked = mark.as_ref().is_some_and(|mark| mark.split(',').any(|one| self.is_own(one)));
             // What this program starts stays in its session.
             let is_orphan = own.as_ref().is_some_and(|own| {
-                process.parent == own.seen.id && process.session != own.session && mark.is_none()
+                let is_later = self.since.is_some_and(|since| process.start >= since);
+                process.parent == own.seen.id && process.session != own.session && is_later && mark.is_none()
             });
             process.group == leader || is_marked || (is_orphan && is_only_run)
         };

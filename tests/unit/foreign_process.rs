@@ -44,7 +44,8 @@ fn what_is_left_behind_is_ended_too_and_told() {
     let clock = Instant::now();
     let found = shell("sleep 600 & echo done", 300.0);
     assert!(matches!(&found.ending, Ending::Ended(status) if status.success()), "{found:?}");
-    assert!(!found.found.seen.is_empty() && clock.elapsed() < Duration::from_secs(120));
+    assert!(cfg!(not(target_os = "linux")) || !found.found.seen.is_empty());
+    assert!(clock.elapsed() < Duration::from_secs(120));
     assert_eq!(found.output, "done\n");
 }
 

@@ -226,14 +226,16 @@ impl Bed {
                 State::Gone
             }
             2 => {
-                // A length that leads elsewhere: behind the end, or into the middle of a member.
+                // A length that leads into the middle of the member, or behind the end of any pack.
                 bytes[offset + 45 + self.dice.below(2)] ^= 0x04;
-                let wrong = Header::read(&bytes[offset..]).map(|header| header.length as usize);
-                is_told = wrong != Some(length);
-                match wrong {
-                    Some(wrong) if wrong == length => State::Whole,
-                    Some(wrong) if offset + wrong <= bytes.len() => State::Broken,
-                    _ => State::Gone,
+                is_told = true;
+                let wrong =
+                    Header::read(&bytes[offset..]).map_or(usize::MAX, |header| header.length as usize);
+                if wrong < length {
+                    State::Broken
+                } else {
+                    bytes[offset + 48] = 0x7f;
+                    State::Gone
                 }
             }
             3 if offset + length == bytes.len() => {
