@@ -9,6 +9,7 @@ mod escapes;
 mod first_hour;
 mod foreign;
 mod gate;
+mod gone;
 mod impossible_results;
 mod manufactured;
 mod mapping;
