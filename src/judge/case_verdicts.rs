@@ -153,6 +153,9 @@ fn critical_step_found(within: f64, record: &Record) -> Check {
     let Some(found) = &record.stability else {
         return check("critical step", false, None, "the critical step was not searched".to_owned());
     };
+    if let Some(sentence) = &found.unknown {
+        return check("critical step", false, None, sentence.clone());
+    }
     let Some(deviation) = found.deviation() else {
         return check("critical step", false, None, "no step was observed to leave".to_owned());
     };

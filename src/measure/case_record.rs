@@ -125,6 +125,7 @@ pub fn record_of_stopped_search(case: &Case) -> Record {
     let none = CriticalStep {
         predicted: 0.0,
         creeping_from: None,
+        unknown: None,
         observed: None,
         wave_limit: 0.0,
         drag_limit: 0.0,

@@ -5,6 +5,7 @@ use crate::exact::exact_error::ExactError;
 use crate::exact::parameters::{Base, ColumnParameters};
 use crate::mpm::body::Problem;
 use crate::mpm::critical_step::observed::{CriticalStep, Stopped, critical_step};
+use crate::mpm::critical_step::predicted::{predict_for_run, predicted_critical_step, whole_growth};
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::method::Method;
 use crate::mpm::operators::surface_load::LoadShape;
@@ -67,6 +68,32 @@ impl SceneProblem {
         match self {
             Self::Column(problem) => critical_step(problem, settings, end, most_steps, observer),
             Self::Plane(problem) => critical_step(problem, settings, end, most_steps, observer),
+        }
+    }
+
+    /// Its predicted critical step, s.
+    pub fn predicted_critical_step(&self, settings: &ExplicitSettings) -> f64 {
+        match self {
+            Self::Column(problem) => predicted_critical_step(problem, settings),
+            Self::Plane(problem) => predicted_critical_step(problem, settings),
+        }
+    }
+
+    /// The same, where a limit is known.
+    pub fn known_critical_step(&self, settings: &ExplicitSettings) -> Option<f64> {
+        let (step, growing) = match self {
+            Self::Column(problem) => predict_for_run(problem, settings),
+            Self::Plane(problem) => predict_for_run(problem, settings),
+        };
+        growing.is_none().then_some(step)
+    }
+
+    /// Growth per step of what grows fastest in a plane under explicit steps of a size, s, where its step is small enough
+    /// for eigenvalues.
+    pub fn growth_under(&self, settings: &ExplicitSettings, step: f64) -> Option<f64> {
+        match self {
+            Self::Column(problem) => whole_growth(problem, settings, step),
+            Self::Plane(problem) => whole_growth(problem, settings, step),
         }
     }
 

@@ -12,6 +12,7 @@ mod exact_large_strain;
 mod exact_references;
 mod implicit;
 mod invariants;
+mod step_growth;
 mod two_dimensions;
 
 /// Solves a problem by the code that is compiled with the solver: a function with type parameters would be compiled

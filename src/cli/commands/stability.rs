@@ -80,6 +80,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             format!("{label}: {}: {}", failure.kind.name(), failure.reason),
         ));
     }
+    let unknown =
+        report.records.iter().find_map(|record| Some((record, record.stability.as_ref()?.unknown.as_ref()?)));
+    if let Some((record, sentence)) = unknown {
+        return Err(Ended::with(Exit::VerdictFailed, format!("{}: {sentence}", record.case.label())));
+    }
     let agree = report.records.iter().filter_map(|record| record.stability.as_ref()).all(|found| {
         found.deviation().is_some_and(|deviation| deviation.abs() <= AGREEMENT) && found.probes_agree()
     });

@@ -16,6 +16,7 @@
 pub mod assembled_state;
 pub mod operators;
 pub mod rows;
+pub mod sliding_rows;
 pub mod step;
 pub mod step_operator;
 pub mod stiffness;

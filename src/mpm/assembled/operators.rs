@@ -1,5 +1,6 @@
 //! What a frozen step needs of its body: rows between those nodes that move, and constants of each.
 
+use crate::mpm::assembled::sliding_rows::SlidingRows;
 use crate::mpm::assembled::stiffness::entry_of;
 use crate::mpm::assembled::tied_rows::TiedRows;
 use crate::mpm::body::Body;
@@ -28,6 +29,8 @@ pub struct FrozenOperators<const D: usize> {
     pub settling: Vec<(usize, Vector<D>)>,
     /// Rows that go together under a rigid plate.
     pub tied: TiedRows,
+    /// Rows where the water slides past a skeleton that is held.
+    pub sliding: SlidingRows,
     /// `D` and `R` between nodes, sites and points.
     pub volumetric: VolumetricRows<D>,
 }
@@ -82,6 +85,7 @@ impl<const D: usize> FrozenOperators<D> {
             projection: nodes.iter().map(|node| numbered(&projection[*node], &number)).collect(),
             settling: numbered(&body.settling_weights(), &number),
             tied: TiedRows::of(&body, &number),
+            sliding: SlidingRows::of(&body, &number),
             node_count: fields.len(),
             volumetric,
             nodes,

@@ -7,6 +7,7 @@ use crate::mpm::assembled::operators::{FrozenOperators, NodeConstants};
 use crate::mpm::assembled::rows::RowStorage;
 use crate::mpm::assembled::rows::banded_rows::{BandsWithin, REACH};
 use crate::mpm::assembled::rows::block_products::{Displacements, Rows};
+use crate::mpm::assembled::sliding_rows::SlidingRows;
 use crate::mpm::assembled::tied_rows::TiedRows;
 use crate::mpm::body::Body;
 use crate::mpm::explicit::ExplicitSettings;
@@ -31,6 +32,8 @@ pub struct AssembledStep<const D: usize> {
     settling: Vec<(usize, Vector<D>)>,
     /// Rows that go together under a rigid plate.
     tied: TiedRows,
+    /// Rows where the water slides past a skeleton that is held.
+    sliding: SlidingRows,
     /// Rows that carry the load, with the force of all else and of the whole load.
     loaded: Vec<LoadedRow<D>>,
     pub(crate) state: FrozenState<D>,
@@ -83,6 +86,7 @@ impl<const D: usize> AssembledStep<D> {
             volumetric: operators.volumetric,
             settling: operators.settling,
             tied: operators.tied,
+            sliding: operators.sliding,
         };
         for (row, node) in operators.constants.iter().enumerate() {
             step.constants[row / LANES].set(row % LANES, node);
@@ -150,7 +154,7 @@ impl<const D: usize> AssembledStep<D> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
     fn kick_and_drift_by_rows(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
-        let Self { rows, constants, state, tied, .. } = self;
+        let Self { rows, constants, state, tied, sliding, .. } = self;
         match rows {
             RowStorage::Banded(bands) => {
                 enter(Phase::Forces);
@@ -172,9 +176,11 @@ impl<const D: usize> AssembledStep<D> {
                 rows.dilate(&state.flux_displacement, &mut state.dilation);
                 enter(Phase::Forces);
                 accelerate(rows, constants, state, kick);
+                sliding.keep_accelerations(state);
                 tied.tie_accelerations(state, kick);
                 enter(Phase::Motion);
                 advance(rows, constants, state, [kick, dt], settings);
+                sliding.keep_velocities(state, dt, settings.mapping_back);
                 tied.tie_velocities(state, dt, settings.mapping_back);
             }
         }

@@ -15,6 +15,11 @@ impl<const D: usize> AssembledStep<D> {
         components.filter(|(row, d)| is_free(*row, *d)).collect()
     }
 
+    /// Number of unknowns of the step operator.
+    pub fn unknowns(&self) -> usize {
+        FIELDS * self.free_components().len()
+    }
+
     /// The step as a matrix, loads removed: velocities of both phases, straining and flux displacement of
     /// every free component, displacements in units of what a unit velocity makes in a step.
     pub fn operator(&self, dt: f64, settings: &ExplicitSettings) -> DMatrix<f64> {

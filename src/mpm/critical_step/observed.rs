@@ -6,7 +6,7 @@
 
 use crate::mpm::body::Problem;
 use crate::mpm::critical_step::formula;
-use crate::mpm::critical_step::predicted::predict;
+use crate::mpm::critical_step::predicted::{predict, whole_growth};
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::results::outcome::{Failure, FailureKind, RunStatus};
@@ -23,8 +23,10 @@ pub const BISECTIONS: u32 = 24;
 const RESOLUTION: f64 = 1e-3;
 /// Strain, by the load, that linear stability is about: more would change what is observed.
 const TINY_STRAIN: f64 = 1e-6;
-/// Growth a step that a run of so many steps shows: `ln(10^19)/32768`.
-const VISIBLE_GROWTH: f64 = 1.35e-3;
+/// Growth a step that is seen in a plane, whatever a run shows: a doubling in ten thousand steps.
+const SLOWEST_SEEN: f64 = 6.9e-5;
+/// Growth a step that a run of so many steps shows: `ln(5·10^4)/32768`, from a share of the motion to a thousandfold of it.
+const VISIBLE_GROWTH: f64 = 3.3e-4;
 /// Shares of the predicted step that must run and must leave.
 pub const SHARES: [f64; 2] = [0.97, 1.03];
 
@@ -55,6 +57,9 @@ pub struct CriticalStep {
     /// thousand steps shows it, and a million steps can.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub creeping_from: Option<f64>,
+    /// The sentence that no limit is known, where something grows under any step; `predicted` is the formula's then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unknown: Option<String>,
     /// From runs, s; none where nothing left.
     pub observed: Option<f64>,
     /// `h/c` with the fastest undamped wave, s.
@@ -85,6 +90,11 @@ impl CriticalStep {
     pub fn probes_agree(&self) -> bool {
         let has = |side: fn(f64) -> bool| self.probes.iter().any(|probe| side(probe.share));
         has(|share| share < 1.0) && has(|share| share > 1.0) && self.probes.iter().all(Probe::is_as_predicted)
+    }
+
+    /// The predicted step, s, where a limit is known.
+    pub fn known(&self) -> Option<f64> {
+        self.unknown.is_none().then_some(self.predicted)
     }
 
     /// Observed over predicted step, minus one.
@@ -143,6 +153,7 @@ pub fn critical_step<const D: usize>(
     Ok(CriticalStep {
         predicted,
         creeping_from,
+        unknown: prediction.growing.map(|growing| growing.to_string()),
         observed,
         wave_limit: cell_size / formula::fastest_wave_speed(soil, soil.porosity),
         drag_limit: formula::drag_limit(soil),
@@ -160,12 +171,20 @@ fn observed_step<const D: usize>(
     probes: &[Probe],
     observer: Observer<'_>,
 ) -> Result<Option<f64>, Stopped> {
+    // What doubles in ten thousand steps shows in the eigenvalues of the step, where the problem is small enough for
+    // them, and in no run of a few ten thousand.
+    let grows =
+        |step: f64| whole_growth(problem, settings, step).is_some_and(|growth| growth > 1.0 + SLOWEST_SEEN);
     let runs = |step: f64| -> Result<bool, Stopped> {
+        if grows(step) {
+            return Ok(false);
+        }
         leaves(problem, settings, step, OBSERVED_STEPS, observer).map(|(_, failure)| failure.is_none())
     };
     let [below, above] = probes else { return Ok(None) };
     // A probe that left later than the runs of a search last did not leave by their measure.
-    let held = |probe: &Probe| probe.failure.is_none() || probe.steps > OBSERVED_STEPS;
+    let held =
+        |probe: &Probe| (probe.failure.is_none() || probe.steps > OBSERVED_STEPS) && !grows(probe.step);
     let (least, most) = (1e-3 * below.step, 1e3 * above.step);
     let (mut low, mut low_runs) = (below.step, held(below));
     let (mut high, mut high_runs) = (above.step, held(above));
@@ -261,6 +280,7 @@ mod tests {
         let found = CriticalStep {
             predicted: 1.0,
             creeping_from: None,
+            unknown: None,
             observed: Some(1.0),
             wave_limit: 1.0,
             drag_limit: 1.0,

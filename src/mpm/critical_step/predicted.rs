@@ -7,24 +7,56 @@ use crate::mpm::critical_step::{formula, spectral_radius};
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::method::{PressureIntegration, Recovery};
 use crate::mpm::state::grid::Grid;
+use std::fmt;
 
 /// Cells of the column on which the critical step of a run is computed.
 const FEW_CELLS: usize = 12;
+/// Cells of the corner of a plane whose step operator is squared.
+const MOST_ACROSS: usize = 8;
+/// Share of the formula's step at which the growth of what grows under any step is told.
+const FAR_BELOW: f64 = 0.1;
 
 /// A predicted critical step, with what it was predicted from.
 #[derive(Clone, Debug)]
 pub struct Prediction<const D: usize> {
-    /// Largest stable step, s.
+    /// Largest stable step, s; that of the formula where none is known.
     pub critical_step: f64,
+    /// What grows under any step, where something does: then no limit is known.
+    pub growing: Option<GrowingMode>,
     assembled: AssembledStep<D>,
     settings: ExplicitSettings,
+}
+
+/// What grows under any step that was tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GrowingMode {
+    /// A step, s, far below the formula's.
+    pub step: f64,
+    /// Growth per such step.
+    pub growth: f64,
+}
+
+impl fmt::Display for GrowingMode {
+    /// The sentence that a limit is unknown.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (step, rate) = (self.step, (self.growth - 1.0) / self.step);
+        write!(out, "no limit is known: ")?;
+        write!(
+            out,
+            "under steps of {step:.2e} s too something grows by {rate:.2e} 1/s, by the eigenvalues of the step"
+        )
+    }
 }
 
 impl<const D: usize> Prediction<D> {
     /// Largest step, s, under which nothing grows by more than `growth` a step; above one dimension the
     /// critical one.
     pub fn critical_step_for(&self, growth: f64) -> f64 {
-        spectral_radius::critical_step(&self.assembled, &self.settings, self.critical_step, growth)
+        if D > 1 {
+            return self.critical_step;
+        }
+        let safe = self.critical_step;
+        spectral_radius::critical_step(&self.assembled, &self.settings, safe, growth, true).unwrap_or(safe)
     }
 
     /// Growth per step of what grows fastest under steps of a size, where the operator is small enough to
@@ -39,7 +71,29 @@ impl<const D: usize> Prediction<D> {
 /// Computed on the problem's own operators; a long column loses its middle, which moves the limit
 /// by less than a percent, a wide layer is cut to six by six.
 pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
-    predict(problem, settings, FEW_CELLS).critical_step
+    predict_for_run(problem, settings).0
+}
+
+/// The same, with what grows under any step where something does.
+pub fn predict_for_run<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+) -> (f64, Option<GrowingMode>) {
+    let prediction = predict(problem, settings, FEW_CELLS);
+    (prediction.critical_step, prediction.growing)
+}
+
+/// Growth per step of what grows fastest under steps of a size, s, on the whole of a problem in a plane: by the
+/// eigenvalues of its own step, where it is small enough for them.
+pub fn whole_growth<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+    step: f64,
+) -> Option<f64> {
+    if D == 1 {
+        return None;
+    }
+    spectral_radius::growth(&AssembledStep::new(&Body::new(one_layer(problem))), step, settings)
 }
 
 /// The prediction on at most so many cells.
@@ -51,11 +105,20 @@ pub fn predict<const D: usize>(
     let safe = formula::combined_limit(&problem.material, problem.grid.cell_size, settings.drag);
     let problem = &one_layer(problem);
     let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
-    let problem =
-        if is_narrow { without_middle(problem, most_cells) } else { corner(problem, most_cells / 2) };
+    let problem = if is_narrow {
+        without_middle(problem, most_cells)
+    } else {
+        corner(problem, (most_cells / 2).min(MOST_ACROSS))
+    };
     let assembled = AssembledStep::new(&Body::new(problem));
-    let critical_step = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE);
-    Prediction { critical_step, assembled, settings: *settings }
+    let sharp = most_cells > FEW_CELLS;
+    let found = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE, sharp);
+    let step = FAR_BELOW * safe;
+    let growing = found.is_none().then(|| GrowingMode {
+        step,
+        growth: spectral_radius::growth(&assembled, step, settings).unwrap_or(f64::NAN),
+    });
+    Prediction { critical_step: found.unwrap_or(safe), growing, assembled, settings: *settings }
 }
 
 /// The problem in one layer, with as many points as the layer that has more of them: layers of equal points have the

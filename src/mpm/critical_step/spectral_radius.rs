@@ -45,50 +45,66 @@ pub fn spectral_radius(operator: &DMatrix<f64>) -> f64 {
     if norm > 0.0 { elementary::exp(log_radius + share * elementary::ln(norm)) } else { 0.0 }
 }
 
-/// Whether a step operator is small enough to be squared: a column's.
-const fn is_squared(dimensions: usize) -> bool {
-    dimensions == 1
-}
+/// Unknowns of the largest operator that is squared: those of a plane of eight by eight cells.
+const MOST_SQUARED: usize = 640;
+/// Growth a step that counts as none in a plane, at the formula's step: a doubling takes 70 000 of them. Of smaller steps
+/// as much is allowed in the same time: what grows by itself grows no slower in time under them.
+pub const SLOW_GROWTH: f64 = 1e-5;
+/// Factor by which a limit that is looked for upwards is left behind.
+const NEAR: f64 = 1.04;
 
 /// Growth per step of what grows fastest under steps of a size, where the operator is small enough to be
 /// known.
 pub fn growth<const D: usize>(step: &AssembledStep<D>, dt: f64, settings: &ExplicitSettings) -> Option<f64> {
-    is_squared(D).then(|| spectral_radius(&step.operator(dt, settings)))
+    (step.unknowns() <= MOST_SQUARED).then(|| spectral_radius(&step.operator(dt, settings)))
 }
 
 /// Largest step, s, of a frozen body that nothing grows under by more than `growth` per step, by bisection
-/// between a step known to be safe and multiples of it: of the spectral radius, or where the operator is
-/// too large to be squared, of whether a disturbance of all wavelengths grows.
+/// between a step known to be safe and multiples of it, of the spectral radius. None where something grows under any step:
+/// the equations in space are unstable then.
+///
+/// In a plane squares are dear. There it is found by whether a disturbance of all wavelengths grows within a few hundred
+/// steps, and the spectral radius is asked whether nothing grows slowly there; a limit that has to be `sharp` is
+/// looked for by the spectral radius beyond it, too.
 pub fn critical_step<const D: usize>(
     step: &AssembledStep<D>,
     settings: &ExplicitSettings,
     safe: f64,
     growth: f64,
-) -> f64 {
-    if is_squared(D) {
-        bracketed(safe, 1e-4, &mut |dt| spectral_radius(&step.operator(dt, settings)) <= 1.0 + growth)
-    } else {
-        let mut disturbed = step.clone();
-        bracketed(safe, 1e-3, &mut |dt| stays_bounded(&mut disturbed, dt, settings))
+    sharp: bool,
+) -> Option<f64> {
+    let radius = |dt: f64| spectral_radius(&step.operator(dt, settings));
+    if D == 1 {
+        return bracketed([safe, 2.0, 1e-4], &mut |dt| radius(dt) <= 1.0 + growth);
+    }
+    let mut disturbed = step.clone();
+    let soon = bracketed([safe, 2.0, 1e-3], &mut |dt| stays_bounded(&mut disturbed, dt, settings));
+    if step.unknowns() > MOST_SQUARED {
+        return soon;
+    }
+    let mut is_stable = |dt: f64| radius(dt) <= 1.0 + SLOW_GROWTH * (dt / safe).min(1.0);
+    match soon {
+        Some(soon) if !sharp && is_stable(soon) => Some(soon),
+        found => bracketed([found.unwrap_or(safe), NEAR, 2e-3], &mut is_stable),
     }
 }
 
-/// The step between stable and unstable ones, to a relative `tolerance`.
-fn bracketed(safe: f64, tolerance: f64, is_stable: &mut dyn FnMut(f64) -> bool) -> f64 {
+/// The step between stable and unstable ones, from a first one to a relative tolerance, where a search upwards goes by
+/// a factor. None where there is none down to a hundredth of the first.
+fn bracketed([safe, factor, tolerance]: [f64; 3], is_stable: &mut dyn FnMut(f64) -> bool) -> Option<f64> {
     let mut low = safe;
+    let mut high = factor * low;
     // The formula is an estimate: go down where it promises too much.
     while !is_stable(low) {
+        high = low;
         low *= 0.5;
         if low < LEAST_SHARE * safe {
-            // What grows under such steps grows under any: the equations in space are unstable. Steps of
-            // the formula's size show it soonest.
-            return safe;
+            return None;
         }
     }
-    let mut high = 2.0 * low;
-    while is_stable(high) && high < 1e3 * safe {
+    while high > safe && is_stable(high) && high < 1e3 * safe {
         low = high;
-        high *= 2.0;
+        high *= factor;
     }
     for _ in 0..BISECTIONS {
         if high - low < tolerance * low {
@@ -101,7 +117,7 @@ fn bracketed(safe: f64, tolerance: f64, is_stable: &mut dyn FnMut(f64) -> bool) 
             high = middle;
         }
     }
-    low
+    Some(low)
 }
 
 /// Steps over which the growth of a disturbance is judged.

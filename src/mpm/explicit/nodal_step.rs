@@ -147,7 +147,7 @@ impl<const D: usize> Nodes<D> {
         *some_mut(&mut self.water_acceleration, first) = water_rate;
     }
 
-    /// Velocities and displacements of some nodes.
+    /// Velocities and displacements of some nodes, and what accelerations the points are given.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
     fn advance_of<const N: usize>(&mut self, first: usize, kick: f64, dt: f64) {
@@ -174,6 +174,17 @@ impl<const D: usize> Nodes<D> {
         *some_mut(&mut self.solid_velocity, first) = solid;
         *some_mut(&mut self.water_velocity, first) = water;
         *some_mut(&mut self.displacement, first) = displacement;
+        if D > 1 {
+            // What slides along the base is the node's alone: the points have no part in it.
+            let sliding = some_of::<_, N>(&self.sliding, first);
+            let mut given: [Vector<D>; N] = *water_rate;
+            for node in 0..N {
+                for d in 0..D {
+                    given[node][d] *= 1.0 - sliding[node][d];
+                }
+            }
+            *some_mut(&mut self.water_acceleration, first) = given;
+        }
     }
 }
 

@@ -81,16 +81,13 @@ impl<const D: usize> TwoLayers<D> {
         for node in runs.iter().cloned().flatten() {
             let per_grain_volume = body.material.grain_density * per_solid_mass[node];
             for d in 0..D {
-                let brought = self.sums.momenta[node][d] * per_grain_volume;
-                solid_velocity[node][d] = free[node][d] * brought;
-                self.sums.held_velocity[node][d] = (1.0 - free[node][d]) * brought;
+                solid_velocity[node][d] = self.sums.momenta[node][d] * (free[node][d] * per_grain_volume);
             }
         }
     }
 
-    /// Maps the velocity of the water to the nodes, weighted with mass: what a support takes from the skeleton there it
-    /// takes from the water too, for a sliding water has only what it moves against the skeleton
-    /// ([`sliding_share`](crate::mpm::state::nodes::sliding_share)). Water that no soil holds goes with the soil.
+    /// Maps the velocity of the water to the nodes, weighted with mass; water that no soil holds goes with the soil,
+    /// and what slides along a rough base stays as the node has it.
     pub(crate) fn map_water_velocities(&mut self) {
         let water = &self.water;
         let momenta = water.velocity.iter().enumerate();
@@ -99,10 +96,9 @@ impl<const D: usize> TwoLayers<D> {
         sum_momenta(&self.basis, self.body.grid.node_stride(), momenta, &mut self.sums.momenta);
         let nodes = &mut self.body.nodes;
         for (node, momentum) in self.sums.momenta.iter().enumerate() {
-            for d in 0..D {
+            for d in (0..D).filter(|d| nodes.sliding[node][*d] == 0.0) {
                 nodes.water_velocity[node][d] = if nodes.water_mass[node] > 0.0 {
-                    let brought = momentum[d] * nodes.per_water_mass[node];
-                    nodes.water_free[node][d] * (brought - self.sums.held_velocity[node][d])
+                    momentum[d] * (nodes.water_free[node][d] * nodes.per_water_mass[node])
                 } else {
                     nodes.solid_velocity[node][d]
                 };

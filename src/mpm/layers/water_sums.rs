@@ -9,8 +9,6 @@ pub struct WaterSums<const D: usize> {
     pub masses: Vec<[f64; 4]>,
     /// Momentum, kg m/s.
     pub momenta: Vec<Vector<D>>,
-    /// Velocity that the skeleton's points bring to what a support holds of it, m/s; zero where it is free.
-    pub held_velocity: Vec<Vector<D>>,
     /// What the water points give to each cell: weight times pressure, and weight, of its points, and the same of the
     /// domains that reach into it, or of its points a second time; m^D Pa and m^D.
     pub cells: Vec<[f64; 4]>,
@@ -26,7 +24,6 @@ impl<const D: usize> WaterSums<D> {
         Self {
             masses: vec![[0.0; 4]; count],
             momenta: vec![[0.0; D]; count],
-            held_velocity: vec![[0.0; D]; count],
             cells: vec![[0.0; 4]; cells],
             middles: vec![[0.0; D]; cells],
             slopes: vec![[0.0; D]; cells],

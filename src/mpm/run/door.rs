@@ -10,7 +10,7 @@ use crate::mpm::run::driver::Driver;
 use crate::mpm::run::explicit_stepper::ExplicitStepper;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::results::outcome::{Failure, FailureKind, Outcome};
-use crate::mpm::run::run_plan::Plan;
+use crate::mpm::run::run_plan::{Plan, UnknownLimit};
 use crate::mpm::run::schedule::{Observer, Schedule};
 use crate::mpm::run::stepper::Stepper;
 
@@ -18,6 +18,10 @@ use crate::mpm::run::stepper::Stepper;
 /// named status, and what was finished before stays.
 pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
     let plan = Plan::of(&problem, schedule);
+    if let Some(unknown) = plan.unknown_limit {
+        return Driver::new(stepper_of(Body::new(problem), &plan).as_mut(), &plan, observer)
+            .solve(Some(no_limit(unknown)));
+    }
     let (undrained_start, gradient) = (problem.undrained_start, problem.initial_gradient);
     let mut problem = problem;
     let water = problem.water.take();
@@ -50,6 +54,16 @@ fn stepper_of<const D: usize>(body: Body<D>, plan: &Plan<'_>) -> Box<dyn Stepper
 fn no_start(singular: Singular) -> Failure {
     let reason = format!("the undrained start has no pivot in row {}: nothing holds the body", singular.row);
     Failure { kind: FailureKind::Singular, step: 0, time: 0.0, growth: None, reason }
+}
+
+/// The end of a run whose steps are shares of a limit that nobody knows.
+fn no_limit(unknown: UnknownLimit) -> Failure {
+    let growth = match unknown {
+        UnknownLimit::Growing(growing) => Some(growing.growth),
+        UnknownLimit::OffLattice => None,
+    };
+    let reason = format!("{unknown}; a step in `seconds` is taken as it is");
+    Failure { kind: FailureKind::Unstable, step: 0, time: 0.0, growth, reason }
 }
 
 /// The end of a run in two layers by an integrator that has none.

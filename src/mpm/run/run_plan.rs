@@ -2,7 +2,7 @@
 
 use crate::mpm::body::Problem;
 use crate::mpm::critical_step::formula;
-use crate::mpm::critical_step::predicted::predicted_critical_step;
+use crate::mpm::critical_step::predicted::{GrowingMode, predict_for_run};
 use crate::mpm::operators::surface_load::LoadedSurface;
 use crate::mpm::run::integrator::StepBound;
 use crate::mpm::run::physical_bounds::PhysicalBounds;
@@ -10,10 +10,32 @@ use crate::mpm::run::profile::{self, Phase, enter};
 use crate::mpm::run::results::outcome::StepSizes;
 use crate::mpm::run::schedule::Schedule;
 use crate::mpm::run::step_limit::StepLimit;
+use crate::mpm::run::time_step_rule::TimeStepRule;
 use crate::mpm::state::points::Points;
+use std::fmt;
 
 /// Share of a semi-implicit run's critical step that growing steps end at.
 const LARGEST_SHARE: f64 = 0.8;
+
+/// Why no limit of the step is known.
+#[derive(Clone, Copy, Debug)]
+pub enum UnknownLimit {
+    /// Something grows under any explicit step.
+    Growing(GrowingMode),
+    /// The limit of an explicit skeleton is a formula for points on the lattice of the cells.
+    OffLattice,
+}
+
+impl fmt::Display for UnknownLimit {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Growing(growing) => write!(out, "{growing}"),
+            Self::OffLattice => out.write_str(
+                "no limit is known: that of semi-implicit steps is a formula for points on the lattice of the cells",
+            ),
+        }
+    }
+}
 
 /// What a run needs beside its body.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +44,8 @@ pub struct Plan<'a> {
     pub schedule: &'a Schedule,
     /// How large the steps may be.
     pub limit: StepLimit,
+    /// Why no limit is known that the steps could be shares of, where they are asked to be.
+    pub unknown_limit: Option<UnknownLimit>,
     /// Step sizes as far as they are known before.
     pub sizes: StepSizes,
     /// Material points, of all layers.
@@ -47,14 +71,20 @@ impl<'a> Plan<'a> {
     /// explicit, of the explicit integrator's where there is none.
     pub fn of<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
         let (soil, cell_size, settings) = (&problem.material, problem.grid.cell_size, &schedule.settings);
-        let predicted = || predicted_critical_step(problem, settings);
-        let critical = match schedule.integrator.step_bound() {
-            StepBound::AllWaves => {
-                schedule.critical_step.unwrap_or_else(|| profile::within(Phase::CriticalStep, predicted))
+        let predicted = || predict_for_run(problem, settings);
+        let (critical, unknown) = match (schedule.integrator.step_bound(), schedule.critical_step) {
+            (StepBound::AllWaves, None) => {
+                let (critical, growing) = profile::within(Phase::CriticalStep, predicted);
+                (critical, growing.map(UnknownLimit::Growing))
             }
-            StepBound::SkeletonWaves => formula::semi_implicit_limit(soil, cell_size, D),
-            StepBound::Accuracy => formula::combined_limit(soil, cell_size, settings.drag),
+            (StepBound::AllWaves, Some(known)) => (known, None),
+            (StepBound::SkeletonWaves, _) => {
+                let unknown = (!problem.points.began_on_lattice()).then_some(UnknownLimit::OffLattice);
+                (formula::semi_implicit_limit(soil, cell_size, D), unknown)
+            }
+            (StepBound::Accuracy, _) => (formula::combined_limit(soil, cell_size, settings.drag), None),
         };
+        let unknown_limit = unknown.filter(|_| matches!(schedule.rule, TimeStepRule::Stable(_)));
         enter(Phase::Setup);
         let sizes = StepSizes {
             predicted_critical: critical,
@@ -68,6 +98,7 @@ impl<'a> Plan<'a> {
         };
         Self {
             limit: schedule.rule.limit(problem, sizes.target, most, &schedule.outputs),
+            unknown_limit,
             sizes,
             points: problem.points.len() + problem.water.as_ref().map_or(0, Points::len),
             nodes: problem.grid.node_count(),

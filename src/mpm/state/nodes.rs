@@ -54,6 +54,10 @@ pub struct Nodes<const D: usize> {
     pub free: Vec<Vector<D>>,
     /// The same for the water: it slides along a rough base.
     pub water_free: Vec<Vector<D>>,
+    /// One where the water slides past a skeleton that sticks to the base, else zero: there the node itself remembers the
+    /// water's velocity, for the points around move with a skeleton that the base does not hold (docs/theory.md,
+    /// Eq. 36).
+    pub sliding: Vec<Vector<D>>,
     /// The skeleton's supports alone.
     supports: Vec<Vector<D>>,
     /// The water's supports alone.
@@ -138,18 +142,6 @@ impl<const D: usize> Support<D> {
     }
 }
 
-/// Share of the skeleton's velocity, as its points bring it to a node, that the water's is taken against there: one where
-/// the skeleton is held and the water slides past it, else zero.
-///
-/// What holds the skeleton takes the velocity of the points around from the node; the water keeps only what it has
-/// beyond them. Were it to keep all of it, mapping back would put a flux between the phases there that no pressure
-/// drives and no drag stops, step by step (docs/theory.md, section 3).
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub(crate) fn sliding_share(free: f64, water_free: f64) -> f64 {
-    water_free * (1.0 - free)
-}
-
 /// Does a work for all nodes that carry mass, four or two side by side where as many follow each other: from a first one
 /// on, for a number that the compiler knows. What one work leaves at a node is at hand for the next.
 macro_rules! each_of_runs {
@@ -201,9 +193,14 @@ impl<const D: usize> Nodes<D> {
         for node in (0..count).filter(|node| support.is_beyond(grid, *node, tolerance)) {
             supports[node] = [0.0; D];
         }
+        let mut sliding = vec![[0.0; D]; count];
         for node in (0..count).filter(|_| support.rough_base) {
             if grid.node_position(node)[D - 1] < tolerance {
                 supports[node] = [0.0; D];
+                // Nodes beyond a face have next to no mass: what they remembered would have no bound.
+                if !support.is_beyond(grid, node, tolerance) {
+                    sliding[node] = water_supports[node];
+                }
             }
         }
         let (scalars, vectors) = (vec![0.0; count], vec![[0.0; D]; count]);
@@ -232,6 +229,7 @@ impl<const D: usize> Nodes<D> {
             displacement: vectors,
             free: supports.clone(),
             water_free: water_supports.clone(),
+            sliding,
             supports,
             water_supports,
             runs: Vec::with_capacity(count.div_ceil(2)),
@@ -345,8 +343,8 @@ impl<const D: usize> Nodes<D> {
         self.is_empty_between = true;
     }
 
-    /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held or empty, and the water's
-    /// against that of the skeleton where the latter alone is held ([`sliding_share`]).
+    /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held or empty, and those that
+    /// the nodes have where the water slides.
     pub fn take_velocities(&mut self, soil: &Material) {
         each_of_runs!(self, |first, N| self.velocities_of::<N>(first, soil));
     }
@@ -363,20 +361,23 @@ impl<const D: usize> Nodes<D> {
         let [mut solid, mut water] = [[[0.0; D]; N]; 2];
         for node in 0..N {
             for d in 0..D {
-                solid[node][d] = sums[node][0][d] * (soil.grain_density * per_solid[node]);
+                solid[node][d] = sums[node][0][d] * (free[node][d] * (soil.grain_density * per_solid[node]));
             }
         }
         for node in 0..N {
             for d in 0..D {
-                let slides = sliding_share(free[node][d], water_free[node][d]);
-                water[node][d] = sums[node][1][d]
-                    * (water_free[node][d] * (soil.water_density * per_water[node]))
-                    - slides * solid[node][d];
+                water[node][d] =
+                    sums[node][1][d] * (water_free[node][d] * (soil.water_density * per_water[node]));
             }
         }
-        for node in 0..N {
-            for d in 0..D {
-                solid[node][d] *= free[node][d];
+        // A line has no direction along its base.
+        if D > 1 {
+            let sliding = some_of::<_, N>(&self.sliding, first);
+            let present = some_of::<_, N>(&self.water_velocity, first);
+            for node in 0..N {
+                for d in 0..D {
+                    water[node][d] = if sliding[node][d] > 0.0 { present[node][d] } else { water[node][d] };
+                }
             }
         }
         *some_mut(&mut self.solid_velocity, first) = solid;
@@ -531,7 +532,7 @@ mod tests {
     }
 
     #[test]
-    fn water_on_a_rough_base_moves_as_it_does_against_the_skeleton_around() {
+    fn water_that_slides_along_a_rough_base_keeps_the_velocity_of_its_node() {
         let (grid, soil) = (Grid::new(0.1, [3, 3]), Material::default());
         let mut nodes = Nodes::new(&grid, &Support::oedometer().on_rough_base(), 1.0);
         for (masses, balances) in nodes.sums.masses.iter_mut().zip(&mut nodes.sums.balances) {
@@ -539,6 +540,7 @@ mod tests {
             // Velocities 3 and 5 m/s of the skeleton, 3.25 and 7 m/s of the water.
             [balances[0], balances[1]] = [[6.0, 10.0], [1.625, 3.5]];
         }
+        nodes.water_velocity.fill([0.25, 0.5]);
         nodes.take_masses(&soil);
         nodes.take_velocities(&soil);
         let of = |row: usize| {
@@ -550,6 +552,8 @@ mod tests {
         for (got, expected) in [at_base, above].as_flattened().iter().zip(expected.as_flattened()) {
             assert!((0..2).all(|d| (got[d] - expected[d]).abs() < 1e-14), "{got:?} for {expected:?}");
         }
+        let sliding = nodes.sliding.iter().flatten().filter(|slides| **slides > 0.0).count();
+        assert_eq!(sliding, 2, "neither at the corners nor below the base");
     }
 
     #[test]

@@ -98,6 +98,17 @@ impl<const D: usize> Points<D> {
         }
     }
 
+    /// Whether every point began on the lattice of the cells, a whole number of domains from their edges.
+    pub fn began_on_lattice(&self) -> bool {
+        let on_lattice = |point: usize| {
+            self.initial_position[point].iter().zip(&self.half_length[point]).all(|(place, half)| {
+                let domains = 0.5 * (place / half - 1.0);
+                (domains - domains.round()).abs() < 1e-6
+            })
+        };
+        (0..self.len()).all(on_lattice)
+    }
+
     /// Current volume of a point, m^D.
     #[inline]
     pub fn volume(&self, point: usize) -> f64 {

@@ -16,7 +16,9 @@ pub fn table_of(records: &[Record]) -> Table {
     )
     .note(
         "predicted: spectral radius of the step operator on the case's own grid; observed: \
-                     bisection of runs that know nothing of it; c: the fastest undamped wave",
+                     bisection of runs that know nothing of it, and in a plane of up to eight by eight cells of the \
+                     eigenvalues of its own step, which show a doubling in ten thousand steps; c: the fastest \
+                     undamped wave",
     )
 }
 
@@ -24,9 +26,9 @@ fn row_of(record: &Record) -> Option<Vec<Cell>> {
     let found = record.stability.as_ref()?;
     let mut row = vec![
         Cell::Code(record.case.label_without_step()),
-        Cell::Error(found.predicted),
+        Cell::of(found.known(), Cell::Error, "no limit is known: something grows under any step"),
         Cell::of(found.observed, Cell::Error, "no step left"),
-        Cell::of(found.deviation(), Cell::Percent, "no step left"),
+        Cell::of(found.known().and(found.deviation()), Cell::Percent, "no step left"),
         Cell::Number(found.predicted / found.wave_limit),
         found.creeping_from.map_or(Cell::Text("–".to_owned()), Cell::Error),
     ];

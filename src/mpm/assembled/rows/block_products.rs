@@ -21,6 +21,6 @@ pub trait Rows<const D: usize> {
     fn forces(&self, block: usize, displacements: Displacements<'_, D>) -> [[Lanes; D]; 2];
 
     /// Fields of both phases mapped to the points and back, `P v`, at the nodes of a block; zero where a
-    /// component is held, and that of the water against that of the skeleton where the latter alone is.
+    /// component is held.
     fn projected(&self, block: usize, fields: [&[Vector<D>]; 2]) -> [[Lanes; D]; 2];
 }

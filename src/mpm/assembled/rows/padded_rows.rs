@@ -3,11 +3,10 @@
 //! The pressure stays in two factors, `D` to the sites and `Q R` back to the nodes: their product would
 //! be five times as long in a plane.
 
-use crate::mpm::assembled::assembled_state::{LANES, Lanes, MARGIN, SOLID, WATER};
+use crate::mpm::assembled::assembled_state::{LANES, Lanes, MARGIN};
 use crate::mpm::assembled::operators::FrozenOperators;
 use crate::mpm::assembled::rows::block_products::{Displacements, Rows};
 use crate::mpm::operators::sparse_rows::SparseRows;
-use crate::mpm::state::nodes::sliding_share;
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Rows that reach anywhere.
@@ -120,11 +119,11 @@ impl<const D: usize> Rows<D> for SparseStorage<D> {
                     sums[1][d] += weight * water[place][d];
                 }
             }
-            let [free, water_free] = &self.free[block * LANES + i];
+            let free = &self.free[block * LANES + i];
             for d in 0..D {
-                let slides = sliding_share(free[d], water_free[d]);
-                projected[SOLID][d][i] = free[d] * sums[SOLID][d];
-                projected[WATER][d][i] = water_free[d] * sums[WATER][d] - slides * sums[SOLID][d];
+                for phase in 0..2 {
+                    projected[phase][d][i] = free[phase][d] * sums[phase][d];
+                }
             }
         }
         projected
