@@ -268,6 +268,7 @@ fn the_largest_deviation_of_a_map_is_found_in_any_case() {
             record.stability = Some(CriticalStep {
                 predicted: 1.0,
                 creeping_from: None,
+                unknown: None,
                 observed,
                 wave_limit: 2.0,
                 drag_limit: 2.0,
