@@ -51,7 +51,8 @@ fn with_formal(case: &EvaluableSeries, formal: f64, coarse: f64, fine: f64) -> C
         }
     }
     let near = |value: f64| (value - formal).abs() <= tolerance;
-    if near(coarse) && near(fine) && near(case.order) && drift.abs() <= FORMAL_TOLERANCE {
+    // Orders that are both near the formal one are where they go, whatever they do between close levels.
+    if near(coarse) && near(fine) && near(case.order) && (fine - coarse).abs() <= FORMAL_TOLERANCE {
         return plain(Class::Asymptotic, format!("{window}, formal {wanted}"));
     }
     if case.order > formal {
