@@ -233,15 +233,14 @@ impl Reading<'_> {
         let file = beside(self.path, file.trim());
         let is_open = |(open, _): &(PathBuf, Store)| *open == file;
         let known = self.stores.iter().position(is_open);
-        let open = if let Some(known) = known {
-            self.stores.remove(known)
+        if let Some(known) = known {
+            self.stores[..=known].rotate_right(1);
         } else {
             let store = Store::open(&file).map_err(|why| format!("{}: {why}", file.display()))?;
             self.stores.truncate(MOST_STORES - 1);
             *self.opened += 1;
-            (file, store)
-        };
-        self.stores.insert(0, open);
+            self.stores.insert(0, (file, store));
+        }
         let store = &mut self.stores[0].1;
         let rows = match (start.first(), size.first()) {
             (Some(start), Some(size)) => Some((*start as u64, *size as u64)),
