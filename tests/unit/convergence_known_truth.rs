@@ -314,3 +314,11 @@ fn values_that_go_to_and_fro_have_no_order() {
         assert_eq!(uncertainty.finest_three.behaviour, Behaviour::Oscillatory);
     }
 }
+
+#[test]
+fn a_single_change_of_sign_on_the_finest_window_has_no_order() {
+    let points = [(0.1, 0.05), (0.05, -0.0125), (0.025, -0.003_125)];
+    let known = Known::of(points.to_vec(), None, &[PreAsymptotic]);
+    let found = known.classified();
+    assert!(found.class == PreAsymptotic && found.reason.contains("sign changes"), "{found:?}");
+}
