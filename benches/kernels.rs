@@ -13,7 +13,7 @@ use oedometer::exact::consolidation;
 use oedometer::{
     AssembledStep, Body, Column, Configuration, EqualSteps, ExplicitSettings, IntegratorKind,
     Kernel as StepKernel, LinearStepper, Material, Method, Plan, Problem, SceneKind, Schedule, Stepper,
-    TimeStepRule, column_problem, predicted_critical_step,
+    TimeLimit, TimeStepRule, column_problem, predicted_critical_step,
 };
 use std::time::Instant;
 
@@ -85,6 +85,7 @@ fn implicit_step<const C: usize>(bencher: Bencher, method: &str) {
         integrator: IntegratorKind::Implicit,
         formulation: IntegratorKind::Implicit.default_formulation(),
         threads: 1,
+        time_limit: TimeLimit::default(),
     };
     let plan = Plan::of(&problem, &schedule);
     let mut stepper = LinearStepper::new(Body::new(problem), &plan);

@@ -191,6 +191,7 @@ pub use mpm::run::integrator::IntegratorKind;
 pub use mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
 pub use mpm::run::results::snapshot::Snapshot;
 pub use mpm::run::{Kernel, Schedule, TimeStepRule};
+pub use mpm::time_limit::TimeLimit;
 pub use scene::SceneKind;
 pub use scene::column::Column;
 pub use scene::problem::column_problem;

@@ -13,6 +13,7 @@ use crate::mpm::critical_step::observed::Stopped;
 use crate::mpm::run::profile::{Phase, enter};
 use crate::mpm::run::results::outcome::{FailureKind, Outcome};
 use crate::mpm::run::{Kernel, Schedule};
+use crate::mpm::time_limit::TimeLimit;
 use crate::record::machines::Machine;
 use crate::record::{Record, Status, WallSample};
 use crate::scene::column::column_parameters;
@@ -58,9 +59,10 @@ pub fn run_case_within(
     cores: Cores,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
-    let deadline = Deadline::after(seconds);
+    let (deadline, time_limit) = (Deadline::after(seconds), TimeLimit::after(seconds));
     let in_time = |done: u64, expected: u64| observe(done, expected) && !deadline.is_over();
-    Ok(named_if_late(run_case_on(cores, case, references, kernel, &in_time)?, seconds))
+    let course = Course { cores, kernel, time_limit };
+    Ok(named_if_late(run_case_on(course, case, references, &in_time)?, seconds))
 }
 
 /// The record of a case that was stopped because its time was over says so.
@@ -103,21 +105,29 @@ pub fn run_case(
     alone: bool,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
-    run_case_on(Cores::one(alone), case, references, kernel, observe)
+    let course = Course { cores: Cores::one(alone), kernel, time_limit: TimeLimit::default() };
+    run_case_on(course, case, references, observe)
+}
+
+/// By what a case is run.
+#[derive(Clone, Copy)]
+struct Course {
+    cores: Cores,
+    kernel: Kernel,
+    time_limit: TimeLimit,
 }
 
 fn run_case_on(
-    cores: Cores,
+    course: Course,
     case: &Case,
     references: &[ReferenceKind],
-    kernel: Kernel,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
     plausible(case)?;
     if case.task == Task::Stability {
         return stability_of(case, observe);
     }
-    let (outcome, wall) = solved(cores, case, kernel, observe)?;
+    let (outcome, wall) = solved(course, case, observe)?;
     enter(Phase::Assessment);
     let mut record = record_of(case, references, outcome)?;
     record.wall.push(wall);
@@ -129,18 +139,20 @@ fn run_case_on(
 /// # Errors
 /// When the case's parameters are impossible.
 pub fn time_case(case: &Case) -> Result<WallSample, ExactError> {
-    solved(Cores::one(true), case, Kernel::Fastest, &|_, _| true).map(|(_, wall)| wall)
+    let course =
+        Course { cores: Cores::one(true), kernel: Kernel::Fastest, time_limit: TimeLimit::default() };
+    solved(course, case, &|_, _| true).map(|(_, wall)| wall)
 }
 
 /// What a case comes to, and how long that took.
 fn solved(
-    Cores { threads, alone }: Cores,
+    course: Course,
     case: &Case,
-    kernel: Kernel,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<(Outcome, WallSample), ExactError> {
     let problem = problem_of(case)?;
-    let schedule = schedule_of(case, kernel, threads);
+    let Cores { threads, alone } = course.cores;
+    let schedule = schedule_of(case, course);
     // A case of several threads has the process for itself.
     let clock = if threads > 1 { process_seconds } else { thread_seconds };
     let (start, worked) = (Instant::now(), clock());
@@ -182,7 +194,7 @@ fn stability_of(case: &Case, observe: &dyn Fn(u64, u64) -> bool) -> Result<Recor
     })
 }
 
-fn schedule_of(case: &Case, kernel: Kernel, threads: usize) -> Schedule {
+fn schedule_of(case: &Case, course: Course) -> Schedule {
     let parameters = column_parameters(&case.column, &case.material);
     let end = case.time_factors.last().copied().unwrap_or(0.0);
     let history = if end > HISTORY_START {
@@ -198,10 +210,11 @@ fn schedule_of(case: &Case, kernel: Kernel, threads: usize) -> Schedule {
         history,
         rule: case.time_step,
         settings: case.settings,
-        kernel,
+        kernel: course.kernel,
         integrator: case.integrator,
         critical_step: None,
         formulation: case.formulation,
-        threads,
+        threads: course.cores.threads,
+        time_limit: course.time_limit,
     }
 }

@@ -31,7 +31,9 @@ pub fn start_checks(
         points_expected: case.expected_points(),
         volume_error: start.totals.volume / case.column.volume() - 1.0,
         undrained_pressure_error: largest(off).unwrap_or(0.0),
-        unbalanced_force: start.totals.unbalanced_force / load,
+        // Of the load on a cell's width, in the plane.
+        unbalanced_force: start.totals.unbalanced_force
+            / if case.column.dimensions == 1 { load } else { load * case.cell_size() },
     })
 }
 

@@ -12,6 +12,7 @@ use crate::mpm::method::Configuration;
 use crate::mpm::operators::rigid_plate::NORMAL;
 use crate::mpm::operators::volumetric::VolumetricRows;
 use crate::mpm::state::grid::Grid;
+use crate::mpm::time_limit::TimeLimit;
 use crate::soil::tensor::{Tensor, Vector};
 
 /// Free components of the nodes, in the order of the unknowns: one for all that go with a rigid plate, the last.
@@ -86,14 +87,14 @@ impl<const D: usize> UndrainedSystem<D> {
     /// Assembles and factorises the stiffness of a body's present operators, by so many threads where that pays.
     ///
     /// # Errors
-    /// When it is singular: a body that nothing holds.
-    pub fn of(body: &Body<D>, threads: usize) -> Result<Self, Singular> {
+    /// When it is singular: a body that nothing holds; or when the time is over.
+    pub fn of(body: &Body<D>, threads: usize, time_limit: TimeLimit) -> Result<Self, Singular> {
         let rows = body.volumetric_rows();
         let mut stiffness = body.skeleton_stiffness(&rows);
         stiffness.add(&pressure_stiffness(&body.coupled_pressure_forces(&rows), &rows.divergence));
         let unknowns = FreeComponents::of(body);
         let matrix = unknowns.matrix(&stiffness, &body.grid);
-        let mut factors = BorderedLu::of_shape(&matrix, threads);
+        let mut factors = BorderedLu::of_shape(&matrix, threads).within(time_limit);
         factors.factor(&matrix)?;
         Ok(Self { unknowns, stiffness: (!matrix.is_banded()).then_some(matrix), factors, rows })
     }
@@ -128,9 +129,9 @@ impl<const D: usize> Body<D> {
     /// Brings the body into undrained equilibrium with its load, by so many threads where that pays.
     ///
     /// # Errors
-    /// When its stiffness is singular.
-    pub fn settle_undrained(&mut self, threads: usize) -> Result<(), Singular> {
-        let mut system = UndrainedSystem::of(self, threads)?;
+    /// When its stiffness is singular, or the time is over.
+    pub fn settle_undrained(&mut self, threads: usize, time_limit: TimeLimit) -> Result<(), Singular> {
+        let mut system = UndrainedSystem::of(self, threads, time_limit)?;
         self.map_forces();
         let displacements = system.displacements(&self.nodes.mixture_force);
         let field = &displacements[..];

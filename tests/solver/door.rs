@@ -7,6 +7,7 @@ use crate::mpm::method::Method;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::results::outcome::{FailureKind, RunStatus};
 use crate::mpm::run::{Kernel, Schedule, TimeStepRule};
+use crate::mpm::time_limit::TimeLimit;
 use crate::run;
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
@@ -31,6 +32,7 @@ fn schedule(kernel: Kernel, settings: ExplicitSettings, end: f64) -> Schedule {
         critical_step: None,
         formulation: Formulation::VW,
         threads: 1,
+        time_limit: TimeLimit::default(),
     }
 }
 
@@ -107,4 +109,32 @@ fn an_observer_can_stop_a_run() {
     let RunStatus::Failed(failure) = outcome.status else { panic!("not stopped") };
     assert_eq!((failure.kind, failure.step), (FailureKind::Stopped, 128));
     assert_eq!(outcome.snapshots.len(), 1, "what was finished stays");
+}
+
+#[test]
+fn a_step_that_makes_energy_is_ended_before_its_pressures_are_wrong() {
+    for (name, drag, share) in [
+        ("GIMP", Drag::Explicit, 1.002),
+        ("GIMP-SRI-patch", Drag::Implicit, 1.002),
+        ("GC-SRI-patch", Drag::Centred, 1.01),
+    ] {
+        let settings = ExplicitSettings { drag, ..ExplicitSettings::default() };
+        let mut plan = schedule(Kernel::Fastest, settings, 0.4);
+        plan.outputs = (1..=400).map(|output| 1e-3 * f64::from(output)).collect();
+        let sound = run(problem(name, 8, 2), &plan);
+        assert_eq!(sound.status, RunStatus::Ok);
+        plan.rule = TimeStepRule::Stable(share);
+        let grown = run(problem(name, 8, 2), &plan);
+        let RunStatus::Failed(failure) = grown.status else { panic!("{name} {share} went on to its end") };
+        assert_eq!(failure.kind, FailureKind::Unstable);
+        let is_named =
+            failure.reason.contains("without work") || failure.reason.contains("accelerates a node");
+        assert!(is_named, "{name}: {}", failure.reason);
+        for (sound, grown) in sound.snapshots.iter().zip(&grown.snapshots) {
+            let (sound, grown) = (&sound.points.pressure, &grown.points.pressure);
+            let off =
+                sound.iter().zip(grown).fold(0.0, |off: f64, (sound, grown)| off.max((sound - grown).abs()));
+            assert!(off < 0.2, "{name}: {off} of the load of one pascal");
+        }
+    }
 }

@@ -9,6 +9,7 @@ use crate::mpm::run::{Kernel, Schedule, TimeStepRule};
 use crate::mpm::state::grid::Grid;
 use crate::mpm::state::nodes::Support;
 use crate::mpm::state::points::Points;
+use crate::mpm::time_limit::TimeLimit;
 use crate::run;
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
@@ -48,6 +49,7 @@ fn schedule(
         kernel: Kernel::Fastest,
         formulation: integrator.default_formulation(),
         threads: 1,
+        time_limit: TimeLimit::default(),
         integrator,
     }
 }
@@ -486,4 +488,49 @@ fn strains_that_round_off_all_but_hides_are_solved_without_smaller_steps() {
     };
     let (tiny, small) = (settlement(1e-3), settlement(1.0));
     assert!((tiny / small - 1.0).abs() < 1e-5, "{tiny} {small}");
+}
+
+#[test]
+fn a_run_whose_time_is_over_ends_within_its_first_step() {
+    let layer = || {
+        let method = Method::named("GC-SRI-patch").expect("known");
+        SceneProblem::of(SceneKind::CosineLayer, &Column::layer(), &Material::default(), method, 4, 2)
+            .expect("a layer")
+    };
+    let column = |method: &str| SceneProblem::from(seed(method, &Material::default(), 6));
+    for problem in [layer(), column("GC-SRI-patch"), column("TL-GC-SRI-patch")] {
+        let rule = TimeStepRule::Growth(0.05);
+        let mut plan = schedule(&Material::default(), IntegratorKind::Implicit, rule, &[0.1]);
+        plan.time_limit = TimeLimit::after(0.0);
+        // Nobody else ends it.
+        let outcome = problem.run(&plan, &|_, _| true);
+        let RunStatus::Failed(failure) = outcome.status else { panic!("went on") };
+        assert_eq!((failure.kind, failure.step), (FailureKind::Stopped, 0));
+        assert_eq!((outcome.counters.steps, outcome.counters.iterations), (0, 0));
+    }
+}
+
+#[test]
+fn steps_by_tolerance_start_from_points_off_their_lattice() {
+    for method in ["GC-SRI-patch", "TL-GIMP-SRI"] {
+        let method = Method::named(method).expect("known");
+        let mut column = Column::default();
+        column.points.jitter = 0.2;
+        let problem = || {
+            column_problem::<1>(SceneKind::Terzaghi, &column, &Material::default(), method, 8, 2)
+                .expect("a column")
+        };
+        let by_tolerance =
+            solve(problem(), IntegratorKind::Implicit, TimeStepRule::Tolerance(1e-5), &[0.1, 0.5]);
+        let growing = solve(problem(), IntegratorKind::Implicit, TimeStepRule::Growth(0.01), &[0.1, 0.5]);
+        assert_eq!(by_tolerance.status, RunStatus::Ok);
+        for (one, other) in by_tolerance.snapshots.iter().zip(&growing.snapshots) {
+            assert!(
+                (one.settlement / other.settlement - 1.0).abs() < 1e-3,
+                "{} {}",
+                one.settlement,
+                other.settlement
+            );
+        }
+    }
 }

@@ -6,6 +6,7 @@ use crate::mpm::method::{Configuration, Method};
 use crate::mpm::run::results::outcome::{Outcome, RunStatus};
 use crate::mpm::run::results::snapshot::Snapshot;
 use crate::mpm::run::{Kernel, Schedule, TimeStepRule};
+use crate::mpm::time_limit::TimeLimit;
 use crate::run;
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
@@ -66,6 +67,7 @@ impl Setup {
             critical_step: None,
             formulation: crate::mpm::run::integrator::Formulation::VW,
             threads: 1,
+            time_limit: TimeLimit::default(),
             outputs: self.time_factors.iter().map(|factor| factor * seconds).collect(),
             history: Vec::new(),
             rule: self.rule,

@@ -109,6 +109,7 @@ fn a_share_of_a_limit_that_nobody_knows_is_refused() {
         critical_step: None,
         formulation: IntegratorKind::Explicit.default_formulation(),
         threads: 1,
+        time_limit: crate::mpm::time_limit::TimeLimit::default(),
     };
     let problem = || plane("GC-SRI-patch", "rough", 6, 0.1);
     let RunStatus::Failed(failure) = run(problem(), &schedule(TimeStepRule::Stable(0.5))).status else {

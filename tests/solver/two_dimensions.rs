@@ -9,6 +9,7 @@ use crate::mpm::run::integrator::IntegratorKind;
 use crate::mpm::run::results::outcome::{Outcome, RunStatus};
 use crate::mpm::run::results::snapshot::Snapshot;
 use crate::mpm::run::{Kernel, Schedule, TimeStepRule};
+use crate::mpm::time_limit::TimeLimit;
 use crate::run;
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
@@ -33,6 +34,7 @@ fn both(scene: SceneKind, method: Method, load: f64, end: f64, drag: Drag) -> (O
         integrator: IntegratorKind::Explicit,
         formulation: IntegratorKind::Explicit.default_formulation(),
         threads: 1,
+        time_limit: TimeLimit::default(),
     };
     let narrow = column_problem::<1>(scene, &column, &soil, method, CELLS, PER_CELL).expect("the seed");
     let wide = column_problem::<2>(scene, &plane, &soil, method, CELLS, PER_CELL).expect("the seed");
@@ -133,6 +135,7 @@ fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
                     integrator: IntegratorKind::Explicit,
                     formulation: IntegratorKind::Explicit.default_formulation(),
                     threads: 1,
+                    time_limit: TimeLimit::default(),
                 };
                 run(layer(name, Base::Rough), &schedule)
             };
@@ -173,6 +176,7 @@ fn the_predicted_step_of_a_plane_parts_stable_from_unstable_runs() {
                     integrator: IntegratorKind::Explicit,
                     formulation: IntegratorKind::Explicit.default_formulation(),
                     threads: 1,
+                    time_limit: TimeLimit::default(),
                 };
                 let outcome = run(layer(name, Base::Smooth), &schedule);
                 let limit = outcome.step_sizes.predicted_critical;

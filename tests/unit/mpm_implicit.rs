@@ -11,6 +11,7 @@ use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::stepper::{EqualSteps, Stepper};
 use crate::mpm::run::{Kernel, Schedule, TimeStepRule};
+use crate::mpm::time_limit::TimeLimit;
 use crate::scene::SceneKind;
 use crate::scene::column::Column;
 use crate::scene::problem::column_problem;
@@ -40,6 +41,7 @@ fn schedule() -> Schedule {
         formulation: IntegratorKind::Implicit.default_formulation(),
         integrator: IntegratorKind::Implicit,
         threads: 1,
+        time_limit: TimeLimit::default(),
     }
 }
 

@@ -8,6 +8,7 @@ use crate::mpm::method::Method;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::results::outcome::{Outcome, RunStatus};
 use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};
+use crate::mpm::time_limit::TimeLimit;
 use crate::scene::SceneKind;
 use crate::scene::column::{Column, column_parameters};
 use crate::scene::problem::column_problem;
@@ -52,6 +53,7 @@ fn solved_with(
         critical_step: None,
         formulation,
         threads: 1,
+        time_limit: TimeLimit::default(),
     };
     let outcome = run(problem, &schedule, &|_, _| true);
     assert_eq!(outcome.status, RunStatus::Ok);
@@ -75,7 +77,7 @@ fn the_undrained_start_is_skemptons_and_the_plate_is_in_balance() {
         let problem = slab("GIMP-SRI-patch", &soil, 6, 2);
         let mut body = Body::new(problem);
         assert_eq!(body.plate.as_ref().map(|plate| plate.nodes.len()), Some(7));
-        body.settle_undrained(1).expect("held");
+        body.settle_undrained(1, TimeLimit::default()).expect("held");
         assert!(body.unbalanced_force() < 1e-9, "{}", body.unbalanced_force());
         let parameters = column_parameters(&Column { horizontal_extent: 1.0 / 3.0, ..Column::slab() }, &soil);
         let exact = Mandel::new(&parameters).expect("possible");
@@ -172,6 +174,7 @@ fn the_assembled_plate_is_tied_whatever_the_velocities_are_mapped_by() {
                 critical_step: None,
                 formulation: Formulation::VW,
                 threads: 1,
+                time_limit: TimeLimit::default(),
             };
             // Under a plate over one row of cells all nodes map to one velocity by themselves.
             let outcome = run(slab("GIMP-SRI-patch", &soft(), 4, 2), &schedule, &|_, _| true);

@@ -14,6 +14,7 @@
 //! `step` goes through time.
 
 pub mod assembled_state;
+mod energy;
 pub mod operators;
 pub mod rows;
 pub mod sliding_rows;

@@ -24,7 +24,7 @@ pub struct AssembledStep<const D: usize> {
     pub(crate) nodes: Vec<usize>,
     /// Nodes of the body.
     node_count: usize,
-    rows: RowStorage<D>,
+    pub(crate) rows: RowStorage<D>,
     /// Constants of the rows, block by block.
     pub(crate) constants: Vec<BlockConstants<D>>,
     volumetric: VolumetricRows<D>,
@@ -258,6 +258,27 @@ impl<const D: usize> BlockConstants<D> {
             per_water_inertia: zeros,
             implicit_drag: zero,
         }
+    }
+
+    /// Whether there is a row.
+    pub(crate) fn holds_row(&self, i: usize) -> bool {
+        self.water_inertia[i] > 0.0
+    }
+
+    /// Masses of skeleton and water of a row, kg.
+    pub(crate) fn masses(&self, i: usize) -> [f64; 2] {
+        let water = self.porosity[i] * self.water_inertia[i];
+        [water / self.whole_water_share[i], water]
+    }
+
+    /// Porosity at a row.
+    pub(crate) fn porosity(&self, i: usize) -> f64 {
+        self.porosity[i]
+    }
+
+    /// Constant forces on mixture and water of a component of a row, N.
+    pub(crate) fn given_forces(&self, d: usize, i: usize) -> [f64; 2] {
+        [self.mixture_force[d][i], self.water_force[d][i]]
     }
 
     /// The balance of a component of a row, for the kick and drag last set.

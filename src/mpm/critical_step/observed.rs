@@ -11,6 +11,7 @@ use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::results::outcome::{Failure, FailureKind, RunStatus};
 use crate::mpm::run::{Kernel, Observer, Schedule, TimeStepRule, run};
+use crate::mpm::time_limit::TimeLimit;
 use serde::{Deserialize, Serialize};
 
 /// Cells up to which the prediction is of the whole column; longer ones lose some of their middle.
@@ -238,6 +239,7 @@ fn leaves<const D: usize>(
         integrator: IntegratorKind::Explicit,
         formulation: Formulation::VW,
         threads: 1,
+        time_limit: TimeLimit::default(),
         // A run that observes knows nothing of the prediction.
         critical_step: Some(step),
     };

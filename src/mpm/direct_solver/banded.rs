@@ -4,8 +4,11 @@
 //! and solving are linear in the number of cells (Golub & Van Loan 2013, algorithm 4.3.1).
 
 use crate::mpm::direct_solver::singular::Singular;
+use crate::mpm::time_limit::TimeLimit;
 use crate::mpm::wide::wide;
 
+/// Columns between two looks at the clock.
+const COLUMNS_TO_CLOCK: usize = 1024;
 /// A square matrix whose entries lie within `lower` diagonals below and `upper` above the main
 /// one, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,6 +80,8 @@ pub struct BandedLu {
     /// Column behind the last entry of each row: only rows that changed places reach as far as they
     /// might.
     ends: Vec<usize>,
+    /// When it is given up.
+    time_limit: TimeLimit,
 }
 
 impl BandedLu {
@@ -94,7 +99,13 @@ impl BandedLu {
             pivots: vec![0; shape.size],
             per_diagonal: vec![1.0; shape.size],
             ends: (1..=shape.size).collect(),
+            time_limit: TimeLimit::default(),
         }
+    }
+
+    /// Gives a factorisation up at the end of a time, as if the column at work had no pivot.
+    pub fn end_within(&mut self, time_limit: TimeLimit) {
+        self.time_limit = time_limit;
     }
 
     /// Factors `fixed + factor · scaled`; nothing is allocated.
@@ -129,6 +140,9 @@ impl BandedLu {
             *end = (row + upper + 1).min(size);
         }
         for column in 0..size {
+            if column % COLUMNS_TO_CLOCK == COLUMNS_TO_CLOCK - 1 && self.time_limit.is_over() {
+                return Err(Singular { row: column });
+            }
             let last = (column + lower).min(size - 1);
             let at = |row: usize| row * width + column + lower - row;
             let mut pivot = column;

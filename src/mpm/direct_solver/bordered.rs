@@ -7,6 +7,7 @@
 
 use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::direct_solver::system::{Factors, SystemMatrix};
+use crate::mpm::time_limit::TimeLimit;
 
 /// A matrix, with a border or without.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,6 +111,13 @@ impl BorderedLu {
             per_corner: 1.0,
         };
         Self { core: Factors::of_shape(&shape.core, threads), border: shape.border.as_ref().map(eliminated) }
+    }
+
+    /// The same that give a factorisation up at the end of a time, as if it had no pivot.
+    #[must_use]
+    pub fn within(mut self, time_limit: TimeLimit) -> Self {
+        self.core.end_within(time_limit);
+        self
     }
 
     /// Factors `fixed + factor · scaled`; nothing is allocated.

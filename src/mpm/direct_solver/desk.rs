@@ -4,6 +4,7 @@ use crate::mpm::direct_solver::elimination::{Elimination, FrontShape};
 use crate::mpm::direct_solver::front::{Front, Panel};
 use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::direct_solver::sparse_matrix::SparseMatrix;
+use crate::mpm::time_limit::TimeLimit;
 
 /// The room of a thread.
 #[derive(Clone, Debug)]
@@ -38,6 +39,8 @@ pub struct Factored<'a, V> {
     pub shape: &'a SparseMatrix,
     /// Gives an entry.
     pub value: V,
+    /// When its factors are given up.
+    pub time_limit: TimeLimit,
 }
 
 impl Desk {
@@ -83,6 +86,9 @@ impl Desk {
         let (count, size) = (shape.count, shape.size());
         if size == 0 {
             return Ok(()); // A cut that parted what was apart already.
+        }
+        if matrix.time_limit.is_over() {
+            return Err(Singular { row: matrix.elimination.order[shape.first] });
         }
         self.gather(shape, matrix);
         let entries = &mut self.front[..size * size];

@@ -10,6 +10,7 @@ use crate::mpm::direct_solver::elimination::Elimination;
 use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::direct_solver::sparse_matrix::SparseMatrix;
 use crate::mpm::direct_solver::substitution::Substitution;
+use crate::mpm::time_limit::TimeLimit;
 
 /// The factors of a sparse matrix.
 #[derive(Clone, Debug)]
@@ -27,6 +28,8 @@ pub struct FrontalLu {
     desks: Vec<Desk>,
     /// A right-hand side in the order of elimination.
     ordered: Vec<f64>,
+    /// When it is given up.
+    time_limit: TimeLimit,
 }
 
 impl FrontalLu {
@@ -54,7 +57,13 @@ impl FrontalLu {
             ordered: vec![0.0; size],
             whole,
             elimination,
+            time_limit: TimeLimit::default(),
         }
+    }
+
+    /// Gives a factorisation up at the end of a time, as if the front at work had no pivot.
+    pub fn end_within(&mut self, time_limit: TimeLimit) {
+        self.time_limit = time_limit;
     }
 
     /// Factors the matrix of a shape whose entries `value` tells by their numbers; nothing is allocated by one thread.
@@ -67,7 +76,7 @@ impl FrontalLu {
         value: impl Fn(usize) -> f64 + Sync,
     ) -> Result<(), Singular> {
         self.desks.iter_mut().for_each(Desk::clear);
-        let matrix = Factored { elimination: &self.elimination, shape, value };
+        let matrix = Factored { elimination: &self.elimination, shape, value, time_limit: self.time_limit };
         let room = (&mut self.factors[..], &mut self.pivots[..]);
         factor_branch(&self.whole, &matrix, room, &mut self.desks)
     }

@@ -4,6 +4,7 @@ use crate::mpm::direct_solver::banded::{Banded, BandedLu};
 use crate::mpm::direct_solver::frontal_lu::FrontalLu;
 use crate::mpm::direct_solver::singular::Singular;
 use crate::mpm::direct_solver::sparse_matrix::SparseMatrix;
+use crate::mpm::time_limit::TimeLimit;
 
 /// Diagonals of a band beyond which fronts are the faster.
 const WIDEST_BAND: usize = 200;
@@ -76,6 +77,14 @@ impl Factors {
         match shape {
             SystemMatrix::Banded(matrix) => Self::Banded(Box::new(BandedLu::of_shape(matrix))),
             SystemMatrix::Sparse(matrix) => Self::Frontal(Box::new(FrontalLu::of_shape(matrix, threads))),
+        }
+    }
+
+    /// Gives factorisations up at the end of a time.
+    pub fn end_within(&mut self, time_limit: TimeLimit) {
+        match self {
+            Self::Banded(factors) => factors.end_within(time_limit),
+            Self::Frontal(factors) => factors.end_within(time_limit),
         }
     }
 

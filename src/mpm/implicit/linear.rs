@@ -13,6 +13,7 @@ use crate::mpm::run::results::outcome::FailureKind;
 use crate::mpm::run::results::snapshot::Snapshot;
 use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
+use crate::mpm::time_limit::TimeLimit;
 use crate::soil::tensor::Vector;
 
 /// A frozen body on its way through time.
@@ -23,6 +24,7 @@ pub struct LinearStepper<const D: usize> {
     settled: f64,
     system: LinearSystem<D>,
     lu: BorderedLu,
+    time_limit: TimeLimit,
     /// Step size that the factors belong to, s.
     factored: Option<f64>,
     /// State `x`.
@@ -50,7 +52,8 @@ impl<const D: usize> LinearStepper<D> {
         let zero = vec![0.0; system.unknowns.count];
         Self {
             settled: start.settlement(plan.initial_height),
-            lu: BorderedLu::of_shape(&system.fixed, plan.schedule.threads),
+            lu: BorderedLu::of_shape(&system.fixed, plan.schedule.threads).within(plan.schedule.time_limit),
+            time_limit: plan.schedule.time_limit,
             factored: None,
             state: zero.clone(),
             residual: system.start_residual.clone(),
@@ -72,9 +75,13 @@ impl<const D: usize> LinearStepper<D> {
             enter(Phase::Factors);
             let system = &self.system;
             let factored = self.lu.factor_combination(&system.fixed, SDIRK_GAMMA * dt, &system.proportional);
-            factored.map_err(|singular| StepFailure {
-                kind: FailureKind::Singular,
-                reason: format!("the matrix of a step of {dt:.4e} s has no pivot in row {}", singular.row),
+            factored.map_err(|singular| {
+                if self.time_limit.is_over() {
+                    return StepFailure::out_of_time();
+                }
+                let reason =
+                    format!("the matrix of a step of {dt:.4e} s has no pivot in row {}", singular.row);
+                StepFailure { kind: FailureKind::Singular, reason }
             })?;
             self.factored = Some(dt);
             self.work.factorisations += 1;

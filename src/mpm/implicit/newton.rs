@@ -17,6 +17,7 @@ use crate::mpm::run::results::snapshot::Snapshot;
 use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
 use crate::mpm::run::watch::lost_point;
+use crate::mpm::time_limit::TimeLimit;
 
 /// Iterations of a stage.
 const MOST_ITERATIONS: usize = 16;
@@ -48,8 +49,9 @@ pub struct NewtonStepper<const D: usize> {
     pattern: Pattern,
     tangent: Bordered,
     lu: BorderedLu,
-    /// Threads that it may use.
+    /// Threads that it may use, and the time.
     threads: usize,
+    time_limit: TimeLimit,
     /// What corrections tell of the tangent beyond its factors.
     secants: Secants,
     /// The last correction of the scaled unknowns.
@@ -95,8 +97,9 @@ impl<const D: usize> NewtonStepper<D> {
         let cells = trial.body.grid.cells.iter().fold(0.0, |most: f64, count| most.max(*count as f64));
         let zero = vec![0.0; trial.unknowns.count];
         Self {
-            lu: BorderedLu::of_shape(&tangent, plan.schedule.threads),
+            lu: BorderedLu::of_shape(&tangent, plan.schedule.threads).within(plan.schedule.time_limit),
             threads: plan.schedule.threads,
+            time_limit: plan.schedule.time_limit,
             secants: Secants::default(),
             correction: zero.clone(),
             tangent,
@@ -125,7 +128,7 @@ impl<const D: usize> NewtonStepper<D> {
     /// A step, in halves where the iteration does not come to an end.
     fn step_within(&mut self, dt: f64, halvings: u32, most_error: f64) -> Result<f64, StepFailure> {
         match self.try_step(dt, most_error) {
-            Err(_) if halvings > 0 => {
+            Err(failure) if halvings > 0 && failure.kind != FailureKind::Stopped => {
                 self.work.rejected_steps += 1;
                 self.step_within(0.5 * dt, halvings - 1, f64::INFINITY)?;
                 self.step_within(0.5 * dt, halvings - 1, f64::INFINITY)
@@ -223,7 +226,7 @@ impl<const D: usize> NewtonStepper<D> {
         let is_bold = !self.guess.is_plain(number)
             || (self.factored.is_some() && !self.pattern.is_of(&self.trial.body, &self.trial.unknowns));
         match self.iterate() {
-            Err(_) if is_bold => {
+            Err(failure) if is_bold && failure.kind != FailureKind::Stopped => {
                 self.guess.make_plain(number);
                 self.guess.guess(number, &self.rate, &self.start.unknowns, &mut self.state);
                 self.factored = None;
@@ -239,6 +242,7 @@ impl<const D: usize> NewtonStepper<D> {
         let mut first = None;
         let mut renew = self.factored != Some(self.start.duration);
         for _ in 0..MOST_ITERATIONS {
+            self.ask_for_time()?;
             enter(Phase::Balances);
             self.trial.residual(&self.state, &self.start, &mut self.residual)?;
             if renew {
@@ -288,6 +292,10 @@ impl<const D: usize> NewtonStepper<D> {
         })
     }
 
+    fn ask_for_time(&self) -> Result<(), StepFailure> {
+        if self.time_limit.is_over() { Err(StepFailure::out_of_time()) } else { Ok(()) }
+    }
+
     /// Ends an iteration: where its tangent was just made, the nodes still have the velocities and the flux of the last
     /// difference.
     fn end_iteration(&mut self, was_renewed: bool) -> Result<(), StepFailure> {
@@ -302,7 +310,7 @@ impl<const D: usize> NewtonStepper<D> {
         if !self.pattern.is_of(&self.trial.body, &self.trial.unknowns) {
             self.renew_pattern();
         }
-        let (trial, start) = (&mut self.trial, &self.start);
+        let (trial, start, time_limit) = (&mut self.trial, &self.start, self.time_limit);
         self.pattern.differentiate(
             &mut self.state,
             &self.residual,
@@ -310,15 +318,22 @@ impl<const D: usize> NewtonStepper<D> {
             &mut self.tangent,
             // Pores that a difference closes are open at the iterate itself.
             |state, residual| {
-                let _ = trial.residual(state, start, residual);
+                // Differences that nobody will wait for are none.
+                if !time_limit.is_over() {
+                    let _ = trial.residual(state, start, residual);
+                }
             },
         );
+        self.ask_for_time()?;
         self.work.factorisations += 1;
         self.factored = Some(start.duration);
         enter(Phase::Factors);
         self.secants.clear();
         self.lu.factor(&self.tangent).map_err(|singular| {
             self.factored = None;
+            if self.time_limit.is_over() {
+                return StepFailure::out_of_time();
+            }
             StepFailure {
                 kind: FailureKind::Singular,
                 reason: format!("the tangent has no pivot in row {}", singular.row),
@@ -334,7 +349,7 @@ impl<const D: usize> NewtonStepper<D> {
             && body.configuration.moves_points()
             && body.method.pressure == PressureIntegration::Points
             && body.method.recovery != Recovery::Nodal;
-        if !is_known {
+        if !is_known || failure.kind == FailureKind::Stopped {
             return failure;
         }
         let StepFailure { kind, reason } = failure;
@@ -372,7 +387,7 @@ impl<const D: usize> NewtonStepper<D> {
         self.trial.unknowns.take_rows(&self.trial.body);
         self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
         self.tangent = self.pattern.zeros();
-        self.lu = BorderedLu::of_shape(&self.tangent, self.threads);
+        self.lu = BorderedLu::of_shape(&self.tangent, self.threads).within(self.time_limit);
         self.factored = None;
     }
 }

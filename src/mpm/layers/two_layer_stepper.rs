@@ -5,6 +5,7 @@ use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::explicit::scheme::Rhythm;
 use crate::mpm::layers::samples::TwoLayerStart;
 use crate::mpm::layers::two_layers::TwoLayers;
+use crate::mpm::run::energy::Energy;
 use crate::mpm::run::explicit_stepper::{GrowingLoad, WATCH_INTERVAL, step_reduction};
 use crate::mpm::run::results::snapshot::Snapshot;
 use crate::mpm::run::run_plan::Plan;
@@ -19,6 +20,8 @@ pub struct TwoLayerStepper<const D: usize> {
     layers: TwoLayers<D>,
     start: TwoLayerStart<D>,
     initial_height: f64,
+    /// Settlement of the start, m.
+    initial_settlement: f64,
     settings: ExplicitSettings,
     /// Whether the step follows the deformation of the body.
     step_follows: bool,
@@ -45,6 +48,7 @@ impl<const D: usize> TwoLayerStepper<D> {
         }
         let mut stepper = Self {
             start: TwoLayerStart::of(&layers),
+            initial_settlement: layers.body.settlement(plan.initial_height),
             layers,
             initial_height: plan.initial_height,
             settings: plan.schedule.settings,
@@ -89,6 +93,22 @@ impl<const D: usize> Stepper for TwoLayerStepper<D> {
 
     fn largest_velocity(&self) -> Option<f64> {
         Some(self.layers.body.largest_velocity())
+    }
+
+    fn energy(&mut self, _dt: f64) -> Option<(Energy, bool)> {
+        let layers = &self.layers;
+        if self.load.grows() {
+            return None;
+        }
+        let water = &layers.water;
+        let water = (0..water.pressure.len())
+            .map(|point| (water.porosity[point] * water.volume_inside(point), water.pressure[point]));
+        let settlement = self.settlement() - self.initial_settlement;
+        Some((layers.body.energy(settlement, water)?, layers.body.configuration.deforms()))
+    }
+
+    fn unbalanced_force(&self) -> Option<f64> {
+        Some(self.layers.body.largest_accelerating_force())
     }
 
     fn lost_point(&self) -> Option<StepFailure> {

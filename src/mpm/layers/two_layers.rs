@@ -152,6 +152,7 @@ mod tests {
     use crate::mpm::run::results::outcome::{Outcome, RunStatus};
     use crate::mpm::run::results::snapshot::{Snapshot, Totals};
     use crate::mpm::run::{Kernel, Schedule, TimeStepRule, run};
+    use crate::mpm::time_limit::TimeLimit;
     use crate::scene::SceneKind;
     use crate::scene::arrangement::Arrangement;
     use crate::scene::column::Column;
@@ -185,6 +186,7 @@ mod tests {
             critical_step: Some(0.9e-4),
             formulation: Formulation::VW,
             threads: 1,
+            time_limit: TimeLimit::default(),
         };
         run(problem, &schedule, &|_, _| true)
     }
@@ -314,6 +316,7 @@ mod tests {
             critical_step: None,
             formulation: Formulation::QuasiStatic,
             threads: 1,
+            time_limit: TimeLimit::default(),
         };
         let outcome = run(problem::<1>(SceneKind::Terzaghi, "GIMP", [2, 2], 1.0), &schedule, &|_, _| true);
         let RunStatus::Failed(failure) = outcome.status else { panic!("solved") };

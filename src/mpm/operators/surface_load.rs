@@ -155,6 +155,13 @@ impl<const D: usize> LoadedSurface<D> {
         sum / self.squares
     }
 
+    /// Work, J, of the present load along a settlement, m, as it is measured by [`height`](Self::height).
+    pub fn work(&self, points: &Points<D>, settlement: f64) -> f64 {
+        let share = if D == 1 { 1.0 } else { 1.0 / EDGE_SPOTS.len() as f64 };
+        let width = |spot: &Spot| spot.shape * spot.shape * width_of(points, spot.point);
+        self.load * settlement * share * self.spots.iter().map(width).sum::<f64>()
+    }
+
     /// Height of the lowest place of the surface now, m.
     pub fn lowest(&self, points: &Points<D>) -> f64 {
         let height = |spot| self.place(points, spot)[D - 1];

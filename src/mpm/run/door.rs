@@ -12,7 +12,7 @@ use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::results::outcome::{Failure, FailureKind, Outcome};
 use crate::mpm::run::run_plan::{Plan, UnknownLimit};
 use crate::mpm::run::schedule::{Observer, Schedule};
-use crate::mpm::run::stepper::Stepper;
+use crate::mpm::run::stepper::{StepFailure, Stepper};
 
 /// Solves a problem. Never panics and never loops for ever: what goes wrong ends the run with a
 /// named status, and what was finished before stays.
@@ -26,8 +26,13 @@ pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: O
     let mut problem = problem;
     let water = problem.water.take();
     let mut body = Body::new(problem);
-    let start_failure =
-        if undrained_start { body.settle_undrained(schedule.threads).err().map(no_start) } else { None };
+    let time_limit = schedule.time_limit;
+    let no_start = |singular| if time_limit.is_over() { out_of_time() } else { no_start(singular) };
+    let start_failure = if undrained_start {
+        body.settle_undrained(schedule.threads, time_limit).err().map(no_start)
+    } else {
+        None
+    };
     match water {
         Some(lattice) => {
             let start_failure = start_failure.or_else(|| no_layers(schedule.integrator));
@@ -64,6 +69,12 @@ fn no_limit(unknown: UnknownLimit) -> Failure {
     };
     let reason = format!("{unknown}; a step in `seconds` is taken as it is");
     Failure { kind: FailureKind::Unstable, step: 0, time: 0.0, growth, reason }
+}
+
+/// The end of a run whose time was over before it had a start.
+fn out_of_time() -> Failure {
+    let StepFailure { kind, reason } = StepFailure::out_of_time();
+    Failure { kind, step: 0, time: 0.0, growth: None, reason }
 }
 
 /// The end of a run in two layers by an integrator that has none.

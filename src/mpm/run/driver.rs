@@ -19,6 +19,8 @@ const SAFETY: f64 = 0.9;
 const SMALLEST_CHANGE: f64 = 0.2;
 /// What it may grow to at once.
 const LARGEST_CHANGE: f64 = 4.0;
+/// Share of an error that is left by a step of a fifth at most where the error is one of the start.
+const STAYS: f64 = 0.7;
 /// Growth that is worth new factors.
 const WORTH_A_CHANGE: f64 = 1.4;
 
@@ -36,6 +38,8 @@ pub struct Driver<'a> {
     expected: u64,
     /// Size that the errors of the steps so far ask for, s.
     adaptive_step: f64,
+    /// Error of the last step that was tried from the start and not taken.
+    rejected_start: Option<f64>,
 }
 
 impl<'a> Driver<'a> {
@@ -50,6 +54,7 @@ impl<'a> Driver<'a> {
             counters: Counters { points: plan.points, nodes: plan.nodes, ..Counters::default() },
             expected: plan.limit.expected_steps(end),
             adaptive_step: plan.sizes.target,
+            rejected_start: None,
             stepper,
             plan,
             observer,
@@ -59,6 +64,7 @@ impl<'a> Driver<'a> {
     /// Goes from output to output, unless there is no start to go from.
     pub fn solve(mut self, start_failure: Option<Failure>) -> Outcome {
         let start = self.stepper.snapshot(0.0);
+        self.watch.begin(&start);
         let mut snapshots = Vec::new();
         let mut status = start_failure.map_or(RunStatus::Ok, RunStatus::Failed);
         for output in &self.plan.schedule.outputs {
@@ -140,7 +146,18 @@ impl<'a> Driver<'a> {
         let rest = output - self.time;
         let left = steps_for(rest, self.adaptive_step);
         let dt = if left <= 2 { rest / left as f64 } else { self.adaptive_step };
-        let error = self.take(&EqualSteps::first(self.time, dt, 1), tolerance)?;
+        // An error of the first step that a smaller one does not reduce is no error in time: the start is out of
+        // balance, by points off their lattice say, and the first step takes that up whatever its size.
+        let jumps = |last: f64, error: f64| error > STAYS * last;
+        let step = EqualSteps::first(self.time, dt, 1);
+        let mut error = self.take(&step, tolerance)?;
+        if error > tolerance && self.time == 0.0 {
+            if self.rejected_start.is_some_and(|last| jumps(last, error)) {
+                self.take(&step, f64::INFINITY)?;
+                error = tolerance;
+            }
+            self.rejected_start = Some(error);
+        }
         let factor = SAFETY * (tolerance / error.max(1e-3 * tolerance)).sqrt();
         if error > tolerance || factor < 1.0 {
             self.adaptive_step = self.adaptive_step.min(dt * factor.max(SMALLEST_CHANGE));
@@ -183,7 +200,7 @@ impl<'a> Driver<'a> {
         self.counters.steps += steps.count;
         self.counters.point_updates += steps.count * self.counters.points as u64;
         let after = Settled { time: end, settlement: self.stepper.settlement() };
-        self.watch.look(self.stepper, after.settlement, steps.count, &self.sizes)?;
+        self.watch.look(self.stepper, after.settlement, steps, &self.sizes)?;
         if let Some(before) = before {
             self.history.note(before, after, self.stepper.settlement_rate());
         }

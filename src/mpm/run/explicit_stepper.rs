@@ -6,6 +6,7 @@ use crate::mpm::critical_step::formula;
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::explicit::scheme::Rhythm;
 use crate::mpm::method::Configuration;
+use crate::mpm::run::energy::Energy;
 use crate::mpm::run::results::snapshot::Snapshot;
 use crate::mpm::run::run_plan::Plan;
 use crate::mpm::run::schedule::Kernel;
@@ -164,6 +165,25 @@ impl<const D: usize> Stepper for ExplicitStepper<D> {
         Some(match &self.frozen {
             Some(frozen) => frozen.largest_velocity(),
             None => self.body.largest_velocity(),
+        })
+    }
+
+    fn energy(&mut self, dt: f64) -> Option<(Energy, bool)> {
+        if self.body.weight.is_some() || self.load.grows() {
+            return None;
+        }
+        if let Some(frozen) = &mut self.frozen {
+            return Some((frozen.energy(dt, self.settings.mapping_back), false));
+        }
+        let settlement = self.settlement() - self.initial_settlement;
+        let energy = self.body.energy(settlement, self.body.water_of_points())?;
+        Some((energy, self.body.configuration.deforms()))
+    }
+
+    fn unbalanced_force(&self) -> Option<f64> {
+        Some(match &self.frozen {
+            Some(frozen) => frozen.largest_accelerating_force(),
+            None => self.body.largest_accelerating_force(),
         })
     }
 

@@ -8,6 +8,7 @@
 
 pub mod door;
 pub mod driver;
+pub mod energy;
 pub mod explicit_stepper;
 pub mod integrator;
 pub mod physical_bounds;

@@ -1,6 +1,7 @@
 //! What a sound result cannot leave, whatever the method: looked at while a run goes on.
 
 use crate::mpm::body::Problem;
+use crate::mpm::critical_step::formula;
 use crate::mpm::operators::rigid_plate::NORMAL;
 use crate::mpm::operators::surface_load::{LoadShape, LoadedSurface};
 
@@ -15,6 +16,18 @@ const SETTLEMENTS: [f64; 2] = [-1.0, 3.0];
 /// by as much again at a front.
 const MOST_PRESSURE: f64 = 5.0;
 
+/// Force that accelerates a node over that of the load, times the cells over the height: a pressure that is wrong by a
+/// share of the load over the whole height is out of balance by that share of it over one cell. Sound runs leave a
+/// hundredth of it once their first waves are gone.
+const MOST_FORCE: f64 = 0.2;
+/// The same over that of the load alone where points move: stresses jump as points cross cells.
+const MOST_FORCE_MOVING: f64 = 1.0;
+/// Force over that of the load at the time that a wave takes through the body and drag takes to join the phases: as water
+/// begins to leave, it falls with time from there on.
+const RELEASE: f64 = 4.0;
+/// Forces of a start out of balance that its waves reach where they meet.
+const STARTS: f64 = 4.0;
+
 /// Bounds of settlement and pressure that the scene of a problem sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhysicalBounds {
@@ -24,24 +37,69 @@ pub struct PhysicalBounds {
     settlement: [f64; 2],
     /// Largest pressure, Pa, either way.
     pressure: f64,
+    /// Largest force that accelerates a node, N, beside that of the release.
+    force: f64,
+    /// Force of the release of water at the drained surface, N, times its time, s.
+    release: f64,
+    /// Whether a run that leaves them is ended; not where growth is the question.
+    pub are_kept: bool,
 }
 
 impl PhysicalBounds {
     /// The bounds of a problem.
     pub fn of<const D: usize>(problem: &Problem<D>) -> Self {
         let scale = settlement_scale(problem);
-        let pressure = match problem.load_shape {
-            LoadShape::Uniform => MOST_PRESSURE * problem.pressure_scale,
-            // A layer of a method that locks starts at hundreds of times its load: that is what such
-            // studies are about, and it is no end of a run.
-            LoadShape::Cosine { .. } => f64::INFINITY,
-        };
-        if problem.is_bounded {
-            Self { settlement_scale: scale, settlement: SETTLEMENTS.map(|share| share * scale), pressure }
-        } else {
-            let without = f64::INFINITY;
-            Self { settlement_scale: scale, settlement: [-without, without], pressure: without }
+        let without = f64::INFINITY;
+        if !problem.is_bounded {
+            let settlement = [-without, without];
+            let (force, release, are_kept) = (without, 0.0, false);
+            return Self { settlement_scale: scale, settlement, pressure: without, force, release, are_kept };
         }
+        let (soil, cell_size) = (&problem.material, problem.grid.cell_size);
+        let of_load = problem.pressure_scale * (1..D).map(|_| cell_size).product::<f64>();
+        let up = if problem.plate_load.is_some() { NORMAL } else { D - 1 };
+        let cells = problem.grid.cells[up] as f64;
+        let force = if problem.forcing.is_some() || problem.loading_time > 0.0 {
+            // What acts goes on to change.
+            without
+        } else if problem.configuration.deforms() {
+            MOST_FORCE_MOVING * of_load
+        } else {
+            MOST_FORCE * of_load / cells
+        };
+        let joining = 0.5 * formula::drag_limit(soil);
+        let passing = cells * cell_size / formula::undrained_wave_speed(soil);
+        Self {
+            settlement_scale: scale,
+            settlement: SETTLEMENTS.map(|share| share * scale),
+            pressure: MOST_PRESSURE * problem.pressure_scale,
+            force,
+            release: RELEASE * of_load * (passing + joining),
+            are_kept: true,
+        }
+    }
+
+    /// The bounds of a run from a start, whose pressures may be many times the load where a method locks, which is what
+    /// studies of that are about, and whose unbalanced forces run through the body as waves.
+    #[must_use]
+    pub fn from_start(self, pressures: &[f64], unbalanced_force: f64) -> Self {
+        let largest = pressures.iter().fold(0.0, |largest: f64, pressure| largest.max(pressure.abs()));
+        Self {
+            pressure: self.pressure.max(MOST_PRESSURE * largest),
+            force: self.force + STARTS * unbalanced_force,
+            ..self
+        }
+    }
+
+    /// Why a force, N, that accelerates a node at a time, s, is none of the scene's, where it is not.
+    pub fn left_by_force(&self, force: f64, time: f64) -> Option<String> {
+        let most = self.force + self.release / time;
+        let is_within = force <= most;
+        (!is_within).then(|| {
+            format!(
+                "a force of {force:.3e} N accelerates a node, where the scene is in balance but for {most:.3e} N at that time"
+            )
+        })
     }
 
     /// Why a settlement, m, is none of the scene's, where it is not.
@@ -131,6 +189,26 @@ mod tests {
         // A half-space under a cosine of a metre: 2 (1 − ν²) q L/(π E).
         let half_space = 2.0 * (1.0 - 0.4999_f64.powi(2)) / (std::f64::consts::PI * soil.youngs_modulus);
         assert!(bounds.settlement_scale > half_space && bounds.settlement_scale < 1.1 * half_space);
-        assert!(bounds.left_by_pressure(&[300.0]).is_none(), "locked, and not ended");
+        assert!(bounds.left_by_pressure(&[300.0]).is_some());
+        let locked = bounds.from_start(&[-80.0, 20.0], 0.0);
+        assert!(locked.left_by_pressure(&[300.0]).is_none(), "locked from its start, and not ended");
+        assert!(locked.left_by_pressure(&[500.0]).is_some(), "and ended where it goes on to grow");
+    }
+
+    #[test]
+    fn a_body_in_balance_is_accelerated_by_the_release_of_its_water_and_by_its_starts_waves() {
+        let soil = Material { hydraulic_conductivity: 1e-6, ..Material::default() };
+        let bounds = bounds_of(SceneKind::Terzaghi, &Column { load: 50.0, ..Column::default() }, &soil);
+        // Of 50 Pa on five cells a hundredth, and half a millisecond for a wave.
+        for (force, time, is_within) in
+            [(150.0, 5e-4, true), (1.5, 1.0, true), (2.5, 1.0, false), (f64::NAN, 1.0, false)]
+        {
+            assert_eq!(bounds.left_by_force(force, time).is_none(), is_within, "{force} {time}");
+        }
+        let waves = bounds.from_start(&[], 50.0);
+        assert!(waves.left_by_force(150.0, 1.0).is_none() && waves.left_by_force(250.0, 1.0).is_some());
+        let growing = Column { loading_time: 1.0, ..Column::default() };
+        let growing = bounds_of(SceneKind::DynamicColumn, &growing, &soil);
+        assert!(growing.left_by_force(1e9, 1.0).is_none());
     }
 }

@@ -3,6 +3,7 @@
 use crate::mpm::explicit::ExplicitSettings;
 use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::mpm::run::time_step_rule::TimeStepRule;
+use crate::mpm::time_limit::TimeLimit;
 
 /// Kernel of the explicit step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,6 +36,8 @@ pub struct Schedule {
     pub formulation: Formulation,
     /// Threads that large systems may be solved by. Results do not depend on it.
     pub threads: usize,
+    /// The end of the time that the run has, asked where a step takes long.
+    pub time_limit: TimeLimit,
 }
 
 /// Called every few steps with the steps done and those expected; returns `false` to stop the run.

@@ -1,5 +1,6 @@
 //! What every integrator is to the driver.
 
+use crate::mpm::run::energy::Energy;
 use crate::mpm::run::results::outcome::FailureKind;
 use crate::mpm::run::results::snapshot::Snapshot;
 
@@ -10,6 +11,13 @@ pub struct StepFailure {
     pub kind: FailureKind,
     /// A sentence with the numbers.
     pub reason: String,
+}
+
+impl StepFailure {
+    /// The end of a run whose time was over within a step.
+    pub fn out_of_time() -> Self {
+        Self { kind: FailureKind::Stopped, reason: "stopped within a step".to_owned() }
+    }
 }
 
 /// Work of the solves of an implicit integrator.
@@ -92,6 +100,18 @@ pub trait Stepper {
     /// Largest nodal velocity, m/s, infinite where one is not finite; none where nobody
     /// looks: the bounds of the scene see an implicit step that grows.
     fn largest_velocity(&self) -> Option<f64> {
+        None
+    }
+
+    /// Energy after steps of `dt` seconds, and whether it is that of points that move; none where nobody keeps account of
+    /// it: implicit steps make none that their solves would not show, and what a motion that was chosen, a weight or a
+    /// plate does to moving points is not summed.
+    fn energy(&mut self, _dt: f64) -> Option<(Energy, bool)> {
+        None
+    }
+
+    /// Largest force on a free component of a node that accelerates it, N, in the last step; none where nobody looks.
+    fn unbalanced_force(&self) -> Option<f64> {
         None
     }
 

@@ -2,13 +2,19 @@
 
 use crate::elementary;
 use crate::mpm::body::Body;
+use crate::mpm::run::energy::EnergyAccount;
 use crate::mpm::run::integrator::StepBound;
+use crate::mpm::run::physical_bounds::PhysicalBounds;
 use crate::mpm::run::results::outcome::{FailureKind, StepSizes};
+use crate::mpm::run::results::snapshot::Snapshot;
 use crate::mpm::run::run_plan::Plan;
-use crate::mpm::run::stepper::{StepFailure, Stepper};
+use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper};
 
 /// Velocities beyond this multiple of their scale have left.
 const BLOW_UP: f64 = 1e3;
+
+/// Steps between two accounts of the energy.
+const STEPS_TO_ACCOUNT: u64 = 1024;
 
 /// What the last looks have seen.
 #[derive(Clone, Copy, Debug)]
@@ -18,12 +24,23 @@ pub struct Watch<'a> {
     velocity: f64,
     /// Largest velocity over that of the look before, and the steps between them.
     growth: Option<(f64, u64)>,
+    /// What was seen of the energy, and the steps since.
+    energy: EnergyAccount,
+    unaccounted: u64,
+    /// What it does not leave, from its start.
+    bounds: PhysicalBounds,
 }
 
 impl<'a> Watch<'a> {
     /// Nothing seen yet.
     pub fn of(plan: &'a Plan<'a>) -> Self {
-        Self { plan, velocity: 0.0, growth: None }
+        let energy = EnergyAccount::default();
+        Self { plan, velocity: 0.0, growth: None, energy, unaccounted: 0, bounds: plan.bounds }
+    }
+
+    /// Takes its bounds from the state at the start.
+    pub fn begin(&mut self, start: &Snapshot) {
+        self.bounds = self.plan.bounds.from_start(start.points.pressures().0, start.totals.unbalanced_force);
     }
 
     /// Steps to the next look of at most `most`, when so many are done: at first it comes after 1, 2, 4
@@ -43,14 +60,14 @@ impl<'a> Watch<'a> {
     /// [`StepFailure`] where they are none of the scene's.
     pub fn look(
         &mut self,
-        stepper: &dyn Stepper,
+        stepper: &mut dyn Stepper,
         settlement: f64,
-        steps: u64,
+        steps: &EqualSteps,
         sizes: &StepSizes,
     ) -> Result<(), StepFailure> {
         if let Some(velocity) = stepper.largest_velocity() {
             if velocity.is_finite() && self.velocity > 0.0 && velocity > 0.0 {
-                self.growth = Some((velocity / self.velocity, steps));
+                self.growth = Some((velocity / self.velocity, steps.count));
             }
             self.velocity = velocity;
             let scale = self.plan.velocity_scale;
@@ -62,10 +79,32 @@ impl<'a> Watch<'a> {
                 return Err(self.unstable(&reason, sizes));
             }
         }
-        if let Some(reason) = self.plan.bounds.left_by_settlement(settlement) {
+        if let Some(reason) = self.bounds.left_by_settlement(settlement) {
             return Err(self.unstable(&reason, sizes));
         }
+        let force = stepper.unbalanced_force();
+        if let Some(reason) = force.and_then(|force| self.bounds.left_by_force(force, steps.end())) {
+            return Err(self.unstable(&reason, sizes));
+        }
+        self.account(stepper, steps, sizes)?;
         stepper.lost_point().map_or(Ok(()), Err)
+    }
+
+    /// Takes account of the energy, once in a while: it costs as much as a step or two.
+    fn account(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        steps: &EqualSteps,
+        sizes: &StepSizes,
+    ) -> Result<(), StepFailure> {
+        self.unaccounted += steps.count;
+        if !self.bounds.are_kept || (self.unaccounted < STEPS_TO_ACCOUNT && steps.done > 0) {
+            return Ok(());
+        }
+        self.unaccounted = 0;
+        let Some((energy, moves)) = stepper.energy(steps.dt) else { return Ok(()) };
+        let grown = self.energy.note(energy, moves);
+        grown.map_or(Ok(()), |reason| Err(self.unstable(&reason, sizes)))
     }
 
     /// Looks at the pressures of an output.
@@ -73,7 +112,7 @@ impl<'a> Watch<'a> {
     /// # Errors
     /// [`StepFailure`] where they are none of the scene's.
     pub fn look_at_pressures(&self, pressures: &[f64], sizes: &StepSizes) -> Result<(), StepFailure> {
-        let left = self.plan.bounds.left_by_pressure(pressures);
+        let left = self.bounds.left_by_pressure(pressures);
         left.map_or(Ok(()), |reason| Err(self.unstable(&reason, sizes)))
     }
 

@@ -109,6 +109,7 @@ pub fn bound_cell(check: &RecordCheck) -> Cell {
             let mood = Mood::of(check.holds());
             Cell::Verdict(mood, format!("≤ {}", number::error(bound)))
         }
-        None => Cell::Text("not judged".to_owned()),
+        None if check.unjudged.is_empty() => Cell::Text("not judged".to_owned()),
+        None => Cell::Text(format!("not judged: {}", check.unjudged)),
     }
 }

@@ -1,0 +1,35 @@
+//! The moment at which a run has to end: asked within what takes long, where no observer is asked.
+
+use std::time::{Duration, Instant};
+
+/// No limit is longer than this, s: a century.
+const MOST_SECONDS: f64 = 3e9;
+
+/// The end of the time that a run has; none where it has all of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TimeLimit {
+    end: Option<Instant>,
+}
+
+impl TimeLimit {
+    /// The end of so many seconds from now.
+    pub fn after(seconds: f64) -> Self {
+        Self { end: Some(Instant::now() + Duration::from_secs_f64(seconds.clamp(0.0, MOST_SECONDS))) }
+    }
+
+    /// Whether the time is over.
+    pub fn is_over(self) -> bool {
+        self.end.is_some_and(|end| Instant::now() >= end)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_is_over_at_its_end_and_no_limit_never() {
+        assert!(TimeLimit::after(0.0).is_over());
+        assert!(!TimeLimit::after(f64::INFINITY).is_over() && !TimeLimit::default().is_over());
+    }
+}
