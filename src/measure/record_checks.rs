@@ -1,6 +1,7 @@
 //! Start checks and balances of a record, each with the bound that it is held to: what shows a mark
 //! in a table is judged here, and nowhere else.
 
+use crate::mpm::run::integrator::IntegratorKind;
 use crate::mpm::run::results::outcome::FailureKind;
 use crate::record::{Balance, Record, Status};
 use crate::scene::arrangement::Arrangement;
@@ -72,7 +73,6 @@ impl RecordCheck {
 /// Checks of the start; none where there was none.
 pub fn start_checks(record: &Record) -> Vec<RecordCheck> {
     let Some(start) = &record.start else { return Vec::new() };
-    let case = &record.case;
     let missing = start.points_expected as f64 - start.points as f64;
     vec![
         RecordCheck::of(POINTS_MISSING, missing, 0.0),
@@ -203,6 +203,10 @@ fn equilibrium_bound(record: &Record) -> Result<f64, &'static str> {
     }
     if case.method.basis.is_spline() {
         return Err(SPLINES);
+    }
+    if case.scene.needs_two_dimensions() && case.integrator == IntegratorKind::Implicit {
+        // Of the nodes, which the solver balances.
+        return Ok(UNBALANCED);
     }
     Ok(OUT_OF_BALANCE + SHIFTED * shift(record))
 }

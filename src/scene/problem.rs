@@ -233,15 +233,14 @@ mod tests {
     #[test]
     fn points_of_any_height_and_arrangement_lie_in_the_body() {
         let (soil, method) = (Material::default(), Method::named("GC-SRI-patch").expect("known"));
-        for number in 1..=300 {
-            let height = 0.05 + 0.01051 * f64::from(number);
-            let (offset, jitter) =
-                ([0.0, 0.3, 0.5, -0.5][number as usize % 4], [0.0, 0.5, 0.3][number as usize % 3]);
+        for number in 1..=300_usize {
+            let height = 0.05 + 0.01051 * number as f64;
+            let (offset, jitter) = ([0.0, 0.3, 0.5, -0.5][number % 4], [0.0, 0.5, 0.3][number % 3]);
             for scene in SceneKind::ALL.into_iter().filter(|scene| !scene.is_manufactured()) {
                 let mut column = Column { height, ..scene.default_column() };
                 column.horizontal_extent = height;
                 column.points = Arrangement { offset, jitter, ..Arrangement::default() };
-                let cells = 3 + number as usize % 5;
+                let cells = 3 + number % 5;
                 let problem = SceneProblem::of(scene, &column, &soil, method, cells, 2);
                 let problem = problem.unwrap_or_else(|error| panic!("{} {height}: {error}", scene.name()));
                 let is_inside = match &problem {

@@ -109,7 +109,7 @@ fn a_weight_that_points_integrate_inexactly_is_balanced_at_the_start() {
         for configuration in [Configuration::Frozen, Configuration::Updated, Configuration::Total] {
             let method = Method { configuration: Some(configuration), ..method };
             let start = |scene: SceneKind, self_weight: bool, load: f64| {
-                let mut column = Column { self_weight, load, ..Column::default() };
+                let mut column = Column { load, self_weight, ..Column::default() };
                 column.points.jitter = jitter;
                 let problem = column_problem::<1>(scene, &column, &Material::default(), method, 8, 2);
                 Body::new(problem.expect("a column"))
