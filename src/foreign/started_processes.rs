@@ -101,7 +101,7 @@ impl Family {
         loop {
             let alive = self.alive();
             self.kill_group();
-            self.kill_each(&alive);
+            Self::kill_each(&alive);
             for one in &alive {
                 if !seen.contains(one) {
                     seen.push(one.clone());
@@ -123,7 +123,7 @@ impl Family {
         let _ = rustix::process::kill_process_group(self.leader, rustix::process::Signal::KILL);
     }
 
-    fn kill_each(&self, alive: &[Seen]) {
+    fn kill_each(alive: &[Seen]) {
         for one in alive.iter().filter_map(|one| rustix::process::Pid::from_raw(one.id)) {
             let _ = rustix::process::kill_process(one, rustix::process::Signal::KILL);
         }
@@ -146,7 +146,7 @@ impl Family {
         let _ = std::process::Command::new("taskkill").args(arguments).output();
     }
 
-    fn kill_each(&self, _: &[Seen]) {}
+    fn kill_each(_: &[Seen]) {}
 
     fn forget(&self, _: &[Seen]) {}
 }

@@ -121,19 +121,20 @@ impl Scripts {
         let name =
             |number: usize| if number == 0 { "array".to_owned() } else { format!("array{}", number + 1) };
         let variables: Vec<String> = (0..commands.len()).map(|number| format!("${}", name(number))).collect();
-        let arrays: String = commands
+        let arrays: Vec<String> = commands
             .into_iter()
             .enumerate()
             .map(|(number, words)| format!("# {}=$({})\n", name(number), line(words)))
             .collect();
         let merge = line(self.merge_command(&["ARRAYS".to_owned()])).replace("ARRAYS", &variables.join(":"));
         format!(
-            "# {}\n{}\n# {}\n{}\n{}{arrays}# {merge}\n",
+            "# {}\n{}\n# {}\n{}\n{}{}# {merge}\n",
             self.path("array.sh"),
             self.array,
             self.path("merge.sh"),
             self.merge,
             self.note(shares).map_or_else(String::new, |note| format!("# {note}\n")),
+            arrays.concat(),
         )
     }
 

@@ -84,7 +84,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     say!("the report is {}", written.display());
     let is_whole = reports.iter().all(|report| report.errors.is_empty());
     let mut tally = Tally::default();
-    reports.iter().for_each(|report| tally.join(report.tally));
+    for report in &reports {
+        tally.join(report.tally);
+    }
     Ok(trust::end_with(tally, if is_whole { Exit::Pass } else { Exit::CaseFailed }))
 }
 
