@@ -183,8 +183,10 @@ fn unbalanced_bound(record: &Record) -> Result<f64, &'static str> {
         // What sets out is no more than the load itself.
         return Ok(1.0 + ROUND_OFF);
     }
-    // Points that have moved by the undrained strain lie off their lattice by as much.
-    let strain = case.column.load / (soil.oedometric_modulus() + soil.coupling_modulus());
+    // Points that have moved by the undrained strain lie off their lattice by as much: in the plane by a shear strain, which
+    // the water does not hinder.
+    let water = if case.scene.needs_two_dimensions() { 0.0 } else { soil.coupling_modulus() };
+    let strain = case.column.load / (soil.oedometric_modulus() + water);
     let moved = if deforms(record) { strain * (case.cells * case.points_per_cell) as f64 } else { 0.0 };
     Ok(UNBALANCED + SHIFTED * (shift(record) + moved))
 }
