@@ -39,6 +39,6 @@ impl AtRest {
     /// # Errors
     /// When `time_factor` is negative or not finite.
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
-        checked_time_factor(time_factor).map(|_| Accuracy { terms: 0, tail_bound: 0.0 })
+        checked_time_factor(time_factor).map(|_| Accuracy::of(0, 0.0))
     }
 }

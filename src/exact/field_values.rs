@@ -19,4 +19,19 @@ pub struct Accuracy {
     pub terms: usize,
     /// Bound on the truncation error of the pressure over the load, the worst over the depth.
     pub tail_bound: f64,
+    /// Bound on what round-off leaves of the phases of waves that have run for long, of pressures over the load and of
+    /// displacements over the start's or the final one; 0 where no waves run.
+    pub phase_bound: f64,
+}
+
+impl Accuracy {
+    /// So many terms, and what the others may add.
+    pub fn of(terms: usize, tail_bound: f64) -> Self {
+        Self { terms, tail_bound, phase_bound: 0.0 }
+    }
+
+    /// Bound on both errors.
+    pub fn bound(&self) -> f64 {
+        self.tail_bound + self.phase_bound
+    }
 }

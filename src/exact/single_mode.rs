@@ -109,7 +109,7 @@ impl SingleMode {
     /// When `time_factor` is negative or not finite.
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         checked_time_factor(time_factor)?;
-        Ok(Accuracy { terms: 1, tail_bound: 0.0 })
+        Ok(Accuracy::of(1, 0.0))
     }
 }
 

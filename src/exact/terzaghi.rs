@@ -87,7 +87,7 @@ impl Terzaghi {
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         // The images' tail grows with the depth, the modes' does not depend on it.
         let base = isochrone(1.0, self.storage_ratio * time_factor)?;
-        Ok(Accuracy { terms: base.terms, tail_bound: self.storage_ratio * base.tail_bound })
+        Ok(Accuracy::of(base.terms, self.storage_ratio * base.tail_bound))
     }
 }
 

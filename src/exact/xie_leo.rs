@@ -145,10 +145,8 @@ impl XieLeo {
         let (time_factor, _) = self.equivalent(time_factor, 0.0);
         let base = isochrone(1.0, time_factor)?;
         // |∂p/∂W| ≤ (e^m − 1)/m_vl, reached at the drained surface.
-        Ok(Accuracy {
-            terms: base.terms,
-            tail_bound: elementary::exp_m1(self.strain) / self.strain * base.tail_bound,
-        })
+        let slope = elementary::exp_m1(self.strain) / self.strain;
+        Ok(Accuracy::of(base.terms, slope * base.tail_bound))
     }
 }
 

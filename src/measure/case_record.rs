@@ -153,7 +153,7 @@ pub fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse,
     for time_factor in case.time_factors.iter() {
         let accuracy = reference.accuracy(*time_factor)?;
         entry.terms = entry.terms.max(accuracy.terms);
-        entry.tail_bound = entry.tail_bound.max(accuracy.tail_bound);
+        entry.tail_bound = entry.tail_bound.max(accuracy.bound());
     }
     Ok(entry)
 }

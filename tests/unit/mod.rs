@@ -6,6 +6,7 @@ mod case_work_estimate;
 mod convergence_classes;
 mod convergence_known_truth;
 mod convergence_second_opinion;
+mod distinct_numbers;
 mod documented_tables;
 mod judge_permuted_lists;
 mod judge_reductions;

@@ -132,6 +132,15 @@ struct Truncation {
     time_factor: f64,
     terms: usize,
     tail_bound: f64,
+    /// What round-off does to the fields over the load.
+    round_off: f64,
+}
+
+impl Truncation {
+    fn of(time_factor: f64, accuracy: Accuracy) -> Self {
+        let Accuracy { terms, tail_bound, phase_bound } = accuracy;
+        Self { time_factor, terms, tail_bound, round_off: ROUND_OFF.max(phase_bound) }
+    }
 }
 
 #[derive(serde::Serialize)]
@@ -203,7 +212,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             }
         }
         let truncation = reference.accuracy(time_factor)?;
-        accuracy.push(Truncation { time_factor, terms: truncation.terms, tail_bound: truncation.tail_bound });
+        accuracy.push(Truncation::of(time_factor, truncation));
     }
     print(reference.name(), &rows, &accuracy, arguments.format)
 }
@@ -233,8 +242,7 @@ fn slab_rows(
                 ("strain_ratio", ratios.strain),
             ]));
         }
-        let Accuracy { terms, tail_bound } = slab.accuracy(time_factor)?;
-        accuracy.push(Truncation { time_factor, terms, tail_bound });
+        accuracy.push(Truncation::of(time_factor, slab.accuracy(time_factor)?));
     }
     Ok((rows, accuracy))
 }
@@ -246,10 +254,11 @@ fn print(name: &str, rows: &[PrintedRow], accuracy: &[Truncation], format: Forma
             print_data(&rows_csv(rows)?)?;
             for one in accuracy {
                 say!(
-                    "T_v = {}: {} terms, tail below {:.1e}, round-off below {ROUND_OFF:.0e}",
+                    "T_v = {}: {} terms, tail below {:.1e}, round-off below {:.0e}",
                     one.time_factor,
                     one.terms,
-                    one.tail_bound
+                    one.tail_bound,
+                    one.round_off
                 );
             }
         }

@@ -195,7 +195,7 @@ impl CosineLayer {
             let difference = fine.fields(0.0, y)?.pressure - coarse.fields(0.0, y)?.pressure;
             worst = worst.max(difference.abs() / self.parameters.load);
         }
-        Ok(Accuracy { terms: talbot::NODES, tail_bound: worst })
+        Ok(Accuracy::of(talbot::NODES, worst))
     }
 }
 

@@ -44,6 +44,7 @@ impl DynamicColumn {
             amplitude.solid_rate -= since.solid_rate;
             amplitude.mixture_rate -= since.mixture_rate;
             amplitude.envelope += since.envelope;
+            amplitude.phase_error += since.phase_error;
         }
         amplitude
     }

@@ -204,6 +204,9 @@ impl DynamicColumn {
     /// When `time_factor` is negative or not finite.
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let snapshot = self.modes_at(checked_time_factor(time_factor)?);
-        Ok(Accuracy { terms: snapshot.amplitudes.len(), tail_bound: snapshot.tail / self.parameters.load })
+        let load = self.parameters.load;
+        let phases: f64 = snapshot.amplitudes.iter().map(|amplitude| amplitude.phase_error).sum();
+        let terms = snapshot.amplitudes.len();
+        Ok(Accuracy { terms, tail_bound: snapshot.tail / load, phase_bound: phases / load })
     }
 }

@@ -14,6 +14,8 @@ use crate::exact::parameters::ColumnParameters;
 const CLUSTER: f64 = 0.05;
 /// Roots up to this many times the smallest count as the slowest: a conjugate pair is one.
 const SLOWEST: f64 = 1.01;
+/// Relative error of a root times the time: of the root itself, of the moduli and masses in it, and of the time in seconds.
+const PHASE_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 /// Points of the trapezoidal rule on the contour around a cluster.
 const CONTOUR_POINTS: usize = 32;
 
@@ -32,6 +34,8 @@ pub struct Amplitude {
     pub envelope: f64,
     /// The share of all roots but the slowest in it, Pa.
     pub rest: f64,
+    /// Bound on what round-off of frequencies and of the time makes of it, Pa.
+    pub phase_error: f64,
 }
 
 /// State from which a mode is let go, without any load.
@@ -194,7 +198,9 @@ impl Mode {
             let s = self.roots[k];
             let others: Complex<f64> =
                 (0..4).filter(|&other| other != k).map(|other| s - self.roots[other]).product();
+            let before = amplitude.envelope;
             self.add(&mut amplitude, drive, growth.factor(s, time), s, others.inv());
+            amplitude.phase_error += (amplitude.envelope - before) * PHASE_ROUND_OFF * modulus(s) * time;
         }
         if let Some((a, b)) = cluster {
             self.add_cluster(&mut amplitude, drive, growth, time, (a, b));

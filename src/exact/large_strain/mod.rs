@@ -222,7 +222,7 @@ impl LargeStrain {
     /// When `time_factor` is negative or not finite.
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         checked_time_factor(time_factor)?;
-        Ok(Accuracy { terms: self.resolution, tail_bound: self.difference })
+        Ok(Accuracy::of(self.resolution, self.difference))
     }
 }
 

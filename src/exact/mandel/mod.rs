@@ -139,10 +139,10 @@ impl Mandel {
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let time = self.groups.storage_ratio * checked_time_factor(time_factor)?;
         if time < SERIES_FROM {
-            return Ok(Accuracy { terms: 0, tail_bound: early::bound(&self.groups, time) });
+            return Ok(Accuracy::of(0, early::bound(&self.groups, time)));
         }
         let terms = eigenmode_series::terms(time);
-        Ok(Accuracy { terms, tail_bound: eigenmode_series::bound(time, terms) })
+        Ok(Accuracy::of(terms, eigenmode_series::bound(time, terms)))
     }
 }
 

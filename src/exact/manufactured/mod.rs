@@ -159,7 +159,7 @@ impl Manufactured {
     /// # Errors
     /// When `time_factor` is negative or not finite.
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
-        checked_time_factor(time_factor).map(|_| Accuracy { terms: 0, tail_bound: ROUND_OFF })
+        checked_time_factor(time_factor).map(|_| Accuracy::of(0, ROUND_OFF))
     }
 
     /// Largest displacement of a point, m.

@@ -42,7 +42,7 @@ pub const UNRESOLVED: f64 = 1e4 * f64::EPSILON;
 /// Share of the load, or of the final settlement, below which a reference has no value to hold an
 /// error against: its own accuracy at that time, and round-off at least.
 pub fn resolution(reference: &Reference, time_factor: f64) -> f64 {
-    let accuracy = reference.accuracy(time_factor).map_or(0.0, |accuracy| accuracy.tail_bound);
+    let accuracy = reference.accuracy(time_factor).map_or(0.0, |accuracy| accuracy.bound());
     accuracy.max(UNRESOLVED)
 }
 
