@@ -20,7 +20,7 @@ pub struct Accuracy {
     /// Bound on the truncation error of the pressure over the load, the worst over the depth.
     pub tail_bound: f64,
     /// Bound on what round-off leaves of the phases of waves that have run for long, of pressures over the load and of
-    /// displacements over the start's or the final one; 0 where no waves run.
+    /// displacements over the start's or the final one, and of pressures of stiff water; 0 where no waves run.
     pub phase_bound: f64,
 }
 

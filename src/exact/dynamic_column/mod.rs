@@ -207,6 +207,9 @@ impl DynamicColumn {
         let load = self.parameters.load;
         let phases: f64 = snapshot.amplitudes.iter().map(|amplitude| amplitude.phase_error).sum();
         let terms = snapshot.amplitudes.len();
-        Ok(Accuracy { terms, tail_bound: snapshot.tail / load, phase_bound: phases / load })
+        // Pressures are the water's stiffness times differences of displacements of the size of the skeleton's.
+        let stiffness = self.parameters.coupling_modulus() / self.parameters.oedometric_modulus();
+        let phase_bound = phases / load + f64::EPSILON * stiffness;
+        Ok(Accuracy { terms, tail_bound: snapshot.tail / load, phase_bound })
     }
 }
