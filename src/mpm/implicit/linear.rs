@@ -72,6 +72,10 @@ impl<const D: usize> LinearStepper<D> {
     /// Factors the matrix of steps of `dt` seconds, where it is not that of the last ones.
     fn set_step(&mut self, dt: f64) -> Result<(), StepFailure> {
         if self.factored != Some(dt) {
+            // Few columns are factored without a look at the clock.
+            if self.time_limit.is_over() {
+                return Err(StepFailure::out_of_time());
+            }
             enter(Phase::Factors);
             let system = &self.system;
             let factored = self.lu.factor_combination(&system.fixed, SDIRK_GAMMA * dt, &system.proportional);

@@ -108,7 +108,7 @@ impl<const D: usize> Stepper for TwoLayerStepper<D> {
     }
 
     fn unbalanced_force(&self) -> Option<f64> {
-        Some(self.layers.body.largest_accelerating_force())
+        (self.settings.flip >= 1.0).then(|| self.layers.body.largest_accelerating_force())
     }
 
     fn lost_point(&self) -> Option<StepFailure> {

@@ -103,7 +103,7 @@ impl<'a> Driver<'a> {
             }
         }
         let snapshot = self.stepper.snapshot(self.time);
-        self.watch.look_at_pressures(&snapshot.points.pressure, &self.sizes)?;
+        self.watch.look_at_output(self.stepper, &snapshot.points.pressure, &self.sizes)?;
         Ok(snapshot)
     }
 

@@ -181,10 +181,11 @@ impl<const D: usize> Stepper for ExplicitStepper<D> {
     }
 
     fn unbalanced_force(&self) -> Option<f64> {
-        Some(match &self.frozen {
+        let largest = || match &self.frozen {
             Some(frozen) => frozen.largest_accelerating_force(),
             None => self.body.largest_accelerating_force(),
-        })
+        };
+        (self.settings.flip >= 1.0).then(largest)
     }
 
     fn lost_point(&self) -> Option<StepFailure> {

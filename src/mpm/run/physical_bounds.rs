@@ -97,7 +97,8 @@ impl PhysicalBounds {
         let is_within = force <= most;
         (!is_within).then(|| {
             format!(
-                "a force of {force:.3e} N accelerates a node, where the scene is in balance but for {most:.3e} N at that time"
+                "a force of {force:.3e} N accelerates a node, more than the {most:.3e} N that the scene leaves out of balance at \
+                 that time"
             )
         })
     }

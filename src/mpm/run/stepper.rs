@@ -110,7 +110,9 @@ pub trait Stepper {
         None
     }
 
-    /// Largest force on a free component of a node that accelerates it, N, in the last step; none where nobody looks.
+    /// Largest force on a free component of a node that accelerates it, N, in the last step; none where nobody looks, or
+    /// where a share of PIC holds the points back: it takes `(1 − flip) m (v − v̄)/Δt` of what accelerates a node, by the
+    /// velocity `v̄` that the grid smoothed, and the steady motion that it leaves is accelerated by as much.
     fn unbalanced_force(&self) -> Option<f64> {
         None
     }

@@ -13,7 +13,7 @@ use crate::mpm::run::stepper::{EqualSteps, StepFailure, Stepper};
 /// Velocities beyond this multiple of their scale have left.
 const BLOW_UP: f64 = 1e3;
 
-/// Steps between two accounts of the energy.
+/// Steps between two accounts of energy and forces, each of which costs as much as a few steps.
 const STEPS_TO_ACCOUNT: u64 = 1024;
 
 /// What the last looks have seen.
@@ -24,9 +24,13 @@ pub struct Watch<'a> {
     velocity: f64,
     /// Largest velocity over that of the look before, and the steps between them.
     growth: Option<(f64, u64)>,
-    /// What was seen of the energy, and the steps since.
+    /// What was seen of the energy, and the steps until it is looked at again.
     energy: EnergyAccount,
-    unaccounted: u64,
+    steps_to_account: u64,
+    /// The steps before the last look, until an output takes account of them.
+    seen: Option<EqualSteps>,
+    /// All of them so far.
+    done: u64,
     /// What it does not leave, from its start.
     bounds: PhysicalBounds,
 }
@@ -35,7 +39,8 @@ impl<'a> Watch<'a> {
     /// Nothing seen yet.
     pub fn of(plan: &'a Plan<'a>) -> Self {
         let energy = EnergyAccount::default();
-        Self { plan, velocity: 0.0, growth: None, energy, unaccounted: 0, bounds: plan.bounds }
+        let (steps_to_account, seen, done) = (0, None, 0);
+        Self { plan, velocity: 0.0, growth: None, energy, steps_to_account, seen, done, bounds: plan.bounds }
     }
 
     /// Takes its bounds from the state at the start.
@@ -82,36 +87,48 @@ impl<'a> Watch<'a> {
         if let Some(reason) = self.bounds.left_by_settlement(settlement) {
             return Err(self.unstable(&reason, sizes));
         }
-        let force = stepper.unbalanced_force();
-        if let Some(reason) = force.and_then(|force| self.bounds.left_by_force(force, steps.end())) {
-            return Err(self.unstable(&reason, sizes));
+        self.seen = Some(*steps);
+        self.done += steps.count;
+        self.steps_to_account = self.steps_to_account.saturating_sub(steps.count);
+        if self.steps_to_account == 0 {
+            self.account(stepper, steps, sizes)?;
         }
-        self.account(stepper, steps, sizes)?;
         stepper.lost_point().map_or(Ok(()), Err)
     }
 
-    /// Takes account of the energy, once in a while: it costs as much as a step or two.
+    /// Takes account of forces and energy after some steps.
     fn account(
         &mut self,
         stepper: &mut dyn Stepper,
         steps: &EqualSteps,
         sizes: &StepSizes,
     ) -> Result<(), StepFailure> {
-        self.unaccounted += steps.count;
-        if !self.bounds.are_kept || (self.unaccounted < STEPS_TO_ACCOUNT && steps.done > 0) {
+        self.steps_to_account = Self::steps_to_look(self.done, STEPS_TO_ACCOUNT);
+        if !self.bounds.are_kept {
             return Ok(());
         }
-        self.unaccounted = 0;
+        let force = stepper.unbalanced_force();
+        if let Some(reason) = force.and_then(|force| self.bounds.left_by_force(force, steps.end())) {
+            return Err(self.unstable(&reason, sizes));
+        }
         let Some((energy, moves)) = stepper.energy(steps.dt) else { return Ok(()) };
         let grown = self.energy.note(energy, moves);
         grown.map_or(Ok(()), |reason| Err(self.unstable(&reason, sizes)))
     }
 
-    /// Looks at the pressures of an output.
+    /// Looks at an output, with an account of its own: what has grown since the last one is in no result.
     ///
     /// # Errors
-    /// [`StepFailure`] where they are none of the scene's.
-    pub fn look_at_pressures(&self, pressures: &[f64], sizes: &StepSizes) -> Result<(), StepFailure> {
+    /// [`StepFailure`] where its pressures, forces or energy are none of the scene's.
+    pub fn look_at_output(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        pressures: &[f64],
+        sizes: &StepSizes,
+    ) -> Result<(), StepFailure> {
+        if let Some(steps) = self.seen.take() {
+            self.account(stepper, &steps, sizes)?;
+        }
         let left = self.bounds.left_by_pressure(pressures);
         left.map_or(Ok(()), |reason| Err(self.unstable(&reason, sizes)))
     }

@@ -107,18 +107,9 @@ impl<const D: usize, const R: usize> Rows<D> for BandsWithin<'_, D, R> {
     #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
     fn projected(&self, block: usize, fields: [&[Vector<D>]; 2]) -> [[Lanes; D]; 2] {
         let band = &self.0.blocks[block].projection;
-        std::array::from_fn(|phase| {
-            let window = window::<D, R>(fields[phase], block);
-            let mut sums = [[0.0; LANES]; D];
-            for (d, sums) in sums.iter_mut().enumerate() {
-                for k in 0..=2 * R {
-                    for i in 0..LANES {
-                        sums[i] += band[k + REACH - R][i] * window[k + i][d];
-                    }
-                }
-            }
-            sums
-        })
+        // Not by a closure, which is not always inlined where registers are wide.
+        let [solid, water] = fields;
+        [projected::<D, R>(band, solid, block), projected::<D, R>(band, water, block)]
     }
 }
 
@@ -128,6 +119,22 @@ impl<const D: usize, const R: usize> Rows<D> for BandsWithin<'_, D, R> {
 fn window<const D: usize, const R: usize>(field: &[Vector<D>], block: usize) -> &[Vector<D>] {
     let first = block * LANES + MARGIN - R;
     &field[first..first + 2 * R + LANES]
+}
+
+/// Products of a band that is zero beyond `R` with each component of a field.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+fn projected<const D: usize, const R: usize>(band: &Band, field: &[Vector<D>], block: usize) -> [Lanes; D] {
+    let window = window::<D, R>(field, block);
+    let mut sums = [[0.0; LANES]; D];
+    for (d, sums) in sums.iter_mut().enumerate() {
+        for k in 0..=2 * R {
+            for i in 0..LANES {
+                sums[i] += band[k + REACH - R][i] * window[k + i][d];
+            }
+        }
+    }
+    sums
 }
 
 /// Products of bands that are zero beyond `R` with a field.
