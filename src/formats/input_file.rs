@@ -105,8 +105,12 @@ mod tests {
     #[test]
     fn no_reader_opens_files_by_itself() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src");
-        let mut readers = vec![root.join("foreign/reading.rs"), root.join("cli/cost_files.rs")];
-        for folder in ["formats", "import", "import/mapping", "cli/commands/score"] {
+        let mut readers = vec![
+            root.join("foreign/reading.rs"),
+            root.join("cli/cost_files.rs"),
+            root.join("study/check/check_solver.rs"),
+        ];
+        for folder in ["formats", "import", "import/mapping", "cli/commands/score", "cli/slurm"] {
             let entries = std::fs::read_dir(root.join(folder)).expect("a folder");
             readers.extend(entries.map(|entry| entry.expect("an entry").path()));
         }

@@ -199,6 +199,36 @@ fn geo_taichi_has_its_displacements_from_the_first_state_and_points_missing() {
     assert!(!told.out.contains("displacement"), "{}", told.out);
 }
 
+/// All good results of `docs/other-solvers.md`, as they are scored there.
+#[test]
+fn no_good_result_has_a_diagnosis() {
+    for arguments in [
+        &["ogs/col.pvd", "--preset", "ogs"][..],
+        &["ogs-20/col.pvd", "--preset", "ogs"],
+        &["ogs-40/col.pvd", "--preset", "ogs"],
+        &["ogs-xdmf/col_bulk.xdmf", "--preset", "ogs"],
+        &["kratos-vtk/*.vtk", "--preset", "kratos", "--set-time-step", "0.08175"],
+        &["kratos-vtu/PorousDomain.porous_computational_model_part.vtm.series", "--preset", "kratos"],
+        &["porepy/col.pvd", "--preset", "porepy"],
+        &["geotaichi/particles/*.npz", "--preset", "geotaichi", "--set", "column.load=1000"],
+        &[
+            "geotaichi/*.vtu",
+            "--preset",
+            "geotaichi",
+            "--set",
+            "column.load=1000",
+            "--set-time-step",
+            "2.04166",
+        ],
+    ] {
+        let told = score(arguments);
+        assert!(told.code == 0 && !told.err.contains("diagnosis"), "{arguments:?}: {}", told.err);
+    }
+    // And one that is bad has, so that the word is the right one.
+    let told = score(&["ogs/col.pvd", "--preset", "meshio"]);
+    assert!(told.err.contains("diagnosis: your p is exactly 0 at"), "{}", told.err);
+}
+
 #[test]
 fn an_array_that_is_not_there_is_told_with_those_that_are() {
     let folder = TempDir::new().expect("a folder");

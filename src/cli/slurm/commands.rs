@@ -1,6 +1,7 @@
 //! What is asked of Slurm: to take a script, and what became of it.
 
 use crate::cli::exit::{Ended, Exit};
+use crate::formats::input_file;
 use crate::record::whole_file::write_whole;
 use std::path::Path;
 use std::process::Command;
@@ -34,7 +35,7 @@ impl Job {
 
     /// The job of such a file, where it is not over yet.
     pub fn under_way(path: &Path) -> Option<Self> {
-        let text = std::fs::read_to_string(path).ok()?;
+        let text = input_file::read_text(path).ok()?;
         let mut lines = text.lines().map(str::to_owned);
         let job = Self { array: lines.next()?, merge: lines.next()? };
         (job.tasks().ok()? != Tasks::default()).then_some(job)

@@ -24,6 +24,7 @@ use crate::cli::slurm::follow::follow;
 use crate::cli::slurm::scripts::Scripts;
 use crate::cli::stream::{print_data, say};
 use crate::cli::study_files;
+use crate::formats::input_file;
 use crate::record::Record;
 use crate::record::store::RecordStore;
 use crate::record::whole_file::write_whole;
@@ -109,7 +110,7 @@ impl<'a> Campaign<'a> {
     ) -> anyhow::Result<Self> {
         let folder = results.join(FOLDER);
         let costs_file = folder.join("costs.csv");
-        let costs = match fs::read_to_string(&costs_file) {
+        let costs = match input_file::read_text(&costs_file) {
             Ok(text) => CostTable::parse(&text)
                 .map_err(|error| Ended::usage(format!("{}: {error}", costs_file.display())))?,
             Err(_) => learned_from(studies, tier, results).unwrap_or_default(),

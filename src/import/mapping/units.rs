@@ -135,3 +135,228 @@ impl StressUnit {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::formats::import_error::ImportError;
+    use crate::import::mapping::Mapping;
+    use crate::import::mapping::preset::Preset;
+    use crate::import::raw_row::{RawRow, SampleRow, SolvedBody};
+    use crate::study::file::StudySource;
+    use clap::ValueEnum;
+    use std::path::Path;
+
+    /// A body 5 m high and 8 m long in which `T_v` = 1 is 250 s.
+    const BODY: SolvedBody = SolvedBody { height: 5.0, length: Some(8.0), seconds_per_time_factor: 250.0 };
+
+    fn mapping(table: &str, key: &str, word: &str) -> Result<Mapping, String> {
+        let head =
+            "columns = { x = \"x\", p = \"p\", u_x = \"u_x\", u_y = \"u_y\", effective_stress = \"s\" }\n";
+        let text = format!("{head}[{table}]\n{key} = \"{word}\"\n");
+        Mapping::read(&StudySource { name: "map.toml".to_owned(), text }).map_err(|error| error.to_string())
+    }
+
+    /// What a row becomes: time, x, y, p, stress, u_y, u_x.
+    fn taken(mapping: &Mapping, y: f64, x: f64) -> [f64; 7] {
+        let row = RawRow {
+            time: mapping.units.time.seconds(3.0, BODY.seconds_per_time_factor),
+            x: Some(x),
+            y,
+            pressure: Some(7.0),
+            stress: Some(11.0),
+            displacement: Some(0.25),
+            horizontal_displacement: Some(0.125),
+            ..RawRow::default()
+        };
+        let refused = |reason: String| ImportError::table(Path::new("a"), reason);
+        let sample =
+            row.sample(mapping, BODY, &refused).unwrap_or_else(|error: ImportError| panic!("{error}"));
+        let SampleRow {
+            time,
+            initial_distance,
+            initial_height,
+            pressure,
+            effective_stress,
+            displacement,
+            ..
+        } = sample;
+        let some = |value: Option<f64>| value.expect("it was given");
+        [
+            time,
+            some(initial_distance),
+            initial_height,
+            some(pressure),
+            some(effective_stress),
+            some(displacement),
+            some(sample.horizontal_displacement),
+        ]
+    }
+
+    /// Every word of a mapping with the numbers that a row then becomes. As given: 3 s, x = 2, y = 4, p = 7,
+    /// stress 11 in compression, `u_y` = 0.25 up, `u_x` = 0.125 to the right.
+    #[test]
+    fn every_unit_and_sign_makes_its_own_number() {
+        let plain = [3.0, 2.0, 4.0, 7.0, -11.0, 0.25, 0.125];
+        let words: [(&str, &str, &str, [f64; 2], [f64; 7]); 31] = [
+            ("units", "time", "s", [4.0, 2.0], plain),
+            ("units", "time", "min", [4.0, 2.0], [180.0, 2.0, 4.0, 7.0, -11.0, 0.25, 0.125]),
+            ("units", "time", "h", [4.0, 2.0], [10_800.0, 2.0, 4.0, 7.0, -11.0, 0.25, 0.125]),
+            ("units", "time", "d", [4.0, 2.0], [259_200.0, 2.0, 4.0, 7.0, -11.0, 0.25, 0.125]),
+            ("units", "time", "a", [4.0, 2.0], [94_672_800.0, 2.0, 4.0, 7.0, -11.0, 0.25, 0.125]),
+            ("units", "time", "time-factor", [4.0, 2.0], [750.0, 2.0, 4.0, 7.0, -11.0, 0.25, 0.125]),
+            ("units", "length", "m", [4.0, 2.0], plain),
+            ("units", "length", "cm", [400.0, 200.0], [3.0, 2.0, 4.0, 7.0, -11.0, 0.0025, 0.00125]),
+            ("units", "length", "mm", [4000.0, 2000.0], [3.0, 2.0, 4.0, 7.0, -11.0, 0.00025, 0.000_125]),
+            ("units", "displacement", "m", [4.0, 2.0], plain),
+            ("units", "displacement", "cm", [4.0, 2.0], [3.0, 2.0, 4.0, 7.0, -11.0, 0.0025, 0.00125]),
+            ("units", "displacement", "mm", [4.0, 2.0], [3.0, 2.0, 4.0, 7.0, -11.0, 0.00025, 0.000_125]),
+            ("units", "stress", "Pa", [4.0, 2.0], plain),
+            ("units", "stress", "kPa", [4.0, 2.0], [3.0, 2.0, 4.0, 7000.0, -11_000.0, 0.25, 0.125]),
+            ("units", "stress", "MPa", [4.0, 2.0], [3.0, 2.0, 4.0, 7e6, -11e6, 0.25, 0.125]),
+            ("sign", "x", "right", [4.0, 2.0], plain),
+            ("sign", "x", "left", [4.0, 2.0], [3.0, 6.0, 4.0, 7.0, -11.0, 0.25, 0.125]),
+            ("sign", "y", "up", [4.0, 2.0], plain),
+            ("sign", "y", "down", [4.0, 2.0], [3.0, 2.0, 1.0, 7.0, -11.0, 0.25, 0.125]),
+            ("sign", "p", "compression-positive", [4.0, 2.0], plain),
+            ("sign", "p", "tension-positive", [4.0, 2.0], [3.0, 2.0, 4.0, -7.0, -11.0, 0.25, 0.125]),
+            ("sign", "effective_stress", "compression-positive", [4.0, 2.0], plain),
+            (
+                "sign",
+                "effective_stress",
+                "tension-positive",
+                [4.0, 2.0],
+                [3.0, 2.0, 4.0, 7.0, 11.0, 0.25, 0.125],
+            ),
+            ("sign", "u_x", "right", [4.0, 2.0], plain),
+            ("sign", "u_x", "left", [4.0, 2.0], [3.0, 2.0, 4.0, 7.0, -11.0, 0.25, -0.125]),
+            ("sign", "u_y", "up", [4.0, 2.0], plain),
+            ("sign", "u_y", "down", [4.0, 2.0], [3.0, 2.0, 4.0, 7.0, -11.0, -0.25, 0.125]),
+            ("position", "y", "reference", [4.0, 2.0], plain),
+            ("position", "y", "current", [4.0, 2.0], [3.0, 1.875, 3.75, 7.0, -11.0, 0.25, 0.125]),
+            ("stress", "is", "effective", [4.0, 2.0], plain),
+            ("stress", "is", "total", [4.0, 2.0], [3.0, 2.0, 4.0, 7.0, -4.0, 0.25, 0.125]),
+        ];
+        for (table, key, word, [y, x], expected) in words {
+            let mapping =
+                mapping(table, key, word).unwrap_or_else(|told| panic!("{table}.{key} = {word}: {told}"));
+            let found = taken(&mapping, y, x);
+            let is_near =
+                |(found, expected): (&f64, &f64)| (found - expected).abs() <= 1e-14 * expected.abs();
+            assert!(found.iter().zip(&expected).all(is_near), "{table}.{key} = {word}: {found:?}");
+        }
+        // No word is missing above: of an unknown one a message lists all there are.
+        for (table, key) in words.map(|(table, key, ..)| (table, key)) {
+            let told = mapping(table, key, "nonsense").expect_err("no word");
+            let all = told.split("the words here are ").nth(1).expect("a list");
+            let of_key = words.iter().filter(|(other, name, ..)| (*other, *name) == (table, key));
+            let known: Vec<&str> = of_key.map(|(_, _, word, ..)| *word).collect();
+            assert_eq!(all.trim().split(", ").collect::<Vec<_>>(), known, "{table}.{key}: {told}");
+        }
+    }
+
+    /// Every preset with all that it says: columns of a plane, and words that are none of the convention's.
+    #[test]
+    fn every_preset_names_these_columns_and_no_others() {
+        let some = |name: &str| Some(name.to_owned());
+        for (preset, [t, x, y, p, u_x, u_y, stress, volume], said) in [
+            (
+                Preset::Ogs,
+                [
+                    "",
+                    "coordinates[0]",
+                    "coordinates[1]",
+                    "pressure",
+                    "displacement[0]",
+                    "displacement[1]",
+                    "sigma[1]",
+                    "",
+                ],
+                "nodes, corners, stress tension-positive",
+            ),
+            (
+                Preset::Kratos,
+                [
+                    "",
+                    "coordinates[0]",
+                    "coordinates[1]",
+                    "WATER_PRESSURE",
+                    "DISPLACEMENT[0]",
+                    "DISPLACEMENT[1]",
+                    "",
+                    "",
+                ],
+                "nodes, corners, p tension-positive",
+            ),
+            (
+                Preset::Porepy,
+                [
+                    "",
+                    "coordinates[0]",
+                    "coordinates[1]",
+                    "cells:pressure",
+                    "cells:u[0]",
+                    "cells:u[1]",
+                    "",
+                    "",
+                ],
+                "centres",
+            ),
+            (
+                Preset::Geotaichi,
+                [
+                    "t_current",
+                    "position[0]|coordinates[0]",
+                    "position[1]|coordinates[1]",
+                    "pressure",
+                    "",
+                    "",
+                    "stress[1]",
+                    "volume",
+                ],
+                "points, stress tension-positive, current, first frame",
+            ),
+            (
+                Preset::Meshio,
+                [
+                    "time|t",
+                    "coordinates[0]|x|position[0]",
+                    "coordinates[1]|y|position[1]",
+                    "pressure|p|pore_pressure|porepressure|water_pressure|pressure_interpolated",
+                    "displacement[0]|u[0]|disp[0]|u_x",
+                    "displacement[1]|u[1]|disp[1]|u_y",
+                    "",
+                    "",
+                ],
+                "points",
+            ),
+        ] {
+            let mapping = preset.mapping(None, true).expect("a preset");
+            let columns = &mapping.columns;
+            let found = [
+                &columns.t,
+                &columns.x,
+                &some(&columns.y),
+                &columns.p,
+                &columns.u_x,
+                &columns.u_y,
+                &columns.effective_stress,
+                &columns.volume,
+            ]
+            .map(|name| name.clone().unwrap_or_default());
+            assert_eq!(found, [t, x, y, p, u_x, u_y, stress, volume], "{preset:?}");
+            // What a row of 7 Pa and 11 Pa becomes says the signs, and the place the configuration.
+            let [_, along, height, pressure, effective, up, right] = taken(&mapping, 4.0, 2.0);
+            let words = [
+                Some(mapping.sample.name()),
+                mapping.rows.corners.then_some("corners"),
+                (pressure == -7.0).then_some("p tension-positive"),
+                (effective == 11.0).then_some("stress tension-positive"),
+                (height == 3.75 && along == 1.875).then_some("current"),
+                mapping.displacement.is_some().then_some("first frame"),
+            ];
+            assert_eq!(words.into_iter().flatten().collect::<Vec<_>>().join(", "), said, "{preset:?}");
+            assert_eq!((up, right), (0.25, 0.125), "{preset:?}");
+        }
+        assert_eq!(Preset::value_variants().len(), 5, "a new preset is written above, too");
+    }
+}

@@ -4,6 +4,8 @@
 //! the mended numbers agree with the exact ones and the given ones do not. A solver that is merely
 //! inaccurate agrees with none of them.
 
+mod inputs;
+
 use crate::case::quantity::Quantity;
 use crate::elementary::powi;
 use crate::exact::exact_error::ExactError;
@@ -39,10 +41,98 @@ const GOLDEN_RATIO: u32 = 0x9e37_79b9;
 /// Time factors in which a wrong unit of time is looked for; before and after nothing changes.
 const TIME_FACTORS: std::ops::RangeInclusive<f64> = 1e-7..=20.0;
 
+/// Most mistakes of units, signs and ends that are looked for together.
+const MOST_TOGETHER: usize = 3;
+/// Factor by which an explanation of one thing more must be better.
+const DEARER: f64 = 1.2;
+/// Errors up to this are equal.
+const ROUND_OFF: f64 = 1e-9;
+
 /// A mistake, and the error that is left where it is mended.
 struct Mistake {
     sentence: String,
     left: f64,
+    /// Of how many things it consists.
+    count: usize,
+}
+
+impl Mistake {
+    fn of(sentence: String, left: f64) -> Self {
+        Self { sentence, left, count: 1 }
+    }
+
+    /// The error that is left, dearer the more is taken to be wrong: of two explanations the simpler one.
+    fn cost(&self) -> f64 {
+        let more = self.count.saturating_sub(1);
+        (self.left + ROUND_OFF) * powi(DEARER, i32::try_from(more).unwrap_or(i32::MAX))
+    }
+}
+
+/// The exact fields with places or times taken otherwise.
+struct Variant {
+    /// How the sentence goes on.
+    said: String,
+    /// What is asked, a question each.
+    asked: Vec<String>,
+    exact: Vec<ExactFields>,
+}
+
+/// The exact fields as they are, upside down, and both at times in other units.
+fn variants_of(
+    solution: &Reference,
+    parameters: &ColumnParameters,
+    times: &[f64],
+    states: &[&SampledState],
+    mapping: &Mapping,
+) -> Vec<Variant> {
+    let height = parameters.height;
+    let turned: Vec<SampledState> = (states.iter())
+        .map(|state| SampledState {
+            initial_height: state.initial_height.iter().map(|y| (height - y).max(0.0)).collect(),
+            initial_distance: state.initial_distance.clone(),
+            ..SampledState::default()
+        })
+        .collect();
+    let turned: Vec<&SampledState> = turned.iter().collect();
+    let per_time_factor = parameters.time(1.0);
+    let given = mapping.units.time;
+    let others = TimeUnit::ALL.into_iter().filter(|unit| is_slow(solution) && *unit != given);
+    let units = others.filter_map(|unit| {
+        let ratio = unit.seconds(1.0, per_time_factor) / given.seconds(1.0, per_time_factor);
+        let said = format!(" at {} × the time", short_factor(ratio));
+        let asked = format!("are times in {} where {} is declared?", unit.name(), given.name());
+        Some((said, vec![asked], times_seen(times, |time| time * ratio)?))
+    });
+    let as_they_are = (String::new(), Vec::new(), times.to_vec());
+    let mut variants = Vec::new();
+    for (said, asked, times) in std::iter::once(as_they_are).chain(units) {
+        let Ok(solution) = Reference::new(solution.kind(), parameters, &times) else { continue };
+        if let Ok(exact) = exact_of(&solution, parameters, &times, states) {
+            variants.push(Variant { said: said.clone(), asked: asked.clone(), exact });
+        }
+        if let Ok(exact) = exact_of(&solution, parameters, &times, &turned) {
+            let turned = "is `y` counted from the other end?".to_owned();
+            let asked = asked.into_iter().chain([turned]).collect();
+            variants.push(Variant { said: format!(" upside down{said}"), asked, exact });
+        }
+    }
+    variants
+}
+
+/// Whether nothing but diffusion goes on in a solution.
+fn is_slow(solution: &Reference) -> bool {
+    !matches!(
+        solution.kind(),
+        ReferenceKind::DynamicColumn | ReferenceKind::DynamicSingleMode | ReferenceKind::StandingWave
+    )
+}
+
+/// Times taken otherwise, where something can be seen at them.
+fn times_seen(times: &[f64], change: impl Fn(f64) -> f64) -> Option<Vec<f64>> {
+    let times: Vec<f64> = times.iter().map(|time| change(*time)).collect();
+    let is_seen = times.iter().any(|time| TIME_FACTORS.contains(time));
+    let is_within = |time: &f64| (0.0..=*TIME_FACTORS.end()).contains(time);
+    (is_seen && times.iter().all(is_within)).then_some(times)
 }
 
 /// Sentences on what seems to be wrong with the numbers of a result, held against a reference.
@@ -61,6 +151,8 @@ pub fn diagnosis(
     let solution = Reference::new(reference, parameters, &times)?;
     let exact = exact_of(&solution, parameters, &times, &seen)?;
     let mut sentences: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut variants: Option<Vec<Variant>> = None;
+    let mut judged = 0;
     for (quantity, column, scale) in [
         (Quantity::Pressure, "p", parameters.load),
         (Quantity::EffectiveStress, "effective_stress", parameters.load),
@@ -78,17 +170,32 @@ pub fn diagnosis(
             are_picked: picked.iter().any(|state| matches!(state, Cow::Owned(_))),
         };
         let error = trials.error(&exact, |value| value);
-        let is_wrong = error > INACCURATE;
-        if trials.size(&exact) < VANISHED * scale || !is_wrong {
+        let is_given = seen.iter().any(|state| !trials.computed(state).is_empty());
+        if !is_given || trials.size(&exact) < VANISHED * scale {
             continue;
         }
-        let mistakes = trials.all(error);
-        let Some(mistake) = mistakes.into_iter().min_by(|a, b| a.left.total_cmp(&b.left)) else { continue };
+        judged += 1;
+        let is_wrong = error > INACCURATE;
+        let mut mistakes = if is_wrong {
+            let variants =
+                variants.get_or_insert_with(|| variants_of(&solution, parameters, &times, &seen, mapping));
+            trials.all(error, variants)
+        } else {
+            Vec::new()
+        };
+        if error > inputs::NOTICED {
+            mistakes.extend(trials.inputs(error));
+        }
+        let Some(mistake) = mistakes.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost())) else {
+            continue;
+        };
         match sentences.iter_mut().find(|(sentence, _)| *sentence == mistake.sentence) {
             Some((_, columns)) => columns.push(column),
             None => sentences.push((mistake.sentence, vec![column])),
         }
     }
+    // A load is in all that a result has; what one quantity alone is off by is something else.
+    sentences.retain(|(sentence, columns)| !sentence.contains(inputs::OF_LOAD) || columns.len() == judged);
     Ok(sentences
         .into_iter()
         .map(|(sentence, columns)| format!("your {} {sentence}", columns.join(" and your ")))
@@ -217,20 +324,19 @@ impl Trials<'_> {
     }
 
     /// The mistakes that would explain the error.
-    fn all(&self, error: f64) -> Vec<Mistake> {
+    fn all(&self, error: f64, variants: &[Variant]) -> Vec<Mistake> {
         let convinces = |mistake: &Mistake, share: f64| mistake.left <= MENDED.min(share * error);
-        let mut mistakes = self.signs_and_units();
+        let mut mistakes = self.conventions(variants);
         mistakes.extend(self.total_stress());
-        mistakes.extend(self.turned());
-        mistakes.extend(self.units_of_time());
         mistakes.extend(self.zeros());
         mistakes.retain(|mistake| convinces(mistake, IMPROVED));
         mistakes.extend(self.gradient().filter(|mistake| convinces(mistake, IMPROVED_BY_FIT)));
         mistakes
     }
 
-    /// The exact field times −1, or in another unit.
-    fn signs_and_units(&self) -> Vec<Mistake> {
+    /// The exact field in another unit, with another sign, upside down or at times in another unit: up to three of these
+    /// together.
+    fn conventions(&self, variants: &[Variant]) -> Vec<Mistake> {
         let units: Vec<(&str, f64)> = if self.quantity == Quantity::Displacement {
             let given = self.mapping.units.displacement.unwrap_or(self.mapping.units.length);
             LengthUnit::ALL.map(|unit| (unit.name(), unit.metres() / given.metres())).to_vec()
@@ -239,24 +345,35 @@ impl Trials<'_> {
             StressUnit::ALL.map(|unit| (unit.name(), unit.pascals() / given.pascals())).to_vec()
         };
         let given = units.iter().find(|(_, factor)| *factor == 1.0).map_or("", |(name, _)| name);
-        // In a layer under a cosine the other end looks like the other sign.
-        let other_end = if self.solution.is_plane() { " Or does `x` count from the other end?" } else { "" };
         let mut mistakes = Vec::new();
-        for (name, factor) in &units {
-            for sign in [1.0, -1.0] {
-                if *factor == 1.0 && sign > 0.0 {
-                    continue;
+        for variant in variants {
+            for (name, factor) in &units {
+                for sign in [1.0, -1.0] {
+                    let unit =
+                        (*factor != 1.0).then(|| format!("is it in {name} where {given} is declared?"));
+                    let turned = (sign < 0.0).then(|| "is the sign declared wrongly?".to_owned());
+                    let asked: Vec<String> =
+                        [unit, turned].into_iter().flatten().chain(variant.asked.clone()).collect();
+                    if !(1..=MOST_TOGETHER).contains(&asked.len()) {
+                        continue;
+                    }
+                    let begin = match sign / factor {
+                        1.0 => "matches the exact one".to_owned(),
+                        ratio => format!("is {} × the exact one", short_factor(ratio)),
+                    };
+                    // In a layer under a cosine the other end looks like the other sign.
+                    let is_sign_alone = asked.len() == 1 && sign < 0.0;
+                    let end = if is_sign_alone && self.solution.is_plane() {
+                        " Or does `x` count from the other end?"
+                    } else {
+                        ""
+                    };
+                    mistakes.push(Mistake {
+                        sentence: format!("{begin}{}: {}{end}", variant.said, asked.join(" And ")),
+                        left: self.error(&variant.exact, |value| sign * factor * value),
+                        count: asked.len(),
+                    });
                 }
-                let unit = format!("is it in {name} where {given} is declared?");
-                let asked = match (*factor == 1.0, sign > 0.0) {
-                    (true, _) => format!("is the sign declared wrongly?{other_end}"),
-                    (false, true) => unit,
-                    (false, false) => format!("{unit} And is the sign declared wrongly?"),
-                };
-                mistakes.push(Mistake {
-                    sentence: format!("is {} × the exact one: {asked}", short_factor(sign / factor)),
-                    left: self.error(self.exact, |value| sign * factor * value),
-                });
             }
         }
         mistakes
@@ -273,60 +390,10 @@ impl Trials<'_> {
                 .collect(),
             ..ExactFields::default()
         });
-        Some(Mistake {
-            sentence: "matches the exact total stress: is the pore pressure left in?".to_owned(),
-            left: self.error(&total.collect::<Vec<_>>(), |value| value),
-        })
-    }
-
-    /// The exact field with the height upside down.
-    fn turned(&self) -> Option<Mistake> {
-        let height = self.parameters.height;
-        let turned: Vec<SampledState> = (self.states.iter())
-            .map(|state| SampledState {
-                initial_height: state.initial_height.iter().map(|y| (height - y).max(0.0)).collect(),
-                initial_distance: state.initial_distance.clone(),
-                ..SampledState::default()
-            })
-            .collect();
-        let exact =
-            exact_of(self.solution, self.parameters, self.times, &turned.iter().collect::<Vec<_>>()).ok()?;
-        Some(Mistake {
-            sentence: "matches the exact one upside down: is `y` counted from the other end?".to_owned(),
-            left: self.error(&exact, |value| value),
-        })
-    }
-
-    /// The exact field at times in another unit.
-    fn units_of_time(&self) -> Vec<Mistake> {
-        let per_time_factor = self.parameters.time(1.0);
-        let given = self.mapping.units.time;
-        let is_slow = !matches!(
-            self.solution.kind(),
-            ReferenceKind::DynamicColumn | ReferenceKind::DynamicSingleMode | ReferenceKind::StandingWave
-        );
-        let others = TimeUnit::ALL.into_iter().filter(|unit| is_slow && *unit != given);
-        others
-            .filter_map(|unit| {
-                let ratio = unit.seconds(1.0, per_time_factor) / given.seconds(1.0, per_time_factor);
-                let times: Vec<f64> = self.times.iter().map(|time| time * ratio).collect();
-                let is_seen = times.iter().any(|time| TIME_FACTORS.contains(time));
-                if !is_seen || times.iter().any(|time| *time > *TIME_FACTORS.end()) {
-                    return None;
-                }
-                let solution = Reference::new(self.solution.kind(), self.parameters, &times).ok()?;
-                let exact = exact_of(&solution, self.parameters, &times, self.states).ok()?;
-                Some(Mistake {
-                    sentence: format!(
-                        "matches the exact one at {} × the time: are times in {} where {} is declared?",
-                        short_factor(ratio),
-                        unit.name(),
-                        given.name()
-                    ),
-                    left: self.error(&exact, |value| value),
-                })
-            })
-            .collect()
+        Some(Mistake::of(
+            "matches the exact total stress: is the pore pressure left in?".to_owned(),
+            self.error(&total.collect::<Vec<_>>(), |value| value),
+        ))
     }
 
     /// Places inside at which nothing was written: mid-side nodes of elements that carry the pressure
@@ -341,6 +408,7 @@ impl Trials<'_> {
             return None;
         }
         Some(Mistake {
+            count: 1,
             sentence: format!(
                 "is exactly 0 at {zeros} of {inside} samples{} where it should not be, and right at the others: are \
                  they mid-side nodes without a value?",
@@ -371,6 +439,7 @@ impl Trials<'_> {
         // By fit for the judgement, for a level of the water above or below the surface is a constant.
         let left = self.error_over(self.exact, height, |value, depth| value - constant - gradient * depth);
         is_water.then(|| Mistake {
+            count: 1,
             sentence: format!(
                 "differs from the exact one by a constant gradient of {} Pa/m: is the hydrostatic part left in?",
                 short(gradient)

@@ -1,6 +1,7 @@
 //! Checks of attached solvers: names, commands, placeholders, files; and the digest that identifies them.
 
 use crate::case::{Case, Task};
+use crate::formats::input_file;
 use crate::mpm::attached_method::{Attached, DIGEST_DIGITS};
 use crate::mpm::method::Method;
 use crate::study::check::checker::Checker;
@@ -9,7 +10,6 @@ use crate::study::diagnostic::one_of;
 use crate::study::file::StudyFile;
 use crate::study::solver::{PLACEHOLDERS, PRESETS, Solver, file_beside, placeholders_of};
 use crate::study::solver_table::SolverTable;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// Most timed runs of a case.
@@ -241,7 +241,7 @@ fn digest_of(table: &SolverTable, folder: &Path) -> String {
 /// Digest of the content of a file; of one that cannot be read, a word.
 pub(crate) fn digest_of_file(path: &Path) -> String {
     let mut hasher = blake3::Hasher::new();
-    let read = File::open(path).and_then(|file| hasher.update_reader(file).map(|_| ()));
+    let read = input_file::open(path).and_then(|file| hasher.update_reader(file).map(|_| ()));
     read.map_or_else(|_| "unreadable".to_owned(), |()| hasher.finalize().to_hex().to_string())
 }
 
