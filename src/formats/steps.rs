@@ -261,17 +261,16 @@ impl Frames {
         if !matches!(step.kind, Kind::Hdf5 | Kind::Xdmf) {
             return frame_of(step, wanted);
         }
-        let (file, mut opened) = match self.open.take().filter(|(file, _)| file == path) {
-            Some(open) => open,
-            None => {
-                self.opened += 1;
-                let opened = if step.kind == Kind::Hdf5 {
-                    Opened::Hdf5(Store::open(path).map_err(refused)?)
-                } else {
-                    Opened::Xdmf(Document::of(path, &read(path)?).map_err(refused)?)
-                };
-                (path.to_owned(), opened)
-            }
+        let (file, mut opened) = if let Some(open) = self.open.take().filter(|(file, _)| file == path) {
+            open
+        } else {
+            self.opened += 1;
+            let opened = if step.kind == Kind::Hdf5 {
+                Opened::Hdf5(Store::open(path).map_err(refused)?)
+            } else {
+                Opened::Xdmf(Document::of(path, &read(path)?).map_err(refused)?)
+            };
+            (path.to_owned(), opened)
         };
         let frame = match &mut opened {
             Opened::Hdf5(store) => store.frame(step.place, wanted),

@@ -132,7 +132,7 @@ impl Meshes<'_> {
             .collect();
         let numbers = numbers?;
         let place = numbers.strip_prefix(&[0])?.to_vec();
-        self.root.at(&place).map(|element| self.parts(&place, element))
+        self.root.at(&place).map(|element| parts_of(&place, element))
     }
 
     /// `/Xdmf/Domain/Grid[2]/Geometry`, or `//Grid[@Name="mesh"]` and on.
@@ -148,22 +148,22 @@ impl Meshes<'_> {
         for step in rest.split('/').filter(|step| !step.is_empty()) {
             let element = self.root.at(&place)?;
             if step.starts_with('*') {
-                return Some(self.parts(&place, element));
+                return Some(parts_of(&place, element));
             }
             place.push(child_of(element, step)?);
         }
         let element = self.root.at(&place)?;
-        Some(self.parts(&place, element))
+        Some(parts_of(&place, element))
     }
+}
 
-    /// An element that is a part of a mesh, or those parts in it.
-    fn parts(&self, place: &Place, element: &Element) -> Vec<Place> {
-        if part_of(element).is_some() {
-            return vec![place.clone()];
-        }
-        let parts = element.children.iter().enumerate().filter(|(_, child)| part_of(child).is_some());
-        parts.map(|(number, _)| [&place[..], &[number]].concat()).collect()
+/// An element that is a part of a mesh, or those parts in it.
+fn parts_of(place: &Place, element: &Element) -> Vec<Place> {
+    if part_of(element).is_some() {
+        return vec![place.clone()];
     }
+    let parts = element.children.iter().enumerate().filter(|(_, child)| part_of(child).is_some());
+    parts.map(|(number, _)| [&place[..], &[number]].concat()).collect()
 }
 
 /// Which part of a mesh an element is.

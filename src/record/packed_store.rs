@@ -141,9 +141,11 @@ impl PackedStore {
         Ok(true)
     }
 
-    /// What of the packs is no record, but for the ends of those that somebody is writing.
+    /// What of the packs is no record, by pack and place, but for the ends of those that somebody is writing.
     pub fn damages(&self) -> Vec<Damage> {
-        let damages = self.with_index(|index| index.damages().to_vec());
+        let mut damages = self.with_index(|index| index.damages().to_vec());
+        // A pack that is read on finds a cut end again, behind what other packs have.
+        damages.sort_by(|one, other| (&one.pack, one.from).cmp(&(&other.pack, other.from)));
         let is_written = |path: &Path| {
             File::open(path)
                 .is_ok_and(|file| matches!(file.try_lock_shared(), Err(std::fs::TryLockError::WouldBlock)))

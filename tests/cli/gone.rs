@@ -17,7 +17,7 @@ fn ogs(is_renamed: &dyn Fn(&str) -> bool) -> TempDir {
         let path = entry.expect("an entry").path();
         let name = path.file_name().and_then(|name| name.to_str()).expect("a name").to_owned();
         let mut bytes = fs::read(&path).expect("a file");
-        if name.ends_with(".vtu") && is_renamed(&name) {
+        if path.extension().is_some_and(|extension| extension == "vtu") && is_renamed(&name) {
             let known = b"Name=\"pressure\"";
             let at = bytes.windows(known.len()).position(|part| part == known).expect("the array");
             bytes[at + 6..at + 14].copy_from_slice(b"pressurx");

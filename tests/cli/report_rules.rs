@@ -139,9 +139,12 @@ fn every_question_is_answered_by_a_sentence_and_a_short_table_or_left_open_by_na
 fn the_audit_shows_several_times_and_meshes_and_names_what_the_paper_prints() {
     let (page, _) = page_of(&[&PAIRED]);
     let audit = page.sections.iter().find(|section| section.id == "audit").expect("answered");
-    let [Block::Paragraph(sentence), Block::Figures(figures)] = audit.blocks.as_slice() else {
+    let [Block::Paragraph(sentence), Block::Figures(figures), Block::Paragraph(mapping_back)] =
+        audit.blocks.as_slice()
+    else {
         panic!("{audit:?}")
     };
+    assert!(mapping_back.contains("needs a condition that the paper does not name"), "{mapping_back}");
     assert!(sentence.contains("`log-linear, conservative`"), "{sentence}");
     assert!(
         sentence.contains("`porosity-dependent, constant-porosity-gradient (as printed)` (+"),

@@ -126,8 +126,8 @@ fn impossible_arguments_are_refused() {
         (0.5, -1e-300),
         (0.5, f64::NAN),
         (0.5, f64::INFINITY),
-        (-1e-300, 0.1),
-        (1.0 + f64::EPSILON, 0.1),
+        (-1e-11, 0.1),
+        (1.0 + 1e-11, 0.1),
         (f64::NAN, 0.1),
     ] {
         assert!(isochrone(zeta, time_factor).is_err());
@@ -140,6 +140,15 @@ fn impossible_arguments_are_refused() {
             error.to_string(),
             format!("the degree of consolidation must be at least 0 and below 1, got {degree}")
         );
+    }
+}
+
+#[test]
+fn a_depth_beside_the_column_by_round_off_is_its_edge() {
+    for (beside, edge) in [(-1e-300, 0.0), (-1e-13, 0.0), (1.0 + f64::EPSILON, 1.0), (1.0 + 1e-13, 1.0)] {
+        for at in [isochrone, isochrone_integral, consolidated_below] {
+            assert_eq!(at(beside, 0.1).unwrap().value, at(edge, 0.1).unwrap().value, "at {beside:e}");
+        }
     }
 }
 

@@ -421,10 +421,8 @@ fn kinds_are_known_by_their_content() {
 
 /// A document of states, each with what stands in its grid.
 fn xdmf_of(states: impl Iterator<Item = String>) -> String {
-    let grids: String = states
-        .enumerate()
-        .map(|(number, inside)| format!("<Grid><Time Value=\"{}\"/>{inside}</Grid>\n", number + 1))
-        .collect();
+    let grid = |(number, inside)| format!("<Grid><Time Value=\"{}\"/>{inside}</Grid>\n", number + 1);
+    let grids = states.enumerate().map(grid).collect::<Vec<_>>().concat();
     format!("<Xdmf><Domain><Grid GridType=\"Collection\">{grids}</Grid></Domain></Xdmf>")
 }
 
@@ -546,6 +544,9 @@ fn npz(is_packed: bool) -> Vec<u8> {
     [local, listed, end].concat()
 }
 
+/// A reader of a file's bytes: arrays and coordinates, m.
+type Read<'a> = &'a dyn Fn(&[u8]) -> Result<(Vec<super::frame::Array>, Vec<[f64; 3]>), String>;
+
 #[test]
 fn one_changed_byte_of_what_has_a_checksum_is_refused_or_changes_nothing() {
     let names = all_names();
@@ -566,7 +567,6 @@ fn one_changed_byte_of_what_has_a_checksum_is_refused_or_changes_nothing() {
         |bytes: &[u8]| vtu::read(bytes, Wanted(&names)).map(|frame| (frame.arrays, frame.coordinates));
     let read_npz =
         |bytes: &[u8]| numpy::read_npz(bytes, Wanted(&names)).map(|frame| (frame.arrays, Vec::new()));
-    type Read<'a> = &'a dyn Fn(&[u8]) -> Result<(Vec<super::frame::Array>, Vec<[f64; 3]>), String>;
     for (what, sound, range, read) in [
         ("VTU", vtu.clone(), start..end, &read_vtu as Read<'_>),
         ("NPZ", npz(false), 0..npz(false).len(), &read_npz),

@@ -109,20 +109,20 @@ impl Curve {
 mod tests {
     use super::*;
 
-    fn points(ratio: f64, levels: i32, error: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-        (0..levels).map(|level| 0.2 / ratio.powi(level)).map(|h| (h, error(h))).collect()
+    fn points(ratio: f64, levels: usize, error: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        (0_i32..).take(levels).map(|level| 0.2 / ratio.powi(level)).map(|h| (h, error(h))).collect()
     }
 
     #[test]
     fn a_wrong_level_is_named_wherever_it_lies() {
         for (ratio, levels) in [(1.2, 4), (1.5, 5), (2.0, 4), (2.0, 5), (4.0, 4)] {
-            for place in 0..levels as usize {
+            for place in 0..levels {
                 for factor in [0.3, 0.6, 1.6, 3.0] {
                     let mut points = points(ratio, levels, |h| h * h);
                     points[place].1 *= factor;
                     let Some(odd) = odd_level(&points) else {
                         // On the finest two levels a floor, or a passage through zero, may be as good an explanation.
-                        assert!(place + 2 >= levels as usize, "{ratio} {levels} {place} {factor}: not told");
+                        assert!(place + 2 >= levels, "{ratio} {levels} {place} {factor}: not told");
                         continue;
                     };
                     assert_eq!(odd.size, points[place].0, "{ratio} {levels} {place} {factor}");

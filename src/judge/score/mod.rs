@@ -5,6 +5,7 @@ pub mod coverage;
 pub mod diagnosis;
 pub mod interior_zeros;
 pub mod score_series;
+pub mod series_row;
 pub mod times;
 
 use crate::case::norm::Norm;
@@ -14,7 +15,7 @@ use crate::exact::parameters::ColumnParameters;
 use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::{Finding, Lack, short};
-use crate::judge::score::score_series::SeriesRow;
+use crate::judge::score::series_row::SeriesRow;
 use crate::judge::score::times::time_factors;
 use crate::measure::fields::error_contributions::largest_contribution;
 use crate::measure::fields::exact_fields::{ExactFields, SamplePlaces};

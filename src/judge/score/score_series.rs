@@ -5,6 +5,7 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::convergence::class::classify::classify;
 use crate::convergence::class::{Classification, Context};
 use crate::convergence::series::{ErrorSeries, SeriesLevel};
+use crate::judge::score::series_row::SeriesRow;
 use crate::judge::score::times::TimeGroups;
 use crate::judge::score::{Leaning, Score};
 use crate::record::ErrorRow;
@@ -17,31 +18,6 @@ const ROUND_OFF: f64 = 1e-12;
 /// Cosine between error and field from which on the error has the sign of one number: half of its square lies along the
 /// field.
 const CLEAR: f64 = 0.7;
-
-/// A series as programs read it.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct SeriesRow {
-    /// Time factor of the group.
-    pub time_factor: f64,
-    /// What.
-    pub quantity: Quantity,
-    /// Where.
-    pub sample: Sample,
-    /// In which norm.
-    pub norm: Norm,
-    /// Against which reference.
-    pub reference: String,
-    /// Cells over the height, coarsest first.
-    pub cells: Vec<usize>,
-    /// Errors on these meshes; none where a result lacks it.
-    pub errors: Vec<Option<f64>>,
-    /// Order, where the class allows one.
-    pub order: Option<f64>,
-    /// Class.
-    pub class: &'static str,
-    /// Why.
-    pub reason: String,
-}
 
 impl ScoredSeries {
     /// The series with the cells of its meshes.

@@ -128,7 +128,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     match arguments.format {
         TableFormat::Json => print_data(&json_of(&results.scores())?)?,
         TableFormat::Csv => {
-            print_data(&errors_csv(&results, &names, series.as_ref().map(|(series, _)| &series[..]))?)?
+            print_data(&errors_csv(&results, &names, series.as_ref().map(|(series, _)| &series[..]))?)?;
         }
         _ => {
             let mut tables = Vec::new();
