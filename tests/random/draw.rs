@@ -288,9 +288,7 @@ fn draw_times(options: &mut Options, numbers: &mut Numbers, soil: &Soil, height:
         if numbers.chance(0.3) {
             options.set("integrator.formulation", "u-p");
         }
-    } else if has_waves {
-        options.set("integrator.formulation", of_waves);
-    } else if numbers.chance(0.15) {
+    } else if has_waves || numbers.chance(0.15) {
         options.set("integrator.formulation", of_waves);
     }
     if has_waves {

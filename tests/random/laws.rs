@@ -179,7 +179,7 @@ fn errors_are_bounded(record: &Record) -> Vec<Violation> {
             && (row.time_factor >= first || record.case.scene.has_waves())
             && judged(row.quantity, row.sample, row.norm)
     });
-    rows.filter(|row| !(row.absolute.abs() <= most))
+    rows.filter(|row| row.absolute.is_nan() || row.absolute.abs() > most)
         .map(|row| {
             Violation::of(
                 "error",

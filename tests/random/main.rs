@@ -77,7 +77,7 @@ fn judge(what: &str, seed: u64, outcomes: &[Outcome]) {
     }
     let counts: Vec<String> = ends.iter().map(|(end, count)| format!("{count} {end}")).collect();
     let cases = outcomes.len();
-    println!(
+    eprintln!(
         "{told}{what} of seed {seed}: {cases} cases, {}; {known} known violations, {unknown} others",
         counts.join(", ")
     );

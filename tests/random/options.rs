@@ -25,6 +25,10 @@ pub struct Options {
 
 impl Options {
     /// Sets a key, in place of what it was.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "keys are set to texts, numbers and switches as they stand"
+    )]
     pub fn set(&mut self, key: &str, value: impl ToString) {
         self.settings.retain(|(other, _)| other != key);
         self.settings.push((key.to_owned(), value.to_string()));

@@ -76,13 +76,13 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
     let fits = match relation {
         Relation::Kernels => is_small && bare && base.integrator == "explicit",
         Relation::HatAndGimp => {
-            base.method = "MPM".to_owned();
-            other.method = "GIMP".to_owned();
+            "MPM".clone_into(&mut base.method);
+            "GIMP".clone_into(&mut other.method);
             is_small && is_line && is_lattice
         }
         Relation::CellsAndPoints => {
-            base.method = "GIMP".to_owned();
-            other.method = "GIMP-SRI".to_owned();
+            "GIMP".clone_into(&mut base.method);
+            "GIMP-SRI".clone_into(&mut other.method);
             is_small && is_line && is_lattice
         }
         Relation::Dimensions => {
@@ -236,7 +236,7 @@ pub fn held(related: &Related) -> (String, Vec<Violation>) {
 fn largest_difference(a: &Record, b: &Record) -> (f64, String) {
     let mut largest = (0.0, String::new());
     let mut see = |difference: f64, what: String| {
-        if !(difference <= largest.0) {
+        if difference.is_nan() || difference > largest.0 {
             largest = (difference, what);
         }
     };

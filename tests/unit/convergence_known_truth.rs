@@ -31,7 +31,7 @@ impl Draw {
     /// A whole number from 0 on, below another.
     fn place(&mut self, below: f64) -> usize {
         let at = self.between(0.0, below);
-        (1..).take_while(|number| f64::from(*number) <= at).count()
+        (1..u16::MAX).take_while(|number| f64::from(*number) <= at).count()
     }
 }
 
