@@ -15,8 +15,8 @@
 //! | `case/` | a case as plain data: its inputs, hash, label; quantities, samples, norms |
 //! | `record/` | what is kept of a case, and its store on disk |
 //! | `measure/` | from an outcome to its record: errors, balances, oscillation, checks |
-//! | `study/` | study files: keys, sweeps, expectations, every complaint at its place |
 //! | `formats/` | files of other programs, each format read into one form |
+//! | `study/` | study files: keys, sweeps, expectations, every complaint at its place |
 //! | `import/` | external results: mapping files, and tables and frames turned into samples |
 //! | `foreign/` | attached solvers: what they are told, how they are run and ended, how their results are taken |
 //! | `campaign/` | runs the cases of a study: parallel, resumable, by shards |

@@ -77,10 +77,11 @@ fn judge(what: &str, seed: u64, outcomes: &[Outcome]) {
     }
     let counts: Vec<String> = ends.iter().map(|(end, count)| format!("{count} {end}")).collect();
     let cases = outcomes.len();
-    eprintln!(
+    let summary = format!(
         "{told}{what} of seed {seed}: {cases} cases, {}; {known} known violations, {unknown} others",
         counts.join(", ")
     );
+    std::io::Write::write_fmt(&mut std::io::stderr(), format_args!("{summary}\n")).expect("a stream");
     assert_eq!(unknown, 0, "{what}: see the lines above");
 }
 

@@ -320,7 +320,6 @@ fn released() -> impl Iterator<Item = (Start, ColumnParameters, [f64; 2], [f64; 
 }
 
 #[test]
-#[ignore = "not run since its bound includes stiff water"]
 fn phases_of_waves_that_ran_long_are_within_their_stated_bound() {
     let (mut largest_share, mut largest_bound) = (0.0_f64, 0.0_f64);
     for (start, parameters, [time_factor, zeta], [pressure, moved]) in released() {

@@ -41,6 +41,11 @@ cells = [4, 6, 11]
 points_per_cell = [3]
 "#;
 
+/// A number of things as a counter holds it.
+fn counted(value: f64) -> u64 {
+    format!("{value:.0}").parse().expect("a whole number")
+}
+
 /// Numbers that are all different, and no multiples of each other by a power of ten.
 struct Distinct(f64);
 
@@ -52,7 +57,7 @@ impl Distinct {
 
     fn count(&mut self) -> u64 {
         self.0 += 1.0;
-        (self.0 as u64) * 1009
+        1009 * counted(self.0)
     }
 }
 
@@ -204,7 +209,7 @@ fn critical_steps_spreads_and_phases_stand_under_their_names() {
         relative: 7e-11,
         place: Some("its place".to_owned()),
     };
-    let table = spreads::table_of(&[spread.clone()]);
+    let table = spreads::table_of(std::slice::from_ref(&spread));
     for (header, value) in [
         ("study", Cell::Text("its study".to_owned())),
         ("against", Cell::Text("its source".to_owned())),
@@ -353,7 +358,7 @@ fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own
     let mut record = records().remove(0);
     record.attached = Some(crate::record::attached_run::AttachedRun::default());
     for (sample, own) in record.wall.iter_mut().zip([5.5, 7.5, 6.5]) {
-        (sample.own_seconds, sample.peak_memory) = (Some(own), Some((1e6 * own) as u64));
+        (sample.own_seconds, sample.peak_memory) = (Some(own), Some(counted(1e6 * own)));
     }
     for (sample, (seconds, cpu)) in record.wall.iter_mut().zip([(3.0, 2.5), (41.0, 40.5), (2.0, 1.5)]) {
         (sample.seconds, sample.cpu_seconds) = (seconds, Some(cpu));

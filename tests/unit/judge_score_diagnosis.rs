@@ -213,8 +213,8 @@ fn backward_euler(steps: usize) -> Vec<SampledState> {
     states
 }
 
-fn only(states: Vec<SampledState>, words: &[&str]) {
-    let told = told(&states);
+fn only(states: &[SampledState], words: &[&str]) {
+    let told = told(states);
     assert_eq!(told.len(), words.len(), "{words:?}: {told:?}");
     for (told, words) in told.iter().zip(words) {
         assert!(told.contains(words), "{words}: {told}");
@@ -225,18 +225,18 @@ fn only(states: Vec<SampledState>, words: &[&str]) {
 fn another_stress_in_the_place_of_the_pressure_is_named() {
     for off in [0.0, 1e-3, 0.05] {
         only(
-            changed(off, |state| state.pressure = state.effective_stress.iter().map(|s| -s).collect()),
+            &changed(off, |state| state.pressure = state.effective_stress.iter().map(|s| -s).collect()),
             &["your p matches the exact effective stress: is it given in the place of the pore pressure?"],
         );
         only(
-            changed(off, |state| state.pressure.clone_from(&state.effective_stress)),
+            &changed(off, |state| state.pressure.clone_from(&state.effective_stress)),
             &["your p matches the exact effective stress with the other sign"],
         );
         let total = |state: &SampledState| -> Vec<f64> {
             state.pressure.iter().zip(&state.effective_stress).map(|(p, s)| p - s).collect()
         };
         only(
-            changed(off, |state| state.pressure = total(state)),
+            &changed(off, |state| state.pressure = total(state)),
             &[
                 "your p matches the exact total stress: is it given in the place of the pore pressure? Or does nothing",
             ],
@@ -248,7 +248,7 @@ fn another_stress_in_the_place_of_the_pressure_is_named() {
 fn another_load_is_named_where_all_fields_have_it() {
     for off in [0.0, 1e-3, 0.02] {
         only(
-            changed(off, |state| {
+            &changed(off, |state| {
                 scale(&mut state.pressure, 2.0);
                 scale(&mut state.effective_stress, 2.0);
                 scale(&mut state.displacement, 2.0);
@@ -257,7 +257,7 @@ fn another_load_is_named_where_all_fields_have_it() {
                 "your p and your effective_stress and your u_y is 2 × the exact one: is the load 2 × that of the scene?",
             ],
         );
-        only(changed(off, |state| scale(&mut state.displacement, 2.0)), &[]);
+        only(&changed(off, |state| scale(&mut state.displacement, 2.0)), &[]);
     }
 }
 
@@ -283,7 +283,7 @@ fn another_stiffness_and_another_permeability_are_named() {
         );
     }
     only(
-        changed(1e-3, |state| scale(&mut state.displacement, 1.2)),
+        &changed(1e-3, |state| scale(&mut state.displacement, 1.2)),
         &["your u_y is 1.2 × the exact one: is E taken"],
     );
     // μ = 1e-3 Pa s.
@@ -337,29 +337,29 @@ fn times_that_are_off_by_a_factor_or_from_another_moment_are_named() {
 fn two_or_three_wrong_units_signs_and_ends_together_are_named() {
     let minutes = |off: f64, change: &dyn Fn(&mut SampledState)| {
         let mut states = states(&TIMES, |time| time / 60.0, off);
-        states.iter_mut().for_each(|state| {
+        for state in &mut states {
             state.effective_stress.clear();
             state.displacement.clear();
             change(state);
-        });
+        }
         states
     };
     for off in [0.0, 1e-3, 0.02] {
         only(
-            minutes(off, &|state| scale(&mut state.pressure, 1e-3)),
+            &minutes(off, &|state| scale(&mut state.pressure, 1e-3)),
             &[
                 "your p is 0.001 × the exact one at 60 × the time: is it in kPa where Pa is declared? And are times in min where s is",
             ],
         );
         only(
-            minutes(off, &|state| scale(&mut state.pressure, -1e-3)),
+            &minutes(off, &|state| scale(&mut state.pressure, -1e-3)),
             &[
                 "your p is −0.001 × the exact one at 60 × the time: is it in kPa where Pa is declared? And is the sign declared \
                wrongly? And are times in min where s is declared?",
             ],
         );
         only(
-            minutes(off, &|state| {
+            &minutes(off, &|state| {
                 scale(&mut state.pressure, -1.0);
                 state.initial_height.iter_mut().for_each(|height| *height = 1.0 - *height);
             }),

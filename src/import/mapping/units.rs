@@ -156,7 +156,10 @@ mod tests {
         Mapping::read(&StudySource { name: "map.toml".to_owned(), text }).map_err(|error| error.to_string())
     }
 
-    /// What a row becomes: time, x, y, p, stress, u_y, u_x.
+    /// Table, key and word of a mapping; y and x as given; what the row becomes.
+    type Word = (&'static str, &'static str, &'static str, [f64; 2], [f64; 7]);
+
+    /// What a row becomes: time, x, y, p, stress, `u_y`, `u_x`.
     fn taken(mapping: &Mapping, y: f64, x: f64) -> [f64; 7] {
         let row = RawRow {
             time: mapping.units.time.seconds(3.0, BODY.seconds_per_time_factor),
@@ -197,7 +200,7 @@ mod tests {
     #[test]
     fn every_unit_and_sign_makes_its_own_number() {
         let plain = [3.0, 2.0, 4.0, 7.0, -11.0, 0.25, 0.125];
-        let words: [(&str, &str, &str, [f64; 2], [f64; 7]); 31] = [
+        let words: [Word; 31] = [
             ("units", "time", "s", [4.0, 2.0], plain),
             ("units", "time", "min", [4.0, 2.0], [180.0, 2.0, 4.0, 7.0, -11.0, 0.25, 0.125]),
             ("units", "time", "h", [4.0, 2.0], [10_800.0, 2.0, 4.0, 7.0, -11.0, 0.25, 0.125]),
@@ -256,6 +259,7 @@ mod tests {
 
     /// Every preset with all that it says: columns of a plane, and words that are none of the convention's.
     #[test]
+    #[expect(clippy::too_many_lines, reason = "one table of all presets")]
     fn every_preset_names_these_columns_and_no_others() {
         let some = |name: &str| Some(name.to_owned());
         for (preset, [t, x, y, p, u_x, u_y, stress, volume], said) in [
