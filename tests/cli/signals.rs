@@ -53,10 +53,10 @@ fn folder() -> TempDir {
 
 fn start(at: &Path, arguments: &[&str]) -> Child {
     let mut command = Command::new(PROGRAM);
-    if ignores_interrupts() {
-        // Whoever begins the tests in the background of a script has them ignore Ctrl-C, and the program inherits that.
+    if ignores_a_terminal() {
+        // Tests started in the background, or by nohup, ignore these signals, and the program would inherit that.
         command = Command::new("env");
-        command.arg("--default-signal=INT").arg(PROGRAM);
+        command.arg("--default-signal=HUP,INT,QUIT").arg(PROGRAM);
     }
     for name in OF_A_CI {
         command.env_remove(name);
@@ -71,11 +71,11 @@ fn start(at: &Path, arguments: &[&str]) -> Child {
     command.spawn().expect("it starts")
 }
 
-/// Whether this process was begun so that Ctrl-C passes it by: the second bit of the mask.
-fn ignores_interrupts() -> bool {
+/// Whether this process ignores HUP, INT or QUIT: the lowest three bits of the mask.
+fn ignores_a_terminal() -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask & 2 != 0)
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask & 7 != 0)
 }
 
 /// Waits until something is so.
@@ -109,6 +109,10 @@ fn send(signal: &str, child: &Child) {
 
 /// The end of a program that was told to end: its exit code and what it said.
 fn end_of(child: Child) -> (Option<i32>, String) {
+    let stat = format!("/proc/{}/stat", child.id());
+    until("the end of the program", || {
+        fs::read_to_string(&stat).is_ok_and(|stat| stat.rsplit(')').next().is_some_and(|rest| rest.starts_with(" Z")))
+    });
     let output = child.wait_with_output().expect("its end");
     let said = [output.stdout, output.stderr].concat();
     (output.status.code(), String::from_utf8(said).expect("words"))
