@@ -111,7 +111,8 @@ fn send(signal: &str, child: &Child) {
 fn end_of(child: Child) -> (Option<i32>, String) {
     let stat = format!("/proc/{}/stat", child.id());
     until("the end of the program", || {
-        fs::read_to_string(&stat).is_ok_and(|stat| stat.rsplit(')').next().is_some_and(|rest| rest.starts_with(" Z")))
+        fs::read_to_string(&stat)
+            .is_ok_and(|stat| stat.rsplit(')').next().is_some_and(|rest| rest.starts_with(" Z")))
     });
     let output = child.wait_with_output().expect("its end");
     let said = [output.stdout, output.stderr].concat();
