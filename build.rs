@@ -1,10 +1,21 @@
-//! Packs the golden values of the shipped studies for the program.
+//! Packs the golden values of the shipped studies for the program, and tells the program its provenance: a hash of
+//! its sources, commit, compiler, target.
 #![allow(clippy::print_stdout, reason = "Cargo reads it")]
 
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
-/// Names, lengths and texts in one compressed stream, a tenth of what the files take.
+/// What the program is made of.
+const SOURCES: [&str; 2] = ["src", "crates"];
+
 fn main() {
+    pack_golden_values();
+    tell_provenance();
+}
+
+/// Writes names, lengths and texts as one compressed stream, a tenth of the size of the files.
+fn pack_golden_values() {
     println!("cargo:rerun-if-changed=golden");
     let entries = std::fs::read_dir("golden").into_iter().flatten().flatten();
     let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
@@ -18,6 +29,71 @@ fn main() {
         whole.extend(text);
     }
     let folder = PathBuf::from(std::env::var_os("OUT_DIR").unwrap_or_default());
-    let packed = miniz_oxide::deflate::compress_to_vec_zlib(&whole, 8);
+    let packed = zlib(&whole);
     std::fs::write(folder.join("golden.z"), packed).expect("the folder of the build can be written to");
+}
+
+fn zlib(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+    encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("memory takes every byte")
+}
+
+fn tell_provenance() {
+    let mut sources = vec![PathBuf::from("Cargo.lock")];
+    for folder in SOURCES {
+        collect(Path::new(folder), &mut sources);
+        println!("cargo:rerun-if-changed={folder}");
+    }
+    sources.sort();
+    let mut hasher = blake3::Hasher::new();
+    for path in &sources {
+        println!("cargo:rerun-if-changed={}", path.display());
+        hasher.update(path.to_string_lossy().as_bytes());
+        hasher.update(&std::fs::read(path).unwrap_or_default());
+    }
+    // A commit writes here; a path that is not there would make every build start anew.
+    if Path::new(".git/logs/HEAD").exists() {
+        println!("cargo:rerun-if-changed=.git/logs/HEAD");
+    }
+    let sources_hash = hasher.finalize().to_hex();
+    let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
+    tell("SOURCES", &sources_hash[..16]);
+    tell("COMMIT", &output("git", &["rev-parse", "--short=12", "HEAD"]));
+    let code = [&["status", "--porcelain", "--"], &SOURCES[..], &["Cargo.toml", "Cargo.lock"]].concat();
+    let changed = output("git", &code);
+    tell("DIRTY", if changed.is_empty() { "false" } else { "true" });
+    tell("COMPILER", &output(&rustc, &["--version"]));
+    tell("TARGET", &std::env::var("TARGET").unwrap_or_default());
+    tell("PROFILE", &profile());
+}
+
+/// Name of the build profile. `PROFILE` knows only `debug` and `release`, whichever profile inherits from them;
+/// the folder of the build, `…/quick/build/oedometer-…/out`, has the name itself.
+fn profile() -> String {
+    let folder = PathBuf::from(std::env::var_os("OUT_DIR").unwrap_or_default());
+    let parts: Vec<String> = folder.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+    let build = parts.iter().rposition(|part| part == "build").filter(|place| *place > 0);
+    build.map_or_else(|| std::env::var("PROFILE").unwrap_or_default(), |place| parts[place - 1].clone())
+}
+
+fn tell(name: &str, value: &str) {
+    println!("cargo:rustc-env=OEDOMETER_{name}={value}");
+}
+
+/// First line of what a command prints; empty where it cannot be asked.
+fn output(command: &str, arguments: &[&str]) -> String {
+    let output = Command::new(command).args(arguments).output().ok().filter(|output| output.status.success());
+    let text = output.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
+    text.lines().next().unwrap_or_default().trim().to_owned()
+}
+
+fn collect(folder: &Path, sources: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            collect(&path, sources);
+        } else {
+            sources.push(path);
+        }
+    }
 }

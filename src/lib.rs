@@ -2,34 +2,34 @@
 //!
 //! # The map
 //!
-//! A folder imports only folders of the lines above its own; `tests/unit/architecture.rs` holds the table.
+//! Crates (`crates/`), each of which uses only those above it:
+//!
+//! | crate | what it is |
+//! | :-- | :-- |
+//! | `oedometer-soil` | material, stress–strain laws, continuity; elementary functions with the same bits on every machine |
+//! | `oedometer-exact` | exact solutions with bounds on their own errors ([`exact`]) |
+//! | `oedometer-mpm` | the material point method: state, operators, steps, runs; in `scene/` the physical problems |
+//! | `oedometer-convergence` | numbers only: series, orders, fits, classes, uncertainty |
+//! | `oedometer-formats` | files of other programs, each format read into one form |
+//! | `oedometer` | the harness: what follows |
+//!
+//! Folders of `src/`, each of which uses only those above it (`src/tests/architecture.rs`):
 //!
 //! | folder | what it is |
 //! | :-- | :-- |
-//! | `elementary`, `wording`, `sorting` | elementary functions with the same bits everywhere; numbers in sentences; sorts |
-//! | `soil/` | material, stress–strain laws, continuity |
-//! | [`exact`] | series solutions with bounds on their own errors |
-//! | `convergence/` | numbers only: series, orders, fits, classes, uncertainty |
-//! | `mpm/` | the material point method: state, operators, explicit, assembled and implicit steps, runs |
-//! | `scene/` | physical problems: geometry, load, start, references that hold |
 //! | `case/` | a case as plain data: its inputs, hash, label; quantities, samples, norms |
 //! | `record/` | what is kept of a case, and its store on disk |
 //! | `measure/` | from an outcome to its record: errors, balances, oscillation, checks |
-//! | `formats/` | files of other programs, each format read into one form |
-//! | `study/` | study files: keys, sweeps, expectations, every complaint at its place |
+//! | `study/` | study files: keys, sweeps, expectations, every mistake reported at its place |
 //! | `import/` | external results: mapping files, and tables and frames turned into samples |
-//! | `foreign/` | attached solvers: what they are told, how they are run and ended, how their results are taken |
-//! | `campaign/` | runs the cases of a study: parallel, resumable, by shards |
+//! | `foreign/` | attached solvers: their input, how they are run and ended, how their results are read |
+//! | `campaign/` | runs the cases of a study: parallel, resumable, in shards |
 //! | `golden/` | accepted values, their tolerances, and what changed |
 //! | `judge/` | verdicts on studies, scores of external results, comparisons of methods |
-//! | `render/` | tables, charts, pages; sees records and verdicts, and never a solver |
+//! | `render/` | tables, charts, pages; sees records and verdicts, never a solver |
+//! | `schema/` | JSON schemas of the file formats |
 //! | `cli/` | one file per subcommand |
-//! | [`api`] | the door for other languages: names and lists in, lists out |
-//!
-//! `elementary`, `wording`, `sorting`, `soil/`, [`exact`], `mpm/` and `scene/` are a crate of their own, `oedometer-solver`
-//! (`src/solver.rs`), compiled with every optimisation; `convergence/`, `case/`, `record/`, `measure/` and `formats/` are
-//! another,
-//! `oedometer-records` (`src/records.rs`), with some; the rest only leads there and has none.
+//! | [`api`] | the interface for other languages: names and lists in, lists out |
 //!
 //! # The equations
 //!
@@ -37,48 +37,48 @@
 //!
 //! | equation | what it is | place |
 //! | :-- | :-- | :-- |
-//! | 1, 2 (Zheng et al. Eqs 1, 2) | accelerations of water and mixture | `src/mpm/momentum.rs:accelerations` |
-//! | 3, 5 | porosity | `src/soil/material.rs:porosity_at` |
-//! | 4, 4' (Zheng et al. Eq. 6) | rate of the pressure | `src/mpm/body.rs:volume_rate` |
-//! | 6, 7 (Zheng et al. Eqs 7, 8) | stress–strain laws and conductivity | `src/soil/law.rs:uniaxial_stress_ratio`, `src/soil/law.rs:conductivity` |
-//! | 8 | selective reduced integration | `src/mpm/explicit/mod.rs:update_pressure` |
-//! | 9, 10, 11 | time-step limits by formula | `src/mpm/critical_step/formula.rs:fastest_wave_speed`, `src/mpm/critical_step/formula.rs:combined_limit` |
-//! | 12 | consolidation | `src/exact/consolidation/mod.rs:isochrone` |
-//! | 13 | Xie & Leo's column | `src/exact/xie_leo.rs:fields` |
-//! | 14 | modes of the dynamic column | `src/exact/dynamic_column/modes.rs:amplitude` |
-//! | 15 | large strain in general | `src/exact/large_strain/diffusion.rs:coefficients` |
-//! | 16 | Mandel's slab | `src/exact/mandel/eigenmode_series.rs:sum`, `src/exact/mandel/early.rs:ratios` |
-//! | 17 | chord mean of the conductivity | `src/mpm/operators/chord_mean.rs:take_chord_drag`, `src/soil/conductivity_mean.rs:flow_potential` |
-//! | 18 | rigid plate | `src/mpm/operators/rigid_plate.rs:tie`, `src/mpm/direct_solver/bordered.rs:solve` |
-//! | 19 | own weight, free water | `src/mpm/weighing_body.rs:add_weight` |
-//! | 20 | pressure as a nodal field | `src/mpm/operators/recovery/nodal_field.rs:fit` |
-//! | 21 | domains of water points | `src/mpm/layers/water_domains.rs:take_domains` |
-//! | 22 | balances of two layers | `src/mpm/layers/water_to_nodes.rs:map_water_masses`, `src/mpm/layers/water_to_nodes.rs:map_forces` |
-//! | 23 | pressure along the water | `src/mpm/layers/water_pressure.rs:update_pressure` |
-//! | 24, 25, 26, 27 | manufactured motions, and what acts on them | `src/exact/manufactured/motion.rs:place`, `src/exact/manufactured/motion_state.rs:of`, `src/exact/manufactured/motion_state.rs:body_forces`, `src/exact/manufactured/motion_state.rs:source` |
-//! | 28 | neo-Hookean stress | `src/soil/law.rs:neo_hookean_stress` |
-//! | 29 | the middle of a step | `src/mpm/forced_body.rs:update_forced_pressure`, `src/mpm/explicit/deformation.rs:middle_gradient` |
-//! | 30 | weights of domains that turn | `src/mpm/operators/corners.rs:build_corners`, `src/mpm/state/domains.rs:follow` |
-//! | 31 | cells that remember a confined soil | `src/mpm/state/confined_points.rs:share_out`, `src/mpm/state/cell_memory.rs:spread_over_points` |
-//! | 32 | forces of cells with one rate | `src/mpm/layers/cell_forces.rs:map_cell_forces`, `src/mpm/layers/cell_pressures.rs:keep_cell_rates` |
-//! | 33 | slopes of velocities | `src/mpm/explicit/affine.rs:add_slopes` |
-//! | 34 | lines that pressures fade to | `src/mpm/layers/pressure_lines.rs:fade_beyond_lines` |
-//! | 35 | slopes of stresses | `src/mpm/explicit/stress_slopes.rs:add_stress_slopes`, `src/mpm/state/stress_planes.rs:fit` |
+//! | 1, 2 (Zheng et al. Eqs 1, 2) | accelerations of water and mixture | `crates/mpm/src/momentum.rs:accelerations` |
+//! | 3, 5 | porosity | `crates/soil/src/material.rs:porosity_at` |
+//! | 4, 4' (Zheng et al. Eq. 6) | rate of the pressure | `crates/mpm/src/body.rs:volume_rate` |
+//! | 6, 7 (Zheng et al. Eqs 7, 8) | stress–strain laws and conductivity | `crates/soil/src/law.rs:uniaxial_stress_ratio`, `crates/soil/src/law.rs:conductivity` |
+//! | 8 | selective reduced integration | `crates/mpm/src/explicit/mod.rs:update_pressure` |
+//! | 9, 10, 11 | time-step limits by formula | `crates/mpm/src/critical_step/formula.rs:fastest_wave_speed`, `crates/mpm/src/critical_step/formula.rs:combined_limit` |
+//! | 12 | consolidation | `crates/exact/src/consolidation/mod.rs:isochrone` |
+//! | 13 | Xie & Leo's column | `crates/exact/src/xie_leo.rs:fields` |
+//! | 14 | modes of the dynamic column | `crates/exact/src/dynamic_column/modes.rs:amplitude` |
+//! | 15 | large strain in general | `crates/exact/src/large_strain/diffusion.rs:coefficients` |
+//! | 16 | Mandel's slab | `crates/exact/src/mandel/eigenmode_series.rs:sum`, `crates/exact/src/mandel/early.rs:ratios` |
+//! | 17 | chord mean of the conductivity | `crates/mpm/src/operators/chord_mean.rs:take_chord_drag`, `crates/soil/src/conductivity_mean.rs:flow_potential` |
+//! | 18 | rigid plate | `crates/mpm/src/operators/rigid_plate.rs:tie`, `crates/mpm/src/direct_solver/bordered.rs:solve` |
+//! | 19 | own weight, free water | `crates/mpm/src/weighing_body.rs:add_weight` |
+//! | 20 | pressure as a nodal field | `crates/mpm/src/operators/recovery/nodal_field.rs:fit` |
+//! | 21 | domains of water points | `crates/mpm/src/layers/water_domains.rs:take_domains` |
+//! | 22 | balances of two layers | `crates/mpm/src/layers/water_to_nodes.rs:map_water_masses`, `crates/mpm/src/layers/water_to_nodes.rs:map_forces` |
+//! | 23 | pressure along the water | `crates/mpm/src/layers/water_pressure.rs:update_pressure` |
+//! | 24, 25, 26, 27 | manufactured motions, and what acts on them | `crates/exact/src/manufactured/motion.rs:place`, `crates/exact/src/manufactured/motion_state.rs:of`, `crates/exact/src/manufactured/motion_state.rs:body_forces`, `crates/exact/src/manufactured/motion_state.rs:source` |
+//! | 28 | neo-Hookean stress | `crates/soil/src/law.rs:neo_hookean_stress` |
+//! | 29 | the middle of a step | `crates/mpm/src/forced_body.rs:update_forced_pressure`, `crates/mpm/src/explicit/deformation.rs:middle_gradient` |
+//! | 30 | weights of domains that turn | `crates/mpm/src/operators/corners.rs:build_corners`, `crates/mpm/src/state/domains.rs:follow` |
+//! | 31 | cells that remember a confined soil | `crates/mpm/src/state/confined_points.rs:share_out`, `crates/mpm/src/state/cell_memory.rs:spread_over_points` |
+//! | 32 | forces of cells with one rate | `crates/mpm/src/layers/cell_forces.rs:map_cell_forces`, `crates/mpm/src/layers/cell_pressures.rs:keep_cell_rates` |
+//! | 33 | slopes of velocities | `crates/mpm/src/explicit/affine.rs:add_slopes` |
+//! | 34 | lines that pressures fade to | `crates/mpm/src/layers/pressure_lines.rs:fade_beyond_lines` |
+//! | 35 | slopes of stresses | `crates/mpm/src/explicit/stress_slopes.rs:add_stress_slopes`, `crates/mpm/src/state/stress_planes.rs:fit` |
 //!
 //! # The step
 //!
-//! Section 4 of the paper, read in `src/mpm/explicit/mod.rs:kick_and_drift`.
+//! Section 4 of the paper, read in `crates/mpm/src/explicit/mod.rs:kick_and_drift`.
 //!
 //! | step | place |
 //! | :-- | :-- |
-//! | 1, grid | `src/mpm/explicit/mod.rs:reset_grid`, `src/mpm/explicit/points_to_nodes.rs:map_masses_velocities_and_forces` |
-//! | 2, accelerations | `src/mpm/explicit/points_to_nodes.rs:map_forces`, `src/mpm/explicit/mod.rs:nodal_accelerations` |
-//! | 3, nodal velocities | `src/mpm/explicit/nodal_step.rs:nodal_velocities` |
-//! | 4, points | `src/mpm/explicit/nodes_to_points.rs:advance_points` |
-//! | 5, mapping back | `src/mpm/explicit/nodes_to_points.rs:advance_points_and_map_back`, `src/mpm/explicit/points_to_nodes.rs:map_velocities` |
-//! | 6, effective stress | `src/mpm/explicit/stresses.rs:update_effective_stress` |
-//! | 7, pressure | `src/mpm/explicit/mod.rs:update_pressure`, `src/mpm/operators/recovery/mod.rs:recover` |
-//! | 8, next step | `src/mpm/run/driver.rs:solve` |
+//! | 1, grid | `crates/mpm/src/explicit/mod.rs:reset_grid`, `crates/mpm/src/explicit/points_to_nodes.rs:map_masses_velocities_and_forces` |
+//! | 2, accelerations | `crates/mpm/src/explicit/points_to_nodes.rs:map_forces`, `crates/mpm/src/explicit/mod.rs:nodal_accelerations` |
+//! | 3, nodal velocities | `crates/mpm/src/explicit/nodal_step.rs:nodal_velocities` |
+//! | 4, points | `crates/mpm/src/explicit/nodes_to_points.rs:advance_points` |
+//! | 5, mapping back | `crates/mpm/src/explicit/nodes_to_points.rs:advance_points_and_map_back`, `crates/mpm/src/explicit/points_to_nodes.rs:map_velocities` |
+//! | 6, effective stress | `crates/mpm/src/explicit/stresses.rs:update_effective_stress` |
+//! | 7, pressure | `crates/mpm/src/explicit/mod.rs:update_pressure`, `crates/mpm/src/operators/recovery/mod.rs:recover` |
+//! | 8, next step | `crates/mpm/src/run/driver.rs:solve` |
 //!
 //! # A study from Rust
 //!
@@ -121,16 +121,18 @@
 
 pub mod api;
 mod campaign;
+mod case;
 mod cli;
 mod foreign;
 mod golden;
 mod import;
 mod judge;
+mod measure;
+mod record;
 mod render;
 mod schema;
 mod study;
 
-use oedometer_records::{case, convergence, formats, measure, record};
 /// Exact solutions, by one door:
 ///
 /// ```
@@ -139,12 +141,11 @@ use oedometer_records::{case, convergence, formats, measure, record};
 /// let column = ColumnParameters::default();
 /// let terzaghi = Reference::new(ReferenceKind::TerzaghiIncompressible, &column, &[0.1])?;
 /// let at_the_base = terzaghi.fields(0.1, 1.0)?.pressure / column.load;
-/// // Terzaghi & Peck's chart; 50 digits in tests/reference/consolidation.csv.
+/// // Terzaghi & Peck's chart; 50 digits in crates/exact/tests/reference/consolidation.csv.
 /// assert!((at_the_base - 0.949_3).abs() < 1e-4);
 /// # Ok::<(), oedometer::exact::ExactError>(())
 /// ```
-pub use oedometer_solver::exact;
-use oedometer_solver::{elementary, mpm, scene, soil, sorting, wording};
+pub use oedometer_exact as exact;
 
 // What a study is, and how it is run and judged.
 pub use campaign::case_run::run_case;
@@ -185,39 +186,38 @@ pub use study::file::StudySource;
 pub use study::perturbed::LastDigit;
 
 // What a problem is, and how it is solved.
-pub use mpm::explicit::{Drag, ExplicitSettings};
-pub use mpm::method::{Basis, Configuration, Method};
-pub use mpm::run::integrator::IntegratorKind;
-pub use mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
-pub use mpm::run::results::snapshot::Snapshot;
-pub use mpm::run::{Kernel, Schedule, TimeStepRule};
-pub use mpm::time_limit::TimeLimit;
-pub use scene::SceneKind;
-pub use scene::column::Column;
-pub use scene::problem::column_problem;
-pub use soil::continuity::Continuity;
-pub use soil::law::Law;
-pub use soil::material::Material;
+pub use oedometer_mpm::explicit::{Drag, ExplicitSettings};
+pub use oedometer_mpm::method::{Basis, Configuration, Method};
+pub use oedometer_mpm::run::integrator::IntegratorKind;
+pub use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
+pub use oedometer_mpm::run::results::snapshot::Snapshot;
+pub use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
+pub use oedometer_mpm::scene::SceneKind;
+pub use oedometer_mpm::scene::column::Column;
+pub use oedometer_mpm::scene::problem::column_problem;
+pub use oedometer_mpm::time_limit::TimeLimit;
+pub use oedometer_soil::continuity::Continuity;
+pub use oedometer_soil::law::Law;
+pub use oedometer_soil::material::Material;
 
 // What the benches time one by one, and what a random sweep asks before it runs a case.
 #[doc(hidden)]
 pub use case::work_estimate::estimated_seconds;
 #[doc(hidden)]
-pub use mpm::assembled::step::AssembledStep;
+pub use oedometer_mpm::assembled::step::AssembledStep;
 #[doc(hidden)]
-pub use mpm::body::{Body, Problem};
+pub use oedometer_mpm::body::{Body, Problem};
 #[doc(hidden)]
-pub use mpm::critical_step::predicted::predicted_critical_step;
+pub use oedometer_mpm::critical_step::predicted::predicted_critical_step;
 #[doc(hidden)]
-pub use mpm::implicit::linear::LinearStepper;
+pub use oedometer_mpm::implicit::linear::LinearStepper;
 #[doc(hidden)]
-pub use mpm::run::{
+pub use oedometer_mpm::run::{
     run_plan::Plan,
     stepper::{EqualSteps, Stepper},
 };
 #[doc(hidden)]
-pub use scene::stepped_column::SteppedColumn;
+pub use oedometer_mpm::scene::stepped_column::SteppedColumn;
 
 #[cfg(test)]
-#[path = "../tests/unit/mod.rs"]
 mod tests;

@@ -1,13 +1,12 @@
 //! Orders, classes and verdicts of a series of errors.
 
-use crate::convergence::class::classify::classify;
-use crate::convergence::class::{Class, Classification, Context};
-use crate::convergence::orders::pair_orders;
-use crate::convergence::series::{ErrorSeries, SeriesLevel};
-use crate::convergence::series_demand::{ErrorBound, OrderBand, SeriesDemand};
 use crate::judge::verdict::{Beside, Verdict, judge};
-use crate::sorting;
 use crate::study::diagnostic::one_of;
+use oedometer_convergence::class::classify::classify;
+use oedometer_convergence::class::{Class, Classification, Context};
+use oedometer_convergence::orders::pair_orders;
+use oedometer_convergence::series::{ErrorSeries, SeriesLevel};
+use oedometer_convergence::series_demand::{ErrorBound, OrderBand, SeriesDemand};
 
 /// Errors up to this are round-off.
 const ROUND_OFF: f64 = 1e-12;
@@ -52,7 +51,7 @@ fn series_of(
     let level = |(size, error): (&f64, &f64)| SeriesLevel { size: *size, error: Some(error.abs()) };
     let series = ErrorSeries::new(sizes.iter().zip(errors).map(level).collect());
     let mut signed: Vec<(f64, f64)> = sizes.iter().copied().zip(errors.iter().copied()).collect();
-    sorting::sort_by(&mut signed, |a, b| b.0.total_cmp(&a.0));
+    signed.sort_by(|a, b| b.0.total_cmp(&a.0));
     // Norms have no sign, and then the signs tell nothing.
     let has_signs = errors.iter().any(|error| *error < 0.0);
     let signed = if has_signs { signed.into_iter().map(|(_, error)| error).collect() } else { Vec::new() };

@@ -2,7 +2,7 @@
 
 use crate::api::{scene_of, sentence};
 use crate::cli::commands::exact::parameters_of;
-use crate::exact::reference::{Reference, ReferenceKind};
+use oedometer_exact::reference::{Reference, ReferenceKind};
 
 /// An exact solution at times and depths, in SI.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,7 +53,7 @@ pub fn exact(
         );
     }
     let (parameters, kind) = parameters_of(kind, assignments).map_err(|error| sentence(&error))?;
-    let told = |error: crate::exact::exact_error::ExactError| error.to_string();
+    let told = |error: oedometer_exact::exact_error::ExactError| error.to_string();
     let reference = Reference::new(kind, &parameters, time_factors).map_err(told)?;
     let mut values =
         ExactValues { height: parameters.height, load: parameters.load, ..ExactValues::default() };

@@ -10,8 +10,8 @@ pub mod score;
 
 use crate::case::keys::Key;
 use crate::cli::exit;
-use crate::exact::reference::ReferenceKind;
-use crate::scene::SceneKind;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::scene::SceneKind;
 
 /// An error as a sentence.
 fn sentence(error: &anyhow::Error) -> String {

@@ -5,12 +5,12 @@ use crate::case::Case;
 use crate::case::quantity::Sample;
 use crate::cli::commands::score::results::{Held, Results};
 use crate::cli::commands::score::{Asked, study_of};
-use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::{RawRow, SolvedBody};
 use crate::import::rows::Rows;
 use crate::import::runs::Run;
 use crate::judge::score::Score;
+use oedometer_formats::import_error::ImportError;
 use std::path::Path;
 
 /// Samples of a result: of each list that is there one number a time and place, `[time][place]`.

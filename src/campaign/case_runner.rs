@@ -3,13 +3,13 @@
 use crate::campaign::case_run::{Cores, run_case, run_case_within, time_case};
 use crate::campaign::stop;
 use crate::case::Case;
-use crate::exact::exact_error::ExactError;
 use crate::foreign::attachment::{Attachment, Wish};
-use crate::mpm::run::Kernel;
-use crate::mpm::run::results::outcome::{Failure, FailureKind};
 use crate::record::store::RecordStore;
 use crate::record::{Record, Status, WallSample};
 use crate::study::check::Study;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_mpm::run::Kernel;
+use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 
 /// A study with its attached solvers, ready to run.
 pub struct CaseRunner<'a> {

@@ -1,11 +1,11 @@
 //! What the runner tells: while it works, at its end, and where it could not go on.
 
 use crate::case::Case;
-use crate::exact::exact_error::ExactError;
 use crate::record::origins::Origins;
 use crate::record::whole_file::StoreError;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
+use oedometer_exact::exact_error::ExactError;
 
 /// What the runner tells while it works.
 #[derive(Clone, Debug, PartialEq)]

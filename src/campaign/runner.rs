@@ -9,7 +9,6 @@ use crate::case::Case;
 use crate::case::work_estimate::{estimated_work, work_of};
 use crate::record::Record;
 use crate::record::store::{Found, RecordStore, Standing};
-use crate::sorting;
 use crate::study::check::Study;
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -85,7 +84,7 @@ pub fn run_studies_thinned(
     let mut gathered = Gathered::of(studies.len());
     gathered.only_on_disk = options.only_on_disk;
     let mut gathered = run_jobs(&desks, &jobs, resumed, options.jobs, gathered, &Listener { thin, tell });
-    sorting::sort_by_key(&mut gathered.ended, |(place, _)| *place);
+    gathered.ended.sort_by_key(|(place, _)| *place);
     let mut results = gathered.ended.into_iter().peekable();
     let mut place = 0;
     let reports = found.into_iter().zip(gathered.tallies);

@@ -2,7 +2,6 @@
 
 use crate::campaign::costs::CostTable;
 use crate::case::Case;
-use crate::sorting;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -42,7 +41,7 @@ pub fn shares_of(cases: &[&Case], count: u64, parting: Parting, costs: &CostTabl
 /// share has more than 4/3 of what the best parting has); the first of several alike.
 fn balanced(works: &[u64], count: u64) -> Vec<u64> {
     let mut order: Vec<usize> = (0..works.len()).collect();
-    sorting::sort_by_key(&mut order, |place| (Reverse(works[*place]), *place));
+    order.sort_by_key(|place| (Reverse(works[*place]), *place));
     // More shares than cases stay empty without being kept.
     let kept = count.min(works.len() as u64);
     let mut loads: BinaryHeap<Reverse<(u64, u64)>> = (0..kept).map(|share| Reverse((0, share))).collect();

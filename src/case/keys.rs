@@ -7,19 +7,19 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
 use crate::case::{Case, Task, step_label};
-use crate::convergence::class::Class;
-use crate::exact::parameters::Base;
-use crate::mpm::explicit::Drag;
-use crate::mpm::explicit::scheme::Scheme;
-use crate::mpm::method::{
+use oedometer_convergence::class::Class;
+use oedometer_exact::parameters::Base;
+use oedometer_mpm::explicit::Drag;
+use oedometer_mpm::explicit::scheme::Scheme;
+use oedometer_mpm::method::{
     Basis, Configuration, Memory, Method, PressureIntegration, Recovery, StrainGradient,
 };
-use crate::mpm::run::TimeStepRule;
-use crate::mpm::run::integrator::{Formulation, IntegratorKind};
-use crate::scene::SceneKind;
-use crate::soil::conductivity_mean::ConductivityMean;
-use crate::soil::continuity::Continuity;
-use crate::soil::law::Law;
+use oedometer_mpm::run::TimeStepRule;
+use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
+use oedometer_mpm::scene::SceneKind;
+use oedometer_soil::conductivity_mean::ConductivityMean;
+use oedometer_soil::continuity::Continuity;
+use oedometer_soil::law::Law;
 use std::fmt;
 
 /// More cells than a column is ever given on purpose.
@@ -385,7 +385,7 @@ impl fmt::Display for Value {
 mod tests {
     use super::*;
     use crate::case::Task;
-    use crate::scene::SceneKind;
+    use oedometer_mpm::scene::SceneKind;
 
     /// A value that the seed does not have.
     fn another(key: &Key, seed: &Case) -> Value {

@@ -2,12 +2,12 @@
 
 use crate::case::keys::{Key, Value};
 use crate::case::{Case, Task, USUAL_POINTS, step_label};
-use crate::mpm::run::TimeStepRule;
-use crate::scene::arrangement::Arrangement;
-use crate::soil::conductivity_mean::ConductivityMean;
-use crate::soil::continuity::Continuity;
-use crate::soil::material::Material;
-use crate::wording::typed;
+use oedometer_mpm::run::TimeStepRule;
+use oedometer_mpm::scene::arrangement::Arrangement;
+use oedometer_soil::conductivity_mean::ConductivityMean;
+use oedometer_soil::continuity::Continuity;
+use oedometer_soil::material::Material;
+use oedometer_soil::wording::typed;
 
 impl Case {
     /// What is special about integration and equations: empty for the paper's integration of the

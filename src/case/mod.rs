@@ -12,16 +12,16 @@ pub mod two_layer_limits;
 pub mod work_estimate;
 
 use crate::case::shared::Shared;
-use crate::elementary;
-use crate::mpm::explicit::ExplicitSettings;
-use crate::mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery, StrainGradient};
-use crate::mpm::run::TimeStepRule;
-use crate::mpm::run::integrator::Formulation;
-pub use crate::mpm::run::integrator::IntegratorKind;
-use crate::scene::SceneKind;
-use crate::scene::column::{Column, column_parameters};
-use crate::soil::material::Material;
-use crate::wording::words;
+use oedometer_mpm::explicit::ExplicitSettings;
+use oedometer_mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery, StrainGradient};
+use oedometer_mpm::run::TimeStepRule;
+use oedometer_mpm::run::integrator::Formulation;
+pub use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_mpm::scene::SceneKind;
+use oedometer_mpm::scene::column::{Column, column_parameters};
+use oedometer_soil::elementary;
+use oedometer_soil::material::Material;
+use oedometer_soil::wording::words;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -247,13 +247,13 @@ pub fn step_label(rule: &TimeStepRule) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::parameters::Base;
-    use crate::mpm::attached_method::Attached;
-    use crate::mpm::explicit::Drag;
-    use crate::mpm::explicit::scheme::Scheme;
-    use crate::soil::conductivity_mean::ConductivityMean;
-    use crate::soil::continuity::Continuity;
-    use crate::soil::law::Law;
+    use oedometer_exact::parameters::Base;
+    use oedometer_mpm::attached_method::Attached;
+    use oedometer_mpm::explicit::Drag;
+    use oedometer_mpm::explicit::scheme::Scheme;
+    use oedometer_soil::conductivity_mean::ConductivityMean;
+    use oedometer_soil::continuity::Continuity;
+    use oedometer_soil::law::Law;
 
     fn seed() -> Case {
         Case {

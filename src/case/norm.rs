@@ -1,6 +1,6 @@
 //! Norms by name, with their formulas.
 
-use crate::wording::words;
+use oedometer_soil::wording::words;
 
 use serde::{Deserialize, Serialize};
 use std::fmt;

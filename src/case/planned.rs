@@ -3,8 +3,8 @@
 use crate::case::Case;
 use crate::case::shared::Pool;
 use crate::case::tier::Tier;
-use crate::scene::column::Column;
-use crate::soil::material::Material;
+use oedometer_mpm::scene::column::Column;
+use oedometer_soil::material::Material;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -61,7 +61,7 @@ impl Planner {
 mod tests {
     use super::*;
     use crate::case::Task;
-    use crate::scene::SceneKind;
+    use oedometer_mpm::scene::SceneKind;
 
     #[test]
     fn cases_are_planned_once_and_share_what_they_have_in_common() {

@@ -1,7 +1,7 @@
 //! What is measured, and where.
 
-use crate::mpm::run::results::snapshot::{Samples, Snapshot};
-use crate::wording::words;
+use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
+use oedometer_soil::wording::words;
 use serde::{Deserialize, Serialize};
 
 /// A measured quantity.

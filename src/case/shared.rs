@@ -2,10 +2,10 @@
 //!
 //! A study of a million cases has few columns, few lists of outputs, and seldom as many soils as cases.
 
-use crate::exact::parameters::MotionParameters;
-use crate::scene::arrangement::Arrangement;
-use crate::scene::column::Column;
-use crate::soil::material::Material;
+use oedometer_exact::parameters::MotionParameters;
+use oedometer_mpm::scene::arrangement::Arrangement;
+use oedometer_mpm::scene::column::Column;
+use oedometer_soil::material::Material;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::HashMap;
 use std::fmt;

@@ -6,8 +6,8 @@
 //! a kernel as one row that departs from the others.
 
 use crate::case::Case;
-use crate::mpm::method::{Configuration, Memory, Recovery, StrainGradient};
-use crate::mpm::run::integrator::{Formulation, IntegratorKind};
+use oedometer_mpm::method::{Configuration, Memory, Recovery, StrainGradient};
+use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 
 /// Kinds of steps that differ in what they cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,8 +105,8 @@ pub fn seconds_per_step(case: &Case) -> f64 {
 mod tests {
     use super::*;
     use crate::case::Task;
-    use crate::mpm::method::Method;
-    use crate::scene::SceneKind;
+    use oedometer_mpm::method::Method;
+    use oedometer_mpm::scene::SceneKind;
 
     fn case(scene: SceneKind, method: &str, integrator: IntegratorKind, cells: usize) -> Case {
         let method = Method::named(method).expect("a method");

@@ -1,6 +1,6 @@
 //! How much of a study is run.
 
-use crate::wording::words;
+use oedometer_soil::wording::words;
 
 /// How much of a study is run: a tier includes those before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

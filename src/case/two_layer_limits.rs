@@ -1,9 +1,9 @@
 //! What does not go with two layers of points, and why.
 
 use crate::case::Case;
-use crate::mpm::method::{Basis, Configuration, Memory};
-use crate::scene::SceneKind;
-use crate::soil::conductivity_mean::ConductivityMean;
+use oedometer_mpm::method::{Basis, Configuration, Memory};
+use oedometer_mpm::scene::SceneKind;
+use oedometer_soil::conductivity_mean::ConductivityMean;
 
 impl Case {
     /// Why its water cannot have a layer of points of its own, where it is to have one; with what would be right.

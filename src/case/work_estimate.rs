@@ -2,12 +2,12 @@
 
 use crate::case::step_cost::{CASE_SECONDS, seconds_per_step};
 use crate::case::{Case, Task};
-use crate::elementary;
-use crate::mpm::critical_step::formula;
-use crate::mpm::critical_step::observed::OBSERVED_STEPS;
-use crate::mpm::run::TimeStepRule;
-use crate::mpm::run::integrator::IntegratorKind;
-use crate::scene::column::column_parameters;
+use oedometer_mpm::critical_step::formula;
+use oedometer_mpm::critical_step::observed::OBSERVED_STEPS;
+use oedometer_mpm::run::TimeStepRule;
+use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_mpm::scene::column::column_parameters;
+use oedometer_soil::elementary;
 
 /// Steps after which a run at a share of the critical step has shown that it is clean.
 pub const MOST_PROBE_STEPS: u64 = 262_144;

@@ -8,9 +8,9 @@ use crate::cli::commands::run::checked;
 use crate::cli::exit::Exit;
 use crate::cli::output::csv_of;
 use crate::cli::stream::print_data;
-use crate::mpm::run::Kernel;
 use crate::study::check::checker::Purpose;
 use crate::study::file::StudySource;
+use oedometer_mpm::run::Kernel;
 
 /// Runs of each case; the least counts.
 const ROUNDS: usize = 3;

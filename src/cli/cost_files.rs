@@ -3,9 +3,9 @@
 use crate::campaign::costs::CostTable;
 use crate::case::tier::Tier;
 use crate::cli::exit::{Ended, Exit};
-use crate::formats::input_file;
 use crate::record::store::RecordStore;
 use crate::study::check::Study;
+use oedometer_formats::input_file;
 use std::path::Path;
 
 /// What finished cases took over what was estimated.

@@ -1,8 +1,8 @@
 //! Exit codes, decided in one place.
 
-use crate::exact::exact_error::ExactError;
-use crate::formats::import_error::ImportError;
 use crate::study::diagnostic::StudyError;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_formats::import_error::ImportError;
 
 /// The exit codes, as `--help` tells them.
 pub const HELP: &str = "Exit codes: 0 pass, 1 a verdict failed, 2 usage or bad study file, 3 a case failed or timed \

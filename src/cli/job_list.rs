@@ -7,7 +7,7 @@ use crate::case::tier::Tier;
 use crate::cli::stream::say;
 use crate::record::store::RecordStore;
 use crate::study::check::Study;
-use crate::wording::{count_of, duration};
+use oedometer_soil::wording::{count_of, duration};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

@@ -11,7 +11,6 @@ pub mod job_list;
 pub mod output;
 pub mod overrides;
 pub mod progress;
-pub mod side_by_side;
 pub mod slurm;
 pub mod stream;
 pub mod study_files;

@@ -1,12 +1,12 @@
 //! Study files, read and named before any work begins: every result is kept under the name of its study.
 
 use crate::cli::exit::Ended;
-use crate::formats::input_file;
-use crate::formats::input_file::LARGEST_TEXT;
 use crate::study::diagnostic::nearest;
 use crate::study::file::StudySource;
 use crate::study::name::{name_of, refused_name};
 use crate::study::shipped::{shipped_names, shipped_study};
+use oedometer_formats::input_file;
+use oedometer_formats::input_file::LARGEST_TEXT;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};

@@ -4,8 +4,8 @@ use crate::campaign::run_report::LongestCase;
 use crate::case::keys::{Key, Value};
 use crate::case::work_estimate::estimated_seconds;
 use crate::case::{Case, Task};
-use crate::mpm::run::integrator::IntegratorKind;
-use crate::wording::duration;
+use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_soil::wording::duration;
 
 /// Seconds from which on a case is worth a word before it starts.
 const LONG_CASE: f64 = 120.0;
@@ -70,7 +70,7 @@ fn faster(case: &Case) -> Option<Case> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::SceneKind;
+    use oedometer_mpm::scene::SceneKind;
 
     fn longest(scene: SceneKind, integrator: IntegratorKind, conductivity: f64) -> LongestCase {
         let mut case = Case::seed(Task::Solve, scene);

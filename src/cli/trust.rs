@@ -11,8 +11,8 @@ use crate::cli::study_files;
 use crate::study::check::Study;
 use crate::study::check::check_solver::digest_of_file;
 use crate::study::solver::Solver;
-use crate::wording::count_of;
 use clap::builder::FalseyValueParser;
+use oedometer_soil::wording::count_of;
 use std::fs::{self, OpenOptions};
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -158,5 +158,4 @@ fn is_answered(study: &Study, starting: &[&Solver]) -> bool {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/cli_trust.rs"]
 mod tests;

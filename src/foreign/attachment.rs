@@ -2,8 +2,6 @@
 
 use crate::case::Case;
 use crate::case::quantity::Sample;
-use crate::exact::exact_error::ExactError;
-use crate::exact::reference::ReferenceKind;
 use crate::foreign::case_file::{CaseFile, suggested_step};
 use crate::foreign::command::{Filling, words_of};
 use crate::foreign::process::{Ending, Finished, Order};
@@ -15,13 +13,15 @@ use crate::foreign::{ending, process};
 use crate::import::mapping::Mapping;
 use crate::import::table::SampledState;
 use crate::measure::attached_record::record_of_attached;
-use crate::mpm::run::results::outcome::Failure;
-use crate::mpm::run::results::snapshot::{PlaneSamples, Samples, Snapshot};
 use crate::record::attached_run::AttachedRun;
 use crate::record::machines::Machine;
 use crate::record::{Record, Status, WallSample};
 use crate::study::solver::Solver;
-use crate::wording::typed;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::run::results::outcome::Failure;
+use oedometer_mpm::run::results::snapshot::{PlaneSamples, Samples, Snapshot};
+use oedometer_soil::wording::typed;
 use regex_lite::Regex;
 use std::path::{Path, PathBuf};
 use std::sync::{Condvar, Mutex, OnceLock, PoisonError};
@@ -385,5 +385,4 @@ impl Drop for Passed<'_> {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/foreign_attachment.rs"]
 pub(crate) mod tests;

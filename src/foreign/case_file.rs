@@ -2,11 +2,11 @@
 
 use crate::case::Case;
 use crate::case::keys::Key;
-use crate::elementary::powi;
-use crate::mpm::run::TimeStepRule;
-use crate::scene::SceneKind;
-use crate::scene::column::column_parameters;
-use crate::soil::material::Material;
+use oedometer_mpm::run::TimeStepRule;
+use oedometer_mpm::scene::SceneKind;
+use oedometer_mpm::scene::column::column_parameters;
+use oedometer_soil::elementary::powi;
+use oedometer_soil::material::Material;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -17,9 +17,9 @@ use crate::foreign::output_tail::last_lines;
 use crate::foreign::process::{Ending, Finished};
 use crate::foreign::reading::Unread;
 use crate::foreign::started_processes::named;
-use crate::mpm::run::results::outcome::{Failure, FailureKind};
 use crate::study::solver::Solver;
-use crate::wording::typed;
+use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+use oedometer_soil::wording::typed;
 use std::process::ExitStatus;
 
 /// Exit code by which a program says that it cannot run here.

@@ -197,5 +197,4 @@ fn reap(child: &mut Child) -> Reaped {
 }
 
 #[cfg(all(test, unix))]
-#[path = "../../tests/unit/foreign_process.rs"]
 mod tests;

@@ -2,8 +2,6 @@
 
 use crate::case::Case;
 use crate::case::quantity::Sample;
-use crate::formats::import_error::ImportError;
-use crate::formats::input_file;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::Preset;
 use crate::import::opened_csv::not_ended;
@@ -13,8 +11,10 @@ use crate::import::table::SampledState;
 use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
 use crate::study::solver::Solver;
-use crate::wording::short;
 use clap::ValueEnum;
+use oedometer_formats::import_error::ImportError;
+use oedometer_formats::input_file;
+use oedometer_soil::wording::short;
 use std::path::PathBuf;
 
 /// Multiple of the load that no pressure reaches.

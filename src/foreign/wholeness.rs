@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::import::table::SampledState;
-use crate::wording::{short, typed};
+use oedometer_soil::wording::{short, typed};
 
 /// How far, relative, a state may lie from the output that it stands for.
 const SAME_TIME: f64 = 1e-3;
@@ -111,7 +111,7 @@ fn same_counts(case: &Case, states: &[SampledState]) -> Option<String> {
 mod tests {
     use super::*;
     use crate::case::Task;
-    use crate::scene::SceneKind;
+    use oedometer_mpm::scene::SceneKind;
 
     fn case() -> Case {
         Case {

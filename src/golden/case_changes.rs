@@ -1,9 +1,9 @@
 //! Accuracy and cost together: a case that is dearer or worse, and in nothing better, than its own
 //! golden values is dominated by them; one that pays with one for the other makes a trade.
 
-use crate::convergence::pareto::ParetoChange;
 use crate::golden::compare::{Change, Difference};
 use crate::golden::parts;
+use oedometer_convergence::pareto::ParetoChange;
 
 /// A case that differs from its golden values.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]

@@ -2,7 +2,6 @@
 
 use crate::golden::references::REFERENCES;
 use crate::golden::{GoldenFile, parts};
-use crate::sorting;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -118,7 +117,7 @@ pub fn compare(golden: &GoldenFile, found: &BTreeMap<String, f64>) -> Vec<Differ
         });
     }
     tell_apart_what_is_paid_for(&mut differences);
-    sorting::sort_by(&mut differences, Difference::worst_first);
+    differences.sort_by(Difference::worst_first);
     differences
 }
 

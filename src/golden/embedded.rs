@@ -1,6 +1,7 @@
 //! The golden values of the shipped studies inside the program, so that an installed one can check itself.
 
 use crate::golden::{GoldenError, GoldenFile};
+use std::io::Read;
 use std::path::Path;
 
 /// Names, lengths and texts of the golden files in one compressed stream, packed by `build.rs`.
@@ -8,7 +9,8 @@ const PACKED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/golden.z"));
 
 /// The text of a study's golden file, where the program has it.
 fn text_of(study: &str) -> Option<String> {
-    let whole = miniz_oxide::inflate::decompress_to_vec_zlib(PACKED).ok()?;
+    let mut whole = Vec::new();
+    flate2::read::ZlibDecoder::new(PACKED).read_to_end(&mut whole).ok()?;
     let mut rest = whole.as_slice();
     while let Some(end) = rest.iter().position(|byte| *byte == b'\n') {
         let (name, length) = std::str::from_utf8(&rest[..end]).ok()?.split_once(' ')?;

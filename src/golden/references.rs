@@ -1,18 +1,18 @@
 //! The exact solutions as golden values, with the bounds that they give on their own errors: a fault
 //! in one shows at its own numbers, and not only in the errors of those scenes that happen to use it.
 
-use crate::elementary;
-use crate::exact::cosine_layer::CosineLayer;
-use crate::exact::dynamic_column::{DynamicColumn, Start};
-use crate::exact::exact_error::ExactError;
-use crate::exact::large_strain::diffusion::Water;
-use crate::exact::parameters::Base;
-use crate::exact::parameters::ColumnParameters;
-use crate::exact::reference::{Reference, ReferenceKind};
-use crate::exact::xie_leo::{Drainage, XieLeo};
 use crate::golden::GoldenFile;
 use crate::golden::tolerance::spread_by_group;
 use crate::study::perturbed::LastDigit;
+use oedometer_exact::cosine_layer::CosineLayer;
+use oedometer_exact::dynamic_column::{DynamicColumn, Start};
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::large_strain::diffusion::Water;
+use oedometer_exact::parameters::Base;
+use oedometer_exact::parameters::ColumnParameters;
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_exact::xie_leo::{Drainage, XieLeo};
+use oedometer_soil::elementary;
 use std::collections::BTreeMap;
 
 /// Name under which their golden values are kept.

@@ -1,11 +1,11 @@
 //! Rows of a state in arrays: columns found among arrays and coordinates, rows chosen, displacements formed.
 
-use crate::formats::frame::{Array, Association, Frame};
-use crate::formats::hints::program_of;
-use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
 use crate::import::rows::Rows;
+use oedometer_formats::frame::{Array, Association, Frame};
+use oedometer_formats::hints::program_of;
+use oedometer_formats::import_error::ImportError;
 use std::collections::{BTreeSet, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
@@ -427,7 +427,7 @@ impl Columns<'_> {
     fn count(&self, frame: &Frame) -> usize {
         match (self.pressure.or(self.displacement), self.on) {
             (Some(Source::Array(array, _)), _) if array.on != Association::Whole => array.tuples,
-            (_, Association::Cells) => frame.cells.as_ref().map_or(0, crate::formats::frame::Cells::count),
+            (_, Association::Cells) => frame.cells.as_ref().map_or(0, oedometer_formats::frame::Cells::count),
             _ if !frame.coordinates.is_empty() => frame.coordinates.len(),
             _ => match self.y {
                 Source::Array(array, _) => array.tuples,

@@ -1,9 +1,9 @@
 //! A table of somebody else's, opened: its header, and what is told of it by its name.
 
-use crate::formats::bytes::short;
-use crate::formats::import_error::ImportError;
-use crate::formats::input_file;
 use crate::import::mapping::TableLayout;
+use oedometer_formats::bytes::short;
+use oedometer_formats::import_error::ImportError;
+use oedometer_formats::input_file;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;

@@ -1,9 +1,9 @@
 //! One row as it stands in a file, and what it is in SI with the signs of this program.
 
-use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::mapping_parts::StressKind;
 use crate::import::mapping::units::{HorizontalSense, StatedPlace, StressSign, StressUnit, VerticalSense};
+use oedometer_formats::import_error::ImportError;
 
 /// Share of the height by which a place may lie outside: round-off of a written number.
 const RIM: f64 = 1e-6;

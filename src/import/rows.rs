@@ -2,9 +2,9 @@
 //!
 //! A million rows take some fifty bytes each here, and twice that as a list of rows.
 
-use crate::formats::import_error::ImportError;
 use crate::import::raw_row::SampleRow;
 use crate::import::table::SampledState;
+use oedometer_formats::import_error::ImportError;
 
 /// Rows closer than this share of their time are of one time.
 const SAME_TIME: f64 = 1e-9;

@@ -1,10 +1,6 @@
 //! From what a user names to runs: files found, their states grouped by mesh, times and rows read.
 
 use crate::case::quantity::Sample;
-use crate::formats::frame::{Association, Frame, Wanted};
-use crate::formats::hints::collection_of;
-use crate::formats::import_error::ImportError;
-use crate::formats::steps::{Frames, Kind, Step, steps_of};
 use crate::import::expected::Expected;
 use crate::import::frame_rows::{FrameReader, Start, cells_over_height, wanted_names};
 use crate::import::mapping::Mapping;
@@ -15,7 +11,10 @@ use crate::import::sample_row::take_rows;
 use crate::import::settlement_series::attach;
 use crate::import::step_times::{declared_time, fits, step_of};
 use crate::import::table::SampledState;
-use crate::sorting;
+use oedometer_formats::frame::{Association, Frame, Wanted};
+use oedometer_formats::hints::collection_of;
+use oedometer_formats::import_error::ImportError;
+use oedometer_formats::steps::{Frames, Kind, Step, steps_of};
 use std::path::{Component, Path, PathBuf};
 
 /// An argument with the files that it stands for.
@@ -96,7 +95,7 @@ fn fitting(pattern: &Path) -> Vec<PathBuf> {
     found.retain(|path| path.is_file());
     found.sort();
     let number = |path: &PathBuf| step_of(&path.file_name().unwrap_or_default().to_string_lossy(), None);
-    sorting::sort_by(&mut found, |a, b| {
+    found.sort_by(|a, b| {
         a.parent().cmp(&b.parent()).then(number(a).unwrap_or(-1.0).total_cmp(&number(b).unwrap_or(-1.0)))
     });
     found

@@ -1,12 +1,12 @@
 //! One file's rows in SI, with the signs of this program.
 
-use crate::formats::bytes::short;
-use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::opened_csv::{CsvTable, line_of};
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
 use crate::import::rows::Rows;
 use crate::import::step_times::declared_time;
+use oedometer_formats::bytes::short;
+use oedometer_formats::import_error::ImportError;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 

@@ -1,13 +1,13 @@
 //! A settlement curve in a file of its own.
 
-use crate::formats::bytes::short;
-use crate::formats::import_error::ImportError;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::mapping_parts::SettlementSeries;
 use crate::import::mapping::units::VerticalSense;
 use crate::import::opened_csv::{CsvTable, line_of};
 use crate::import::raw_row::SolvedBody;
 use crate::import::table::SampledState;
+use oedometer_formats::bytes::short;
+use oedometer_formats::import_error::ImportError;
 use std::path::{Path, PathBuf};
 
 /// How far, relative, a time of the curve may lie from that of a state.

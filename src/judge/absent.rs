@@ -61,8 +61,8 @@ pub fn differing_repeats(records: &[Record]) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::mpm::run::results::outcome::{Failure, FailureKind};
     use crate::record::Status;
+    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 
     fn records() -> Vec<Record> {
         let mut records = records_of(

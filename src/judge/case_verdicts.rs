@@ -1,7 +1,5 @@
 //! Judges what a study expects of single cases; hard cases are judged by this, not by series.
 
-use crate::convergence::class::Class;
-use crate::convergence::class::evaluable_series::plain;
 use crate::judge::error_place::place_of_attached;
 use crate::judge::judgement::Judgement;
 use crate::judge::verdict::{Check, Verdict, VerdictOutcome, check};
@@ -9,7 +7,9 @@ use crate::measure::largest::{larger, largest};
 use crate::measure::pressure_peak::pressure_peak;
 use crate::record::{Balance, LayerBalance, Record};
 use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
-use crate::wording::typed;
+use oedometer_convergence::class::Class;
+use oedometer_convergence::class::evaluable_series::plain;
+use oedometer_soil::wording::typed;
 
 impl CaseExpectation {
     /// One judgement a case that it selects; where it selects none, one that fails.

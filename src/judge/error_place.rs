@@ -1,12 +1,12 @@
 //! The place that carries most of an error.
 
-use crate::exact::exact_error::ExactError;
-use crate::exact::reference::ReferenceKind;
 use crate::measure::fields::error_contributions::largest_contribution;
 use crate::measure::fields::exact_fields::exact_samples;
 use crate::measure::known_references::known_reference;
 use crate::record::{ErrorRow, Record};
-use crate::wording::{short, typed};
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_soil::wording::{short, typed};
 
 /// A place with what stands there.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]

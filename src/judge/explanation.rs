@@ -3,17 +3,16 @@
 
 use crate::case::Case;
 use crate::case::norm::Norm;
-use crate::convergence::class::Context;
-use crate::convergence::class::classify::classify;
-use crate::convergence::series::{ErrorSeries, SeriesLevel};
-use crate::exact::exact_error::ExactError;
 use crate::golden::compare::{Difference, compare};
 use crate::golden::{GoldenFile, measure_name, values_of};
 use crate::judge::error_place::{ErrorPlace, place_of};
 use crate::judge::paths::{level_size, paths};
 use crate::record::{ErrorRow, Record};
-use crate::sorting;
 use crate::study::expectation::Axis;
+use oedometer_convergence::class::Context;
+use oedometer_convergence::class::classify::classify;
+use oedometer_convergence::series::{ErrorSeries, SeriesLevel};
+use oedometer_exact::exact_error::ExactError;
 
 /// The error of one quantity at one kind of places, at the output where it is largest.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -71,9 +70,9 @@ pub fn explain(
     focus: Option<&str>,
 ) -> Result<Explanation, ExactError> {
     let mut carriers = carriers_of(record)?;
-    sorting::sort_by(&mut carriers, |a, b| b.row.value.abs().total_cmp(&a.row.value.abs()));
+    carriers.sort_by(|a, b| b.row.value.abs().total_cmp(&a.row.value.abs()));
     if let Some(focus) = focus {
-        sorting::sort_by_key(&mut carriers, |carrier| !same_measure(&measure_name(&carrier.row), focus));
+        carriers.sort_by_key(|carrier| !same_measure(&measure_name(&carrier.row), focus));
     }
     let levels = match (carriers.first(), golden) {
         (Some(first), Some(golden)) => levels_of(record, siblings, golden, &first.row),

@@ -2,15 +2,15 @@
 
 use crate::case::Case;
 use crate::case::quantity::Quantity;
-use crate::convergence::limiter::{Limiter, LimiterKind};
-use crate::exact::reference::{Reference, ReferenceKind};
 use crate::judge::paths::Path;
 use crate::measure::fields::exact_fields::exact_samples;
 use crate::measure::fields::norms::relative_error;
 use crate::measure::known_references::known_reference;
-use crate::mpm::run::TimeStepRule;
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
+use oedometer_convergence::limiter::{Limiter, LimiterKind};
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_mpm::run::TimeStepRule;
 
 impl Path<'_> {
     /// Everything that might limit an error along the path, but for its reference's accuracy.
@@ -102,9 +102,9 @@ mod tests {
     use crate::campaign::runner::records_of;
     use crate::case::norm::Norm;
     use crate::case::quantity::Sample;
-    use crate::convergence::class::{Class, Classification};
     use crate::judge::paths::{first_norm, paths};
-    use crate::mpm::run::integrator::IntegratorKind;
+    use oedometer_convergence::class::{Class, Classification};
+    use oedometer_mpm::run::integrator::IntegratorKind;
 
     fn records(rule: &str, cells: &str) -> Vec<Record> {
         let text = format!(

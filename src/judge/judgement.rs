@@ -1,16 +1,16 @@
 //! From the paths of a study to verdicts on what it expects.
 
 use crate::case::tier::Tier;
-use crate::convergence::class::Context;
-use crate::convergence::series::ErrorSeries;
-use crate::convergence::series_demand::SeriesDemand as Demand;
-use crate::convergence::uncertainty::NumericalUncertainty;
 use crate::judge::absent::Absent;
 use crate::judge::paths::{Path, StudyPaths};
 use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::record::Record;
 use crate::study::check::Study;
 use crate::study::expectation::SeriesExpectation;
+use oedometer_convergence::class::Context;
+use oedometer_convergence::series::ErrorSeries;
+use oedometer_convergence::series_demand::SeriesDemand as Demand;
+use oedometer_convergence::uncertainty::NumericalUncertainty;
 
 /// The judgement of one expectation of a study.
 #[derive(Clone, Debug, serde::Serialize)]

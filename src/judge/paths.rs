@@ -3,18 +3,17 @@
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::{Case, step_label};
-use crate::convergence::class::classify::classify;
-use crate::convergence::class::{Classification, Context};
-use crate::convergence::orders::{SlopeFit, finest_order, pair_orders, slope};
-use crate::convergence::series::{ErrorSeries, SeriesLevel, Undefined};
-use crate::convergence::series_demand::SeriesDemand as Demand;
 use crate::judge::error_place::place_of_attached;
 use crate::measure::fields::norms::relative_error;
-use crate::mpm::run::integrator::IntegratorKind;
 use crate::record::Record;
-use crate::soil::material::Material;
-use crate::sorting;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
+use oedometer_convergence::class::classify::classify;
+use oedometer_convergence::class::{Classification, Context};
+use oedometer_convergence::orders::{SlopeFit, finest_order, pair_orders, slope};
+use oedometer_convergence::series::{ErrorSeries, SeriesLevel, Undefined};
+use oedometer_convergence::series_demand::SeriesDemand as Demand;
+use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_soil::material::Material;
 use std::collections::HashMap;
 
 /// Errors up to this are round-off of a long run.
@@ -80,7 +79,7 @@ pub fn paths<'a>(records: impl IntoIterator<Item = &'a Record>, axis: Axis) -> V
     }
     groups.retain(|group| group.records.len() > 1);
     for group in &mut groups {
-        sorting::sort_by(&mut group.records, |a, b| level_size(b, axis).total_cmp(&level_size(a, axis)));
+        group.records.sort_by(|a, b| level_size(b, axis).total_cmp(&level_size(a, axis)));
     }
     groups
 }

@@ -2,9 +2,6 @@
 //! and how far a value without an exact one may be off.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::series_demand::SeriesDemand as Demand;
-use crate::convergence::uncertainty::ValueSeries;
-use crate::exact::reference::ReferenceKind;
 use crate::judge::paths::{Path, level_size};
 use crate::judge::verdict::Beside;
 use crate::measure::fields::exact_fields::exact_samples;
@@ -12,8 +9,11 @@ use crate::measure::fields::oscillation::reversal;
 use crate::measure::fields::plane_field::PlaneField;
 use crate::measure::known_references::known_reference;
 use crate::record::Record;
-use crate::scene::column::column_parameters;
 use crate::study::expectation::Measure;
+use oedometer_convergence::series_demand::SeriesDemand as Demand;
+use oedometer_convergence::uncertainty::ValueSeries;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::scene::column::column_parameters;
 
 /// Order of the values where neither the method nor the study promises one.
 const USUAL_ORDER: f64 = 2.0;

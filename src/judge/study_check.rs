@@ -2,7 +2,6 @@
 
 use crate::campaign::run_report::RunError;
 use crate::case::tier::Tier;
-use crate::exact::exact_error::ExactError;
 use crate::golden::case_changes::{CaseChange, case_changes};
 use crate::golden::compare::{Change, Difference, compare};
 use crate::golden::difference_groups::{DifferenceGroup, groups_of};
@@ -14,6 +13,7 @@ use crate::judge::judgement::{Judgement, judge_study};
 use crate::judge::soundness;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
+use oedometer_exact::exact_error::ExactError;
 use std::collections::BTreeMap;
 
 /// Wall time over the golden one from which on it is worth a word.

@@ -5,15 +5,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::convergence::class::classify::classify;
-use crate::convergence::class::evaluable_series::FLOOR_LEVELS;
-use crate::convergence::class::{Class, Classification, Context};
-use crate::convergence::fit::bending_order::{Bend, explain};
-use crate::convergence::fit::floor::fit_floor;
-use crate::convergence::series::{ErrorSeries, Undefined};
-use crate::convergence::series_demand::{ErrorBound, FloorBand, OrderBand, SeriesDemand};
-use crate::convergence::uncertainty::NumericalUncertainty;
-use crate::wording::{order, short};
+use oedometer_convergence::class::classify::classify;
+use oedometer_convergence::class::evaluable_series::FLOOR_LEVELS;
+use oedometer_convergence::class::{Class, Classification, Context};
+use oedometer_convergence::fit::bending_order::{Bend, explain};
+use oedometer_convergence::fit::floor::fit_floor;
+use oedometer_convergence::series::{ErrorSeries, Undefined};
+use oedometer_convergence::series_demand::{ErrorBound, FloorBand, OrderBand, SeriesDemand};
+use oedometer_convergence::uncertainty::NumericalUncertainty;
+use oedometer_soil::wording::{order, short};
 
 /// How a verdict came out, the known failures told apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

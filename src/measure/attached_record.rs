@@ -1,19 +1,19 @@
 //! The record of a case that somebody else's solver has solved.
 
 use crate::case::Case;
-use crate::exact::exact_error::ExactError;
-use crate::exact::reference::{Reference, ReferenceKind};
 use crate::measure::case_record::reference_use;
 use crate::measure::dimensionless_groups::groups;
 use crate::measure::fields::field_errors::{LONG_AFTER, snapshot_errors};
 use crate::measure::known_references::known_reference;
 use crate::measure::other_measures::measures_of;
-use crate::mpm::run::results::outcome::{Counters, StepSizes};
-use crate::mpm::run::results::snapshot::Snapshot;
 use crate::record::attached_run::AttachedRun;
 use crate::record::provenance::Provenance;
 use crate::record::{HistoryRow, Record, SCHEMA, Status};
-use crate::scene::column::column_parameters;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_mpm::run::results::outcome::{Counters, StepSizes};
+use oedometer_mpm::run::results::snapshot::Snapshot;
+use oedometer_mpm::scene::column::column_parameters;
 use std::sync::Arc;
 
 /// The record of a case whose states at its outputs, one an output, came from outside; none where it failed. Each

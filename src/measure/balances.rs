@@ -1,13 +1,13 @@
 //! What a run keeps: the state at its start, masses, forces, and its settlement curve.
 
 use crate::case::Case;
-use crate::elementary;
-use crate::exact::exact_error::ExactError;
-use crate::exact::reference::Reference;
 use crate::measure::largest::largest;
-use crate::mpm::run::results::snapshot::Snapshot;
 use crate::record::{Balance, HistoryRow, LayerBalance, StartChecks};
-use crate::scene::column::column_parameters;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::reference::Reference;
+use oedometer_mpm::run::results::snapshot::Snapshot;
+use oedometer_mpm::scene::column::column_parameters;
+use oedometer_soil::elementary;
 
 /// The start against what the scene expects of it.
 ///

@@ -1,18 +1,18 @@
 //! From a run to its record.
 
 use crate::case::Case;
-use crate::exact::exact_error::ExactError;
-use crate::exact::reference::{Reference, ReferenceKind};
 use crate::measure::balances::{balance, curve_gap, start_checks};
 use crate::measure::dimensionless_groups::{groups, inertia_rules};
 use crate::measure::fields::field_errors::{LONG_AFTER, snapshot_errors};
 use crate::measure::known_references::known_reference;
 use crate::measure::other_measures::measures_of;
-use crate::mpm::critical_step::observed::CriticalStep;
-use crate::mpm::run::results::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, HistoryRow, Record, ReferenceUse, SCHEMA, Status};
-use crate::scene::column::column_parameters;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_mpm::critical_step::observed::CriticalStep;
+use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
+use oedometer_mpm::scene::column::column_parameters;
 use std::sync::Arc;
 
 /// The record of a run; wall times are added by who measured them.

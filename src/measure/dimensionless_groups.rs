@@ -1,12 +1,12 @@
 //! Dimensionless groups of a case, and where they leave a quasi-static reference behind.
 
 use crate::case::Case;
-use crate::elementary;
-use crate::exact::reference::ReferenceKind;
-use crate::mpm::critical_step::formula;
-use crate::mpm::run::TimeStepRule;
-use crate::mpm::run::integrator::{Formulation, IntegratorKind};
 use crate::record::Groups;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::critical_step::formula;
+use oedometer_mpm::run::TimeStepRule;
+use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
+use oedometer_soil::elementary;
 
 /// The groups of a case whose largest step was a share of its limit.
 pub fn groups(case: &Case, step_over_limit: f64) -> Groups {

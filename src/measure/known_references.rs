@@ -2,9 +2,9 @@
 //! large strain takes a march in time.
 
 use crate::case::Case;
-use crate::exact::exact_error::ExactError;
-use crate::exact::reference::{Reference, ReferenceKind};
-use crate::scene::column::column_parameters;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_mpm::scene::column::column_parameters;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
 
@@ -64,7 +64,7 @@ pub fn known_reference(
 mod tests {
     use super::*;
     use crate::case::Task;
-    use crate::scene::SceneKind;
+    use oedometer_mpm::scene::SceneKind;
     use std::cell::Cell;
 
     #[test]

@@ -1,10 +1,10 @@
 //! What is measured of a run beside errors of fields: the peak of a pressure, and what moves where nothing may.
 
 use crate::case::Case;
-use crate::exact::reference::Reference;
 use crate::measure::pressure_peak::peak_measures;
-use crate::mpm::run::results::snapshot::Snapshot;
 use crate::record::{Balance, MeasureRow};
+use oedometer_exact::reference::Reference;
+use oedometer_mpm::run::results::snapshot::Snapshot;
 
 /// Name of the largest nodal velocity over the hydraulic conductivity, of a column at rest.
 pub const SPURIOUS_VELOCITY: &str = "spurious_velocity";

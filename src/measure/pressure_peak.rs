@@ -1,10 +1,10 @@
 //! The peak of the pressure at an impermeable end over time: of Mandel and of Cryer, where it rises before it falls.
 
 use crate::case::Case;
-use crate::elementary;
-use crate::exact::reference::Reference;
-use crate::mpm::run::results::snapshot::Snapshot;
 use crate::record::MeasureRow;
+use oedometer_exact::reference::Reference;
+use oedometer_mpm::run::results::snapshot::Snapshot;
+use oedometer_soil::elementary;
 
 /// Name of the measure of its time factor.
 pub const PEAK_TIME_FACTOR: &str = "peak_time_factor";

@@ -1,12 +1,12 @@
 //! Start checks and balances of a record, each with the bound that it is held to: what shows a mark
 //! in a table is judged here, and nowhere else.
 
-use crate::mpm::run::integrator::IntegratorKind;
-use crate::mpm::run::results::outcome::FailureKind;
 use crate::record::{Balance, Record, Status};
-use crate::scene::arrangement::Arrangement;
-use crate::soil::continuity::Continuity;
-use crate::wording::typed;
+use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_mpm::run::results::outcome::FailureKind;
+use oedometer_mpm::scene::arrangement::Arrangement;
+use oedometer_soil::continuity::Continuity;
+use oedometer_soil::wording::typed;
 
 /// The check that is told in numbers of points.
 const POINTS_MISSING: &str = "points missing at the start";

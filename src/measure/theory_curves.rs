@@ -1,12 +1,12 @@
 //! Curves that a figure holds beside a run: theory lines and what they are drawn over.
 
 use crate::case::Case;
-use crate::elementary;
-use crate::exact::exact_error::ExactError;
-use crate::exact::reference::{Reference, ReferenceKind};
 use crate::measure::known_references::{Known, key_of, known_or};
 use crate::record::Record;
-use crate::scene::column::column_parameters;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_mpm::scene::column::column_parameters;
+use oedometer_soil::elementary;
 use std::sync::{LazyLock, Mutex};
 
 /// Points of a theory line.

@@ -4,7 +4,7 @@
 //! medians of interleaved paired ratios by 4 %: so variants are timed in rounds, every sample is
 //! kept, and a difference counts only beyond what the code shows against itself.
 
-use crate::elementary;
+use oedometer_soil::elementary;
 
 /// A list of samples in a few numbers, in their unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -18,13 +18,13 @@ pub mod whole_file;
 use crate::case::Case;
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-pub use crate::mpm::critical_step::observed::{CriticalStep, Probe};
-pub use crate::mpm::run::profile::PhaseTime;
-use crate::mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
-use crate::mpm::run::results::snapshot::Snapshot;
 use crate::record::attached_run::AttachedRun;
 use crate::record::machines::Machine;
 use crate::record::provenance::Provenance;
+pub use oedometer_mpm::critical_step::observed::{CriticalStep, Probe};
+pub use oedometer_mpm::run::profile::PhaseTime;
+use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
+use oedometer_mpm::run::results::snapshot::Snapshot;
 use serde::{Deserialize, Serialize};
 
 /// Version of the record's layout.

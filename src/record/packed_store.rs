@@ -98,7 +98,7 @@ impl PackedStore {
     fn with_index<T>(&self, ask: impl FnOnce(&mut Index) -> T) -> T {
         let mut state = self.state();
         let folder = self.study.join(FOLDER);
-        ask(state.index.get_or_insert_with(|| Index::of_with(&folder, self.window).unwrap_or_default()))
+        ask(state.index.get_or_insert_with(|| Index::of(&folder, self.window).unwrap_or_default()))
     }
 
     /// Whether there is any record.
@@ -298,7 +298,7 @@ impl PackedStore {
         if let Some(writer) = writer {
             return Ok(writer.generation());
         }
-        let index = index.get_or_insert_with(|| Index::of_with(&folder, self.window).unwrap_or_default());
+        let index = index.get_or_insert_with(|| Index::of(&folder, self.window).unwrap_or_default());
         let opened =
             Writer::open(&self.study, index).map_err(self.refused("make the folder or a pack in"))?;
         Ok(writer.insert(opened).generation())

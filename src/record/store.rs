@@ -308,5 +308,4 @@ impl RecordStore {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/record_store_model.rs"]
 mod model;

@@ -11,7 +11,6 @@ pub mod render_error;
 pub mod report;
 pub mod script;
 #[cfg(test)]
-#[path = "../../tests/unit/render_showcase.rs"]
 mod showcase;
 pub mod table;
 pub mod tables;

@@ -89,5 +89,4 @@ fn each_part(value: Value, change: fn(Value) -> Value) -> Value {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/schema.rs"]
 mod tests;

@@ -2,9 +2,9 @@
 //! error or a drift may be. Hard cases are judged by this, not by series.
 
 use crate::case::tier::Tier;
-use crate::mpm::run::results::outcome::FailureKind;
 use crate::record::Record;
 use crate::study::expectation::{Measure, Selection};
+use oedometer_mpm::run::results::outcome::FailureKind;
 
 /// A range of values: the lower end belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! Typed values with their places, and the tables of choices that are a value themselves: a method, a step rule.
 
 use crate::case::keys::Choice;
-use crate::mpm::method::{Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient};
 use crate::study::reading::toml_tree;
+use oedometer_mpm::method::{Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;

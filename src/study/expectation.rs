@@ -5,12 +5,12 @@ use crate::case::keys::{Choice, Key, Value};
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
-use crate::convergence::series_demand::SeriesDemand as Demand;
-use crate::exact::reference::ReferenceKind;
-use crate::mpm::method::Method;
 use crate::record::{ErrorRow, Record};
-use crate::wording::typed;
-use crate::wording::words;
+use oedometer_convergence::series_demand::SeriesDemand as Demand;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::method::Method;
+use oedometer_soil::wording::typed;
+use oedometer_soil::wording::words;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

@@ -3,8 +3,8 @@
 //! [`KEYS`]: crate::case::keys::KEYS
 
 use crate::case::keys::{Key, Kind};
-use crate::mpm::method::Method;
 use crate::study::choice_tables::{MethodTable, Placed, TimeStepTable};
+use oedometer_mpm::method::Method;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, Visitor};

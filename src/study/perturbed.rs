@@ -2,7 +2,7 @@
 
 use crate::case::planned::PlannedCase;
 use crate::study::check::Study;
-use crate::wording::words;
+use oedometer_soil::wording::words;
 
 /// The input whose last digit changes. Every operator's entries follow, and with them every rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! A solver of somebody else's, checked: what is started for a case, and how its result is read.
 
-use crate::mpm::attached_method::Attached;
+use oedometer_mpm::attached_method::Attached;
 use std::path::PathBuf;
 
 /// Programs whose files are known; `import` has what their arrays mean.

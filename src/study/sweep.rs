@@ -80,9 +80,9 @@ impl Sweep {
 mod tests {
     use super::*;
     use crate::case::Task;
-    use crate::mpm::method::Method;
-    use crate::mpm::run::TimeStepRule;
-    use crate::scene::SceneKind;
+    use oedometer_mpm::method::Method;
+    use oedometer_mpm::run::TimeStepRule;
+    use oedometer_mpm::scene::SceneKind;
 
     const STEPS: [f64; 3] = [4e-6, 2e-6, 1e-6];
 

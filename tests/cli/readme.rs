@@ -554,7 +554,7 @@ fn defines(source: &str, name: &str) -> bool {
 #[test]
 fn every_place_in_the_code_that_contributing_names_exists() {
     let text = fs::read_to_string(root().join("CONTRIBUTING.md")).expect("CONTRIBUTING.md");
-    let whole = sources(&root().join("src"));
+    let whole = sources(&root().join("src")) + &sources(&root().join("crates"));
     let prose = text.split("```").step_by(2).collect::<Vec<_>>().join(" ");
     let mut named = 0;
     for code in prose.split('`').skip(1).step_by(2) {
@@ -562,7 +562,7 @@ fn every_place_in_the_code_that_contributing_names_exists() {
         if code.contains('/')
             && code.chars().all(is_path)
             && (Path::new(code).extension().is_some_and(|extension| extension == "rs")
-                || ["src/", "tests/", "studies/"].iter().any(|of| code.starts_with(of)))
+                || ["src/", "crates/", "tests/", "studies/"].iter().any(|of| code.starts_with(of)))
         {
             assert!(root().join(code).exists(), "CONTRIBUTING.md names {code}");
             named += 1;
@@ -580,8 +580,12 @@ fn every_place_in_the_code_that_contributing_names_exists() {
             continue;
         }
         let modules = parts[..parts.len() - 1].join("/");
-        let candidates = [format!("src/{modules}"), format!("src/{modules}.rs")];
-        let anywhere = candidates.iter().map(|path| sources(&root().join(path))).collect::<String>();
+        let (first, rest) = modules.split_once('/').unwrap_or((&modules, ""));
+        let folders = ["src".to_owned(), "crates/mpm/src".to_owned(), format!("crates/{first}/src")];
+        let candidates = folders.iter().zip([&*modules, &*modules, rest]);
+        let candidates =
+            candidates.flat_map(|(folder, path)| [format!("{folder}/{path}"), format!("{folder}/{path}.rs")]);
+        let anywhere = candidates.map(|path| sources(&root().join(path))).collect::<String>();
         let source = if anywhere.is_empty() { &whole } else { &anywhere };
         assert!(defines(source, name) || source.contains(name), "CONTRIBUTING.md names {code}: no {name}");
     }

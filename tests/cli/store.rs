@@ -541,7 +541,7 @@ fn the_faults_of_the_store_are_in_the_sources_and_have_their_tests() {
     let list: toml::Table = toml::from_str(&text).expect("TOML");
     let faults = list["fault"].as_array().expect("faults");
     assert!(faults.len() >= 10);
-    let tests: String = [root.join("src"), root.join("tests")]
+    let tests: String = [root.join("src"), root.join("crates"), root.join("tests")]
         .iter()
         .flat_map(|folder| files_below(folder))
         .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))

@@ -388,7 +388,7 @@ fn path_of(entry: fs::DirEntry) -> PathBuf {
 
 /// The text of all Rust files of the program and its tests.
 fn rust_sources() -> String {
-    let mut folders = vec![root().join("src"), root().join("tests")];
+    let mut folders = vec![root().join("src"), root().join("crates"), root().join("tests")];
     let mut text = String::new();
     while let Some(folder) = folders.pop() {
         for path in fs::read_dir(folder).expect("a folder").filter_map(Result::ok).map(path_of) {

@@ -32,12 +32,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 OUTCOMES = HERE / "outcomes.csv"
 REPORT = HERE / "OUTCOME.md"
-# The test program of what stands beside the solver's formulas.
-UNITS = "oedometer_solver"
-# That of the solver's runs.
-RUNS = "runs"
 # What is copied: folders and files that the program, the benches and the tests are made of.
-PARTS = ["src", "records", "solver", "studies", "golden", "benches", "tests", "examples", "docs", "python"]
+PARTS = ["src", "crates", "studies", "golden", "benches", "tests", "examples", "docs", "python"]
 FILES = ["Cargo.toml", "Cargo.lock", "build.rs", "rust-toolchain.toml", "README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
 # Seconds after which a study, or a test, that hangs counts as objecting.
 LONGEST = 900
@@ -126,10 +122,8 @@ def with_switches(tree, faults):
             text = text[:start] + new + text[end:]
             end_before = start
         path.write_text(text)
-    for root, switch in (("src/solver.rs", SWITCH), ("src/records.rs", "pub use oedometer_solver::fault;\n"),
-                         ("src/lib.rs", "pub use oedometer_solver::fault;\n")):
-        library = tree / root
-        library.write_text("#![allow(unused_parens)]\n" + library.read_text() + switch)
+    for library in (tree / "src/lib.rs", *sorted(tree.glob("crates/*/src/lib.rs"))):
+        library.write_text("#![allow(unused_parens)]\n" + library.read_text() + SWITCH)
 
 
 def bring_up_to_date(source, tree):
@@ -238,62 +232,40 @@ class Studies:
 # ---- tests by name ----
 
 
-def target_of(tree, name):
-    """The target that holds a test, as cargo names it: None for the libraries' own."""
-    pattern = re.compile(rf"\bfn {re.escape(name)}\b")
-    own = [(path.stem, path) for path in (tree / "tests").glob("*.rs")]
-    own += [("cli", path) for path in (tree / "tests/cli").glob("*.rs")]
-    own += [(RUNS, path) for path in (tree / "tests/solver").glob("*.rs")]
-    for target, path in sorted(own):
-        if pattern.search(path.read_text()):
-            return target
-    for folder in ("src", "tests/unit"):
-        for path in sorted((tree / folder).rglob("*.rs")):
-            if pattern.search(path.read_text()):
-                return None
-    raise SystemExit(f"no test is called `{name}`")
-
-
 class Tests:
     """The tests that faults name, in test programs of the tree with switches: only those are built."""
 
     def __init__(self, tree, faults):
         self.tree = tree
-        self.target = {}
-        for name in sorted({name for fault in faults for name in names_of(fault)}):
-            self.target[name] = target_of(tree, name)
-        self.program = self.build() if self.target else {}
+        self.program = self.programs_of({name for fault in faults for name in names_of(fault)})
         self.lock = threading.Lock()
         self.sound = set()
 
-    def build(self):
-        """Builds what is needed, and gives each target its programs: one a library where it is their own tests."""
-        targets = set(self.target.values())
-        # The runs are tests of the solver's package, whose library has none of its own.
-        groups = [(["oedometer", "oedometer-records", "oedometer-solver-units"], targets - {RUNS}),
-                  (["oedometer-solver"], targets & {RUNS})]
+    def programs_of(self, names):
+        """Builds all test programs, and gives each test the programs that list it."""
+        if not names:
+            return {}
         environment = {**os.environ, "CARGO_INCREMENTAL": "0", "CARGO_PROFILE_DEV_DEBUG": "0"}
-        told = ""
-        for packages, wanted in groups:
-            command = ["cargo", "test", "--no-run", "--locked", "--message-format", "json-render-diagnostics", "--target-dir", "target/tests"]
-            command += [word for package in packages for word in ("--package", package)]
-            command += ["--lib", "--test", UNITS] if None in wanted else []
-            command += [word for target in sorted(target for target in wanted if target) for word in ("--test", target)]
-            if wanted:
-                told += subprocess.run(command, cwd=self.tree, env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
-        programs = {}
-        for line in told.splitlines():
-            message = json.loads(line)
+        command = ["cargo", "test", "--no-run", "--locked", "--message-format", "json-render-diagnostics", "--target-dir", "target/tests"]
+        told = subprocess.run(command, cwd=self.tree, env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
+        holds = {}
+        for message in map(json.loads, told.splitlines()):
             if message.get("reason") == "compiler-artifact" and message["profile"]["test"] and message["executable"]:
-                is_library = "lib" in message["target"]["kind"] or message["target"]["name"] == UNITS
-                programs.setdefault(None if is_library else message["target"]["name"], []).append(message["executable"])
-        return programs
+                program = message["executable"]
+                listed = subprocess.run([program, "--list"], cwd=self.tree, stdout=subprocess.PIPE, text=True, check=True).stdout
+                for line in listed.splitlines():
+                    if line.endswith(": test"):
+                        holds.setdefault(line.removesuffix(": test").rsplit("::", 1)[-1], []).append(program)
+        missing = sorted(names - holds.keys())
+        if missing:
+            sys.exit(f"no test is called {', '.join(missing)}")
+        return {name: holds[name] for name in names}
 
     def objection(self, name, number):
         """What a test says with one fault on, or None where it passes."""
         environment = {**os.environ, "OEDOMETER_FAULT": str(number), "INSTA_UPDATE": "no", "RUST_BACKTRACE": "0"}
         ran = 0
-        for program in self.program[self.target[name]]:
+        for program in self.program[name]:
             done = finished([program, name], self.tree, environment, LONGEST_TEST)
             if done is None:
                 return "hangs"
@@ -317,8 +289,7 @@ class Tests:
                     self.sound.add(name)
             said = self.objection(name, fault["number"])
             if said is not None:
-                where = self.target[name] or "lib"
-                return f"test {where}::{name}", said
+                return f"test {name}", said
         return "", ""
 
 

@@ -24,7 +24,7 @@ use crate::record::Record;
 use crate::render::checks::annotations::annotations_of;
 use crate::render::checks::{junit, verdicts};
 use crate::study::check::Study;
-use crate::wording::count_of;
+use oedometer_soil::wording::count_of;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

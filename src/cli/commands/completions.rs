@@ -5,13 +5,13 @@
 
 use crate::cli::exit::Exit;
 use crate::cli::stream::print_data;
-use crate::exact::reference::ReferenceKind;
-use crate::mpm::method::Method;
-use crate::mpm::run::integrator::IntegratorKind;
-use crate::scene::SceneKind;
 use crate::study::shipped::shipped_names;
 use clap::builder::PossibleValuesParser;
 use clap_complete::Shell;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::method::Method;
+use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_mpm::scene::SceneKind;
 
 /// Commands whose arguments are studies.
 const OF_STUDIES: [&str; 8] = ["run", "report", "check", "accept", "plan", "explain", "merge", "spread"];

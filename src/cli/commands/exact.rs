@@ -5,17 +5,17 @@ use crate::cli::output::{csv_of, json_of};
 use crate::cli::overrides;
 use crate::cli::overrides::StudyLines;
 use crate::cli::stream::{print_data, say};
-use crate::exact::consolidation;
-use crate::exact::cosine_layer::LayerFields;
-use crate::exact::field_values::Accuracy;
-use crate::exact::mandel::Mandel;
-use crate::exact::manufactured::PlaneValues;
-use crate::exact::parameters::ColumnParameters;
-use crate::exact::reference::{Reference, ReferenceKind};
-use crate::scene::SceneKind;
-use crate::scene::column::column_parameters;
 use crate::study::check::checker::Purpose;
 use clap::ValueEnum;
+use oedometer_exact::consolidation;
+use oedometer_exact::cosine_layer::LayerFields;
+use oedometer_exact::field_values::Accuracy;
+use oedometer_exact::mandel::Mandel;
+use oedometer_exact::manufactured::PlaneValues;
+use oedometer_exact::parameters::ColumnParameters;
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_mpm::scene::SceneKind;
+use oedometer_mpm::scene::column::column_parameters;
 
 /// Distances from the middle of a slab printed where none are asked for.
 const DEFAULT_DISTANCES: &str = "0,0.25,0.5,0.75,1";

@@ -2,13 +2,13 @@
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::print_data;
-use crate::exact::reference::ReferenceKind;
-use crate::mpm::method::Method;
-use crate::mpm::run::integrator::IntegratorKind;
-use crate::scene::SceneKind;
 use crate::study::check::Study;
 use crate::study::diagnostic::nearest;
 use crate::study::shipped::{shipped_names, shipped_studies, shipped_study};
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::method::Method;
+use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_mpm::scene::SceneKind;
 use std::fmt::Write;
 
 /// Arguments of `list`.

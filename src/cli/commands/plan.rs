@@ -18,7 +18,7 @@ use crate::cli::time_notes::{note_on_longest, side_by_side};
 use crate::foreign::case_file::CaseFile;
 use crate::record::whole_file::write_whole;
 use crate::study::check::Study;
-use crate::wording::{count_of, duration};
+use oedometer_soil::wording::{count_of, duration};
 use std::path::PathBuf;
 
 /// Columns of the plan.

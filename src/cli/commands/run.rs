@@ -24,8 +24,8 @@ use crate::study::check::Study;
 use crate::study::check::checker::Purpose;
 use crate::study::file::StudySource;
 use crate::study::shipped::shipped_studies;
-use crate::wording::count_of;
 use clap::ValueEnum;
+use oedometer_soil::wording::count_of;
 use std::path::{Path, PathBuf};
 
 /// Folder of results where none is named.

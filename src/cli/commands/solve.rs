@@ -10,15 +10,15 @@ use crate::cli::overrides::StudyLines;
 use crate::cli::stream::{print_data, say};
 use crate::cli::time_notes::note_on_solve;
 use crate::judge::soundness;
-use crate::mpm::run::Kernel;
-use crate::mpm::run::profile::{PhaseTime, profiled};
-use crate::mpm::run::results::outcome::{Failure, StepSizes};
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, ERROR_COLUMNS, ErrorRow, Groups, Record, ReferenceUse, StartChecks, Status};
 use crate::render::tables::measures;
 use crate::render::tables::phases::phases_table;
 use crate::study::check::Study;
 use clap::ValueEnum;
+use oedometer_mpm::run::Kernel;
+use oedometer_mpm::run::profile::{PhaseTime, profiled};
+use oedometer_mpm::run::results::outcome::{Failure, StepSizes};
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -13,12 +13,12 @@ use crate::cli::trust::TrustArguments;
 use crate::golden::tolerance::spread_by_group;
 use crate::golden::{GoldenFile, values_of};
 use crate::judge::scatter::{ValueScatter, spread_of};
-use crate::mpm::run::Kernel;
 use crate::record::Record;
 use crate::record::store::RecordStore;
 use crate::render::tables::spreads;
 use crate::study::check::Study;
 use crate::study::perturbed::LastDigit;
+use oedometer_mpm::run::Kernel;
 use std::path::PathBuf;
 
 /// Arguments of `spread`.

@@ -10,9 +10,9 @@ use crate::cli::output::{csv_of, json_of};
 use crate::cli::overrides;
 use crate::cli::overrides::StudyLines;
 use crate::cli::stream::print_data;
-use crate::mpm::critical_step::observed::CriticalStep;
 use crate::record::{Probe, Record, Status};
 use crate::render::tables::critical_steps;
+use oedometer_mpm::critical_step::observed::CriticalStep;
 
 /// Difference of observed from predicted step up to which they agree.
 const AGREEMENT: f64 = 0.02;

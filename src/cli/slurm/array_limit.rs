@@ -2,7 +2,7 @@
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::slurm::commands::told_of_configuration;
-use crate::wording::count_of;
+use oedometer_soil::wording::count_of;
 use std::collections::BTreeSet;
 
 /// `MaxArraySize` of Slurm where its configuration says nothing.

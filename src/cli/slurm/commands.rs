@@ -1,8 +1,8 @@
 //! What is asked of Slurm: to take a script, and what became of it.
 
 use crate::cli::exit::{Ended, Exit};
-use crate::formats::input_file;
 use crate::record::whole_file::write_whole;
+use oedometer_formats::input_file;
 use std::path::Path;
 use std::process::Command;
 

@@ -1,6 +1,6 @@
 //! Units, signs and origins of columns in the words of a mapping file.
 
-use crate::wording::words;
+use oedometer_soil::wording::words;
 
 use serde::Deserialize;
 
@@ -138,12 +138,12 @@ impl StressUnit {
 
 #[cfg(test)]
 mod tests {
-    use crate::formats::import_error::ImportError;
     use crate::import::mapping::Mapping;
     use crate::import::mapping::preset::Preset;
     use crate::import::raw_row::{RawRow, SampleRow, SolvedBody};
     use crate::study::file::StudySource;
     use clap::ValueEnum;
+    use oedometer_formats::import_error::ImportError;
     use std::path::Path;
 
     /// A body 5 m high and 8 m long in which `T_v` = 1 is 250 s.

@@ -3,7 +3,6 @@
 use crate::case::step_cost::seconds_per_step;
 use crate::judge::comparison::work_precision::worst_error;
 use crate::record::{Record, Status};
-use crate::sorting;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Error of the pore pressure at the points that is asked for.
@@ -103,7 +102,7 @@ fn ways(records: &[&Record], reference: &str) -> Vec<Way> {
         }
     }
     let mut ways: Vec<Way> = best.into_values().collect();
-    sorting::sort_by(&mut ways, |a, b| a.seconds.total_cmp(&b.seconds).then(a.error.total_cmp(&b.error)));
+    ways.sort_by(|a, b| a.seconds.total_cmp(&b.seconds).then(a.error.total_cmp(&b.error)));
     ways
 }
 
@@ -117,7 +116,7 @@ fn names_of<'a>(records: impl Iterator<Item = &'a Record>) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::mpm::run::results::outcome::{Failure, FailureKind};
+    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 
     const STUDY: &str = "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
         method = [\"GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = [3, 10, 20]\ntime_step = [{ growth = 0.02 }]\n\

@@ -3,19 +3,18 @@
 
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::class::Class;
-use crate::exact::exact_error::ExactError;
 use crate::judge::paths::paths;
 use crate::measure::fields::plane_field::PlaneField;
 use crate::measure::largest::largest;
 use crate::measure::wall_times::median;
-use crate::mpm::critical_step::formula;
-use crate::mpm::method::Method;
 use crate::record::{Record, Status};
-use crate::soil::material::Material;
-use crate::sorting;
 use crate::study::check::Study;
 use crate::study::expectation::{Axis, Measure};
+use oedometer_convergence::class::Class;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_mpm::critical_step::formula;
+use oedometer_mpm::method::Method;
+use oedometer_soil::material::Material;
 use std::collections::BTreeSet;
 
 /// Water so much stiffer than the skeleton that a further stiffening should change nothing.
@@ -67,7 +66,7 @@ pub fn standings(study: &Study, records: &[Record]) -> Result<Vec<Standing>, Exa
         .map(|method| standing(records, *method, cells, reference))
         .collect::<Result<Vec<_>, _>>()?;
     rank(&mut standings);
-    sorting::sort_by(&mut standings, |a, b| a.rank.total_cmp(&b.rank));
+    standings.sort_by(|a, b| a.rank.total_cmp(&b.rank));
     Ok(standings)
 }
 

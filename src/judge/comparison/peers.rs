@@ -2,9 +2,9 @@
 
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::exact::reference::ReferenceKind;
 use crate::judge::comparison::work_precision::TimedRun;
 use crate::measure::largest::largest;
+use oedometer_exact::reference::ReferenceKind;
 use std::sync::LazyLock;
 
 /// Time factors of the comparison.

@@ -2,16 +2,16 @@
 
 use crate::case::Task;
 use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::class::Class;
-use crate::elementary;
-use crate::exact::exact_error::ExactError;
 use crate::judge::comparison::locking::{Standing, standings};
 use crate::judge::paths::first_norm;
-use crate::mpm::method::Method;
-use crate::mpm::run::TimeStepRule;
-use crate::mpm::run::results::outcome::FailureKind;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
+use oedometer_convergence::class::Class;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_mpm::method::Method;
+use oedometer_mpm::run::TimeStepRule;
+use oedometer_mpm::run::results::outcome::FailureKind;
+use oedometer_soil::elementary;
 use std::collections::{HashMap, HashSet};
 
 /// Strain in the end from which on a column has lost so much of its height that nothing else counts.

@@ -3,7 +3,6 @@
 use crate::case::Case;
 use crate::measure::largest::larger;
 use crate::record::Record;
-use crate::sorting;
 
 /// What a map is drawn over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,7 +103,7 @@ pub fn maps_of(records: &[Record]) -> Vec<StabilityMap> {
         });
     }
     for curve in maps.iter_mut().flat_map(|map| &mut map.curves) {
-        sorting::sort_by(&mut curve.points, |a, b| a.at.total_cmp(&b.at));
+        curve.points.sort_by(|a, b| a.at.total_cmp(&b.at));
     }
     maps
 }

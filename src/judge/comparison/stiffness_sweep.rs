@@ -4,13 +4,13 @@
 use crate::case::Case;
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::exact::exact_error::ExactError;
 use crate::judge::comparison::locking::methods_of;
 use crate::measure::fields::plane_field::PlaneField;
-use crate::mpm::method::Method;
 use crate::record::{Record, Status};
-use crate::soil::material::Material;
 use crate::study::check::Study;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_mpm::method::Method;
+use oedometer_soil::material::Material;
 
 /// Fewer values than these are no sweep.
 const LEAST_VALUES: usize = 3;

@@ -5,8 +5,8 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::judge::comparison::situation::Situation;
 use crate::judge::paths::first_norm;
 use crate::measure::wall_times::median;
-use crate::mpm::method::Method;
 use crate::record::{Record, Status};
+use oedometer_mpm::method::Method;
 use std::collections::HashMap;
 
 /// Two runs alike in everything but one input.

@@ -1,13 +1,12 @@
 //! What an error costs: timed runs on one scale of error and wall time.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::pareto::{CostLevel, CostPoint, LevelPrediction, front, predict_next};
 use crate::judge::paths::{Path, first_norm, paths};
 use crate::measure::largest::largest;
 use crate::measure::wall_times::{WallSpread, median, noise_floor, paired_ratio, spread};
 use crate::record::{Record, Status};
-use crate::sorting;
 use crate::study::expectation::{Axis, Measure};
+use oedometer_convergence::pareto::{CostLevel, CostPoint, LevelPrediction, front, predict_next};
 
 /// Tolerances that are asked for.
 pub const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
@@ -71,7 +70,7 @@ impl<'a> WorkPrecision<'a> {
         if runs.len() < 2 {
             return None;
         }
-        sorting::sort_by(&mut runs, |a, b| a.wall.median.total_cmp(&b.wall.median));
+        runs.sort_by(|a, b| a.wall.median.total_cmp(&b.wall.median));
         let points: Vec<_> = runs.iter().map(TimedRun::point).collect();
         for (run, on_front) in runs.iter_mut().zip(front(&points)) {
             run.on_front = on_front;

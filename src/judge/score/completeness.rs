@@ -1,13 +1,13 @@
 //! Whether an external result is whole: what is missing makes an error small.
 
-use crate::elementary::ln;
-use crate::exact::exact_error::ExactError;
-use crate::exact::parameters::ColumnParameters;
-use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::coverage;
 use crate::judge::score::coverage::Bare;
 use crate::judge::score::times::time_factors;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::parameters::ColumnParameters;
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_soil::elementary::ln;
 
 /// Share by which volumes may differ beyond what consolidation explains: round-off of written
 /// numbers.

@@ -7,15 +7,15 @@
 mod inputs;
 
 use crate::case::quantity::Quantity;
-use crate::elementary::powi;
-use crate::exact::exact_error::ExactError;
-use crate::exact::parameters::ColumnParameters;
-use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::mapping::Mapping;
 use crate::import::mapping::units::{LengthUnit, StressUnit, TimeUnit};
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::short;
 use crate::measure::fields::exact_fields::ExactFields;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::parameters::ColumnParameters;
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_soil::elementary::powi;
 use std::borrow::Cow;
 
 /// Relative errors below this are an inaccurate solver's, and no mistake in a file.
@@ -456,5 +456,4 @@ fn short_factor(factor: f64) -> String {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/unit/judge_score_diagnosis.rs"]
 mod tests;

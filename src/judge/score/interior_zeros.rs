@@ -1,9 +1,9 @@
 //! Zeros where none can be: what programs write at nodes that have no pressure.
 
-use crate::exact::parameters::ColumnParameters;
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::{Finding, Lack};
-use crate::wording::short;
+use oedometer_exact::parameters::ColumnParameters;
+use oedometer_soil::wording::short;
 
 /// Share of the height within which a sample lies on the surface or the base.
 const RIM: f64 = 1e-6;

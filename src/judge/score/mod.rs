@@ -10,9 +10,6 @@ pub mod times;
 
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::exact::exact_error::ExactError;
-use crate::exact::parameters::ColumnParameters;
-use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::{Finding, Lack, short};
 use crate::judge::score::series_row::SeriesRow;
@@ -21,6 +18,9 @@ use crate::measure::fields::error_contributions::largest_contribution;
 use crate::measure::fields::exact_fields::{ExactFields, SamplePlaces};
 use crate::measure::fields::field_errors::{FieldError, LONG_AFTER, resolution, settlement_error};
 use crate::record::ErrorRow;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::parameters::ColumnParameters;
+use oedometer_exact::reference::{Reference, ReferenceKind};
 use std::borrow::Cow;
 use std::collections::HashMap;
 

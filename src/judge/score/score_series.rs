@@ -2,14 +2,13 @@
 
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::class::classify::classify;
-use crate::convergence::class::{Classification, Context};
-use crate::convergence::series::{ErrorSeries, SeriesLevel};
 use crate::judge::score::series_row::SeriesRow;
 use crate::judge::score::times::TimeGroups;
 use crate::judge::score::{Leaning, Score};
 use crate::record::ErrorRow;
-use crate::sorting;
+use oedometer_convergence::class::classify::classify;
+use oedometer_convergence::class::{Classification, Context};
+use oedometer_convergence::series::{ErrorSeries, SeriesLevel};
 use std::collections::HashMap;
 
 /// Errors up to this are round-off of a written number.
@@ -77,7 +76,7 @@ pub fn series_of(levels: &[(usize, &Score)], times: &TimeGroups, height: f64) ->
         }
     }
     // Stable: within a time in the order in which the first level has them.
-    sorting::sort_by_key(&mut order, |key| key.0);
+    order.sort_by_key(|key| key.0);
     order
         .iter()
         .filter_map(|key| {
@@ -136,8 +135,8 @@ fn signed_by_leaning(rows: &[Option<&ErrorRow>], levels: &[(usize, &Score)]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::convergence::class::Class;
     use crate::judge::score::tests::{scored, state};
+    use oedometer_convergence::class::Class;
 
     fn series(levels: &[(usize, Score)]) -> Vec<ScoredSeries> {
         let levels: Vec<(usize, &Score)> = levels.iter().map(|(cells, score)| (*cells, score)).collect();

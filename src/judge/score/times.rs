@@ -1,8 +1,8 @@
 //! Which times of several results are one time: no two programs, and no two meshes of an explicit
 //! one, stop at the same instant.
 
-use crate::exact::parameters::ColumnParameters;
 use crate::import::table::SampledState;
+use oedometer_exact::parameters::ColumnParameters;
 
 /// Time factors of states.
 pub fn time_factors(parameters: &ColumnParameters, states: &[SampledState]) -> Vec<f64> {

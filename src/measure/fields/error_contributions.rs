@@ -1,6 +1,6 @@
 //! Which places carry an error.
 
-use crate::elementary;
+use oedometer_soil::elementary;
 
 /// One place's part in the error of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,12 +1,12 @@
 //! The exact fields at the places of samples.
 
 use crate::case::Case;
-use crate::exact::cosine_layer::{LayerFields, LayerState};
-use crate::exact::exact_error::ExactError;
-use crate::exact::field_values::FieldValues;
-use crate::exact::manufactured::Manufactured;
-use crate::exact::reference::Reference;
-use crate::mpm::run::results::snapshot::{PlaneSamples, Samples, WaterSamples};
+use oedometer_exact::cosine_layer::{LayerFields, LayerState};
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::field_values::FieldValues;
+use oedometer_exact::manufactured::Manufactured;
+use oedometer_exact::reference::Reference;
+use oedometer_mpm::run::results::snapshot::{PlaneSamples, Samples, WaterSamples};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -223,8 +223,8 @@ pub fn exact_samples(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::parameters::ColumnParameters;
-    use crate::exact::reference::ReferenceKind;
+    use oedometer_exact::parameters::ColumnParameters;
+    use oedometer_exact::reference::ReferenceKind;
 
     #[test]
     fn many_samples_in_any_order_have_the_values_of_single_ones_to_the_bit() {

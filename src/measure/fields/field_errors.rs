@@ -3,12 +3,12 @@
 use crate::case::Case;
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::exact::exact_error::ExactError;
-use crate::exact::reference::Reference;
 use crate::measure::fields::exact_fields::exact_samples;
 use crate::measure::fields::norms::FieldDifference;
-use crate::mpm::run::results::snapshot::{Samples, Snapshot};
 use crate::record::ErrorRow;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::reference::Reference;
+use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
 
 /// Norms of a field's error.
 const FIELD_NORMS: [Norm; 3] = [Norm::L1, Norm::L2, Norm::Linf];
@@ -165,8 +165,8 @@ fn displacement_components(samples: &Samples) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::parameters::ColumnParameters;
-    use crate::exact::reference::ReferenceKind;
+    use oedometer_exact::parameters::ColumnParameters;
+    use oedometer_exact::reference::ReferenceKind;
 
     fn field(scale: f64, resolution: f64) -> FieldError<'static> {
         let (quantity, sample) = (Quantity::Pressure, Sample::Points);

@@ -106,5 +106,4 @@ fn finite(value: f64) -> Option<f64> {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/unit/measure_norms.rs"]
 mod tests;

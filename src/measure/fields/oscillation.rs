@@ -73,5 +73,4 @@ fn turning_points(profile: &[f64]) -> Vec<usize> {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/unit/measure_oscillation.rs"]
 mod tests;

@@ -1,11 +1,11 @@
 //! The pressure of a plane run on the lattice of its points, beside the exact one.
 
-use crate::exact::exact_error::ExactError;
 use crate::measure::fields::exact_fields::exact_samples;
 use crate::measure::fields::oscillation::total_variation;
 use crate::measure::known_references::{Known, key_of, known_or, known_reference};
-use crate::mpm::run::results::snapshot::Samples;
 use crate::record::Record;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_mpm::run::results::snapshot::Samples;
 use std::sync::{Arc, LazyLock, Mutex};
 
 /// Pressures over the load at the points, row after row from the base, each from `x = 0` on.

@@ -1,9 +1,9 @@
 //! The tables beside the tidy one: profiles, settlement over time, and what every column means.
 
 use crate::case::keys::KEYS;
-use crate::mpm::run::results::snapshot::Samples;
 use crate::record::Record;
 use crate::record::csv::tidy;
+use oedometer_mpm::run::results::snapshot::Samples;
 use std::io::Write;
 
 /// Columns of the profiles.

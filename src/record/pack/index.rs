@@ -139,19 +139,12 @@ impl Index {
         }
     }
 
-    /// Reads the headers of every pack in a folder; nothing where there is none.
+    /// Reads the headers of every pack in a folder; empty where the folder has none. Looks through `window` bytes at
+    /// once behind damage.
     ///
     /// # Errors
     /// When a pack cannot be read.
-    pub fn of(folder: &Path) -> io::Result<Self> {
-        Self::of_with(folder, WINDOW)
-    }
-
-    /// The same with a window of its own.
-    ///
-    /// # Errors
-    /// When a pack cannot be read.
-    pub fn of_with(folder: &Path, window: u64) -> io::Result<Self> {
+    pub fn of(folder: &Path, window: u64) -> io::Result<Self> {
         let mut index = Self::looking(window);
         for path in packs_in(folder) {
             let number = index.add_pack(path);

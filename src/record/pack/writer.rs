@@ -105,7 +105,7 @@ mod tests {
     }
 
     fn read(study: &Path) -> Index {
-        Index::of(&study.join(FOLDER)).expect("an index")
+        Index::of(&study.join(FOLDER), crate::record::pack::index::WINDOW).expect("an index")
     }
 
     #[test]

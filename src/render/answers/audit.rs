@@ -4,7 +4,6 @@
 
 use crate::case::Case;
 use crate::case::quantity::{Quantity, Sample};
-use crate::exact::reference::ReferenceKind;
 use crate::judge::paths::first_norm;
 use crate::record::{Record, Status};
 use crate::render::answers::question::{Answer, Links, Question, link};
@@ -12,7 +11,7 @@ use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, Slope
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
-use crate::sorting;
+use oedometer_exact::reference::ReferenceKind;
 use std::collections::HashMap;
 
 /// The question.
@@ -136,7 +135,7 @@ fn pairings_of(group: Vec<&Record>) -> Vec<Pairing<'_>> {
         }
     }
     for one in &mut all {
-        sorting::sort_by_key(&mut one.levels, |record| record.case.cells);
+        one.levels.sort_by_key(|record| record.case.cells);
     }
     all
 }

@@ -5,7 +5,6 @@ use crate::render::answers::question::{Answer, Question, short};
 use crate::render::number;
 use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, columns};
-use crate::sorting;
 
 /// The question.
 pub const QUESTION: Question = Question { heading: "What changed since the golden values?", id: "changes" };
@@ -21,9 +20,7 @@ pub fn answer(changes: Option<&[(String, Difference)]>) -> Answer {
     }
     let mut ranked: Vec<&(String, Difference)> = changes.iter().collect();
     let size = |one: &Difference| one.relative_change().unwrap_or(0.0);
-    sorting::sort_by(&mut ranked, |a, b| {
-        a.1.change.cmp(&b.1.change).then_with(|| size(&b.1).total_cmp(&size(&a.1)))
-    });
+    ranked.sort_by(|a, b| a.1.change.cmp(&b.1.change).then_with(|| size(&b.1).total_cmp(&size(&a.1))));
     let count = |kind: Change| changes.iter().filter(|(_, one)| one.change == kind).count();
     let kinds = [Change::Moved, Change::Missing, Change::Extra, Change::Smaller, Change::Stale];
     let counted: Vec<String> = kinds

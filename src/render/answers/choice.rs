@@ -1,8 +1,6 @@
 //! Which method should one take? One row a situation, chosen from the records by a rule that is stated.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::class::Class;
-use crate::exact::exact_error::ExactError;
 use crate::judge::comparison::locking::{Standing, standings};
 use crate::judge::comparison::work_precision::WorkPrecision;
 use crate::judge::paths::Path;
@@ -14,6 +12,8 @@ use crate::render::report::StudyResults;
 use crate::render::report::labels::first_measure;
 use crate::render::table::{Cell, Table, columns};
 use crate::study::expectation::{Axis, NEXT_FINER};
+use oedometer_convergence::class::Class;
+use oedometer_exact::exact_error::ExactError;
 
 /// The question.
 pub const QUESTION: Question = Question { heading: "Which method should I take?", id: "choice" };

@@ -1,7 +1,6 @@
 //! Does the method converge, and to what? One row a method, small strain and large strain side by side.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::class::Class;
 use crate::judge::paths::SeriesSummary;
 use crate::render::answers::question::{Answer, Links, Question, links_to, short};
 use crate::render::answers::regime::{MethodPath, PAPERS, QUOTED_CELLS, Regime, distinct};
@@ -9,7 +8,7 @@ use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::{StudyResults, labels, refinement};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
-use crate::sorting;
+use oedometer_convergence::class::Class;
 
 /// The question.
 pub const QUESTION: Question =
@@ -86,7 +85,7 @@ fn table(regimes: &[(&str, &Regime<'_>)]) -> Table {
         distinct(regimes.iter().flat_map(|(_, regime)| regime.methods.iter().map(|one| one.method.as_str())));
     let mut ranked: Vec<&str> = all.clone();
     // Methods that answer most come first, then those with the smaller error where it is hardest.
-    sorting::sort_by(&mut ranked, |a, b| {
+    ranked.sort_by(|a, b| {
         let tried = |name: &str| regimes.iter().filter(|(_, regime)| regime.method(name).is_some()).count();
         let error = |name: &str| {
             let last = regimes.iter().rev().find_map(|(_, regime)| Some((regime, regime.method(name)?)));

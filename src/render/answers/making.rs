@@ -3,7 +3,7 @@
 use crate::record::origins::Origins;
 use crate::record::provenance::Provenance;
 use crate::render::report::StudyResults;
-use crate::wording::count_of;
+use oedometer_soil::wording::count_of;
 
 /// When, where and by which command a report was made.
 #[derive(Debug, Clone, Default, PartialEq)]

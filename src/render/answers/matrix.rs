@@ -8,7 +8,6 @@ use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::situations;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
-use crate::sorting;
 
 /// The question.
 pub const QUESTION: Question = Question { heading: "Where does it lock, where does it break?", id: "breaks" };
@@ -122,7 +121,7 @@ fn methods_shown<'b>(ends: &'b [Ended<'_>]) -> Vec<&'b str> {
     let mut ranked: Vec<(&str, (bool, bool, usize))> =
         all.iter().map(|method| (*method, (*method == PAPERS, is_best(method), tried(method)))).collect();
     // Stable: of equals the first that a study names.
-    sorting::sort_by_key(&mut ranked, |(_, worth)| std::cmp::Reverse(*worth));
+    ranked.sort_by_key(|(_, worth)| std::cmp::Reverse(*worth));
     ranked.truncate(MOST_METHODS);
     ranked.into_iter().map(|(method, _)| method).collect()
 }

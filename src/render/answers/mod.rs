@@ -15,7 +15,6 @@ pub mod paper;
 pub mod question;
 pub mod regime;
 
-use crate::exact::exact_error::ExactError;
 use crate::golden::compare::Difference;
 use crate::judge::comparison::situation::Ended;
 use crate::render::answers::making::Making;
@@ -24,6 +23,7 @@ use crate::render::page::{Block, Callout, Page, Section};
 use crate::render::report::StudyResults;
 use crate::render::table::Mood;
 use crate::render::tables::golden_changes::count_of;
+use oedometer_exact::exact_error::ExactError;
 use std::fmt::Write;
 
 /// What the answer page is made of.

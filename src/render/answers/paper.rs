@@ -1,7 +1,6 @@
 //! Does it reproduce the paper? Figs 3a, 3b, 4a and 4b of Zheng et al. (2021), on the paper's axes.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::exact::exact_error::ExactError;
 use crate::record::{Record, Status};
 use crate::render::answers::question::{Answer, Links, Question, links_to};
 use crate::render::answers::regime::{PAPERS, QUOTED_CELLS};
@@ -11,6 +10,7 @@ use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
 use crate::render::report::figures::theory_lines;
 use crate::render::report::labels::{self, first_measure};
+use oedometer_exact::exact_error::ExactError;
 
 /// The question.
 pub const QUESTION: Question = Question { heading: "Does it reproduce the paper?", id: "paper" };

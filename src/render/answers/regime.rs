@@ -3,14 +3,14 @@
 
 use crate::case::Case;
 use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::class::Class;
-use crate::convergence::orders::WINDOW;
-use crate::elementary;
 use crate::judge::paths::{Path, SeriesSummary};
 use crate::measure::largest::largest;
 use crate::render::report::StudyResults;
 use crate::render::report::labels::first_measure;
 use crate::study::expectation::Axis;
+use oedometer_convergence::class::Class;
+use oedometer_convergence::orders::WINDOW;
+use oedometer_soil::elementary;
 use std::collections::BTreeMap;
 
 /// The mesh of the paper, on which errors are quoted.

@@ -1,7 +1,7 @@
 //! Numbers on axes.
-use crate::elementary;
 use crate::render::number::minus;
 use crate::render::script::exponent;
+use oedometer_soil::elementary;
 
 /// A number as `1.5·10⁻³`, down to the decimal place `digits` if that is given.
 pub(crate) fn power(value: f64, digits: Option<f64>) -> String {

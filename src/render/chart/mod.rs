@@ -15,9 +15,7 @@ pub mod parts;
 pub mod svg_backend;
 
 #[cfg(test)]
-#[path = "../../../tests/unit/render_chart_gallery.rs"]
 pub mod gallery;
 
 #[cfg(test)]
-#[path = "../../../tests/unit/render_chart.rs"]
 mod tests;

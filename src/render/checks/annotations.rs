@@ -3,7 +3,6 @@
 use crate::golden::compare::Change;
 use crate::judge::study_check::StudyCheck;
 use crate::render::tables::golden_changes::sentence;
-use crate::sorting;
 
 /// Annotations before the rest is only counted: GitHub shows ten a step.
 const MOST: usize = 9;
@@ -22,7 +21,7 @@ struct Annotation {
 pub fn annotations_of(checks: &[StudyCheck], file_of: impl Fn(&str) -> Option<String>) -> Vec<String> {
     let mut all: Vec<Annotation> =
         checks.iter().flat_map(|check| of_check(check, file_of(&check.study).as_deref())).collect();
-    sorting::sort_by_key(&mut all, |annotation| annotation.level != "error");
+    all.sort_by_key(|annotation| annotation.level != "error");
     let mut lines: Vec<String> = all.iter().take(MOST).map(Annotation::line).collect();
     if all.len() > MOST {
         lines.push(format!("::notice title=oedometer check::{} more: see the summary", all.len() - MOST));

@@ -113,8 +113,8 @@ fn case_change(one: &CaseChange) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::convergence::pareto::ParetoChange;
     use crate::golden::compare::Change;
+    use oedometer_convergence::pareto::ParetoChange;
 
     #[test]
     fn values_of_an_input_that_changed_are_told_by_their_kind_and_hide_nothing_that_moved() {

@@ -217,5 +217,4 @@ pub fn slug(text: &str) -> String {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/unit/render_page.rs"]
 mod tests;

@@ -1,8 +1,6 @@
 //! What each method of a study converges to and how fast, in one table.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::convergence::class::Class;
-use crate::convergence::orders::WINDOW;
 use crate::judge::paths::Path;
 use crate::render::number;
 use crate::render::page::Block;
@@ -10,7 +8,9 @@ use crate::render::report::labels::first_measure;
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure};
-use crate::wording::typed;
+use oedometer_convergence::class::Class;
+use oedometer_convergence::orders::WINDOW;
+use oedometer_soil::wording::typed;
 
 /// Cells at which an error is quoted.
 const QUOTED_CELLS: usize = 10;

@@ -3,7 +3,6 @@
 use crate::render::page::{Block, Page, Section, slug};
 use crate::render::report::{StudyResults, appendix};
 use crate::render::table::{Cell, Mood, Table, columns};
-use crate::sorting;
 
 /// The list of studies, and how their numbers were made. `ending` is that of their pages.
 pub fn index_page(results: &[StudyResults<'_>], ending: &str) -> Page {
@@ -43,7 +42,7 @@ fn groups<'b, 'a>(results: &'b [StudyResults<'a>]) -> Vec<(String, Vec<&'b Study
             None => groups.push((name, vec![one])),
         }
     }
-    sorting::sort_by_key(&mut groups, |(name, _)| name == "other");
+    groups.sort_by_key(|(name, _)| name == "other");
     groups
 }
 

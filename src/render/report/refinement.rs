@@ -2,8 +2,6 @@
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::step_label;
-use crate::convergence::orders::WINDOW;
-use crate::exact::reference::ReferenceKind;
 use crate::judge::paths::{Path, SeriesSummary, first_norm};
 use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::page::{Block, Figure};
@@ -12,6 +10,8 @@ use crate::render::report::labels::first_measure;
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
+use oedometer_convergence::orders::WINDOW;
+use oedometer_exact::reference::ReferenceKind;
 
 /// Quantities of one figure, side by side; a layer's settlement says less than its displacements.
 fn panels(results: &StudyResults<'_>) -> [(Quantity, Sample); 4] {

@@ -1,12 +1,12 @@
 //! Errors and oscillation against the stiffness of the water and of the skeleton, through
 //! consolidation.
 
-use crate::exact::exact_error::ExactError;
 use crate::judge::comparison::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
 use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size};
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, TableColumn, columns};
+use oedometer_exact::exact_error::ExactError;
 
 /// Figures of the last output and, behind a click, every number.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {

@@ -1,6 +1,5 @@
 //! The page of one study: what it asks, what was expected, figures, tables, checks.
 
-use crate::exact::exact_error::ExactError;
 use crate::judge::judgement::Judgement;
 use crate::render::checks::verdicts::judgements_table;
 use crate::render::page::{Block, Callout, Page, Section, slug};
@@ -11,6 +10,7 @@ use crate::render::report::{StudyResults, findings, other_measures, refinement, 
 use crate::render::table::Mood;
 use crate::render::tables::{attached_runs, uncertainties};
 use crate::study::expectation::Axis;
+use oedometer_exact::exact_error::ExactError;
 use std::fmt::Write;
 
 /// Reasons that the red box names before the rest is only counted.

@@ -304,5 +304,4 @@ pub(crate) fn marked(cell: &Cell, footnotes: &[&str]) -> (String, Option<String>
 }
 
 #[cfg(test)]
-#[path = "../../../tests/unit/render_table.rs"]
 mod tests;

@@ -3,7 +3,7 @@
 use crate::measure::wall_times::spread;
 use crate::record::{Record, WallSample};
 use crate::render::tables::attached_runs::is_busy;
-use crate::wording::{count_of, short};
+use oedometer_soil::wording::{count_of, short};
 
 /// Sentences on the run of an attached solver: how it failed, what it is, what it took; none for other cases.
 pub fn notes_of(record: &Record) -> Vec<String> {

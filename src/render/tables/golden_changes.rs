@@ -1,11 +1,11 @@
 //! Golden values that changed, in words and as tables, the worst first.
 
-use crate::convergence::pareto::ParetoChange;
 use crate::golden::case_changes::CaseChange;
 use crate::golden::compare::{Change, Difference};
 use crate::golden::difference_groups::DifferenceGroup;
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
+use oedometer_convergence::pareto::ParetoChange;
 use std::fmt::Write;
 
 /// Differences shown in a table before the rest is only counted.

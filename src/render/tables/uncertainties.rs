@@ -1,9 +1,9 @@
 //! The table of values that have no exact one, with what refinement tells of them.
 
-use crate::convergence::uncertainty::eca_hoekstra::ErrorModel;
-use crate::convergence::uncertainty::grid_convergence::Behaviour;
 use crate::judge::judgement::Judgement;
 use crate::render::table::{Cell, Table, columns};
+use oedometer_convergence::uncertainty::eca_hoekstra::ErrorModel;
+use oedometer_convergence::uncertainty::grid_convergence::Behaviour;
 
 /// One row a value that was asked for; none where none was.
 pub fn table_of(judgements: &[Judgement]) -> Option<Table> {

@@ -1,12 +1,12 @@
 //! Checks of methods, by name or choice by choice.
 
 use crate::case::keys::Choice;
-use crate::mpm::method::{Memory, Method, PressureIntegration, Recovery};
-use crate::scene::SceneKind;
 use crate::study::check::checker::Checker;
 use crate::study::choice_tables::{MethodTable, Named};
 use crate::study::diagnostic::one_of;
 use crate::study::inputs::MethodEntry;
+use oedometer_mpm::method::{Memory, Method, PressureIntegration, Recovery};
+use oedometer_mpm::scene::SceneKind;
 use std::ops::Range;
 use toml::Spanned;
 

@@ -3,13 +3,13 @@
 use crate::case::Case;
 use crate::case::keys::MOST_CELLS;
 use crate::case::tier::Tier;
-use crate::mpm::attached_method::{Attached, DIGEST_DIGITS};
-use crate::mpm::method::Method;
 use crate::study::check::check_solver::{digest_of_file, folder_of};
 use crate::study::check::checker::Checker;
 use crate::study::file::StudyFile;
 use crate::study::result_table::ResultTable;
 use crate::study::solver::{Solver, placeholders_of};
+use oedometer_mpm::attached_method::{Attached, DIGEST_DIGITS};
+use oedometer_mpm::method::Method;
 use std::path::Path;
 
 /// What stands for the mesh in the names of files.

@@ -1,15 +1,15 @@
 //! Checks of attached solvers: names, commands, placeholders, files; and the digest that identifies them.
 
 use crate::case::{Case, Task};
-use crate::formats::input_file;
-use crate::mpm::attached_method::{Attached, DIGEST_DIGITS};
-use crate::mpm::method::Method;
 use crate::study::check::checker::Checker;
 use crate::study::choice_tables::{Placed, TypedList};
 use crate::study::diagnostic::one_of;
 use crate::study::file::StudyFile;
 use crate::study::solver::{PLACEHOLDERS, PRESETS, Solver, file_beside, placeholders_of};
 use crate::study::solver_table::SolverTable;
+use oedometer_formats::input_file;
+use oedometer_mpm::attached_method::{Attached, DIGEST_DIGITS};
+use oedometer_mpm::method::Method;
 use std::path::{Path, PathBuf};
 
 /// Most timed runs of a case.
@@ -246,5 +246,4 @@ pub(crate) fn digest_of_file(path: &Path) -> String {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/unit/study_solver.rs"]
 mod tests;

@@ -2,15 +2,15 @@
 
 use crate::case::Case;
 use crate::case::keys::Key;
-use crate::mpm::method::Basis;
-use crate::mpm::run::integrator::{Formulation, IntegratorKind};
-use crate::mpm::run::time_step_rule::TimeStepRule;
-use crate::scene::SceneKind;
-use crate::scene::column::Column;
 use crate::study::check::checker::{Checker, Common};
 use crate::study::file::SweepTable;
 use crate::study::inputs::{One, TypedInput};
 use crate::study::sweep::{Sweep, SweptKey};
+use oedometer_mpm::method::Basis;
+use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
+use oedometer_mpm::run::time_step_rule::TimeStepRule;
+use oedometer_mpm::scene::SceneKind;
+use oedometer_mpm::scene::column::Column;
 use std::collections::HashMap;
 use std::ops::Range;
 use toml::Spanned;

@@ -4,12 +4,12 @@
 use crate::case::keys::{Key, Value};
 use crate::case::work_estimate::estimated_seconds;
 use crate::case::{Case, Task};
-use crate::mpm::run::integrator::IntegratorKind;
 use crate::study::check::checker::{Checker, Common};
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::SweepTable;
 use crate::study::sweep::{Sweep, SweptKey};
-use crate::wording::duration;
+use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_soil::wording::duration;
 
 /// Estimated seconds of a case, on the machine of the constants, from which on nobody waits for a choice that
 /// nobody made. Every shipped study whose sweeps name no integrator stays below it.

@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::study::check::checker::{Checker, Purpose};
 use crate::study::file::StudyFile;
-use crate::wording::short;
+use oedometer_soil::wording::short;
 use std::ops::Range;
 
 impl Checker<'_> {

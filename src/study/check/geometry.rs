@@ -3,15 +3,15 @@
 use crate::case::keys::{Key, Value};
 use crate::case::planned::PlannedCase;
 use crate::case::{Case, Task};
-use crate::elementary;
-use crate::exact::exact_error::ExactError;
-use crate::exact::xie_leo::XieLeo;
-use crate::scene::SceneKind;
-use crate::scene::column::column_parameters;
 use crate::study::check::checker::Checker;
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::{StudyFile, SweepTable};
 use crate::study::inputs::{One, TypedInput};
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::xie_leo::XieLeo;
+use oedometer_mpm::scene::SceneKind;
+use oedometer_mpm::scene::column::column_parameters;
+use oedometer_soil::elementary;
 use std::ops::Range;
 use toml::Spanned;
 

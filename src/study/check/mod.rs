@@ -20,11 +20,7 @@ use crate::case::planned::{PlannedCase, Planner};
 use crate::case::shared::Shared;
 use crate::case::tier::Tier;
 use crate::case::{Case, Task};
-use crate::exact::reference::ReferenceKind;
-use crate::mpm::run::integrator::Formulation;
 use crate::record::Record;
-use crate::scene::SceneKind;
-use crate::scene::column::Column;
 use crate::study::case_expectation::CaseExpectation;
 use crate::study::check::checker::{Checker, Common, Purpose};
 use crate::study::check::end_state::load_of;
@@ -34,6 +30,10 @@ use crate::study::expectation::SeriesExpectation;
 use crate::study::file::{OutputTable, StudyFile, StudySource};
 use crate::study::name::name_of;
 use crate::study::solver::Solver;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::run::integrator::Formulation;
+use oedometer_mpm::scene::SceneKind;
+use oedometer_mpm::scene::column::Column;
 use toml::Spanned;
 
 /// Time factors where a study names none.

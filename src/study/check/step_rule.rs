@@ -1,8 +1,8 @@
 //! Checks of the rules of step sizes.
 
-use crate::mpm::run::TimeStepRule;
 use crate::study::check::checker::Checker;
 use crate::study::choice_tables::TimeStepTable;
+use oedometer_mpm::run::TimeStepRule;
 use std::ops::Range;
 
 /// A rule of the step size: its name in study files, what it makes of a number, and the least number that a run

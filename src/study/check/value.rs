@@ -2,13 +2,13 @@
 
 use crate::case::Case;
 use crate::case::keys::{Choice, Key, Kind, Range, Value};
-use crate::scene::SceneKind;
-use crate::soil::conductivity_mean::ConductivityMean;
-use crate::soil::law::Law;
 use crate::study::check::checker::Checker;
 use crate::study::choice_tables::Named;
 use crate::study::diagnostic::one_of;
 use crate::study::inputs::{One, TypedInput};
+use oedometer_mpm::scene::SceneKind;
+use oedometer_soil::conductivity_mean::ConductivityMean;
+use oedometer_soil::law::Law;
 use std::ops::RangeInclusive;
 use toml::Spanned;
 

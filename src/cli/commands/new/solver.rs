@@ -2,10 +2,10 @@
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
-use crate::mpm::attached_method::{Attached, DIGEST_DIGITS};
-use crate::mpm::method::Method;
 use crate::study::name::{name_of, refused_name};
 use clap::ValueEnum;
+use oedometer_mpm::attached_method::{Attached, DIGEST_DIGITS};
+use oedometer_mpm::method::Method;
 use std::fs;
 use std::path::Path;
 

@@ -1,8 +1,6 @@
 //! The files of a report: the answer page, the list of studies, a page a study, and all tables and figures as
 //! files of their own.
 
-use crate::cli::side_by_side::side_by_side;
-use crate::exact::exact_error::ExactError;
 use crate::golden::compare::Difference;
 use crate::judge::comparison::situation::{Ended, ends_of};
 use crate::record::whole_file::write_rebuildable;
@@ -16,6 +14,8 @@ use crate::render::report::StudyResults;
 use crate::render::report::pages::index_page;
 use crate::render::report::situations::situations_page;
 use crate::render::report::study_page::study_page;
+use oedometer_exact::exact_error::ExactError;
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -34,14 +34,23 @@ pub fn write(
     start: Instant,
 ) -> anyhow::Result<PathBuf> {
     let studies = out.join("studies");
-    side_by_side(results, |one| write_study(&studies, one)).into_iter().collect::<anyhow::Result<()>>()?;
+    results
+        .par_iter()
+        .map(|one| write_study(&studies, one))
+        .collect::<Vec<_>>()
+        .into_iter()
+        .collect::<anyhow::Result<()>>()?;
     let index = index_page(results, "html");
     write_page(&studies.join("index.html"), &render_html(&index)?)?;
     write_exports(&studies, &index)?;
     write_page(&studies.join("README.md"), &render_markdown(&index_page(results, "md"))?)?;
 
-    let ends: Result<Vec<Vec<Ended<'_>>>, ExactError> =
-        side_by_side(results, |one| ends_of(one.study, one.records)).into_iter().collect();
+    let ends: Result<Vec<Vec<Ended<'_>>>, ExactError> = results
+        .par_iter()
+        .map(|one| ends_of(one.study, one.records))
+        .collect::<Vec<_>>()
+        .into_iter()
+        .collect();
     let ends = ends?.concat();
     let situations = situations_page(&ends, "html");
     write_page(&out.join("situations.html"), &render_html(&situations)?)?;

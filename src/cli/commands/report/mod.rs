@@ -10,7 +10,6 @@ use crate::case::tier::Tier;
 use crate::cli::commands::check::{GOLDEN, refuse_unfinished};
 use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, jobs_of, load_or_shipped, run_and_store};
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::side_by_side::side_by_side;
 use crate::cli::stream::say;
 use crate::cli::study_files;
 use crate::cli::study_tables::Beside;
@@ -22,6 +21,7 @@ use crate::record::store::RecordStore;
 use crate::render::answers::making::Making;
 use crate::render::report::StudyResults;
 use crate::study::check::Study;
+use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -67,10 +67,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let with_records: Vec<(&Study, &RunReport)> =
         studies.iter().zip(&reports).filter(|(_, report)| !report.records.is_empty()).collect();
-    let results = side_by_side(&with_records, |(study, report)| {
-        let file = typed_name(&study.name, arguments);
-        StudyResults::new(study, &report.records, tier_of(study, report)).from_file(file)
-    });
+    let results = with_records
+        .par_iter()
+        .map(|(study, report)| {
+            let file = typed_name(&study.name, arguments);
+            StudyResults::new(study, &report.records, tier_of(study, report)).from_file(file)
+        })
+        .collect::<Vec<_>>();
     let making = Making {
         date: report_origin::today(),
         processor: report_origin::processor(),
@@ -138,7 +141,7 @@ fn kept(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunRepor
             study.cases(Tier::Full).into_iter().filter_map(|case| store.kept(case)).collect();
         RunReport { resumed: records.len(), records, ..RunReport::default() }
     };
-    let reports = side_by_side(studies, of_study);
+    let reports = studies.par_iter().map(of_study).collect::<Vec<_>>();
     if reports.iter().all(|report| report.records.is_empty()) {
         let reason = format!(
             "there is no record of these studies in {}: leave `--from-records` out, and `report` makes them",
@@ -168,6 +171,6 @@ fn changes(
         Some(differences.into_iter().map(|one| (study.name.clone(), one)).collect::<Vec<_>>())
     };
     let all: Vec<(&Study, &RunReport)> = studies.iter().zip(reports).collect();
-    let held: Vec<_> = side_by_side(&all, of_study).into_iter().flatten().collect();
+    let held: Vec<_> = all.par_iter().map(of_study).collect::<Vec<_>>().into_iter().flatten().collect();
     (!held.is_empty()).then(|| held.concat())
 }

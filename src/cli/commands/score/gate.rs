@@ -5,9 +5,9 @@ use crate::case::quantity::Quantity;
 use crate::cli::commands::score::results::{Read, Results};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
-use crate::exact::reference::ReferenceKind;
 use crate::judge::score::completeness::Lack;
-use crate::wording::typed;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_soil::wording::typed;
 
 /// Tells what the results lack and whether they pass. In a gate, and where it is asked for, a result
 /// that is not whole fails.

@@ -17,9 +17,9 @@ use crate::import::mapping::preset::Preset;
 use crate::judge::score::score_series::ScoredSeries;
 use crate::record::ERROR_COLUMNS;
 use crate::render::tables::scores;
-use crate::scene::SceneKind;
 use crate::study::check::Study;
 use crate::study::check::checker::Purpose;
+use oedometer_mpm::scene::SceneKind;
 use std::path::PathBuf;
 
 /// Columns behind those of the errors, of results on several meshes.

@@ -3,8 +3,6 @@
 use crate::case::Case;
 use crate::case::quantity::Quantity;
 use crate::cli::exit::{Ended, Exit};
-use crate::exact::parameters::ColumnParameters;
-use crate::exact::reference::ReferenceKind;
 use crate::import::expected::Expected;
 use crate::import::mapping::Mapping;
 use crate::import::opened_csv::not_ended;
@@ -18,9 +16,10 @@ use crate::judge::score::times::TimeGroups;
 use crate::judge::score::times::time_factors;
 use crate::judge::score::{Score, score};
 use crate::record::ErrorRow;
-use crate::scene::column::column_parameters;
-use crate::sorting;
-use crate::wording::short;
+use oedometer_exact::parameters::ColumnParameters;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::scene::column::column_parameters;
+use oedometer_soil::wording::short;
 use std::path::PathBuf;
 
 /// What results are held against, and how they are read.
@@ -73,7 +72,7 @@ impl Results {
         let parameters = column_parameters(&held.case.column, &held.case.material);
         let mut all: Vec<Read> = runs.into_iter().map(Read::of).collect();
         let mut order: Vec<usize> = (0..all.len()).collect();
-        sorting::sort_by_key(&mut order, |place| all[*place].cells);
+        order.sort_by_key(|place| all[*place].cells);
         let times_of = |all: &[Read]| {
             let lists: Vec<Vec<f64>> =
                 order.iter().map(|place| time_factors(&parameters, &all[*place].states)).collect();

@@ -3,12 +3,12 @@
 use crate::case::Case;
 use crate::cli::exit::Ended;
 use crate::cli::stream::say;
-use crate::formats::input_file;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::Preset;
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Given, Run, are_tables, files_of, run_of_tables, runs_of_arrays};
 use crate::study::file::StudySource;
+use oedometer_formats::input_file;
 use std::path::{Path, PathBuf};
 
 /// What a user types of files and their meaning.

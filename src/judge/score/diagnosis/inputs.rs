@@ -5,11 +5,11 @@
 
 use super::{IMPROVED, INACCURATE, MENDED, Mistake, Trials, exact_of, is_slow, times_seen};
 use crate::case::quantity::Quantity;
-use crate::elementary::{exp, ln};
-use crate::exact::reference::{Reference, ReferenceKind};
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::short;
 use crate::measure::fields::exact_fields::ExactFields;
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_soil::elementary::{exp, ln};
 
 /// Relative errors below this are no mistake's.
 pub const NOTICED: f64 = 0.01;

@@ -1,5 +1,5 @@
 //! From values to pixels.
-use crate::elementary;
+use oedometer_soil::elementary;
 
 /// How an axis or a colour bar spreads its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Finds room for words and triangles among the data.
-use crate::elementary;
 use crate::render::chart::canvas::Px;
 use crate::render::chart::layout::clip::PixelFrame;
+use oedometer_soil::elementary;
 use std::collections::HashMap;
 
 /// Width of a bin, px: about that of a word's height, so that a room covers some bins whole.

@@ -1,10 +1,9 @@
 //! Where an axis has ticks and what they say.
-use crate::elementary;
 use crate::render::chart::axis_numbers::{decimals, power, whole};
 use crate::render::chart::layout::scale::{Ruler, Scale, Span, drawable};
 use crate::render::number::minus;
 use crate::render::script::{exponent, width};
-use crate::sorting;
+use oedometer_soil::elementary;
 
 /// A tick; without a label it is a minor one.
 #[derive(Debug, Clone, PartialEq)]
@@ -142,7 +141,7 @@ fn value_of(m: i32, n: i32) -> f64 {
 fn thin(ticks: &mut [Tick], ruler: &Ruler, room: Room) {
     let mut order: Vec<usize> = (0..ticks.len()).filter(|&i| ticks[i].label.is_some()).collect();
     if ruler.span.kind == Scale::Log10 {
-        sorting::sort_by_key(&mut order, |&i| !is_power(ticks[i].value));
+        order.sort_by_key(|&i| !is_power(ticks[i].value));
     }
     let mut taken: Vec<(f64, f64)> = Vec::new();
     for i in order {

@@ -1,9 +1,9 @@
 //! The legend: what it says, and how much room it needs.
-use crate::elementary;
 use crate::render::chart::canvas::{Canvas, Hold, Px, Rgb, Type};
 use crate::render::chart::describe::{Chart, Style};
 use crate::render::chart::palette::{DARK, TEXT, colour, dash, marker};
 use crate::render::script::{width, wrap};
+use oedometer_soil::elementary;
 
 pub(crate) const FONT: f64 = 12.0;
 const SAMPLE: f64 = 34.0;

@@ -1,5 +1,4 @@
 //! Triangles that show what an order looks like.
-use crate::elementary;
 use crate::render::chart::canvas::{Canvas, Ink, Px};
 use crate::render::chart::describe::Chart;
 use crate::render::chart::layout::ChartLayout;
@@ -8,6 +7,7 @@ use crate::render::chart::layout::scale::{Ruler, Scale};
 use crate::render::chart::layout::space::{Offer, Space};
 use crate::render::chart::palette::{DARK, QUIET};
 use crate::render::chart::parts::words::write;
+use oedometer_soil::elementary;
 
 /// A triangle with its right angle at the second corner.
 #[derive(Debug, Clone, Copy)]

@@ -1,7 +1,5 @@
 //! What a plane layer shows: pressure fields beside the exact one, and the ranking of the methods.
 
-use crate::convergence::class::Class;
-use crate::exact::exact_error::ExactError;
 use crate::judge::comparison::locking::{Standing, standings};
 use crate::measure::fields::plane_field::PlaneField;
 use crate::record::{Record, Status};
@@ -11,6 +9,8 @@ use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::{StudyResults, stiffness_sweeps};
 use crate::render::table::{Cell, Mood, Table, columns};
+use oedometer_convergence::class::Class;
+use oedometer_exact::exact_error::ExactError;
 
 /// Cells over the height of the runs whose fields are drawn.
 const SHOWN_CELLS: usize = 8;

@@ -2,8 +2,6 @@
 
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::exact::exact_error::ExactError;
-use crate::exact::reference::ReferenceKind;
 use crate::measure::theory_curves::{
     TheoryIsochrone, computed_consolidation, computed_isochrone, constant_recovery_error,
     theory_consolidation, theory_isochrones,
@@ -13,6 +11,8 @@ use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
 use crate::render::report::labels::first_measure;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::reference::ReferenceKind;
 
 /// Cells of the runs whose profiles are drawn: the paper's column.
 const SHOWN_CELLS: usize = 10;

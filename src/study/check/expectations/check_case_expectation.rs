@@ -1,14 +1,14 @@
 //! Checks of what must become of single cases: the blocks `[[expect_case]]`.
 
 use crate::case::tier::Tier;
-use crate::exact::reference::ReferenceKind;
-use crate::mpm::run::results::outcome::FailureKind;
-use crate::scene::SceneKind;
 use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
 use crate::study::check::checker::Checker;
 use crate::study::choice_tables::{Placed, Typed};
 use crate::study::expectation::Measure;
 use crate::study::file::{ExpectCaseTable, RangeTable};
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::run::results::outcome::FailureKind;
+use oedometer_mpm::scene::SceneKind;
 use toml::Spanned;
 
 impl Checker<'_> {

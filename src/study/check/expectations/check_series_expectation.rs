@@ -5,16 +5,16 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
 use crate::case::{Case, Task};
-use crate::convergence::series_demand::{
-    ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand as Demand,
-};
-use crate::exact::reference::ReferenceKind;
-use crate::scene::SceneKind;
 use crate::study::check::checker::Checker;
 use crate::study::choice_tables::Named;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE, Selection, SeriesExpectation};
 use crate::study::file::{ExpectTable, LevelTable};
 use crate::study::inputs::One;
+use oedometer_convergence::series_demand::{
+    ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand as Demand,
+};
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::scene::SceneKind;
 use std::ops::Range;
 use toml::Spanned;
 

@@ -1,0 +1,161 @@
+//! A series that goes to a limit other than zero: `e = F + C h^p`, with `C` of either sign.
+//!
+//! Such errors grow under refinement, or pass through zero and grow again, and yet converge, only not
+//! to the reference. The differences between levels tell: they fall with an order. Three levels have
+//! one such order, and any limit fits them; it takes a fourth to confirm what three say.
+
+use crate::fit::least_squares::solve;
+use crate::fit::two_terms::{Exponent, minimum};
+use oedometer_soil::elementary::powf;
+
+/// Orders at which differences between levels may fall; slower ones are no approach.
+const ORDERS: (f64, f64) = (0.4, 12.0);
+
+/// Share of its predicted step by which the finest level may miss the prediction.
+const MISS: f64 = 0.5;
+
+/// Share of the limit by which it may.
+const NEAR: f64 = 0.01;
+
+/// A limit with the way towards it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    /// `F`, in the unit of the values.
+    pub limit: f64,
+    /// `C`.
+    coefficient: f64,
+    /// `p`.
+    pub order: f64,
+}
+
+/// What the values say of a limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limit {
+    /// The finest level lies where the three before it said.
+    Confirmed(Approach),
+    /// The three finest levels say so, and no level confirms it.
+    Suggested(Approach),
+    /// The three finest levels are one value, within a hundredth.
+    Reached,
+}
+
+impl Approach {
+    /// The value at a size.
+    pub fn at(&self, size: f64) -> f64 {
+        self.limit + self.coefficient * powf(size, self.order)
+    }
+
+    /// The curve through three levels whose differences fall and keep their sign.
+    fn through(levels: &[(f64, f64)]) -> Option<Self> {
+        let [(h1, e1), (h2, e2), (h3, e3)] = *levels else { return None };
+        // Sizes in units of the coarsest keep powers in range.
+        let (r2, r3) = (h2 / h1, h3 / h1);
+        let wanted = (e1 - e2) / (e2 - e3);
+        let ratio = |order: f64| (1.0 - powf(r2, order)) / (powf(r2, order) - powf(r3, order));
+        let (mut low, mut high) = ORDERS;
+        let falls = wanted.is_finite() && wanted >= ratio(low) && wanted <= ratio(high);
+        if !falls {
+            return None;
+        }
+        for _ in 0..60 {
+            let middle = f64::midpoint(low, high);
+            if ratio(middle) < wanted { low = middle } else { high = middle }
+        }
+        let order = f64::midpoint(low, high);
+        let scaled = (e2 - e3) / (powf(r2, order) - powf(r3, order));
+        Some(Self { limit: e3 - scaled * powf(r3, order), coefficient: scaled / powf(h1, order), order })
+    }
+
+    /// The best curve for more than three levels.
+    fn fitted(levels: &[(f64, f64)]) -> Option<Self> {
+        let first = levels.first()?.0;
+        let target: Vec<f64> = levels.iter().map(|level| level.1).collect();
+        let weights = vec![1.0; levels.len()];
+        let project = |order: f64| {
+            let powers = levels.iter().map(|level| powf(level.0 / first, order)).collect();
+            solve(&[vec![1.0; levels.len()], powers], &target, &weights)
+        };
+        let off = |order: f64| project(order).map_or(f64::INFINITY, |(_, square)| square);
+        let order = minimum(Exponent::Between(ORDERS.0, ORDERS.1), off);
+        let (found, _) = project(order)?;
+        Some(Self { limit: found[0], coefficient: found[1] / powf(first, order), order })
+    }
+}
+
+/// The limit that values go to while they move away from zero or through it; none where they fall
+/// towards zero, or go nowhere.
+pub fn limit_of(values: &[(f64, f64)]) -> Option<Limit> {
+    let window = values.last_chunk::<3>()?;
+    let [before, finest] = [window[1].1, window[2].1];
+    let four = values.last_chunk::<4>();
+    let crosses = window.iter().any(|level| level.1.signum() != finest.signum());
+    let grows = finest.abs() > before.abs() || crosses;
+    let left = values.iter().any(|level| level.1.abs() < 0.9 * finest.abs());
+    let spread = window.iter().fold(0.0_f64, |most, level| most.max((level.1 - finest).abs()));
+    if four.is_some() && (grows || left) && spread <= NEAR * finest.abs() {
+        return Some(Limit::Reached);
+    }
+    if !grows {
+        return None;
+    }
+    if let Some(four) = four
+        && let Some(told) = Approach::through(&four[..3])
+    {
+        let step = told.at(four[3].0) - four[2].1;
+        let miss = (finest - told.at(four[3].0)).abs();
+        if miss <= (MISS * step.abs()).max(NEAR * told.limit.abs()) {
+            return Approach::fitted(four).map(Limit::Confirmed);
+        }
+    }
+    Approach::through(window).map(Limit::Suggested)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(errors: &[f64]) -> Vec<(f64, f64)> {
+        (0..).zip(errors).map(|(level, error)| (0.1 * 0.5_f64.powi(level), *error)).collect()
+    }
+
+    #[test]
+    fn a_known_limit_is_found_from_either_side_at_any_ratio() {
+        let sizes: [f64; 4] = [1.0 / 10.0, 1.0 / 15.0, 1.0 / 40.0, 1.0 / 70.0];
+        for (limit, coefficient) in [(3e-3, -0.4), (-3e-3, 0.4), (2e-4, 0.1), (-2e-4, -0.1)] {
+            let levels = sizes.map(|h| (h, limit + coefficient * h.powf(1.7)));
+            let found = Approach::through(&levels[1..]).expect("an approach");
+            assert!(
+                (found.limit / limit - 1.0).abs() < 1e-9 && (found.order - 1.7).abs() < 1e-9,
+                "{found:?}"
+            );
+            assert!((found.at(0.1) / levels[0].1 - 1.0).abs() < 1e-9, "{found:?}");
+            let fitted = Approach::fitted(&levels).expect("a fit");
+            assert!((fitted.limit / limit - 1.0).abs() < 1e-6, "{fitted:?}");
+        }
+    }
+
+    #[test]
+    fn it_takes_a_fourth_level_to_confirm_a_limit() {
+        let all = values(&[2.70e-5, 2.29e-3, 2.85e-3, 3.00e-3, 3.03e-3]);
+        assert!(matches!(limit_of(&all[..3]), Some(Limit::Suggested(_))));
+        for levels in [4, 5] {
+            let Some(Limit::Confirmed(found)) = limit_of(&all[..levels]) else {
+                panic!("{levels}: {:?}", limit_of(&all[..levels]));
+            };
+            assert!((found.limit - 3.04e-3).abs() < 3e-5, "{found:?}");
+        }
+        // A fourth level that keeps on growing refutes what three said.
+        assert!(!matches!(limit_of(&values(&[1.0, 2.0, 2.5, 4.0])), Some(Limit::Confirmed(_))));
+        assert!(matches!(limit_of(&values(&[1.0, 2.0, 2.5, 2.5, 2.501, 2.499])), Some(Limit::Reached)));
+    }
+
+    #[test]
+    fn what_falls_or_grows_without_end_goes_to_no_limit() {
+        assert_eq!(limit_of(&values(&[4e-2, 1e-2, 2.5e-3, 6e-4])), None);
+        assert_eq!(limit_of(&values(&[1e-2, 2.6e-3, 2.3e-3, 2.2e-3])), None);
+        assert_eq!(limit_of(&values(&[1.0, 1.1, 1.2, 1.3, 1.4])), None);
+        assert_eq!(limit_of(&values(&[1.0, 2.0, 4.0, 8.0])), None);
+        assert_eq!(limit_of(&values(&[1.0, -0.5, 0.7, -0.4])), None);
+        assert_eq!(limit_of(&values(&[1.0, 2.0])), None);
+    }
+}

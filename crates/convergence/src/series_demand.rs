@@ -1,0 +1,142 @@
+//! What a study expects of a series of errors.
+
+use crate::class::Class;
+
+/// A two-sided band about an order: an order that is too high is no better than one too low.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrderBand {
+    /// The order expected.
+    pub value: f64,
+    /// How far below it may lie.
+    pub minus: f64,
+    /// How far above it may lie.
+    pub plus: f64,
+}
+
+/// A bound on the error at a named level: a doubled error constant keeps the order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ErrorBound {
+    /// Size of the level, as in the series.
+    pub size: f64,
+    /// The error must be smaller than this, in its own unit.
+    pub below: f64,
+    /// The error must be at least this: a result that is too good is as suspect.
+    pub above: f64,
+}
+
+/// Where the floor under the errors must lie; none at all counts as 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FloorBand {
+    /// Lowest floor allowed, in the unit of the errors.
+    pub above: f64,
+    /// Highest floor allowed.
+    pub below: f64,
+}
+
+/// Marks an expectation that is known not to be met.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownFailure {
+    /// Whether meeting the expectation after all is a failure.
+    pub strict: bool,
+    /// Why it is not met.
+    pub reason: String,
+}
+
+/// What is expected of one series; everything asked is judged.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SeriesDemand {
+    /// Order on the finest window.
+    pub order: Option<OrderBand>,
+    /// Error at a named level.
+    pub at: Option<ErrorBound>,
+    /// Class of the series; asymptotic where an order is expected and no class is named.
+    pub class: Option<Class>,
+    /// Floor under the errors.
+    pub floor: Option<FloorBand>,
+    /// Largest error over the smallest, minus one, over the levels of this size and below.
+    pub spread: Option<ErrorBound>,
+    /// Bound on the oscillation index of the series.
+    pub oscillation_below: Option<f64>,
+    /// Bound on the numerical uncertainty of the finest value, over that value.
+    pub uncertainty_below: Option<f64>,
+    /// That the expectation is known not to be met.
+    pub xfail: Option<KnownFailure>,
+}
+
+impl OrderBand {
+    /// Whether an order lies in the band, ends included.
+    pub fn contains(&self, order: f64) -> bool {
+        (self.value - self.minus..=self.value + self.plus).contains(&order)
+    }
+}
+
+impl FloorBand {
+    /// Whether a floor lies in the band, ends included.
+    pub fn contains(&self, floor: f64) -> bool {
+        (self.above..=self.below).contains(&floor)
+    }
+}
+
+impl SeriesDemand {
+    /// The class that must be found, if any.
+    pub fn expected_class(&self) -> Option<Class> {
+        self.class.or_else(|| self.order.map(|_| Class::Asymptotic))
+    }
+
+    /// What is wrong with the expectation itself; such a one never passes.
+    pub fn problems(&self) -> Vec<String> {
+        let mut problems = Vec::new();
+        let mut demand = |met: bool, problem: &str| {
+            if !met {
+                problems.push(problem.to_owned());
+            }
+        };
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        let width = |value: f64| value.is_finite() && value >= 0.0;
+        if let Some(band) = self.order {
+            demand(positive(band.value), "the order expected must be a positive number");
+            demand(
+                width(band.minus) && width(band.plus),
+                "`minus` and `plus` of the order must be numbers from 0 on",
+            );
+        }
+        if let Some(at) = self.at {
+            demand(positive(at.size), "the level of `at` must have a positive size");
+            demand(positive(at.below), "`below` of `at` must be a positive number");
+            demand(
+                width(at.above) && at.above < at.below,
+                "`above` of `at` must be a number from 0 on and smaller than `below`",
+            );
+        }
+        if let Some(spread) = self.spread {
+            demand(
+                positive(spread.size) && positive(spread.below),
+                "`spread` needs a level of a positive size and a positive bound",
+            );
+        }
+        if let Some(floor) = self.floor {
+            demand(
+                width(floor.above) && positive(floor.below) && floor.above <= floor.below,
+                "the floor must lie between `above`, 0 or more, and a larger `below`",
+            );
+        }
+        if let Some(bound) = self.oscillation_below {
+            demand(bound.is_finite(), "the bound on the oscillation must be a number");
+        }
+        if let Some(bound) = self.uncertainty_below {
+            demand(positive(bound), "the bound on the uncertainty must be a positive number");
+        }
+        if let Some(known) = &self.xfail {
+            demand(!known.reason.trim().is_empty(), "a known failure needs a reason");
+        }
+        let asked = self.order.is_some()
+            || self.at.is_some()
+            || self.class.is_some()
+            || self.floor.is_some()
+            || self.spread.is_some()
+            || self.oscillation_below.is_some()
+            || self.uncertainty_below.is_some();
+        demand(asked, "the expectation asks for nothing");
+        problems
+    }
+}

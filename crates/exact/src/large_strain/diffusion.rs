@@ -1,0 +1,192 @@
+//! The coefficients that a soil's law and continuity give the diffusion of pressure at large strain
+//! (docs/theory.md, Eq. 15).
+
+use crate::exact_error::{ExactError, positive};
+use crate::parameters::ColumnParameters;
+use oedometer_soil::continuity::Continuity;
+use oedometer_soil::elementary;
+use oedometer_soil::law::Law;
+
+/// Whether the water itself can be compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Water {
+    /// With the bulk modulus `K_w` of the column.
+    Compressible,
+    /// `K_w → ∞`.
+    Incompressible,
+}
+
+/// What a large-strain reference solves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LargeStrainModel {
+    /// Law of the skeleton and its conductivity.
+    pub law: Law,
+    /// Form of the water's continuity.
+    pub continuity: Continuity,
+    /// Compressibility of the water.
+    pub water: Water,
+}
+
+impl LargeStrainModel {
+    /// The material of Xie & Leo in water that can be compressed.
+    pub const XIE_LEO: Self =
+        Self { law: Law::LogLinear, continuity: Continuity::Conservative, water: Water::Compressible };
+}
+
+/// Everything in units of the column: pressure `r = p/q`, depth over `H`, time as `T_v`, stress
+/// over `E_oed`.
+#[derive(Clone, Copy, Debug)]
+pub struct Diffusion {
+    model: LargeStrainModel,
+    /// `m = q/E_oed`.
+    load: f64,
+    porosity: f64,
+    /// `E_oed/K_w`, 0 for incompressible water.
+    compliance: f64,
+}
+
+/// Coefficients of `β r_T = r_ζζ − G r_ζ² + β_s λ_T` under the share `λ` of the load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficients {
+    /// Storage over conductance, `β = (E_oed/(dσ'/dJ) + nJ E_oed/K_w)/κ` with `κ = k/(k_0 J)`.
+    pub storage: f64,
+    /// The skeleton's part of it, `β_s`, the first term.
+    pub skeleton_storage: f64,
+    /// `G = [−κ_J/κ + n_J/n] dJ/dr`, the last term with (4') only.
+    pub steepening: f64,
+}
+
+impl Diffusion {
+    /// The diffusion of a column's pressure under `share` of its load.
+    ///
+    /// # Errors
+    /// When the parameters are impossible or the load would close the pores.
+    pub fn new(model: LargeStrainModel, column: &ColumnParameters, share: f64) -> Result<Self, ExactError> {
+        column.validate()?;
+        if !Law::OF_COLUMNS.contains(&model.law) {
+            return Err(ExactError::LawOfColumn { law: model.law.name() });
+        }
+        let load =
+            positive("load over the oedometric modulus", share * column.load / column.oedometric_modulus())?;
+        let compliance = match model.water {
+            Water::Compressible => column.oedometric_modulus() / column.water_bulk_modulus,
+            Water::Incompressible => 0.0,
+        };
+        let diffusion = Self { model, load, porosity: column.porosity, compliance };
+        let shrinkage = diffusion.shrinkage(0.0);
+        if model.law != Law::Linear && shrinkage >= column.porosity {
+            return Err(ExactError::PoresClose { shrinkage, porosity: column.porosity });
+        }
+        Ok(diffusion)
+    }
+
+    /// `1 − J` where the skeleton lacks the share `lacking` of the full load, `σ' = q(lacking − 1)`:
+    /// the pressure ratio under the full load.
+    pub fn shrinkage(&self, lacking: f64) -> f64 {
+        self.model.law.shrinkage(self.load * (1.0 - lacking))
+    }
+
+    /// Coefficients where the skeleton lacks the share `lacking` of the full load.
+    pub fn coefficients(&self, lacking: f64) -> Coefficients {
+        let volume = 1.0 - self.shrinkage(lacking);
+        // dσ'/dJ over E_oed, k/(k_0 J) and its logarithmic derivative.
+        let (tangent, conductance, growth) = match self.model.law {
+            Law::Linear => {
+                return Coefficients {
+                    storage: 1.0 + self.porosity * self.compliance,
+                    skeleton_storage: 1.0,
+                    steepening: 0.0,
+                };
+            }
+            Law::LogLinear | Law::Engineering => (volume.recip(), volume, volume.recip()),
+            Law::PorosityDependent => ((volume * volume).recip(), volume, volume.recip()),
+            // Refused before: nothing follows from what is no number.
+            Law::NeoHookean => (f64::NAN, f64::NAN, f64::NAN),
+        };
+        let pores = volume - (1.0 - self.porosity);
+        let dropped = match self.model.continuity {
+            Continuity::Conservative => 0.0,
+            Continuity::ConstantPorosityGradient => (1.0 - self.porosity) / (volume * pores),
+        };
+        Coefficients {
+            storage: (tangent.recip() + pores * self.compliance) / conductance,
+            skeleton_storage: (tangent * conductance).recip(),
+            steepening: (dropped - growth) * self.load / tangent,
+        }
+    }
+
+    /// Pressure ratio of the undrained start: `p_0 = −K_w ln(1 − (1 − J_0)/n_0) = q + σ'(J_0)`,
+    /// at small strain `B`.
+    pub fn undrained_ratio(&self) -> f64 {
+        if self.model.law == Law::Linear {
+            return 1.0 / (1.0 + self.porosity * self.compliance);
+        }
+        // Bisection: the water's pressure falls and the total one grows with r. Enough to be exact.
+        let (mut low, mut high) = (0.0, 1.0);
+        if self.compliance == 0.0 {
+            return high;
+        }
+        while {
+            let middle = 0.5 * (low + high);
+            let water = -elementary::ln_1p(-self.shrinkage(middle) / self.porosity) / self.compliance;
+            if water > self.load * middle {
+                low = middle;
+            } else {
+                high = middle;
+            }
+            high - low > f64::EPSILON * high
+        } {}
+        0.5 * (low + high)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn diffusion(law: Law) -> Diffusion {
+        let column = ColumnParameters { load: 2.0e5, ..ColumnParameters::default() };
+        let model = LargeStrainModel { law, ..LargeStrainModel::XIE_LEO };
+        Diffusion::new(model, &column, 1.0).unwrap()
+    }
+
+    #[test]
+    fn laws_end_where_they_should() {
+        let end = |law| diffusion(law).shrinkage(0.0);
+        assert!((end(Law::LogLinear) - 0.153_518_275_109_386).abs() < 1e-15);
+        assert!((end(Law::PorosityDependent) - 1.0 / 7.0).abs() < 1e-15);
+        assert_eq!(end(Law::Engineering), end(Law::LogLinear));
+    }
+
+    #[test]
+    fn coefficients_are_the_laws_derivatives() {
+        // −dJ/dr = d(shrinkage)/dr must be −q/(dσ'/dJ), which storage at compliance 0 holds.
+        for law in Law::OF_COLUMNS {
+            let diffusion = Diffusion { compliance: 0.0, ..diffusion(law) };
+            let step = 1e-6;
+            let slope = (diffusion.shrinkage(0.4 + step) - diffusion.shrinkage(0.4 - step)) / (2.0 * step);
+            let conductance = match law {
+                Law::Linear => 1.0,
+                _ => 1.0 - diffusion.shrinkage(0.4),
+            };
+            let storage = diffusion.coefficients(0.4).storage;
+            assert!((-slope / diffusion.load / conductance - storage).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn undrained_start_is_nearly_the_storage_ratio() {
+        let column = ColumnParameters::default();
+        for law in Law::OF_COLUMNS {
+            let ratio = diffusion(law).undrained_ratio();
+            assert!((ratio - column.storage_ratio()).abs() < 1e-4, "{ratio}");
+        }
+    }
+
+    #[test]
+    fn closing_pores_are_refused() {
+        let column = ColumnParameters { load: 6.0e5, ..ColumnParameters::default() };
+        let error = Diffusion::new(LargeStrainModel::XIE_LEO, &column, 1.0).unwrap_err();
+        assert!(error.to_string().contains("more water than the pores hold"), "{error}");
+    }
+}

@@ -1,0 +1,150 @@
+//! Mandel's problem: a slab between two rigid plates, drained at its sides.
+//!
+//! Plane strain, incompressible grains, compressible water: a slab of half width `a` between rigid,
+//! smooth, impermeable plates that take the force `2F` per length at once, drained and without stress
+//! at `x = ±a` (Mandel 1953; Cheng & Detournay 1988; docs/theory.md, Eq. 16). The pressure in the middle
+//! rises above its start before it falls: the sides drain, soften and leave their load to the core.
+//!
+//! `early` is the closed form of short times, `series` the sum over the roots of `tan α/α = 1/κ`.
+
+mod early;
+mod eigenmode_series;
+mod ratios;
+
+use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within};
+use crate::field_values::{Accuracy, FieldValues};
+use crate::mandel::ratios::{Groups, MandelRatios};
+use crate::parameters::ColumnParameters;
+use oedometer_soil::elementary;
+
+/// `T = B_1 T_v` from which on a handful of terms of the series is exact to round-off; the closed form
+/// leaves out `e^{−1/T}`, 2e-22 there.
+const SERIES_FROM: f64 = 0.02;
+
+/// `T` between which the peak in the middle lies, whatever the material.
+const PEAK_BETWEEN: [f64; 2] = [1e-3, 1.0];
+/// Width in `ln T` to which a flat top can be told: the square root of the round-off, and a little.
+const PEAK_WITHIN: f64 = 1e-7;
+
+/// Relative rise above the start that is more than round-off.
+const LEAST_RISE: f64 = 1e-9;
+
+/// Mandel's slab. A column's height is the half width `a`, so that the time factor is
+/// `T_v = c_v t/a²` with the drained `c_v`; its length is half the distance of the plates, its load the mean
+/// stress `F/a` under them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mandel {
+    parameters: ColumnParameters,
+    groups: Groups,
+}
+
+impl Mandel {
+    /// The slab of a column's material, with its height as the half width.
+    ///
+    /// # Errors
+    /// When the parameters are impossible.
+    pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
+        parameters.validate()?;
+        Ok(Self { parameters: *parameters, groups: Groups::of(parameters) })
+    }
+
+    /// The ratios at a relative distance `x/a` from the middle.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite, or the distance outside [0, 1].
+    pub fn ratios(&self, time_factor: f64, distance: f64) -> Result<MandelRatios, ExactError> {
+        let time = self.groups.storage_ratio * checked_time_factor(time_factor)?;
+        let distance = held_within(distance, 1.0).ok_or(ExactError::Distance(distance))?;
+        if time < SERIES_FROM {
+            return Ok(early::ratios(&self.groups, time, distance));
+        }
+        Ok(eigenmode_series::ratios(&self.groups, time, distance))
+    }
+
+    /// Shear modulus `G`, Pa.
+    fn shear_modulus(&self) -> f64 {
+        self.parameters.youngs_modulus / (2.0 * (1.0 + self.parameters.poissons_ratio))
+    }
+
+    /// Pressure, effective stress and displacement towards the drained side at the depth `zeta` below it:
+    /// `1 − x/a`.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
+    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        let ratios = self.ratios(time_factor, 1.0 - checked_depth(zeta)?)?;
+        let load = self.parameters.load;
+        Ok(FieldValues {
+            pressure: load * ratios.pressure,
+            // No total stress acts towards the drained side: σ'_xx = p.
+            effective_stress: load * ratios.pressure,
+            displacement: load * self.parameters.height * ratios.displacement / self.shear_modulus(),
+        })
+    }
+
+    /// Strain `ε_yy` across the plates, compression negative: the same everywhere.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn strain_across(&self, time_factor: f64) -> Result<f64, ExactError> {
+        Ok(-self.parameters.load * self.ratios(time_factor, 0.0)?.strain / self.shear_modulus())
+    }
+
+    /// What each plate has gone inward, m, at half the distance of the plates: the length of the parameters.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        Ok(-self.strain_across(time_factor)? * self.parameters.length)
+    }
+
+    /// Degree of consolidation: how far the plates have come of the way that they go in the end,
+    /// `ε_yy(t)/ε_yy(∞)`.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
+        let end = 0.5 * (1.0 - self.groups.poissons_ratio);
+        Ok(self.ratios(time_factor, 0.0)?.strain / end)
+    }
+
+    /// Time factor `T_v` and height `p a/F` of the highest pressure in the middle (Mandel 1953; Cryer 1963); none where
+    /// it never rises: a skeleton that keeps its volume, or water that carries nothing.
+    pub fn middle_peak(&self) -> Option<(f64, f64)> {
+        let height = |time: f64| {
+            let ratios = if time < SERIES_FROM { early::ratios } else { eigenmode_series::ratios };
+            ratios(&self.groups, time, 0.0).pressure
+        };
+        // One peak between the diffusion's first touch of the middle and its end: the golden section of ln T.
+        let [mut low, mut high] = PEAK_BETWEEN.map(elementary::ln);
+        let share = 0.5 * (5.0_f64.sqrt() - 1.0);
+        while high - low > PEAK_WITHIN {
+            let step = share * (high - low);
+            if height(elementary::exp(high - step)) < height(elementary::exp(low + step)) {
+                low = high - step;
+            } else {
+                high = low + step;
+            }
+        }
+        let time = elementary::exp(0.5 * (low + high));
+        (height(time) > self.groups.start * (1.0 + LEAST_RISE))
+            .then(|| (time / self.groups.storage_ratio, height(time)))
+    }
+
+    /// Terms of the series, or 0 of the closed form, and a bound on what they leave out of any of the
+    /// ratios.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        let time = self.groups.storage_ratio * checked_time_factor(time_factor)?;
+        if time < SERIES_FROM {
+            return Ok(Accuracy::of(0, early::bound(&self.groups, time)));
+        }
+        let terms = eigenmode_series::terms(time);
+        Ok(Accuracy::of(terms, eigenmode_series::bound(time, terms)))
+    }
+}
+
+#[cfg(test)]
+mod tests;

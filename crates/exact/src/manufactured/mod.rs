@@ -1,0 +1,183 @@
+//! Manufactured solutions: large strain in the plane that is exact because it was chosen.
+//!
+//! A motion of the unit square and a pore pressure are written down; velocities, porosity, flux, stresses and
+//! accelerations follow from them, and whatever is left of the balances is put on the body as body forces of
+//! mixture and water and as a source of water (docs/theory.md, Eqs 24–27). Points move through the mesh in both
+//! directions and come back; no wall moves, and no front, load or surface spoils the reading.
+//!
+//! `four` are the numbers of four places, `jet` is the arithmetic with derivatives, `motion` the motions and their
+//! inverse, `model` which law goes with which, `motion_state` what follows from one at a point and time.
+
+#![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
+
+pub mod four;
+pub mod jet;
+pub mod model;
+pub mod motion;
+pub mod motion_state;
+
+use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
+use crate::field_values::{Accuracy, FieldValues};
+use crate::manufactured::four::PLACES;
+use crate::manufactured::model::ManufacturedModel;
+use crate::manufactured::motion::{Moment, Spot, Spots};
+use crate::manufactured::motion_state::{Soil, State, States};
+use crate::parameters::ColumnParameters;
+use std::f64::consts::PI;
+
+/// Intervals of the grid on which volumes are looked at.
+const GRID: u32 = 40;
+/// Round-off of the fields over their scales.
+const ROUND_OFF: f64 = 1e-14;
+
+/// A manufactured solution. Times are in half periods of the frequency: the factor is `ωt/π`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Manufactured {
+    model: ManufacturedModel,
+    parameters: ColumnParameters,
+    soil: Soil,
+}
+
+impl Manufactured {
+    /// The solution of a model for a soil; the load of the parameters is the amplitude `P_0` of the pressure.
+    ///
+    /// # Errors
+    /// When the parameters are impossible, the motion folds the square, or the pores close on the way.
+    pub fn new(model: ManufacturedModel, parameters: &ColumnParameters) -> Result<Self, ExactError> {
+        parameters.validate()?;
+        positive("frequency", parameters.motion.frequency)?;
+        if !model.has_law() {
+            return Err(ExactError::LawOfMotion { law: model.law.name(), motion: model.motion.name() });
+        }
+        let soil = Soil::of(parameters);
+        let solution = Self { model, parameters: *parameters, soil };
+        let least = solution.least_volume_ratio();
+        // What is no number is refused too.
+        let stays_open = least > 1.0 - parameters.porosity;
+        if stays_open {
+            Ok(solution)
+        } else {
+            Err(ExactError::MotionClosesPores { least, grains: 1.0 - parameters.porosity })
+        }
+    }
+
+    /// Least volume ratio `J` at the largest displacement, on a grid of points.
+    fn least_volume_ratio(&self) -> f64 {
+        let largest = self.time(0.5);
+        let at = |i: u32| f64::from(i) / f64::from(GRID);
+        let ratios = (0..=GRID).flat_map(|i| (0..=GRID).map(move |j| [at(i), at(j)]));
+        ratios.map(|place| self.state_at(place, largest).volume_ratio()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Time of a factor, s.
+    pub fn time(&self, time_factor: f64) -> f64 {
+        self.parameters.time(time_factor)
+    }
+
+    /// All that follows from motion and pressure for the point `X` (m) of the skeleton at a time, s.
+    pub fn state_at(&self, place: [f64; 2], time: f64) -> State {
+        State::first_of(self.states_of(&Spots::of(&[Spot::of(place); PLACES]), &self.moment(time)))
+    }
+
+    /// The same for four points and a time that are known already: for many points at one time.
+    #[inline(always)]
+    pub fn states_of(&self, spots: &Spots, moment: &Moment) -> States {
+        States::of(self.model, &self.parameters, &self.soil, spots, moment)
+    }
+
+    /// What all points take of a time, s.
+    pub fn moment(&self, time: f64) -> Moment {
+        Moment::of(self.parameters.motion.frequency, time)
+    }
+
+    /// The point `X` of the skeleton that is at a place at a time, from a guess, m.
+    pub fn material_place(&self, place: [f64; 2], moment: &Moment, guess: [f64; 2]) -> [f64; 2] {
+        self.material_places(&[place; PLACES], moment, &[guess; PLACES])[0]
+    }
+
+    /// The same of four places.
+    #[inline(always)]
+    pub fn material_places(
+        &self,
+        places: &[[f64; 2]; PLACES],
+        moment: &Moment,
+        guesses: &[[f64; 2]; PLACES],
+    ) -> [[f64; 2]; PLACES] {
+        self.model.motion.material_places(&self.parameters.motion, places, moment, guesses)
+    }
+
+    /// The fields at the point `X` of the skeleton, m, at a time factor.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite, or the point is no number.
+    pub fn plane_fields(&self, time_factor: f64, place: [f64; 2]) -> Result<PlaneValues, ExactError> {
+        let time = self.time(checked_time_factor(time_factor)?);
+        for (quantity, value) in [("place x", place[0]), ("place y", place[1])] {
+            if !value.is_finite() {
+                return Err(ExactError::NotFinite { quantity, value });
+            }
+        }
+        let state = self.state_at(place, time);
+        let position = state.position();
+        Ok(PlaneValues {
+            pressure: state.pressure(),
+            effective_stress: state.effective_stress(),
+            displacement: [position[0] - place[0], position[1] - place[1]],
+        })
+    }
+
+    /// Pressure, vertical effective stress and vertical displacement along the wall `X = 0`, at the depth `zeta`
+    /// below the upper one.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
+    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        let PlaneValues { pressure, effective_stress, displacement } =
+            self.plane_fields(time_factor, [0.0, 1.0 - checked_depth(zeta)?])?;
+        Ok(FieldValues { pressure, effective_stress: effective_stress[1][1], displacement: displacement[1] })
+    }
+
+    /// No wall moves.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        checked_time_factor(time_factor).map(|_| 0.0)
+    }
+
+    /// Share of the largest displacement, `sin²(ωt)`.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
+        let sine = oedometer_soil::elementary::sin(PI * checked_time_factor(time_factor)?);
+        Ok(sine * sine)
+    }
+
+    /// A formula: no terms, and what round-off leaves.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        checked_time_factor(time_factor).map(|_| Accuracy::of(0, ROUND_OFF))
+    }
+
+    /// Largest displacement of a point, m.
+    pub fn largest_displacement(&self) -> f64 {
+        self.model.motion.largest_displacement(&self.parameters.motion)
+    }
+}
+
+/// Fields at a point of the skeleton.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneValues {
+    /// Pore pressure, Pa, compression positive.
+    pub pressure: f64,
+    /// Effective Cauchy stress, Pa, tension positive, `[row][column]` of x and y.
+    pub effective_stress: [[f64; 2]; 2],
+    /// Displacement, m, `[component]`.
+    pub displacement: [f64; 2],
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,227 @@
+//! Motions of the unit square that are written down: where a point of the skeleton is, and which.
+//!
+//! What the formulas take of a place ([`Spot`]) and of a time ([`Moment`]) is made once for a point and once a step:
+//! no sine is left where points and times meet, but those of an angle that is of both.
+
+#![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
+
+use crate::manufactured::four::{Four, PLACES};
+use crate::manufactured::jet::{Jet, Shape};
+use crate::parameters::MotionParameters;
+use oedometer_soil::elementary;
+use std::f64::consts::PI;
+
+/// Corrections after which a place is found or never is.
+const MOST_CORRECTIONS: usize = 50;
+/// Correction, m, after which a place is found to round-off: what it leaves is of its square.
+const FOUND: f64 = 1e-7;
+/// Middle of the square, m.
+const MIDDLE: f64 = 0.5;
+
+/// A motion of the unit square by its form. All four walls stay where they are and are free of shear: every
+/// boundary condition of rollers is met by the motion itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Motion {
+    /// Stretch along the axes: `x = X + A g sin(πX)/π`, `y = Y + B g sin(πY)/π`.
+    Box,
+    /// With shear inside: `x = X + A g sin(πX) cos(πY)/π`, `y = Y + B g cos(πX) sin(πY)/π`.
+    Shear,
+    /// A disc that turns, the more the nearer its middle: by `α = A g (1 − 4r²)⁴`, `r < 1/2`. Volumes stay.
+    Vortex,
+}
+
+/// A point `X` of the skeleton, m, with the sines and cosines of `πX` and `πY`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    /// The point, m.
+    pub place: [f64; 2],
+    sine: [f64; 2],
+    cosine: [f64; 2],
+}
+
+impl Spot {
+    /// Of a point, m.
+    #[inline]
+    pub fn of(place: [f64; 2]) -> Self {
+        let [(sine_x, cosine_x), (sine_y, cosine_y)] = place.map(|along| elementary::sincos(PI * along));
+        Self { place, sine: [sine_x, sine_y], cosine: [cosine_x, cosine_y] }
+    }
+}
+
+/// Four points of the skeleton, as the formulas take them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spots {
+    place: [Four; 2],
+    sine: [Four; 2],
+    cosine: [Four; 2],
+}
+
+impl Spots {
+    /// Of four points.
+    #[inline(always)]
+    pub fn of(spots: &[Spot; PLACES]) -> Self {
+        let four = |of: fn(&Spot) -> [f64; 2], d: usize| {
+            Four([of(&spots[0])[d], of(&spots[1])[d], of(&spots[2])[d], of(&spots[3])[d]])
+        };
+        let both = |of: fn(&Spot) -> [f64; 2]| [four(of, 0), four(of, 1)];
+        Self {
+            place: both(|spot| spot.place),
+            sine: both(|spot| spot.sine),
+            cosine: both(|spot| spot.cosine),
+        }
+    }
+
+    /// `sin(πX)` or `sin(πY)`, with two derivatives.
+    #[inline(always)]
+    fn sine(&self, d: usize) -> [Four; 3] {
+        [self.sine[d], self.cosine[d] * PI, self.sine[d] * -(PI * PI)]
+    }
+
+    /// `cos(πX)` or `cos(πY)`, with two derivatives.
+    #[inline(always)]
+    fn cosine(&self, d: usize) -> [Four; 3] {
+        [self.cosine[d], self.sine[d] * -PI, self.cosine[d] * -(PI * PI)]
+    }
+
+    /// `cos(πX) cos(πY)`: how the pressure varies over the square.
+    #[inline(always)]
+    pub fn pressure_shape(&self) -> Shape {
+        Shape::product(self.cosine(0), self.cosine(1))
+    }
+}
+
+/// A time with what the formulas take of it, each as value and two derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// `sin²(ωt)`: how much of the motion is there.
+    pub growth: [f64; 3],
+    /// `sin(2ωt)`: how much of the pressure is there.
+    pub beat: [f64; 3],
+}
+
+impl Moment {
+    /// Of a time, s, at a frequency, rad/s.
+    pub fn of(frequency: f64, time: f64) -> Self {
+        let (sine, _) = elementary::sincos(frequency * time);
+        let double = 2.0 * frequency;
+        let (beat, cosine) = elementary::sincos(double * time);
+        Self {
+            growth: [sine * sine, frequency * beat, double * frequency * cosine],
+            beat: [beat, double * cosine, -double * double * beat],
+        }
+    }
+}
+
+/// A factor of all three.
+#[inline]
+fn times(factor: f64, function: [f64; 3]) -> [f64; 3] {
+    function.map(|value| factor * value)
+}
+
+impl Motion {
+    /// Every motion.
+    pub const ALL: [Self; 3] = [Self::Box, Self::Shear, Self::Vortex];
+
+    /// Name of its scene and of its exact solution.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Box => "manufactured-box",
+            Self::Shear => "manufactured-shear",
+            Self::Vortex => "manufactured-vortex",
+        }
+    }
+
+    /// Place of a point of the skeleton at a time, m, with all its derivatives; `g = sin²(ωt)`.
+    #[inline(always)]
+    pub fn place(self, parameters: &MotionParameters, spots: &Spots, moment: &Moment) -> [Jet; 2] {
+        /// A function that does not vary.
+        const ONE: [Four; 3] = [Four([1.0; PLACES]), Four([0.0; PLACES]), Four([0.0; PLACES])];
+        let [x, y] = spots.place;
+        let [along, up] = match self {
+            Self::Box => [Shape::product(spots.sine(0), ONE), Shape::product(ONE, spots.sine(1))],
+            Self::Shear => [
+                Shape::product(spots.sine(0), spots.cosine(1)),
+                Shape::product(spots.cosine(0), spots.sine(1)),
+            ],
+            Self::Vortex => return turned(parameters.amplitude, spots, moment),
+        };
+        let grown = |amplitude: f64, shape: &Shape| Jet::growing(shape, times(amplitude / PI, moment.growth));
+        [
+            grown(parameters.amplitude_x, &along).from_place(0, x),
+            grown(parameters.amplitude_y, &up).from_place(1, y),
+        ]
+    }
+
+    /// The points `X` of the skeleton that are at four places at a time, m, looked for from guesses by Newton's
+    /// iteration; not a number where the place is no point's.
+    #[inline(always)]
+    pub fn material_places(
+        self,
+        parameters: &MotionParameters,
+        places: &[[f64; 2]; PLACES],
+        moment: &Moment,
+        guesses: &[[f64; 2]; PLACES],
+    ) -> [[f64; 2]; PLACES] {
+        let (mut at, mut found) = (*guesses, [[f64::NAN; 2]; PLACES]);
+        let mut is_found = [false; PLACES];
+        for _ in 0..MOST_CORRECTIONS {
+            let [x, y] = self.place(parameters, &Spots::of(&at.map(Spot::of)), moment);
+            let off = |d: usize, jet: &Jet| {
+                Four([places[0][d], places[1][d], places[2][d], places[3][d]]) - jet.value
+            };
+            let [off_x, off_y] = [off(0, &x), off(1, &y)];
+            let determinant = x.slope[0] * y.slope[1] - x.slope[1] * y.slope[0];
+            let correction_x = (y.slope[1] * off_x - x.slope[1] * off_y).over(determinant);
+            let correction_y = (x.slope[0] * off_y - y.slope[0] * off_x).over(determinant);
+            for place in 0..PLACES {
+                let correction = [correction_x.0[place], correction_y.0[place]];
+                at[place] = [at[place][0] + correction[0], at[place][1] + correction[1]];
+                if !is_found[place] && correction[0].abs() + correction[1].abs() < FOUND {
+                    (found[place], is_found[place]) = (at[place], true);
+                }
+            }
+            if is_found == [true; PLACES] {
+                break;
+            }
+        }
+        found
+    }
+
+    /// Largest displacement of a point, m: what displacements are measured by.
+    pub fn largest_displacement(self, parameters: &MotionParameters) -> f64 {
+        match self {
+            Self::Box | Self::Shear => parameters.amplitude_x.abs().max(parameters.amplitude_y.abs()) / PI,
+            // Of the chord 2 r sin(α/2), on a fine row of radii.
+            Self::Vortex => (1..500)
+                .map(|i| {
+                    let radius = 1e-3 * f64::from(i);
+                    let share = 1.0 - 4.0 * radius * radius;
+                    let angle = parameters.amplitude * share * share * share * share;
+                    2.0 * radius * elementary::sin(0.5 * angle).abs()
+                })
+                .fold(0.0, f64::max),
+        }
+    }
+}
+
+/// Places of points of the disc that turns by `A g (1 − 4r²)⁴`; outside it nothing moves.
+#[inline(always)]
+fn turned(amplitude: f64, spots: &Spots, moment: &Moment) -> [Jet; 2] {
+    let [dx, dy] = [spots.place[0] + -MIDDLE, spots.place[1] + -MIDDLE];
+    let still = [Jet::coordinate(0, spots.place[0]), Jet::coordinate(1, spots.place[1])];
+    let share = (dx * dx + dy * dy) * -4.0 + 1.0;
+    // S = s⁴, s = 1 − 4 r²
+    let square = share * share;
+    let (first, second) = (square * 4.0 * share, square * 12.0);
+    let [by_x, by_y] = [dx * -8.0, dy * -8.0];
+    let mixed = second * by_x * by_y;
+    let shape = Shape {
+        value: square * square,
+        slope: [first * by_x, first * by_y],
+        bend: [[second * by_x * by_x - first * 8.0, mixed], [mixed, second * by_y * by_y - first * 8.0]],
+    };
+    let [sine, cosine] = Jet::growing(&shape, times(amplitude, moment.growth)).sine_and_cosine();
+    let [x, y] = [still[0] + -MIDDLE, still[1] + -MIDDLE];
+    let turned = [cosine * x - sine * y + MIDDLE, sine * x + cosine * y + MIDDLE];
+    [Jet::where_positive(share, &turned[0], &still[0]), Jet::where_positive(share, &turned[1], &still[1])]
+}

@@ -1,0 +1,264 @@
+//! The column and its material, as plain SI numbers.
+
+use crate::exact_error::{ExactError, normal, positive};
+use std::f64::consts::PI;
+
+/// How a layer rests on its impermeable base.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Default,
+    serde::Serialize,
+    serde::Deserialize,
+    schemars::JsonSchema,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum Base {
+    /// No displacement.
+    #[default]
+    Rough,
+    /// No vertical displacement and no shear.
+    Smooth,
+}
+
+impl Base {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Rough, Self::Smooth];
+
+    /// Name in study files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rough => "rough",
+            Self::Smooth => "smooth",
+        }
+    }
+}
+
+/// A motion that is written down: its amplitudes and its frequency.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
+pub struct MotionParameters {
+    /// Amplitude `A` of the stretch along x.
+    pub amplitude_x: f64,
+    /// Amplitude `B` of the stretch along y.
+    pub amplitude_y: f64,
+    /// Amplitude of a vortex: its largest angle, rad.
+    pub amplitude: f64,
+    /// Frequency `ω` of `sin²(ωt)`, rad/s; 0 where nothing is made to move.
+    pub frequency: f64,
+}
+
+impl MotionParameters {
+    /// Whether nothing is made to move: records of such cases say nothing of it.
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// A saturated column of soil on an impermeable base, drained and loaded at its top.
+///
+/// The default is the seed column of Zheng et al. (2021, doi 10.1007/978-3-030-64514-4_88)
+/// under a load of 1 Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColumnParameters {
+    /// Initial height `H`, m.
+    pub height: f64,
+    /// Length `L` along the layer, m; a column has none and ignores it.
+    pub length: f64,
+    /// How a layer rests on its base; a column ignores it.
+    pub base: Base,
+    /// Load `q` on the top, compression positive, Pa.
+    pub load: f64,
+    /// Drained Young's modulus `E`, Pa.
+    pub youngs_modulus: f64,
+    /// Drained Poisson's ratio `ν`.
+    pub poissons_ratio: f64,
+    /// Initial porosity `n_0`.
+    pub porosity: f64,
+    /// Grain density `ρ_s`, kg/m³.
+    pub grain_density: f64,
+    /// Water density `ρ_w`, kg/m³.
+    pub water_density: f64,
+    /// Bulk modulus of the water `K_w`, Pa.
+    pub water_bulk_modulus: f64,
+    /// Initial hydraulic conductivity `k_0`, m/s.
+    pub hydraulic_conductivity: f64,
+    /// Gravity in the drag, m/s².
+    pub gravity: f64,
+    /// Time over which the load grows linearly, s; 0 where it acts at once. The column with inertia
+    /// and large strain in general heed it.
+    pub loading_time: f64,
+    /// Whether skeleton and water have a weight: the stress of the start is that of the buoyant skeleton, and
+    /// pressures are those beyond the hydrostatic one.
+    pub self_weight: bool,
+    /// How a manufactured solution moves; nothing else heeds it.
+    pub motion: MotionParameters,
+}
+
+impl Default for ColumnParameters {
+    fn default() -> Self {
+        Self {
+            height: 1.0,
+            length: 1.0,
+            base: Base::Rough,
+            load: 1.0,
+            youngs_modulus: 1.0e6,
+            poissons_ratio: 0.25,
+            porosity: 0.3,
+            grain_density: 2650.0,
+            water_density: 1000.0,
+            water_bulk_modulus: 2.2e9,
+            hydraulic_conductivity: 1.0e-4,
+            gravity: 9.81,
+            loading_time: 0.0,
+            self_weight: false,
+            motion: MotionParameters::default(),
+        }
+    }
+}
+
+impl ColumnParameters {
+    /// Oedometric modulus `E_oed = E(1 − ν)/((1 + ν)(1 − 2ν))`, Pa.
+    pub fn oedometric_modulus(&self) -> f64 {
+        let nu = self.poissons_ratio;
+        self.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    }
+
+    /// Coefficient of volume compressibility `m_v = 1/E_oed`, 1/Pa.
+    pub fn compressibility(&self) -> f64 {
+        1.0 / self.oedometric_modulus()
+    }
+
+    /// Coupling modulus `Q = K_w/n` of incompressible grains, Pa (Biot 1941).
+    pub fn coupling_modulus(&self) -> f64 {
+        self.water_bulk_modulus / self.porosity
+    }
+
+    /// Share of an undrained load that the water carries, `B = Q/(Q + E_oed)`.
+    pub fn storage_ratio(&self) -> f64 {
+        let coupling = self.coupling_modulus();
+        coupling / (coupling + self.oedometric_modulus())
+    }
+
+    /// `1 − B = E_oed/(Q + E_oed)`, free of cancellation: the immediate part of the settlement.
+    pub fn immediate_ratio(&self) -> f64 {
+        let modulus = self.oedometric_modulus();
+        modulus / (self.coupling_modulus() + modulus)
+    }
+
+    /// Unit weight of the water `γ_w = ρ_w g`, N/m³.
+    pub fn unit_weight_of_water(&self) -> f64 {
+        self.water_density * self.gravity
+    }
+
+    /// Drained coefficient of consolidation `c_v = k E_oed/γ_w`, m²/s (Terzaghi 1943).
+    pub fn coefficient_of_consolidation(&self) -> f64 {
+        self.hydraulic_conductivity * self.oedometric_modulus() / self.unit_weight_of_water()
+    }
+
+    /// Time `t = T_v H²/c_v` of a time factor, s; of a motion `ωt/π` is the factor.
+    pub fn time(&self, time_factor: f64) -> f64 {
+        if self.motion.frequency > 0.0 {
+            return time_factor * (PI / self.motion.frequency);
+        }
+        time_factor * self.height * self.height / self.coefficient_of_consolidation()
+    }
+
+    /// Time factor `T_v = c_v t/H²` of a time in s; of a motion `ωt/π`.
+    pub fn time_factor(&self, time: f64) -> f64 {
+        if self.motion.frequency > 0.0 {
+            return time / (PI / self.motion.frequency);
+        }
+        time * self.coefficient_of_consolidation() / (self.height * self.height)
+    }
+
+    /// Settlement at the end of consolidation at small strain, `m_v q H`, m.
+    pub fn final_settlement(&self) -> f64 {
+        self.load * self.height / self.oedometric_modulus()
+    }
+
+    /// Vertical effective stress of the start at a depth `ζ`, Pa, tension positive: of the buoyant weight above,
+    /// `−(1 − n_0)(ρ_s − ρ_w) g H ζ`; none without weight.
+    pub fn initial_stress(&self, zeta: f64) -> f64 {
+        if !self.self_weight {
+            return 0.0;
+        }
+        let buoyant = (1.0 - self.porosity) * (self.grain_density - self.water_density) * self.gravity;
+        -buoyant * self.height * zeta
+    }
+
+    /// Checks that the numbers describe a possible column.
+    ///
+    /// # Errors
+    /// When a quantity that must be positive and finite is not, the porosity is outside (0, 1) or
+    /// Poisson's ratio outside (−1, ½).
+    pub fn validate(&self) -> Result<(), ExactError> {
+        positive("height", self.height)?;
+        positive("load", self.load)?;
+        positive("Young's modulus", self.youngs_modulus)?;
+        if !(self.poissons_ratio > -1.0 && self.poissons_ratio < 0.5) {
+            return Err(ExactError::PoissonsRatio(self.poissons_ratio));
+        }
+        if !(self.porosity > 0.0 && self.porosity < 1.0) {
+            return Err(ExactError::Porosity(self.porosity));
+        }
+        positive("grain density", self.grain_density)?;
+        positive("water density", self.water_density)?;
+        positive("bulk modulus of the water", self.water_bulk_modulus)?;
+        positive("hydraulic conductivity", self.hydraulic_conductivity)?;
+        positive("gravity", self.gravity)?;
+        // Positive factors may still overflow or underflow together.
+        positive("oedometric modulus", self.oedometric_modulus())?;
+        positive("coupling modulus", self.coupling_modulus())?;
+        positive("coefficient of consolidation", self.coefficient_of_consolidation())?;
+        normal("time at a time factor of 1", self.time(1.0))?;
+        // Numbers with few digits left make fields with few.
+        normal("load", self.load)?;
+        normal("final settlement", self.final_settlement())?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn seed_column_has_the_published_groups() {
+        let seed = ColumnParameters::default();
+        assert!(seed.validate().is_ok());
+        assert!((seed.oedometric_modulus() - 1.2e6).abs() < 1e-9);
+        assert!((seed.coefficient_of_consolidation() - 0.012_232).abs() < 5e-7);
+        assert!((seed.time(1.0) - 81.75).abs() < 5e-3);
+        assert!((seed.time_factor(seed.time(0.3)) - 0.3).abs() < 1e-15);
+        assert!((seed.storage_ratio() + seed.immediate_ratio() - 1.0).abs() < 1e-15);
+        // One undrained element of the seed case under 1 kPa carries 999.84 Pa.
+        assert!((seed.storage_ratio() * 1000.0 - 999.84).abs() < 5e-3);
+    }
+
+    #[test]
+    fn impossible_columns_are_refused_in_sentences() {
+        let refused = |change: fn(&mut ColumnParameters)| {
+            let mut parameters = ColumnParameters::default();
+            change(&mut parameters);
+            parameters.validate().map_or_else(|error| error.to_string(), |()| String::new())
+        };
+        assert_eq!(refused(|c| c.porosity = 1.2), "the porosity must lie between 0 and 1, got 1.2");
+        assert_eq!(
+            refused(|c| c.poissons_ratio = 0.5),
+            "Poisson's ratio must lie between -1 and 0.5, got 0.5"
+        );
+        assert_eq!(refused(|c| c.height = -1.0), "the height must be positive and finite, got -1");
+        assert_eq!(refused(|c| c.load = f64::NAN), "the load must be positive and finite, got NaN");
+        assert!(!refused(|c| c.water_bulk_modulus = f64::INFINITY).is_empty());
+        assert!(!refused(|c| c.youngs_modulus = f64::MAX).is_empty());
+        assert!(!refused(|c| c.porosity = f64::NAN).is_empty());
+    }
+}

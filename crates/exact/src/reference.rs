@@ -1,0 +1,419 @@
+//! The door: a reference by its name, its fields by time factor and depth.
+
+use core::fmt;
+use core::str::FromStr;
+
+use crate::at_rest::AtRest;
+use crate::cosine_layer::{CosineLayer, LayerState};
+use crate::dynamic_column::{DynamicColumn, Start};
+use crate::exact_error::ExactError;
+use crate::field_values::{Accuracy, FieldValues};
+use crate::large_strain::LargeStrain;
+use crate::large_strain::diffusion::{LargeStrainModel, Water};
+use crate::mandel::Mandel;
+use crate::manufactured::Manufactured;
+use crate::manufactured::model::ManufacturedModel;
+use crate::manufactured::motion::Motion;
+use crate::parameters::ColumnParameters;
+use crate::single_mode::SingleMode;
+use crate::terzaghi::Terzaghi;
+use crate::xie_leo::XieLeo;
+use oedometer_soil::material::Material;
+
+/// Which exact solution a run is held against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum ReferenceKind {
+    /// Terzaghi's column with compressible water.
+    Terzaghi,
+    /// Terzaghi's column of the textbooks, with incompressible water.
+    TerzaghiIncompressible,
+    /// Decay of the slowest mode, with compressible water.
+    SingleMode,
+    /// Large strain after Xie & Leo, with incompressible water.
+    XieLeo,
+    /// Terzaghi's column with compressible water and the inertia of both phases, the load at once or
+    /// over the column's loading time.
+    DynamicColumn,
+    /// The slowest mode with compressible water and the inertia of both phases.
+    DynamicSingleMode,
+    /// An undrained wave that stands in the column, with the inertia of both phases: smooth.
+    StandingWave,
+    /// Large strain for a soil law, a continuity and a water of choice.
+    LargeStrain(LargeStrainModel),
+    /// Plane-strain layer under a cosine load, with compressible water.
+    CosineLayer,
+    /// The same with incompressible water.
+    CosineLayerIncompressible,
+    /// Mandel's slab between rigid plates, with compressible water.
+    Mandel,
+    /// Nothing moves.
+    AtRest,
+    /// A motion in the plane that is exact because body forces and a source make it so.
+    Manufactured(ManufacturedModel),
+}
+
+impl ReferenceKind {
+    /// All kinds, in the order of the documentation; large strain and motions with their default models.
+    pub const ALL: [Self; 15] = [
+        Self::Terzaghi,
+        Self::TerzaghiIncompressible,
+        Self::SingleMode,
+        Self::XieLeo,
+        Self::DynamicColumn,
+        Self::DynamicSingleMode,
+        Self::StandingWave,
+        Self::LargeStrain(LargeStrainModel::XIE_LEO),
+        Self::CosineLayer,
+        Self::CosineLayerIncompressible,
+        Self::Mandel,
+        Self::AtRest,
+        Self::Manufactured(ManufacturedModel::of(Motion::Box)),
+        Self::Manufactured(ManufacturedModel::of(Motion::Shear)),
+        Self::Manufactured(ManufacturedModel::of(Motion::Vortex)),
+    ];
+
+    /// Name in study files and tables; that of large strain says nothing of its model.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Terzaghi => "terzaghi",
+            Self::TerzaghiIncompressible => "terzaghi-incompressible",
+            Self::SingleMode => "single-mode",
+            Self::XieLeo => "xie-leo",
+            Self::DynamicColumn => "dynamic-column",
+            Self::DynamicSingleMode => "dynamic-single-mode",
+            Self::StandingWave => "standing-wave",
+            Self::LargeStrain(_) => "large-strain",
+            Self::CosineLayer => "cosine-layer",
+            Self::CosineLayerIncompressible => "cosine-layer-incompressible",
+            Self::Mandel => "mandel",
+            Self::AtRest => "at-rest",
+            Self::Manufactured(model) => model.motion.name(),
+        }
+    }
+
+    /// Whether it is a motion that was chosen, and no body under a load.
+    pub const fn is_manufactured(self) -> bool {
+        matches!(self, Self::Manufactured(_))
+    }
+
+    /// Whether it is computed in advance for the times that it is asked at, which costs.
+    pub const fn is_prepared(self) -> bool {
+        matches!(
+            self,
+            Self::LargeStrain(_) | Self::DynamicColumn | Self::DynamicSingleMode | Self::StandingWave
+        )
+    }
+
+    /// The reference as it holds for a soil: large strain takes the soil's own law and continuity, and is of
+    /// the equations that the solver solves; a motion takes the law.
+    #[must_use]
+    pub fn of_soil(self, soil: &Material) -> Self {
+        let Material { law, continuity, .. } = *soil;
+        match self {
+            Self::LargeStrain(model) => Self::LargeStrain(LargeStrainModel { law, continuity, ..model }),
+            Self::Manufactured(model) => Self::Manufactured(ManufacturedModel { law, ..model }),
+            other => other,
+        }
+    }
+}
+
+impl fmt::Display for ReferenceKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.name())
+    }
+}
+
+impl FromStr for ReferenceKind {
+    type Err = ExactError;
+
+    fn from_str(name: &str) -> Result<Self, ExactError> {
+        Self::ALL
+            .into_iter()
+            .find(|kind| kind.name() == name)
+            .ok_or_else(|| ExactError::UnknownReference(name.to_owned()))
+    }
+}
+
+/// An exact solution for one set of parameters.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    kind: ReferenceKind,
+    solution: Solution,
+    /// Vertical effective stress of the weight at the base, Pa; it grows with the depth.
+    initial_stress: f64,
+}
+
+/// What stands behind the door.
+#[derive(Clone, Debug)]
+enum Solution {
+    Terzaghi(Terzaghi),
+    SingleMode(SingleMode),
+    XieLeo(XieLeo),
+    Dynamic(DynamicColumn),
+    LargeStrain(Box<LargeStrain>),
+    CosineLayer(CosineLayer),
+    Mandel(Mandel),
+    AtRest(AtRest),
+    Manufactured(Manufactured),
+}
+
+/// One `match` for all that every solution answers.
+macro_rules! ask {
+    ($reference:expr, $solution:ident => $answer:expr) => {
+        match &$reference.solution {
+            Solution::Terzaghi($solution) => $answer,
+            Solution::SingleMode($solution) => $answer,
+            Solution::XieLeo($solution) => $answer,
+            Solution::Dynamic($solution) => $answer,
+            Solution::LargeStrain($solution) => $answer,
+            Solution::CosineLayer($solution) => $answer,
+            Solution::Mandel($solution) => $answer,
+            Solution::AtRest($solution) => $answer,
+            Solution::Manufactured($solution) => $answer,
+        }
+    };
+}
+
+impl Reference {
+    /// The reference `kind` of a column; those that must be computed in advance are, for
+    /// `time_factors`.
+    ///
+    /// # Errors
+    /// When the parameters are impossible or outside the solution's range, or a time factor is
+    /// negative or not finite.
+    pub fn new(
+        kind: ReferenceKind,
+        parameters: &ColumnParameters,
+        time_factors: &[f64],
+    ) -> Result<Self, ExactError> {
+        for &time_factor in time_factors {
+            crate::exact_error::checked_time_factor(time_factor)?;
+        }
+        let layer = |water| CosineLayer::new(parameters, parameters.length, parameters.base, water);
+        let solution = match kind {
+            ReferenceKind::Terzaghi => Solution::Terzaghi(Terzaghi::compressible(parameters)?),
+            ReferenceKind::TerzaghiIncompressible => {
+                Solution::Terzaghi(Terzaghi::incompressible(parameters)?)
+            }
+            ReferenceKind::SingleMode => Solution::SingleMode(SingleMode::compressible(parameters)?),
+            ReferenceKind::XieLeo => Solution::XieLeo(XieLeo::new(parameters)?),
+            ReferenceKind::DynamicColumn => {
+                let start = match parameters.loading_time {
+                    0.0 => Start::Step,
+                    duration => Start::Ramp { duration },
+                };
+                Solution::Dynamic(DynamicColumn::new(parameters, start, time_factors)?)
+            }
+            ReferenceKind::DynamicSingleMode => {
+                Solution::Dynamic(DynamicColumn::new(parameters, Start::Mode, time_factors)?)
+            }
+            ReferenceKind::StandingWave => {
+                Solution::Dynamic(DynamicColumn::new(parameters, Start::StandingWave, time_factors)?)
+            }
+            ReferenceKind::LargeStrain(model) => {
+                let solution = LargeStrain::new(parameters, model, time_factors)?;
+                Solution::LargeStrain(Box::new(solution))
+            }
+            ReferenceKind::CosineLayer => Solution::CosineLayer(layer(Water::Compressible)?),
+            ReferenceKind::CosineLayerIncompressible => Solution::CosineLayer(layer(Water::Incompressible)?),
+            ReferenceKind::Mandel => Solution::Mandel(Mandel::new(parameters)?),
+            ReferenceKind::AtRest => {
+                parameters.validate()?;
+                Solution::AtRest(AtRest)
+            }
+            ReferenceKind::Manufactured(model) => {
+                Solution::Manufactured(Manufactured::new(model, parameters)?)
+            }
+        };
+        Ok(Self { kind, solution, initial_stress: parameters.initial_stress(1.0) })
+    }
+
+    /// The same as good as a line in a figure needs it: where that costs much less, to a millionth of the load.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn for_lines(
+        kind: ReferenceKind,
+        parameters: &ColumnParameters,
+        time_factors: &[f64],
+    ) -> Result<Self, ExactError> {
+        let ReferenceKind::LargeStrain(model) = kind else {
+            return Self::new(kind, parameters, time_factors);
+        };
+        let solution = LargeStrain::for_lines(parameters, model, time_factors)?;
+        let initial_stress = parameters.initial_stress(1.0);
+        Ok(Self { kind, solution: Solution::LargeStrain(Box::new(solution)), initial_stress })
+    }
+
+    /// Which solution this is.
+    pub fn kind(&self) -> ReferenceKind {
+        self.kind
+    }
+
+    /// Its name in study files and tables.
+    pub fn name(&self) -> &'static str {
+        self.kind.name()
+    }
+
+    /// Excess pressure, effective stress with that of the weight, and displacement at the Lagrangian depth `zeta`.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
+    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        let fields = ask!(self, solution => solution.fields(time_factor, zeta))?;
+        if self.initial_stress == 0.0 {
+            return Ok(fields);
+        }
+        let effective_stress = fields.effective_stress + self.initial_stress * zeta;
+        Ok(FieldValues { effective_stress, ..fields })
+    }
+
+    /// Whether its fields depend on the place along a layer too.
+    pub fn is_plane(&self) -> bool {
+        matches!(self.solution, Solution::CosineLayer(_) | Solution::Manufactured(_))
+    }
+
+    /// The motion, where it is one that was chosen: its fields vary along both directions.
+    pub fn manufactured(&self) -> Option<&Manufactured> {
+        if let Solution::Manufactured(solution) = &self.solution { Some(solution) } else { None }
+    }
+
+    /// The whole field of a plane problem at a time factor; `None` for a column, whose fields
+    /// depend on the depth alone.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn plane_state(&self, time_factor: f64) -> Result<Option<LayerState>, ExactError> {
+        match &self.solution {
+            Solution::CosineLayer(layer) => layer.at(time_factor).map(Some),
+            _ => Ok(None),
+        }
+    }
+
+    /// Strain across the body, uniform in it: that of rigid plates, and none in a column.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn strain_across(&self, time_factor: f64) -> Result<f64, ExactError> {
+        match &self.solution {
+            Solution::Mandel(slab) => slab.strain_across(time_factor),
+            _ => Ok(0.0),
+        }
+    }
+
+    /// Settlement of the surface, downward positive, m.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        ask!(self, solution => solution.settlement(time_factor))
+    }
+
+    /// What displacements are measured by, m: the settlement of a time factor long after, or the largest displacement
+    /// of a motion, whose walls do not settle.
+    ///
+    /// # Errors
+    /// When the time factor is negative or not finite.
+    pub fn displacement_scale(&self, long_after: f64) -> Result<f64, ExactError> {
+        match &self.solution {
+            Solution::Manufactured(solution) => Ok(solution.largest_displacement()),
+            _ => self.settlement(long_after),
+        }
+    }
+
+    /// Degree of consolidation by settlement, `s(t)/s(∞)`; of a motion the share of its largest displacement.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
+        ask!(self, solution => solution.degree_of_consolidation(time_factor))
+    }
+
+    /// Time factor and height, over the load, of the highest pressure at the impermeable end, where it rises before it
+    /// falls.
+    pub fn pressure_peak(&self) -> Option<(f64, f64)> {
+        match &self.solution {
+            Solution::Mandel(slab) => slab.middle_peak(),
+            Solution::Terzaghi(_)
+            | Solution::SingleMode(_)
+            | Solution::XieLeo(_)
+            | Solution::Dynamic(_)
+            | Solution::LargeStrain(_)
+            | Solution::CosineLayer(_)
+            | Solution::AtRest(_)
+            | Solution::Manufactured(_) => None,
+        }
+    }
+
+    /// Terms used at a time factor and the bound on what they leave out.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        ask!(self, solution => solution.accuracy(time_factor))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_parse_back() {
+        for kind in ReferenceKind::ALL {
+            assert_eq!(kind.name().parse(), Ok(kind));
+        }
+        let error = "terzagi".parse::<ReferenceKind>().unwrap_err();
+        assert_eq!(error.to_string(), "there is no reference named `terzagi`");
+    }
+
+    #[test]
+    fn a_weight_adds_its_stress_and_changes_no_pressure() {
+        let light = ColumnParameters { height: 2.0, load: 1.0e4, ..ColumnParameters::default() };
+        let heavy = ColumnParameters { self_weight: true, ..light };
+        for kind in [ReferenceKind::Terzaghi, ReferenceKind::XieLeo] {
+            let [light, heavy] = [&light, &heavy].map(|column| Reference::new(kind, column, &[0.2]).unwrap());
+            for zeta in [0.0, 0.4, 1.0] {
+                let (light, heavy) = (light.fields(0.2, zeta).unwrap(), heavy.fields(0.2, zeta).unwrap());
+                // Under water grains of 2650 and water of 1000 kg/m³ at n = 0.3 weigh (1 − n)(ρ_s − ρ_w) g.
+                let weight = -0.7 * 1650.0 * 9.81 * 2.0 * zeta;
+                assert!((heavy.effective_stress - light.effective_stress - weight).abs() < 1e-9, "{kind}");
+                assert_eq!(heavy.pressure, light.pressure);
+            }
+        }
+    }
+
+    #[test]
+    fn every_reference_agrees_with_itself() {
+        let column = ColumnParameters { height: 2.0, load: 1.0e5, ..ColumnParameters::default() };
+        let times = [0.05, 0.3, 1.0];
+        for kind in ReferenceKind::ALL.into_iter().filter(|kind| !kind.is_manufactured()) {
+            let reference = Reference::new(kind, &column, &times).unwrap();
+            assert_eq!(reference.name(), kind.name());
+            for time_factor in times {
+                let surface = reference.fields(time_factor, 0.0).unwrap();
+                let settlement = reference.settlement(time_factor).unwrap();
+                let degree = reference.degree_of_consolidation(time_factor).unwrap();
+                let settled = match kind {
+                    // The plate's: a strain, and not the drained side.
+                    ReferenceKind::Mandel => -reference.strain_across(time_factor).unwrap() * column.length,
+                    _ => -surface.displacement,
+                };
+                assert!((settled - settlement).abs() <= 1e-12 * settlement.abs());
+                assert!(surface.pressure.abs() < 1e-9);
+                let overshoot = if kind == ReferenceKind::StandingWave { 1e-3 } else { 1e-12 };
+                assert!((0.0..=1.0 + overshoot).contains(&degree), "{kind} {time_factor}: {degree}");
+                assert!(reference.accuracy(time_factor).unwrap().tail_bound < 1e-9);
+                let base = reference.fields(time_factor, 1.0).unwrap();
+                assert!(base.displacement.abs() < 1e-15);
+            }
+            assert!(reference.fields(-1.0, 0.5).is_err());
+            assert!(reference.fields(f64::NAN, 0.5).is_err());
+            assert!(reference.fields(0.1, 1.5).is_err());
+            assert!(reference.fields(0.1, f64::NAN).is_err());
+            assert!(reference.settlement(-0.1).is_err());
+            assert!(reference.accuracy(f64::INFINITY).is_err());
+            assert!(Reference::new(kind, &column, &[-1.0]).is_err());
+        }
+    }
+}

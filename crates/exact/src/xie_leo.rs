@@ -1,0 +1,154 @@
+//! Large-strain consolidation in closed form.
+
+use crate::consolidation::{consolidated_below, isochrone};
+use crate::exact_error::{ExactError, positive};
+use crate::field_values::{Accuracy, FieldValues};
+use crate::parameters::ColumnParameters;
+use oedometer_soil::elementary;
+
+/// Xie & Leo (2004): consolidation at large strain of a soil with constant
+/// `m_vl = −(1/(1 + e)) de/dσ'` and `k = k_0 J²`, incompressible water.
+///
+/// With `m = m_vl q` the volume ratio obeys a linear diffusion equation,
+///
+/// ```text
+/// J = e^{−m} + (1 − e^{−m}) W(ζ, T_v)
+/// p = (1/m_vl) ln{1 + (e^m − 1) W(ζ, T_v)}
+/// s = H (1 − e^{−m}) U(T_v)
+/// ```
+///
+/// at the Lagrangian depth `ζ`. The effective stress is Cauchy's, `σ' = p − q`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct XieLeo {
+    parameters: ColumnParameters,
+    /// `m = m_vl q`.
+    strain: f64,
+    drainage: Drainage,
+}
+
+/// Which ends of the layer let the water out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Drainage {
+    /// The top only, on an impermeable base.
+    #[default]
+    Top,
+    /// Top and base: two columns of half the height, mirrored at mid-depth.
+    TopAndBase,
+}
+
+impl XieLeo {
+    /// The column drained at its top.
+    ///
+    /// # Errors
+    /// When the parameters are impossible or the load would close the pores.
+    pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
+        Self::drained(parameters, Drainage::Top)
+    }
+
+    /// The column with a choice of drained ends.
+    ///
+    /// # Errors
+    /// When the parameters are impossible, the load grows, or `m_vl q ≥ −ln(1 − n_0)`: the porosity
+    /// `n = 1 − (1 − n_0)/J` would end below zero.
+    pub fn drained(parameters: &ColumnParameters, drainage: Drainage) -> Result<Self, ExactError> {
+        parameters.validate()?;
+        let strain =
+            positive("load over the oedometric modulus", parameters.load / parameters.oedometric_modulus())?;
+        let limit = -elementary::ln_1p(-parameters.porosity);
+        if strain >= limit {
+            return Err(ExactError::LoadClosesPores { load: strain, limit, porosity: parameters.porosity });
+        }
+        if parameters.loading_time > 0.0 {
+            return Err(ExactError::LoadGrows { loading_time: parameters.loading_time });
+        }
+        Ok(Self { parameters: *parameters, strain, drainage })
+    }
+
+    /// Time factor and depth of the column drained at its top that this one consists of.
+    fn equivalent(&self, time_factor: f64, zeta: f64) -> (f64, f64) {
+        match self.drainage {
+            Drainage::Top => (time_factor, zeta),
+            Drainage::TopAndBase => (4.0 * time_factor, 2.0 * zeta.min(1.0 - zeta)),
+        }
+    }
+
+    /// Final settlement over the height, `1 − e^{−m}`.
+    pub fn final_strain(&self) -> f64 {
+        -elementary::exp_m1(-self.strain)
+    }
+
+    /// Volume ratio `J` at a relative depth.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
+    pub fn volume_ratio(&self, time_factor: f64, zeta: f64) -> Result<f64, ExactError> {
+        let (time_factor, zeta) = self.equivalent(time_factor, zeta);
+        let isochrone = isochrone(zeta, time_factor)?.value;
+        Ok(1.0 - self.final_strain() * (1.0 - isochrone))
+    }
+
+    /// Excess pore pressure at a relative depth, Pa.
+    fn pressure(&self, time_factor: f64, zeta: f64) -> Result<f64, ExactError> {
+        let (time_factor, zeta) = self.equivalent(time_factor, zeta);
+        let isochrone = isochrone(zeta, time_factor)?.value;
+        let pressure = elementary::ln_1p(elementary::exp_m1(self.strain) * isochrone);
+        Ok(self.parameters.load * (pressure / self.strain))
+    }
+
+    /// Pressure, effective (Cauchy) stress and displacement at a relative depth.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
+    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        let pressure = self.pressure(time_factor, zeta)?;
+        let (scaled_time_factor, depth) = self.equivalent(time_factor, zeta);
+        let below = consolidated_below(depth, scaled_time_factor)?.value;
+        // The layer under this depth, over H: all of it must end up below ζ = 1.
+        let compressed = match self.drainage {
+            Drainage::Top => below,
+            Drainage::TopAndBase => {
+                let half = consolidated_below(0.0, scaled_time_factor)?.value;
+                let side = if zeta <= 0.5 { below } else { -below };
+                0.5 * (half + side)
+            }
+        };
+        Ok(FieldValues {
+            pressure,
+            effective_stress: pressure - self.parameters.load,
+            displacement: -self.parameters.height * self.final_strain() * compressed,
+        })
+    }
+
+    /// Degree of consolidation by settlement: Terzaghi's `U(T_v)`.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
+        let (time_factor, _) = self.equivalent(time_factor, 0.0);
+        Ok(consolidated_below(0.0, time_factor)?.value)
+    }
+
+    /// Settlement of the surface, downward positive, m.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        let degree = self.degree_of_consolidation(time_factor)?;
+        Ok(self.parameters.height * self.final_strain() * degree)
+    }
+
+    /// Terms and tail of the pressure, the worst over the depth.
+    ///
+    /// # Errors
+    /// When `time_factor` is negative or not finite.
+    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        let (time_factor, _) = self.equivalent(time_factor, 0.0);
+        let base = isochrone(1.0, time_factor)?;
+        // |∂p/∂W| ≤ (e^m − 1)/m_vl, reached at the drained surface.
+        let slope = elementary::exp_m1(self.strain) / self.strain;
+        Ok(Accuracy::of(base.terms, slope * base.tail_bound))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,278 @@
+//! HDF5: data sets by their paths, states over times, and tables of records.
+//!
+//! The groups are walked once: to find a data set by its path, the library walks its group anew.
+
+use crate::bytes::{Budget, Scalar};
+use crate::frame::{Array, Association, Frame, Wanted};
+use crate::input_file;
+use hdf5_pure::{ChunkCacheConfig, Dataset, Datatype, DatatypeByteOrder, File, FileAccessProperties, Group};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Deepest group that is looked into.
+const DEEPEST: usize = 16;
+/// Most data sets and groups of a file that are looked at.
+const MOST: usize = 200_000;
+/// Most data sets that are read as one state.
+const MOST_OF_A_STATE: usize = 10_000;
+
+/// An open file.
+pub struct Store {
+    sets: Vec<Listed>,
+    /// Places in the list by path.
+    by_path: HashMap<String, usize>,
+    /// Data sets and groups that were looked at, however often.
+    pub(super) looked_at: usize,
+    size: usize,
+    budget: Budget,
+}
+
+/// A data set as it lies in a file.
+struct Listed {
+    path: String,
+    shape: Vec<u64>,
+    set: Dataset,
+}
+
+impl Store {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// When it is damaged.
+    pub fn open(path: &Path) -> Result<Self, String> {
+        let bytes = input_file::read(path).map_err(|error| error.to_string())?;
+        let size = bytes.len();
+        // Unpacked pieces are not kept: a data set keeps its own, and there may be thousands of them.
+        let pieces = ChunkCacheConfig::new().with_max_bytes(0).with_max_slots(0);
+        let access = FileAccessProperties::new().with_chunk_cache(pieces);
+        let file = File::from_bytes_with_options(bytes, access).map_err(|error| damaged(&error))?;
+        let mut store = Self {
+            sets: Vec::new(),
+            by_path: HashMap::new(),
+            looked_at: 0,
+            size,
+            budget: Budget::of_file(size),
+        };
+        store.list(&file.root(), "", 0)?;
+        store.by_path = store.sets.iter().enumerate().map(|(place, set)| (set.path.clone(), place)).collect();
+        Ok(store)
+    }
+
+    /// Begins another state: each may become as much in memory as the file allows.
+    pub fn renew_budget(&mut self) {
+        self.budget = Budget::of_file(self.size);
+    }
+
+    /// Shape of a data set, and the numbers of all its rows or of some: first, and how many.
+    ///
+    /// # Errors
+    /// When there is no such set, or it is damaged or too large.
+    pub fn numbers(&mut self, path: &str, rows: Option<(u64, u64)>) -> Result<(Vec<u64>, Vec<f64>), String> {
+        let named = |why: String| format!("the data set `{path}`: {why}");
+        let known = self.by_path.get(path.trim_matches('/'));
+        let listed = known.and_then(|place| self.sets.get(*place));
+        let Listed { shape, set, .. } = listed.ok_or_else(|| named("it is not in the file".to_owned()))?;
+        let per_row = product(shape.get(1..).unwrap_or_default()).map_err(named)?;
+        let (first, count) = rows.unwrap_or((0, shape.first().copied().unwrap_or(1)));
+        let total = per_row.checked_mul(count).ok_or_else(|| named("it claims too much".to_owned()))?;
+        let width = set.element_size().map_err(|error| named(damaged(&error)))?.max(8);
+        self.budget.take(total.saturating_mul(width)).map_err(named)?;
+        let numbers = match rows {
+            Some(_) => set.read_f64_rows(first, count),
+            None => set.read_f64(),
+        };
+        let numbers = numbers.map_err(|error| named(damaged(&error)))?;
+        if numbers.len() as u64 != total {
+            return Err(named(format!("it holds {} numbers, and {total} are declared", numbers.len())));
+        }
+        Ok((shape.clone(), numbers))
+    }
+
+    /// Times of the states of a file, where it has a list of them.
+    ///
+    /// # Errors
+    /// When it is damaged.
+    pub fn times(&mut self) -> Result<Vec<f64>, String> {
+        let is_list = |set: &&Listed| is_named(&set.path, &["times", "time"]) && set.shape.len() == 1;
+        match self.sets.iter().find(is_list).map(|set| set.path.clone()) {
+            Some(path) => Ok(self.numbers(&path, None)?.1),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    /// The state of a place in the list of times; the only one where there is no list.
+    ///
+    /// # Errors
+    /// When it is damaged or too large.
+    pub fn frame(&mut self, place: usize, wanted: Wanted) -> Result<Frame, String> {
+        self.renew_budget();
+        if self.sets.len() > MOST_OF_A_STATE {
+            return Err(format!(
+                "it has more than {MOST_OF_A_STATE} data sets: name them by an XDMF beside it"
+            ));
+        }
+        let times = self.times()?;
+        let steps = times.len() as u64;
+        let mut frame = Frame { time: times.get(place).copied(), ..Frame::default() };
+        for number in 0..self.sets.len() {
+            let Listed { path, shape: whole, .. } = &self.sets[number];
+            let (path, whole) = (path.clone(), whole.clone());
+            if is_named(&path, &["times", "time"]) || whole.is_empty() {
+                continue;
+            }
+            if self.records(number, wanted, &mut frame)? {
+                continue;
+            }
+            let is_place = is_named(&path, &["geometry", "coordinates", "points", "nodes"]);
+            let name = path.rsplit('/').next().unwrap_or_default().to_owned();
+            let by_time = steps > 0 && whole[0] == steps;
+            let is_once = whole[0] == 1 && whole.len() > 1 && is_place;
+            let shape = if by_time || is_once { &whole[1..] } else { &whole[..] };
+            let tuples =
+                usize::try_from(shape.first().copied().unwrap_or(1)).map_err(|_| "it claims too much")?;
+            let components =
+                usize::try_from(product(shape.get(1..).unwrap_or_default())?).unwrap_or(1).max(1);
+            let rows = match (by_time, is_once) {
+                (true, _) => Some((place as u64, 1)),
+                (_, true) => Some((0, 1)),
+                _ => None,
+            };
+            if is_place && (2..=3).contains(&components) {
+                let numbers = self.numbers(&path, rows)?.1;
+                let third = |place: &[f64]| place.get(2).copied().unwrap_or(0.0);
+                frame.coordinates =
+                    numbers.chunks_exact(components).map(|at| [at[0], at[1], third(at)]).collect();
+            }
+            let mut array = Array { name, on: Association::Points, components, tuples, values: Vec::new() };
+            if wanted.has(&array.name) {
+                array.values = self.numbers(&path, rows)?.1;
+            }
+            frame.arrays.push(array);
+        }
+        if frame.arrays.is_empty() {
+            return Err("it has no data set of numbers".to_owned());
+        }
+        Ok(frame)
+    }
+
+    /// Takes the columns of a table of records; whether the set is one.
+    fn records(&mut self, number: usize, wanted: Wanted, frame: &mut Frame) -> Result<bool, String> {
+        let Listed { shape, set, .. } = &self.sets[number];
+        let Ok(Datatype::Compound { size, members }) = set.datatype() else { return Ok(false) };
+        let rows = product(shape)?;
+        let tuples = usize::try_from(rows).map_err(|_| "it claims too much")?;
+        let any = members.iter().any(|member| wanted.has(&member.name));
+        let bytes = if any {
+            self.budget.take(rows.saturating_mul(u64::from(size)))?;
+            set.read_raw().map_err(|error| damaged(&error))?
+        } else {
+            Vec::new()
+        };
+        for member in members {
+            let Some((scalar, is_little)) = scalar_of(&member.datatype) else { continue };
+            let mut array = Array {
+                name: member.name,
+                on: Association::Points,
+                components: 1,
+                tuples,
+                values: Vec::new(),
+            };
+            if wanted.has(&array.name) {
+                let from =
+                    usize::try_from(member.byte_offset).map_err(|_| "a field lies outside its record")?;
+                for record in bytes.chunks_exact(size as usize) {
+                    let field =
+                        record.get(from..from + scalar.size()).ok_or("a field lies outside its record")?;
+                    array.values.extend(scalar.decode(field, is_little));
+                }
+            }
+            frame.arrays.push(array);
+        }
+        Ok(true)
+    }
+
+    /// Lists what is in a group, and in the groups in it.
+    fn list(&mut self, group: &Group, path: &str, depth: usize) -> Result<(), String> {
+        for (name, set) in group.iter_datasets().map_err(|error| damaged(&error))? {
+            self.look()?;
+            let shape = set.shape().map_err(|error| damaged(&error))?;
+            self.sets.push(Listed { path: format!("{path}{name}"), shape, set });
+        }
+        for (name, below) in group.iter_groups().map_err(|error| damaged(&error))? {
+            self.look()?;
+            if depth == DEEPEST {
+                return Err(format!("it has groups deeper than {DEEPEST}"));
+            }
+            self.list(&below, &format!("{path}{name}/"), depth + 1)?;
+        }
+        Ok(())
+    }
+
+    fn look(&mut self) -> Result<(), String> {
+        self.looked_at += 1;
+        if self.looked_at > MOST {
+            Err(format!("it has more than {MOST} data sets and groups"))
+        } else {
+            Ok(())
+        }
+    }
+}
+
+fn is_named(path: &str, names: &[&str]) -> bool {
+    let name = path.rsplit('/').next().unwrap_or_default().to_ascii_lowercase();
+    names.contains(&name.as_str())
+}
+
+fn product(shape: &[u64]) -> Result<u64, String> {
+    let all = shape.iter().try_fold(1_u64, |all, one| all.checked_mul(*one));
+    all.ok_or_else(|| "its shape has more numbers than any file".to_owned())
+}
+
+fn damaged(error: &hdf5_pure::Error) -> String {
+    format!("it is no sound HDF5: {error}")
+}
+
+/// Kind of the numbers of a field, and whether the lowest byte stands first.
+fn scalar_of(kind: &Datatype) -> Option<(Scalar, bool)> {
+    let (size, order, is_float, is_signed) = match kind {
+        Datatype::FixedPoint { size, byte_order, layout } => (*size, byte_order, false, layout.signed),
+        Datatype::FloatingPoint { size, byte_order, .. } => (*size, byte_order, true, true),
+        _ => return None,
+    };
+    let scalar = match (size, is_float, is_signed) {
+        (8, true, _) => Scalar::F64,
+        (4, true, _) => Scalar::F32,
+        (8, false, true) => Scalar::I64,
+        (8, false, false) => Scalar::U64,
+        (4, false, true) => Scalar::I32,
+        (4, false, false) => Scalar::U32,
+        (2, false, true) => Scalar::I16,
+        (2, false, false) => Scalar::U16,
+        (1, false, true) => Scalar::I8,
+        (1, false, false) => Scalar::U8,
+        _ => return None,
+    };
+    Some((scalar, *order == DatatypeByteOrder::LittleEndian))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hdf5_pure::FileBuilder;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn a_table_of_records_has_its_fields_as_arrays() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = folder.path().join("particles.h5");
+        let mut builder = FileBuilder::new();
+        let records: Vec<(i8, u64, f32)> = vec![(-1, 5, 0.5), (2, 6, 1.5)];
+        builder.create_dataset("table").with_compound_values(&records).expect("records");
+        builder.write(&path).expect("a file");
+        let mut store = Store::open(&path).expect("a file");
+        let names = BTreeSet::from(["0", "1", "2"].map(str::to_owned));
+        let frame = store.frame(0, Wanted(&names)).expect("a state");
+        let values: Vec<&[f64]> = frame.arrays.iter().map(|array| &array.values[..]).collect();
+        assert_eq!(values, [[-1.0, 2.0], [5.0, 6.0], [0.5, 1.5]]);
+    }
+}

@@ -1,0 +1,293 @@
+//! VTK's legacy files, in text and binary (big endian), of unstructured grids and of points.
+//!
+//! Format: "VTK Legacy Formats", docs.vtk.org; cells of versions up to 4 and from 5.1 on.
+
+use crate::bytes::{Budget, Scalar, counts, number_of_word, short};
+use crate::frame::{Array, Association, Cells, Frame, Wanted};
+use crate::vtu::{is_time, kinds, places};
+
+/// A place in a file.
+struct Cursor<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    is_binary: bool,
+    budget: Budget,
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// What is damaged, cut or claims too much.
+pub fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
+    let mut cursor = Cursor { bytes, at: 0, is_binary: false, budget: Budget::of_file(bytes.len()) };
+    cursor.line();
+    cursor.line();
+    let mode = cursor.word().unwrap_or_default();
+    cursor.is_binary = match mode.to_ascii_uppercase().as_str() {
+        "ASCII" => false,
+        "BINARY" => true,
+        _ => return Err(format!("its third line is `{}`, neither ASCII nor BINARY", short(&mode))),
+    };
+    let mut reading =
+        Reading { cursor, wanted, frame: Frame::default(), on: Association::Whole, points: 0, cells: 0 };
+    let (mut listed, mut types) = (None, Vec::new());
+    while let Some(word) = reading.cursor.word() {
+        match word.to_ascii_uppercase().as_str() {
+            "DATASET" => {
+                let kind = reading.cursor.word().unwrap_or_default();
+                if !["UNSTRUCTURED_GRID", "POLYDATA", "STRUCTURED_GRID"].contains(&kind.as_str()) {
+                    return Err(format!("a data set of the type `{}` is not read", short(&kind)));
+                }
+            }
+            "DIMENSIONS" => reading.cursor.skip_words(3),
+            "POINTS" => reading.points()?,
+            "CELLS" => listed = Some(reading.cells()?),
+            "CELL_TYPES" => {
+                let count = reading.cursor.count()?;
+                types = kinds(&reading.cursor.numbers(Scalar::I32, count, 1)?)?;
+            }
+            "VERTICES" | "LINES" | "POLYGONS" | "TRIANGLE_STRIPS" => {
+                reading.cells()?;
+            }
+            "POINT_DATA" => reading.begin(Association::Points)?,
+            "CELL_DATA" => reading.begin(Association::Cells)?,
+            "METADATA" => reading.cursor.skip_metadata(),
+            keyword => reading.data(keyword)?,
+        }
+    }
+    let Reading { mut frame, points, .. } = reading;
+    if points == 0 {
+        return Err("it has no POINTS".to_owned());
+    }
+    if let Some((ends, connectivity)) = listed {
+        let cells = Cells { types, ends, connectivity };
+        cells.check(points)?;
+        frame.cells = (cells.count() > 0).then_some(cells);
+    }
+    Ok(frame)
+}
+
+/// What has been read so far.
+struct Reading<'a> {
+    cursor: Cursor<'a>,
+    wanted: Wanted<'a>,
+    frame: Frame,
+    on: Association,
+    points: usize,
+    cells: usize,
+}
+
+impl Reading<'_> {
+    fn points(&mut self) -> Result<(), String> {
+        self.points = self.cursor.count()?;
+        let scalar = self.cursor.scalar()?;
+        let numbers = self.cursor.numbers(scalar, self.points, 3)?;
+        self.frame.coordinates =
+            numbers.chunks_exact(3).map(|place| [place[0], place[1], place[2]]).collect();
+        Ok(())
+    }
+
+    /// Ends and points of cells, of both versions of the format.
+    fn cells(&mut self) -> Result<(Vec<usize>, Vec<u32>), String> {
+        let (first, second) = (self.cursor.count()?, self.cursor.count()?);
+        if self.cursor.peek().as_deref() == Some("OFFSETS") {
+            self.cursor.word();
+            let scalar = self.cursor.scalar()?;
+            let offsets = counts(&self.cursor.numbers(scalar, first, 1)?)?;
+            if self.cursor.word().as_deref() != Some("CONNECTIVITY") {
+                return Err("no CONNECTIVITY follows the OFFSETS of the cells".to_owned());
+            }
+            let scalar = self.cursor.scalar()?;
+            let connectivity = places(&self.cursor.numbers(scalar, second, 1)?)?;
+            self.cells = first.saturating_sub(1);
+            return Ok((offsets.get(1..).unwrap_or_default().to_vec(), connectivity));
+        }
+        self.cells = first;
+        let list = places(&self.cursor.numbers(Scalar::I32, second, 1)?)?;
+        let (mut ends, mut connectivity) = (Vec::new(), Vec::new());
+        let mut rest = list.as_slice();
+        while let Some((length, after)) = rest.split_first() {
+            let length = *length as usize;
+            let points = after.get(..length).ok_or("the list of cells ends inside a cell")?;
+            connectivity.extend_from_slice(points);
+            ends.push(connectivity.len());
+            rest = &after[length..];
+        }
+        if ends.len() != first {
+            return Err(format!("{first} cells are declared and {} are listed", ends.len()));
+        }
+        Ok((ends, connectivity))
+    }
+
+    fn begin(&mut self, on: Association) -> Result<(), String> {
+        self.on = on;
+        let count = self.cursor.count()?;
+        let there = if on == Association::Points { self.points } else { self.cells };
+        if count != there && !(on == Association::Cells && there == 0) {
+            return Err(format!("data of {count} {} are declared, and there are {there}", on.name()));
+        }
+        Ok(())
+    }
+
+    fn tuples(&self) -> usize {
+        if self.on == Association::Cells { self.cells } else { self.points }
+    }
+
+    /// Arrays that a keyword begins.
+    fn data(&mut self, keyword: &str) -> Result<(), String> {
+        match keyword {
+            "SCALARS" => {
+                let (name, scalar) = (self.cursor.name()?, self.cursor.scalar()?);
+                let mut components = 1;
+                if self.cursor.peek().is_some_and(|word| word.parse::<usize>().is_ok()) {
+                    components = self.cursor.count()?;
+                }
+                if self.cursor.peek().as_deref() == Some("LOOKUP_TABLE") {
+                    self.cursor.skip_words(2);
+                }
+                self.array(name, scalar, self.tuples(), components)
+            }
+            "VECTORS" | "NORMALS" | "TENSORS" => {
+                let (name, scalar) = (self.cursor.name()?, self.cursor.scalar()?);
+                self.array(name, scalar, self.tuples(), if keyword == "TENSORS" { 9 } else { 3 })
+            }
+            "FIELD" => {
+                self.cursor.name()?;
+                let arrays = self.cursor.count()?;
+                for _ in 0..arrays {
+                    while self.cursor.peek().as_deref() == Some("METADATA") {
+                        self.cursor.word();
+                        self.cursor.skip_metadata();
+                    }
+                    let name = self.cursor.name()?;
+                    let (components, tuples) = (self.cursor.count()?, self.cursor.count()?);
+                    let scalar = self.cursor.scalar()?;
+                    self.array(name, scalar, tuples, components)?;
+                }
+                Ok(())
+            }
+            other => Err(format!(
+                "`{}` at its byte {} is no keyword that is read, or an array is longer than declared",
+                short(other),
+                self.cursor.at
+            )),
+        }
+    }
+
+    fn array(
+        &mut self,
+        name: String,
+        scalar: Scalar,
+        tuples: usize,
+        components: usize,
+    ) -> Result<(), String> {
+        let values = self
+            .cursor
+            .numbers(scalar, tuples, components)
+            .map_err(|why| format!("the array `{name}`: {why}"))?;
+        if self.on == Association::Whole && is_time(&name) {
+            self.frame.time = values.first().copied();
+        }
+        if self.on != Association::Whole && tuples != self.tuples() {
+            return Err(format!(
+                "the array `{name}` has {tuples} tuples for {} {}",
+                self.tuples(),
+                self.on.name()
+            ));
+        }
+        let values = if self.wanted.has(&name) { values } else { Vec::new() };
+        self.frame.arrays.push(Array { name, on: self.on, components: components.max(1), tuples, values });
+        Ok(())
+    }
+}
+
+impl Cursor<'_> {
+    fn line(&mut self) {
+        let rest = self.bytes.get(self.at..).unwrap_or_default();
+        self.at += rest.iter().position(|symbol| *symbol == b'\n').map_or(rest.len(), |end| end + 1);
+    }
+
+    fn word_at(&self) -> (usize, usize) {
+        let rest = &self.bytes[self.at.min(self.bytes.len())..];
+        let start = rest.iter().position(|symbol| !symbol.is_ascii_whitespace()).unwrap_or(rest.len());
+        let length = rest[start..].iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len() - start);
+        (self.at + start, self.at + start + length)
+    }
+
+    fn peek(&self) -> Option<String> {
+        let (start, end) = self.word_at();
+        (start < end).then(|| String::from_utf8_lossy(&self.bytes[start..end]).into_owned())
+    }
+
+    fn word(&mut self) -> Option<String> {
+        let word = self.peek();
+        self.at = self.word_at().1;
+        word
+    }
+
+    fn skip_words(&mut self, words: usize) {
+        for _ in 0..words {
+            self.word();
+        }
+    }
+
+    /// Leaves a block of metadata, which ends with an empty line.
+    fn skip_metadata(&mut self) {
+        self.line();
+        while self.at < self.bytes.len() {
+            let start = self.at;
+            self.line();
+            if self.bytes[start..self.at].trim_ascii().is_empty() {
+                break;
+            }
+        }
+    }
+
+    fn name(&mut self) -> Result<String, String> {
+        self.word()
+            .map(|name| name.replace("%20", " "))
+            .ok_or_else(|| "it ends before a name: the file is cut".to_owned())
+    }
+
+    fn count(&mut self) -> Result<usize, String> {
+        let word = self.word().unwrap_or_default();
+        word.parse().map_err(|_| format!("`{}` at its byte {} is no count", short(&word), self.at))
+    }
+
+    fn scalar(&mut self) -> Result<Scalar, String> {
+        let word = self.word().unwrap_or_default();
+        Scalar::of_legacy(&word).ok_or_else(|| format!("`{}` is no kind of numbers", short(&word)))
+    }
+
+    /// The numbers that follow.
+    fn numbers(&mut self, scalar: Scalar, tuples: usize, components: usize) -> Result<Vec<f64>, String> {
+        let cut = |there: usize| {
+            format!(
+                "{tuples} tuples of {components} are declared and there is room for {there} numbers: the file is cut"
+            )
+        };
+        let left = self.bytes.len().saturating_sub(self.at);
+        // A written number takes two bytes at least.
+        let least = if self.is_binary { scalar.size() } else { 2 };
+        let total = tuples.checked_mul(components).filter(|total| *total <= left / least + 1);
+        let total = total.ok_or_else(|| cut(left / least))?;
+        self.budget.take(8 * total as u64)?;
+        if self.is_binary {
+            self.line();
+            let end = self.at + total * scalar.size();
+            let bytes = self.bytes.get(self.at..end).ok_or_else(|| cut(left / least))?;
+            self.at = end;
+            return Ok(scalar.decode(bytes, false));
+        }
+        let mut numbers = Vec::with_capacity(total);
+        for _ in 0..total {
+            let (start, end) = self.word_at();
+            if start == end {
+                return Err(cut(numbers.len()));
+            }
+            numbers.push(number_of_word(&self.bytes[start..end])?);
+            self.at = end;
+        }
+        Ok(numbers)
+    }
+}

@@ -1,0 +1,95 @@
+//! The energy of a frozen body on its way, by the forces that its step is made of, and what its forces leave unbalanced.
+//!
+//! With the forces `K_σ u` and `K_p U` of the displacement `u` that strained the skeleton and of the flux `U`, and the
+//! constant ones `f` on the mixture and `f_w` on the water,
+//!
+//! ```text
+//! H = Σ ½ (m_s v_s² + m_w v_w²) + ½ uᵀK_σ u + ½ UᵀK_p U − [(f − f_w)·u + f_w·U]
+//! ```
+//!
+//! falls by what drag takes, and by nothing else, where the operators are symmetric. Of a step whose velocities and
+//! displacements take turns the product of two neighbouring displacements stays, not the square of one (Hairer, Lubich
+//! & Wanner 2006, section IX.8): `u` at the start of the last step times the force at its end, and the mean of both in the
+//! work.
+
+use crate::assembled::assembled_state::{LANES, MARGIN, SOLID, WATER, lanes};
+use crate::assembled::rows::RowStorage;
+use crate::assembled::rows::banded_rows::{BandsWithin, REACH};
+use crate::assembled::rows::block_products::{Displacements, Rows};
+use crate::assembled::step::{AssembledStep, BlockConstants};
+use crate::run::energy::Energy;
+use oedometer_soil::tensor::Vector;
+
+impl<const D: usize> AssembledStep<D> {
+    /// Energy after a drift of `dt` seconds, J, by velocities that were mapped back or not.
+    pub fn energy(&mut self, dt: f64, mapping_back: bool) -> Energy {
+        let Self { rows, constants, state, .. } = self;
+        if let RowStorage::Sparse(rows) = rows {
+            rows.dilate(&state.flux_displacement, &mut state.dilation);
+        }
+        let velocity = if mapping_back { &state.velocity } else { &state.trial };
+        let moved = Moved {
+            displacements: Displacements {
+                strained: &state.strain_displacement,
+                flux: &state.flux_displacement,
+                dilation: &state.dilation,
+            },
+            velocity: velocity.each_ref().map(|field| &field[..]),
+            dt,
+        };
+        match rows {
+            RowStorage::Banded(bands) => sum_of(&BandsWithin::<D, REACH>(bands), constants, &moved),
+            RowStorage::Sparse(rows) => sum_of(rows, constants, &moved),
+        }
+    }
+
+    /// Largest force on a free component of the skeleton that accelerates its node, N.
+    pub fn largest_accelerating_force(&self) -> f64 {
+        let acceleration = &self.state.acceleration;
+        let mut largest: f64 = 0.0;
+        for row in 0..self.nodes.len() {
+            let (block, i) = (&self.constants[row / LANES], row % LANES);
+            let [solid_mass, water_mass] = block.masses(i);
+            for d in (0..D).filter(|d| block.free[SOLID][*d][i] > 0.0) {
+                let force = solid_mass * acceleration[SOLID][MARGIN + row][d]
+                    + water_mass * acceleration[WATER][MARGIN + row][d];
+                largest = if force.is_finite() { largest.max(force.abs()) } else { f64::INFINITY };
+            }
+        }
+        largest
+    }
+}
+
+/// What has moved, and how.
+struct Moved<'a, const D: usize> {
+    displacements: Displacements<'a, D>,
+    velocity: [&'a [Vector<D>]; 2],
+    dt: f64,
+}
+
+fn sum_of<const D: usize>(
+    rows: &impl Rows<D>,
+    constants: &[BlockConstants<D>],
+    Moved { displacements, velocity, dt }: &Moved<'_, D>,
+) -> Energy {
+    let mut energy = Energy::default();
+    for (block, nodes) in constants.iter().enumerate() {
+        let [pressure, skeleton] = rows.forces(block, *displacements);
+        for d in 0..D {
+            let [solid, water] = velocity.map(|field| lanes(field, block, d));
+            let strained = lanes(displacements.strained, block, d);
+            let flux = lanes(displacements.flux, block, d);
+            for i in (0..LANES).filter(|i| nodes.holds_row(*i)) {
+                let [solid_mass, water_mass] = nodes.masses(i);
+                let flowing = solid[i] + nodes.porosity(i) * (water[i] - solid[i]);
+                let before = [strained[i] - dt * solid[i], flux[i] - dt * flowing];
+                let mean = [strained[i] - 0.5 * dt * solid[i], flux[i] - 0.5 * dt * flowing];
+                energy.kinetic += 0.5 * (solid_mass * solid[i] * solid[i] + water_mass * water[i] * water[i]);
+                energy.stored += 0.5 * (before[0] * skeleton[d][i] + before[1] * pressure[d][i]);
+                let [mixture, on_water] = nodes.given_forces(d, i);
+                energy.work += (mixture - on_water) * mean[0] + on_water * mean[1];
+            }
+        }
+    }
+    energy
+}

@@ -1,0 +1,139 @@
+//! What a frozen step needs of its body: rows between those nodes that move, and constants of each.
+
+use crate::assembled::sliding_rows::SlidingRows;
+use crate::assembled::stiffness::entry_of;
+use crate::assembled::tied_rows::TiedRows;
+use crate::body::Body;
+use crate::operators::volumetric::VolumetricRows;
+use oedometer_soil::tensor::{Tensor, Vector};
+
+/// The operators of a frozen body between its rows: the nodes that are free in some component.
+#[derive(Clone, Debug)]
+pub struct FrozenOperators<const D: usize> {
+    /// Node of each row.
+    pub nodes: Vec<usize>,
+    /// Nodes of the body.
+    pub node_count: usize,
+    /// Constants of each row.
+    pub constants: Vec<NodeConstants<D>>,
+    /// `D`: dilation at each site over the displacements, `[site] → (row, 1/m)`.
+    pub divergence: Vec<Vec<(usize, Vector<D>)>>,
+    /// `A Q`: force of a unit dilation of each site with its sign turned, `[row] → (site, N)`.
+    pub pressure_force: Vec<Vec<(usize, Vector<D>)>>,
+    /// `K_σ`: force of the effective stress over the displacements with its sign turned,
+    /// `[row] → (row, N/m)`.
+    pub skeleton_force: Vec<Vec<(usize, Tensor<D>)>>,
+    /// `P = M⁻¹ Σ N m ⊗ N`: velocities to the points and back, `[row] → (row, 1)`.
+    pub projection: Vec<Vec<(usize, f64)>>,
+    /// Rows whose displacements are the settlement, with their weights and its sign turned.
+    pub settling: Vec<(usize, Vector<D>)>,
+    /// Rows that go together under a rigid plate.
+    pub tied: TiedRows,
+    /// Rows where the water slides past a skeleton that is held.
+    pub sliding: SlidingRows,
+    /// `D` and `R` between nodes, sites and points.
+    pub volumetric: VolumetricRows<D>,
+}
+
+/// What is constant about one node, and its start.
+#[derive(Clone, Copy, Debug)]
+pub struct NodeConstants<const D: usize> {
+    /// One where a component of a phase is free, else zero.
+    pub free: [Vector<D>; 2],
+    /// Porosity.
+    pub porosity: f64,
+    /// One over the mass of the grains, 1/kg.
+    pub per_solid_mass: f64,
+    /// `ρ_w V`, kg.
+    pub water_inertia: f64,
+    /// Mass of the water over that of the grains.
+    pub water_share: f64,
+    /// Drag `n γ_w V/k`, N s/m.
+    pub drag: f64,
+    /// Force on the mixture, N.
+    pub mixture_force: Vector<D>,
+    /// Part of it that is the load, N.
+    pub load_force: Vector<D>,
+    /// Force on the water, N.
+    pub water_force: Vector<D>,
+    /// Velocity of both phases, m/s.
+    pub velocity: [Vector<D>; 2],
+}
+
+impl<const D: usize> FrozenOperators<D> {
+    /// Takes the present operators, forces and velocities of a body.
+    pub fn of(body: &Body<D>) -> Self {
+        let mut body = body.clone();
+        body.map_velocities();
+        body.map_forces();
+        let fields = &body.nodes;
+        let is_free = |node: &usize| fields.free[*node] != [0.0; D] || fields.water_free[*node] != [0.0; D];
+        let nodes: Vec<usize> = (0..fields.len()).filter(is_free).collect();
+        let mut number = vec![None; fields.len()];
+        for (row, node) in nodes.iter().enumerate() {
+            number[*node] = Some(row);
+        }
+        let volumetric = body.volumetric_rows();
+        let skeleton = body.skeleton_stiffness(&volumetric).rows;
+        let forces = body.coupled_pressure_forces(&volumetric);
+        let projection = projection(&body);
+        Self {
+            constants: nodes.iter().map(|node| NodeConstants::of(&body, *node)).collect(),
+            divergence: volumetric.divergence.iter().map(|row| numbered(row, &number)).collect(),
+            pressure_force: nodes.iter().map(|node| forces[*node].clone()).collect(),
+            skeleton_force: nodes.iter().map(|node| numbered(&skeleton[*node], &number)).collect(),
+            projection: nodes.iter().map(|node| numbered(&projection[*node], &number)).collect(),
+            settling: numbered(&body.settling_weights(), &number),
+            tied: TiedRows::of(&body, &number),
+            sliding: SlidingRows::of(&body, &number),
+            node_count: fields.len(),
+            volumetric,
+            nodes,
+        }
+    }
+}
+
+impl<const D: usize> NodeConstants<D> {
+    fn of(body: &Body<D>, node: usize) -> Self {
+        let fields = &body.nodes;
+        Self {
+            free: [fields.free[node], fields.water_free[node]],
+            porosity: fields.porosity[node],
+            per_solid_mass: fields.per_solid_mass[node],
+            water_inertia: body.material.water_density * fields.volume[node],
+            water_share: fields.water_mass[node] * fields.per_solid_mass[node],
+            drag: fields.drag[node],
+            mixture_force: fields.mixture_force[node],
+            load_force: fields.external_force[node],
+            water_force: fields.water_force[node],
+            velocity: [fields.solid_velocity[node], fields.water_velocity[node]],
+        }
+    }
+}
+
+/// Entries of a row with the numbers of their nodes; those of held nodes fall away.
+fn numbered<T: Copy>(row: &[(usize, T)], number: &[Option<usize>]) -> Vec<(usize, T)> {
+    row.iter().filter_map(|(node, value)| Some((number[*node]?, *value))).collect()
+}
+
+/// `P`, `[node] → (node, 1)`.
+fn projection<const D: usize>(body: &Body<D>) -> Vec<Vec<(usize, f64)>> {
+    let mut rows = vec![Vec::new(); body.nodes.len()];
+    let soil = &body.material;
+    for point in 0..body.points.len() {
+        let mass = body.points.initial_volume[point] * (1.0 - soil.porosity) * soil.grain_density;
+        let mut weights = Vec::new();
+        body.basis.visit(body.grid.node_stride(), point, |node, weight, _| {
+            if weight != 0.0 {
+                weights.push((node, weight));
+            }
+        });
+        for (row, to) in &weights {
+            for (column, from) in &weights {
+                *entry_of(&mut rows[*row], *column, 0.0) +=
+                    to * mass * from * body.nodes.per_solid_mass[*row];
+            }
+        }
+    }
+    rows
+}

@@ -1,0 +1,402 @@
+//! The discretised body: points, nodes and the operators that join them.
+
+use crate::forcing::{Forced, Forcing};
+use crate::method::{Configuration, Method};
+use crate::operators::corners::{build_corners, corner_stencils};
+use crate::operators::recovery::RecoveryOperator;
+use crate::operators::rigid_plate::RigidPlate;
+use crate::operators::self_weight::SelfWeight;
+use crate::operators::stencil::PointStencils;
+use crate::operators::strain_gradient::StrainOperator;
+use crate::operators::surface_load::{LoadShape, LoadedSurface};
+use crate::state::cell_memory::CellMemory;
+use crate::state::cells::Cells;
+use crate::state::confined_points::ConfinedPoints;
+use crate::state::domains::Domains;
+use crate::state::grid::Grid;
+use crate::state::nodes::each_of_runs;
+use crate::state::nodes::{Nodes, Support};
+use crate::state::points::Points;
+use crate::state::stress_planes::StressPlanes;
+use crate::state::velocity_slopes::VelocitySlopes;
+use oedometer_soil::continuity::Continuity;
+use oedometer_soil::law::Stiffness;
+use oedometer_soil::material::Material;
+use oedometer_soil::tensor::{Tensor, Vector, product};
+use std::sync::Arc;
+
+/// What is to be solved: geometry, material, load and initial state, and by which operators.
+#[derive(Clone, Debug)]
+pub struct Problem<const D: usize> {
+    /// Background grid.
+    pub grid: Grid<D>,
+    /// Faces that are held.
+    pub support: Support<D>,
+    /// Points in their initial state.
+    pub points: Points<D>,
+    /// Points of the water in their initial state, where it has a layer of its own.
+    pub water: Option<Points<D>>,
+    /// Soil.
+    pub material: Material,
+    /// Operators.
+    pub method: Method,
+    /// Configuration of the weights.
+    pub configuration: Configuration,
+    /// Load on the surface, Pa.
+    pub load: f64,
+    /// How the load varies along the surface.
+    pub load_shape: LoadShape,
+    /// Mean pressure, Pa, under a rigid plate on the upper face of the first direction, where there is one.
+    pub plate_load: Option<f64>,
+    /// Gravity, m/s², that skeleton and water weigh with, where they do; the pressures of the points are those
+    /// beyond the hydrostatic one, and their stresses are those of the weight.
+    pub weight: Option<f64>,
+    /// Effective stresses of the weight at the points, Pa, where these integrate it inexactly and the start is to be in
+    /// balance all the same; none elsewhere.
+    pub balanced_weight: Vec<Tensor<D>>,
+    /// Whether the body is to find its undrained equilibrium under the load before it starts.
+    pub undrained_start: bool,
+    /// Time over which the load grows linearly, s; 0 where it acts at once.
+    pub loading_time: f64,
+    /// Displacement gradient of the start against the unloaded state.
+    pub initial_gradient: Tensor<D>,
+    /// Pressure that this problem is about, Pa: what leaves it a thousandfold has blown up.
+    pub pressure_scale: f64,
+    /// Body forces and source of water that act on every point, where a motion is made by them.
+    pub forcing: Option<Arc<dyn Forcing<D>>>,
+    /// Whether a result that the scene cannot reach ends the run; not where growth is the question.
+    pub is_bounded: bool,
+}
+
+impl<const D: usize> Problem<D> {
+    /// The same problem with all loads, stresses and motions of its start times a factor.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.load *= factor;
+        self.plate_load = self.plate_load.map(|load| factor * load);
+        self.weight = self.weight.map(|gravity| factor * gravity);
+        self.pressure_scale *= factor;
+        let points = &mut self.points;
+        points.pressure.iter_mut().for_each(|pressure| *pressure *= factor);
+        points.effective_stress.iter_mut().flatten().flatten().for_each(|stress| *stress *= factor);
+        self.balanced_weight.iter_mut().flatten().flatten().for_each(|stress| *stress *= factor);
+        points.solid_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
+        points.water_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
+        if let Some(water) = &mut self.water {
+            water.pressure.iter_mut().for_each(|pressure| *pressure *= factor);
+            water.water_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
+        }
+        self.initial_gradient.iter_mut().flatten().for_each(|gradient| *gradient *= factor);
+        self
+    }
+}
+
+/// The discretised body during a run.
+#[derive(Clone, Debug)]
+pub struct Body<const D: usize> {
+    /// Background grid.
+    pub grid: Grid<D>,
+    /// Material points.
+    pub points: Points<D>,
+    /// Nodal fields.
+    pub nodes: Nodes<D>,
+    /// Cell fields.
+    pub cells: Cells<D>,
+    /// Soil.
+    pub material: Material,
+    /// Stiffness of the skeleton.
+    pub stiffness: Stiffness,
+    /// Operators.
+    pub method: Method,
+    /// Configuration of the weights.
+    pub configuration: Configuration,
+    /// Whether gradients are pushed forward from where the weights were built: on the initial
+    /// configuration always, and within an implicit step that moves points.
+    pub is_pushed_forward: bool,
+    /// Loaded surface.
+    pub surface: LoadedSurface<D>,
+    /// Rigid plate on the upper face of the first direction.
+    pub plate: Option<RigidPlate>,
+    /// Weight of skeleton and water; the pressures of the points are total ones then.
+    pub weight: Option<SelfWeight>,
+    /// What the weight of points off their lattice leaves unbalanced at the nodes, and they carry: `[node][phase]`, m/s²
+    /// upward positive, of the mixture and of the pore water; none where points integrate it exactly.
+    pub weight_carried: Vec<[Vector<D>; 2]>,
+    /// What acts on every point from outside.
+    pub forcing: Option<Forced<D>>,
+    /// `N` and `∇N` between points and nodes.
+    pub basis: PointStencils<D>,
+    /// `G` where it is not the gradient of the basis.
+    pub strain: StrainOperator<D>,
+    /// Domains of the points where they turn with the material.
+    pub domains: Option<Domains<D>>,
+    /// Slopes of the points' velocities, where they bring them to the nodes.
+    pub slopes: Option<VelocitySlopes<D>>,
+    /// How stresses slope over the points' domains, where they do.
+    pub stress_planes: Option<StressPlanes<D>>,
+    /// What the cells remember.
+    pub cell_memory: CellMemory<D>,
+    /// Faces that are held.
+    support: Support<D>,
+    /// Whether the basis reaches beyond a surface that moves through the grid.
+    splines_end_at_surface: bool,
+    /// `R`, from the sites of the divergence to the points.
+    pub recovery: RecoveryOperator<D>,
+    /// Values at the sites on their way to the points: pressure increments, Pa, or rates of dilation, 1/s;
+    /// `[cell]` or `[point]`.
+    pub site_values: Vec<f64>,
+    /// The skeleton's volumetric rate at the points, 1/s, where the method is B-bar.
+    pub dilation_rates: Vec<f64>,
+    /// Mixture that passed the surface since the start, `∫ v_s + n(v_w − v_s) dt`, m.
+    pub surface_flux: f64,
+}
+
+impl<const D: usize> Body<D> {
+    /// Discretises a problem: builds operators and nodal masses on the initial configuration and
+    /// maps the points' velocities to the nodes.
+    pub fn new(problem: Problem<D>) -> Self {
+        let Problem {
+            grid,
+            support,
+            points,
+            material,
+            method,
+            configuration,
+            load,
+            load_shape,
+            plate_load,
+            weight,
+            balanced_weight,
+            initial_gradient,
+            forcing,
+            ..
+        } = problem;
+        let count = points.len();
+        let solid_cell_mass = (0..D).map(|_| grid.cell_size).product::<f64>()
+            * (1.0 - material.porosity)
+            * material.grain_density;
+        let sites = if method.pressure.is_by_cells() { grid.cell_count() } else { count };
+        let domains = Domains::of(method, configuration, &points);
+        let strains_vertically =
+            load_shape == LoadShape::Uniform && plate_load.is_none() && forcing.is_none();
+        // Domains that turn have lengths of their own.
+        let confined = (strains_vertically && domains.is_none())
+            .then(|| ConfinedPoints::of(&points, &material, method.domains_follow()))
+            .flatten();
+        let mut body = Self {
+            nodes: Nodes::new(&grid, &support, solid_cell_mass),
+            cells: Cells::new(&grid, count),
+            stiffness: material.stiffness(),
+            surface: LoadedSurface::of(&points, load)
+                .shaped(load_shape, &points)
+                .spread_by(method.basis, support)
+                .stretching(configuration.moves_points() && !method.domains_follow()),
+            plate: None,
+            weight: weight.map(|gravity| SelfWeight::of(gravity, &points)),
+            weight_carried: Vec::new(),
+            forcing: forcing.map(|acting| Forced::of(acting, &grid, &points)),
+            basis: if domains.is_some() { corner_stencils(count) } else { method.basis.stencils(count) },
+            domains,
+            slopes: None,
+            stress_planes: None,
+            strain: StrainOperator::of(method.strain, count),
+            cell_memory: CellMemory::new(&grid, confined),
+            support,
+            splines_end_at_surface: method.basis.is_spline() && configuration.moves_points(),
+            recovery: RecoveryOperator::of(method, &grid, count),
+            site_values: vec![0.0; sites],
+            dilation_rates: vec![0.0; if method.strain.is_bbar() { count } else { 0 }],
+            surface_flux: 0.0,
+            grid,
+            points,
+            material,
+            method,
+            configuration,
+            is_pushed_forward: configuration == Configuration::Total,
+        };
+        body.displace(&initial_gradient);
+        body.add_hydrostatic_pressure();
+        body.build_operators();
+        body.map_masses();
+        if !balanced_weight.is_empty() {
+            body.carry_what_weight_leaves(balanced_weight);
+        }
+        if let Some(load) = plate_load {
+            let volumes = body.points.initial_volume.iter().copied();
+            body.plate = Some(RigidPlate::of(load, &body.grid, &body.nodes, volumes));
+            body.apply_loads();
+        }
+        body.map_velocities();
+        body
+    }
+
+    /// Displaces points and nodes by a uniform gradient; where strains are finite, the points take
+    /// their volumes with them, and where they move, their places and domains.
+    fn displace(&mut self, gradient: &Tensor<D>) {
+        let moved = |place: &Vector<D>| -> Vector<D> {
+            std::array::from_fn(|d| (0..D).map(|e| gradient[d][e] * place[e]).sum())
+        };
+        for node in 0..self.nodes.len() {
+            self.nodes.displacement[node] = moved(&self.grid.node_position(node));
+        }
+        let configuration = self.configuration;
+        let follow = self.method.domains_follow();
+        let points = &mut self.points;
+        for point in 0..points.len() {
+            points.displacement[point] = moved(&points.initial_position[point]);
+            for d in 0..D {
+                if configuration.deforms() {
+                    points.volume_ratio[point] *= 1.0 + gradient[d][d];
+                    points.inverse_deformation[point][d][d] /= 1.0 + gradient[d][d];
+                }
+                if configuration.moves_points() {
+                    points.position[point][d] += points.displacement[point][d];
+                    if follow {
+                        points.half_length[point][d] *= 1.0 + gradient[d][d];
+                    }
+                }
+            }
+        }
+        self.turn_domains();
+    }
+
+    /// Takes domains that turn with the points' deformation since the start of the run.
+    pub(crate) fn turn_domains(&mut self) {
+        if let Some(domains) = &mut self.domains {
+            domains.follow(&self.points.inverse_deformation);
+        }
+    }
+
+    /// Brings operators and masses up to the points' places and volumes: all of them where points
+    /// move, what follows the volumes where weights stay on the initial configuration.
+    pub fn follow_points(&mut self) {
+        self.follow_places();
+        if self.configuration.deforms() {
+            self.map_masses();
+        }
+    }
+
+    /// Brings the operators alone up to the points' places and volumes.
+    pub(crate) fn follow_places(&mut self) {
+        if self.is_pushed_forward {
+            self.cells.sum_volumes(&self.points, self.material.porosity);
+            self.cells.average_deformation(&self.points);
+        } else if self.configuration.moves_points() {
+            self.build_operators();
+        }
+    }
+
+    /// Gradient of a nodal field at a point, from which the effective stress takes its strain.
+    #[inline]
+    pub fn strain_gradient(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
+        self.strain.gradient(&self.basis, self.grid.node_stride(), point, field)
+    }
+
+    /// What carries a point under a nodal velocity or displacement: the value of the basis, or the
+    /// mean of its domain's ends where those are what its strain is taken between.
+    #[inline]
+    pub fn carrying(&self, point: usize, field: &[Vector<D>], of_basis: Vector<D>) -> Vector<D> {
+        self.strain.carrier().map_or(of_basis, |ends| ends.value(self.grid.node_stride(), point, field))
+    }
+
+    /// Divergence of a nodal field at a point, on the present configuration.
+    #[inline]
+    pub fn divergence_at_point(&self, point: usize, field: &[Vector<D>]) -> f64 {
+        if !self.is_pushed_forward {
+            return self.basis.divergence(self.grid.node_stride(), point, field);
+        }
+        let gradient = self.basis.gradient(self.grid.node_stride(), point, field);
+        let gradient = product(&gradient, &self.points.inverse_deformation[point]);
+        (0..D).map(|d| gradient[d][d]).sum()
+    }
+
+    /// Divergence of a nodal field at a cell's centre, on the present configuration.
+    #[inline]
+    pub fn divergence_at_centre(&self, cell: usize, field: &[Vector<D>]) -> f64 {
+        if self.is_pushed_forward {
+            self.cells.deformed_centre_divergence(&self.grid, cell, field)
+        } else {
+            self.cells.centre_divergence(&self.grid, cell, field)
+        }
+    }
+
+    /// Builds every operator of the method on the points' present places, and puts the load on
+    /// the surface there.
+    pub fn build_operators(&mut self) {
+        self.cells.locate(&self.grid, &self.points, self.material.porosity);
+        if self.method.strain.is_composite() {
+            self.cells.find_reached(&self.grid, &self.points);
+        }
+        if self.splines_end_at_surface {
+            self.support = self.surface.end_splines(&self.grid, &self.points);
+            self.cells.end_at(&self.grid, self.support.outermost.unwrap_or(usize::MAX));
+        }
+        if let Some(domains) = &self.domains {
+            build_corners(&mut self.basis, &self.grid, &self.cells.place, &domains.half_edges);
+        } else {
+            let places = [&self.cells.place[..], &self.points.half_length[..]];
+            self.method.basis.build(&mut self.basis, &self.grid, &self.support, places);
+        }
+        self.strain.build(&self.grid, &self.cells, &self.points.half_length);
+        self.recovery.build(&self.grid, &self.cells);
+        if self.is_pushed_forward {
+            self.cells.average_deformation(&self.points);
+        }
+        self.apply_loads();
+    }
+
+    /// Faces that are held, and where splines end.
+    pub fn support(&self) -> Support<D> {
+        self.support
+    }
+
+    /// Last node of splines that end at a surface on its way through the grid.
+    pub fn last_spline_node(&self) -> Option<usize> {
+        self.support.outermost
+    }
+
+    /// Displacement of the skeleton at the place of a node, m: that of the node itself, but for splines,
+    /// whose coefficients are no values.
+    pub fn displacement_at_node(&self, node: usize) -> Vector<D> {
+        if !self.method.basis.is_spline() {
+            return self.nodes.displacement[node];
+        }
+        let position = self.grid.node_position(node);
+        let place = self.grid.held_in_cells(&position);
+        let mut value = [0.0; D];
+        self.method.basis.visit_surface(&self.grid, &self.support, &place, |node, weight| {
+            for d in 0..D {
+                value[d] += weight * self.nodes.displacement[node][d];
+            }
+        });
+        value
+    }
+
+    /// `v_s + n (v_w − v_s)` at the nodes, with the nodal porosity: what docs/theory.md, Eq. 4
+    /// takes the divergence of.
+    pub fn nodal_flux(&mut self) {
+        let nodes = &mut self.nodes;
+        each_of_runs!(nodes, |first, N| nodes.flux_of::<N>(first));
+    }
+
+    /// Largest nodal velocity of either phase, m/s; infinite where one is not finite.
+    pub fn largest_velocity(&self) -> f64 {
+        let both = self.nodes.solid_velocity.iter().chain(&self.nodes.water_velocity);
+        both.flatten().fold(0.0, |largest: f64, velocity| {
+            if velocity.is_finite() { largest.max(velocity.abs()) } else { f64::INFINITY }
+        })
+    }
+
+    /// Rate of the volume that the mixture gains, 1/s, from the divergence at a place: the bracket of
+    /// docs/theory.md, Eq. 4 or 4' (Zheng et al. Eq. 6).
+    #[inline]
+    pub fn volume_rate(&self, porosity: f64, divergence: impl Fn(&[Vector<D>]) -> f64) -> f64 {
+        match self.material.continuity {
+            Continuity::Conservative => divergence(&self.nodes.flux),
+            Continuity::ConstantPorosityGradient => {
+                (1.0 - porosity) * divergence(&self.nodes.solid_velocity)
+                    + porosity * divergence(&self.nodes.water_velocity)
+            }
+        }
+    }
+}

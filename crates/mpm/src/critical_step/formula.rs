@@ -1,0 +1,94 @@
+//! Wave speeds and the time-step limits that follow from them by formula.
+
+use crate::explicit::Drag;
+use oedometer_soil::elementary;
+use oedometer_soil::material::Material;
+
+/// Speed, m/s, of the fastest wave of the undamped two-phase column at a porosity: the
+/// out-of-phase wave, from the largest eigenvalue of `M⁻¹K` (docs/theory.md, Eq. 9).
+pub fn fastest_wave_speed(soil: &Material, porosity: f64) -> f64 {
+    let (n, coupling) = (porosity, soil.water_bulk_modulus / porosity);
+    let (solid, water) = ((1.0 - n) * soil.grain_density, n * soil.water_density);
+    let ss = (soil.oedometric_modulus() + coupling * (1.0 - n) * (1.0 - n)) / solid;
+    let ww = coupling * n * n / water;
+    let sw_squared = elementary::powi(coupling * n * (1.0 - n), 2) / (solid * water);
+    let mean = 0.5 * (ss + ww);
+    (mean + (0.25 * (ss - ww) * (ss - ww) + sw_squared).sqrt()).sqrt()
+}
+
+/// Speed, m/s, of the undrained wave, water moving with the skeleton: `√((E_oed + Q)/ρ)`.
+pub fn undrained_wave_speed(soil: &Material) -> f64 {
+    let n = soil.porosity;
+    let density = (1.0 - n) * soil.grain_density + n * soil.water_density;
+    ((soil.oedometric_modulus() + soil.coupling_modulus()) / density).sqrt()
+}
+
+/// Limit, s, of the explicit drag alone (docs/theory.md, Eq. 10):
+/// `2 / [(n² γ_w/k)(1/((1−n)ρ_s) + 1/(nρ_w))]`.
+pub fn drag_limit(soil: &Material) -> f64 {
+    let n = soil.porosity;
+    let drag = n * n * soil.unit_weight_of_water() / soil.hydraulic_conductivity;
+    2.0 / (drag * (1.0 / ((1.0 - n) * soil.grain_density) + 1.0 / (n * soil.water_density)))
+}
+
+/// Limit, s, by formula, safe for every method (docs/theory.md, Eq. 11): `Δt_w(√(1+z²) − z)` with `Δt_w = h/c` and
+/// `z = Δt_w/(2Δt_d)` where the drag is explicit.
+pub fn combined_limit(soil: &Material, cell_size: f64, drag: Drag) -> f64 {
+    let wave = cell_size / fastest_wave_speed(soil, soil.porosity);
+    match drag {
+        Drag::Implicit | Drag::Centred => wave,
+        Drag::Explicit => {
+            let z = wave / (2.0 * drag_limit(soil));
+            // Rationalised: the difference of two large numbers where the drag rules.
+            wave / ((1.0 + z * z).sqrt() + z)
+        }
+    }
+}
+
+/// Limit, s, of the semi-implicit integrator, by formula: `(c + √(c² + 4ω²))/ω²` with the
+/// frequency `ω² = 4 E_oed/(m h²)` of the shortest wave of the skeleton and its damping
+/// `c = γ_w/(k m)`.
+///
+/// Water that cannot be compressed moves against the skeleton, `n (v_w − v_s) = −v_s`, in one
+/// dimension: inertia `m = (1−n)ρ_s + (1−n)²/n ρ_w` and drag `γ_w/k` a volume, taken at the end of
+/// the step. In more dimensions shear moves both as one and nothing damps it.
+pub fn semi_implicit_limit(soil: &Material, cell_size: f64, dimensions: usize) -> f64 {
+    let n = soil.porosity;
+    let per_length = 2.0 / cell_size;
+    let inertia = (1.0 - n) * soil.grain_density + (1.0 - n) * (1.0 - n) / n * soil.water_density;
+    let square = soil.oedometric_modulus() / inertia * per_length * per_length;
+    let damping = soil.unit_weight_of_water() / (soil.hydraulic_conductivity * inertia);
+    let column = (damping + (damping * damping + 4.0 * square).sqrt()) / square;
+    if dimensions == 1 {
+        return column;
+    }
+    let density = (1.0 - n) * soil.grain_density + n * soil.water_density;
+    column.min(cell_size / (soil.oedometric_modulus() / density).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_seed_column_has_the_measured_speeds_and_limits() {
+        let soil = Material::default();
+        assert!((fastest_wave_speed(&soil, 0.3) - 2034.0).abs() < 1.0);
+        assert!((undrained_wave_speed(&soil) - 1844.8).abs() < 0.5);
+        assert!((drag_limit(&soil) / 5.85e-5 - 1.0).abs() < 2e-3);
+    }
+
+    #[test]
+    fn the_combined_limit_turns_into_the_drag_s_where_the_drag_rules() {
+        let soil = Material { hydraulic_conductivity: 1e-9, ..Material::default() };
+        let limit = combined_limit(&soil, 0.1, Drag::Explicit);
+        assert!((limit / drag_limit(&soil) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_denser_packing_of_grains_is_faster() {
+        let soil = Material::default();
+        let ratio = fastest_wave_speed(&soil, 0.17) / fastest_wave_speed(&soil, 0.3);
+        assert!((ratio - 1.22).abs() < 0.01, "22 % faster at n = 0.17, got {ratio}");
+    }
+}

@@ -1,0 +1,341 @@
+//! The critical time step of a problem, predicted and observed.
+//!
+//! Predicted from the spectral radius of the step operator on the problem's own grid; observed by
+//! runs of the solver itself, which know nothing of the prediction, bisected between a step that runs
+//! and one that leaves.
+
+use crate::body::Problem;
+use crate::critical_step::formula;
+use crate::critical_step::predicted::{predict, whole_growth};
+use crate::explicit::ExplicitSettings;
+use crate::run::integrator::{Formulation, IntegratorKind};
+use crate::run::results::outcome::{Failure, FailureKind, RunStatus};
+use crate::run::{Kernel, Observer, Schedule, TimeStepRule, run};
+use crate::time_limit::TimeLimit;
+use serde::{Deserialize, Serialize};
+
+/// Cells up to which the prediction is of the whole column; longer ones lose some of their middle.
+const WHOLE_COLUMN: usize = 24;
+/// Steps of a run that observes: growth of a seven hundredth a step shows.
+pub const OBSERVED_STEPS: u64 = 32_768;
+/// Bisections between a step that runs and one that leaves.
+pub const BISECTIONS: u32 = 24;
+/// Width of the last bracket, relative.
+const RESOLUTION: f64 = 1e-3;
+/// Strain, by the load, that linear stability is about: more would change what is observed.
+const TINY_STRAIN: f64 = 1e-6;
+/// Growth a step that is seen in a plane, whatever a run shows: a doubling in ten thousand steps.
+const SLOWEST_SEEN: f64 = 6.9e-5;
+/// Growth a step that a run of so many steps shows: `ln(5·10^4)/32768`, from a share of the motion to a thousandfold of it.
+const VISIBLE_GROWTH: f64 = 3.3e-4;
+/// Shares of the predicted step that must run and must leave.
+pub const SHARES: [f64; 2] = [0.97, 1.03];
+
+/// One run at a share of the predicted step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Probe {
+    /// Share of the predicted critical step.
+    pub share: f64,
+    /// Step, s.
+    pub step: f64,
+    /// Spectral radius of the step operator: growth a step of what grows fastest; none above one
+    /// dimension.
+    pub predicted_growth: Option<f64>,
+    /// Steps taken.
+    pub steps: u64,
+    /// Whether they reach the end of the scene.
+    pub reaches_end: bool,
+    /// How it left, if it did.
+    pub failure: Option<Failure>,
+}
+
+/// What is known of a problem's critical step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct CriticalStep {
+    /// From the spectral radius, s: beyond it something grows by a seven hundredth a step or more.
+    pub predicted: f64,
+    /// Where slower growth begins long before that, the step, s, from which on it does: no run of a few
+    /// thousand steps shows it, and a million steps can.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub creeping_from: Option<f64>,
+    /// The sentence that no limit is known, where something grows under any step; `predicted` is the formula's then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unknown: Option<String>,
+    /// From runs, s; none where nothing left.
+    pub observed: Option<f64>,
+    /// `h/c` with the fastest undamped wave, s.
+    pub wave_limit: f64,
+    /// Limit of the explicit drag alone, s.
+    pub drag_limit: f64,
+    /// The safe formula of both, s.
+    pub combined_limit: f64,
+    /// Runs at the shares 0.97 and 1.03 of the predicted step.
+    pub probes: Vec<Probe>,
+}
+
+impl Probe {
+    /// Whether it ran below the predicted step, or left above it: a run that somebody or a time limit
+    /// stopped did neither.
+    pub fn is_as_predicted(&self) -> bool {
+        match &self.failure {
+            None => self.share < 1.0,
+            Some(failure) => {
+                self.share > 1.0 && !matches!(failure.kind, FailureKind::Stopped | FailureKind::TimedOut)
+            }
+        }
+    }
+}
+
+impl CriticalStep {
+    /// Whether the runs on both sides of the prediction did as predicted; without either side, no.
+    pub fn probes_agree(&self) -> bool {
+        let has = |side: fn(f64) -> bool| self.probes.iter().any(|probe| side(probe.share));
+        has(|share| share < 1.0) && has(|share| share > 1.0) && self.probes.iter().all(Probe::is_as_predicted)
+    }
+
+    /// The predicted step, s, where a limit is known.
+    pub fn known(&self) -> Option<f64> {
+        self.unknown.is_none().then_some(self.predicted)
+    }
+
+    /// Observed over predicted step, minus one.
+    pub fn deviation(&self) -> Option<f64> {
+        self.observed.map(|observed| observed / self.predicted - 1.0)
+    }
+}
+
+/// The observer did not let the search go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stopped;
+
+/// Predicts, observes, and probes both sides of the prediction, up to `end` seconds or `most_steps`
+/// steps.
+///
+/// # Errors
+/// [`Stopped`] where the observer ends it.
+pub fn critical_step<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+    end: f64,
+    most_steps: u64,
+    observer: Observer<'_>,
+) -> Result<CriticalStep, Stopped> {
+    let soil = &problem.material;
+    let mut problem = problem.clone();
+    // How it grows is the question, and not whether it may.
+    problem.is_bounded = false;
+    // A problem of finite strain is judged where it starts.
+    let tiny = TINY_STRAIN * soil.oedometric_modulus() / problem.pressure_scale.max(f64::MIN_POSITIVE);
+    if problem.configuration.deforms() && tiny < 1.0 {
+        problem = problem.scaled(tiny);
+    }
+    let prediction = predict(&problem, settings, WHOLE_COLUMN);
+    let strict = prediction.critical_step;
+    let is_sharp = prediction.growth(SHARES[1] * strict).is_none_or(|growth| growth > 1.0 + VISIBLE_GROWTH);
+    let predicted = if is_sharp { strict } else { prediction.critical_step_for(VISIBLE_GROWTH).max(strict) };
+    let creeping_from = (strict < SHARES[0] * predicted).then_some(strict);
+    let mut probes = Vec::with_capacity(SHARES.len());
+    for share in SHARES {
+        let step = share * predicted;
+        let steps = steps_to(end, step).clamp(OBSERVED_STEPS, most_steps.max(OBSERVED_STEPS));
+        let (taken, failure) = leaves(&problem, settings, step, steps, observer)?;
+        probes.push(Probe {
+            share,
+            step,
+            predicted_growth: prediction.growth(step),
+            steps: taken,
+            reaches_end: steps as f64 * step >= end * (1.0 - 1e-9),
+            failure,
+        });
+    }
+    let observed = observed_step(&problem, settings, &probes, observer)?;
+    let cell_size = problem.grid.cell_size;
+    let soil = &problem.material;
+    Ok(CriticalStep {
+        predicted,
+        creeping_from,
+        unknown: prediction.growing.map(|growing| growing.to_string()),
+        observed,
+        wave_limit: cell_size / formula::fastest_wave_speed(soil, soil.porosity),
+        drag_limit: formula::drag_limit(soil),
+        combined_limit: formula::combined_limit(soil, cell_size, settings.drag),
+        probes,
+    })
+}
+
+/// Largest step that runs, by bisection; none where no step near the prediction leaves. The search begins between the
+/// probes, which are runs that know nothing of the prediction either, and goes outwards where they leave and hold
+/// otherwise than it says.
+fn observed_step<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+    probes: &[Probe],
+    observer: Observer<'_>,
+) -> Result<Option<f64>, Stopped> {
+    // What doubles in ten thousand steps shows in the eigenvalues of the step, where the problem is small enough for
+    // them, and in no run of a few ten thousand.
+    let grows =
+        |step: f64| whole_growth(problem, settings, step).is_some_and(|growth| growth > 1.0 + SLOWEST_SEEN);
+    let runs = |step: f64| -> Result<bool, Stopped> {
+        if grows(step) {
+            return Ok(false);
+        }
+        leaves(problem, settings, step, OBSERVED_STEPS, observer).map(|(_, failure)| failure.is_none())
+    };
+    let [below, above] = probes else { return Ok(None) };
+    // A probe that left later than the runs of a search last did not leave by their measure.
+    let held =
+        |probe: &Probe| (probe.failure.is_none() || probe.steps > OBSERVED_STEPS) && !grows(probe.step);
+    let (least, most) = (1e-3 * below.step, 1e3 * above.step);
+    let (mut low, mut low_runs) = (below.step, held(below));
+    let (mut high, mut high_runs) = (above.step, held(above));
+    while !low_runs {
+        (high, high_runs) = (low, false);
+        low *= 0.5;
+        // Written so that a prediction that is no number ends it.
+        let is_near = low >= least;
+        if !is_near {
+            return Ok(None);
+        }
+        low_runs = runs(low)?;
+    }
+    while high_runs {
+        low = high;
+        high *= 2.0;
+        let is_near = high <= most;
+        if !is_near {
+            return Ok(None);
+        }
+        high_runs = runs(high)?;
+    }
+    for _ in 0..BISECTIONS {
+        if high - low < RESOLUTION * low {
+            break;
+        }
+        let middle = 0.5 * (low + high);
+        if runs(middle)? {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Ok(Some(0.5 * (low + high)))
+}
+
+/// Runs a number of steps of a size: how many were taken, and how the run left.
+fn leaves<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+    step: f64,
+    steps: u64,
+    observer: Observer<'_>,
+) -> Result<(u64, Option<Failure>), Stopped> {
+    let schedule = Schedule {
+        outputs: vec![steps as f64 * step],
+        history: Vec::new(),
+        rule: TimeStepRule::Seconds(step),
+        settings: *settings,
+        kernel: Kernel::Fastest,
+        integrator: IntegratorKind::Explicit,
+        formulation: Formulation::VW,
+        threads: 1,
+        time_limit: TimeLimit::default(),
+        // A run that observes knows nothing of the prediction.
+        critical_step: Some(step),
+    };
+    let outcome = run(problem.clone(), &schedule, observer);
+    let failure = match outcome.status {
+        RunStatus::Ok => None,
+        RunStatus::Failed(failure) if failure.kind == FailureKind::Stopped => return Err(Stopped),
+        RunStatus::Failed(failure) => Some(failure),
+    };
+    Ok((outcome.counters.steps, failure))
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+fn steps_to(end: f64, step: f64) -> u64 {
+    (end / step).ceil().max(1.0) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use oedometer_soil::material::Material;
+
+    fn probe(share: f64, failure: Option<FailureKind>) -> Probe {
+        let failed = |kind| Failure {
+            kind,
+            step: 7,
+            time: 1.0,
+            growth: None,
+            reason: "as the test wants it".to_owned(),
+        };
+        let failure = failure.map(failed);
+        Probe { share, step: share, predicted_growth: None, steps: 10, reaches_end: true, failure }
+    }
+
+    fn agree(probes: &[Probe]) -> bool {
+        let found = CriticalStep {
+            predicted: 1.0,
+            creeping_from: None,
+            unknown: None,
+            observed: Some(1.0),
+            wave_limit: 1.0,
+            drag_limit: 1.0,
+            combined_limit: 1.0,
+            probes: probes.to_vec(),
+        };
+        found.probes_agree()
+    }
+
+    #[test]
+    fn below_the_limit_a_run_holds_and_above_it_leaves_by_a_name() {
+        let unstable = Some(FailureKind::Unstable);
+        let [below, above] = SHARES;
+        assert!(below < 1.0 && above > 1.0);
+        assert!(agree(&[probe(below, None), probe(above, unstable)]));
+        assert!(!agree(&[probe(below, unstable), probe(above, unstable)]), "it left below its limit");
+        assert!(!agree(&[probe(below, None), probe(above, None)]), "it held above its limit");
+        for stopped in [FailureKind::Stopped, FailureKind::TimedOut] {
+            assert!(!agree(&[probe(below, None), probe(above, Some(stopped))]), "a stop is no leaving");
+            assert!(!agree(&[probe(below, Some(stopped)), probe(above, unstable)]));
+        }
+    }
+
+    #[test]
+    fn a_search_finds_the_limit_from_probes_on_one_side_of_it() {
+        let settings = ExplicitSettings::default();
+        let method = Method::named("GIMP-SRI-patch").expect("a known method");
+        let (column, soil) = (Column::default(), Material::default());
+        let problem =
+            column_problem::<1>(SceneKind::Terzaghi, &column, &soil, method, 4, 2).expect("a column");
+        let found = |steps: [f64; 2]| {
+            let probes = steps.map(|step| {
+                let (steps, failure) =
+                    leaves(&problem, &settings, step, OBSERVED_STEPS, &|_, _| true).expect("nobody stops it");
+                Probe { step, steps, ..probe(1.0, failure.map(|failure| failure.kind)) }
+            });
+            observed_step(&problem, &settings, &probes, &|_, _| true)
+                .expect("nobody stops it")
+                .expect("a limit")
+        };
+        let predicted = predict(&problem, &settings, WHOLE_COLUMN).critical_step;
+        let about = found([0.97 * predicted, 1.03 * predicted]);
+        assert!((about / predicted - 1.0).abs() < 0.02, "{about} for {predicted}");
+        for [low, high] in [[1.9, 2.0], [0.2, 0.3]] {
+            let from_aside = found([low * predicted, high * predicted]);
+            assert!((from_aside / about - 1.0).abs() < 2e-3, "{from_aside} for {about}");
+        }
+    }
+
+    #[test]
+    fn one_side_alone_agrees_with_nothing() {
+        assert!(!agree(&[]));
+        assert!(!agree(&[probe(SHARES[0], None)]));
+        assert!(!agree(&[probe(SHARES[1], Some(FailureKind::Unstable))]));
+    }
+}

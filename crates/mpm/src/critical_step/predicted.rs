@@ -1,0 +1,235 @@
+//! The critical time step of a problem, predicted from its own operators.
+
+use crate::assembled::step::AssembledStep;
+use crate::body::{Body, Problem};
+use crate::critical_step::spectral_radius::{GROWTH_TOLERANCE, SLOW_GROWTH};
+use crate::critical_step::{formula, spectral_radius};
+use crate::explicit::ExplicitSettings;
+use crate::method::{PressureIntegration, Recovery};
+use crate::state::grid::Grid;
+use std::fmt;
+
+/// Cells of the column on which the critical step of a run is computed.
+const FEW_CELLS: usize = 12;
+/// Cells of the corner of a plane whose step operator is squared.
+const MOST_ACROSS: usize = 8;
+/// Share of the formula's step at which the growth of what grows under any step is told.
+const FAR_BELOW: f64 = 0.1;
+
+/// A predicted critical step, with what it was predicted from.
+#[derive(Clone, Debug)]
+pub struct Prediction<const D: usize> {
+    /// Largest stable step, s; that of the formula where none is known.
+    pub critical_step: f64,
+    /// What grows under any step, where something does: then no limit is known.
+    pub growing: Option<GrowingMode>,
+    assembled: AssembledStep<D>,
+    settings: ExplicitSettings,
+}
+
+/// What grows under any step that was tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GrowingMode {
+    /// A step, s, far below the formula's.
+    pub step: f64,
+    /// Growth per such step.
+    pub growth: f64,
+}
+
+impl fmt::Display for GrowingMode {
+    /// The sentence that a limit is unknown.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (step, rate) = (self.step, (self.growth - 1.0) / self.step);
+        write!(out, "no limit is known: ")?;
+        write!(
+            out,
+            "under steps of {step:.2e} s too something grows by {rate:.2e} 1/s, by the eigenvalues of the step"
+        )
+    }
+}
+
+impl<const D: usize> Prediction<D> {
+    /// Largest step, s, under which nothing grows by more than `growth` a step; above one dimension the
+    /// critical one.
+    pub fn critical_step_for(&self, growth: f64) -> f64 {
+        if D > 1 {
+            return self.critical_step;
+        }
+        let safe = self.critical_step;
+        spectral_radius::critical_step(&self.assembled, &self.settings, safe, growth, true).unwrap_or(safe)
+    }
+
+    /// Growth per step of what grows fastest under steps of a size, where the operator is small enough to
+    /// be known.
+    pub fn growth(&self, step: f64) -> Option<f64> {
+        spectral_radius::growth(&self.assembled, step, &self.settings)
+    }
+}
+
+/// Critical step, s, of the explicit integrator on a problem's initial configuration.
+///
+/// Computed on the problem's own operators; a long column loses its middle, which moves the limit
+/// by less than a percent, a wide layer is cut to six by six.
+pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
+    predict_for_run(problem, settings).0
+}
+
+/// The same, with what grows under any step where something does.
+pub fn predict_for_run<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+) -> (f64, Option<GrowingMode>) {
+    let prediction = predict(problem, settings, FEW_CELLS);
+    (prediction.critical_step, prediction.growing)
+}
+
+/// Growth per step of what grows fastest under steps of a size, s, on the whole of a problem in a plane: by the
+/// eigenvalues of its own step, where it is small enough for them.
+pub fn whole_growth<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+    step: f64,
+) -> Option<f64> {
+    if D == 1 {
+        return None;
+    }
+    spectral_radius::growth(&AssembledStep::new(&Body::new(one_layer(problem))), step, settings)
+}
+
+/// The prediction on at most so many cells.
+pub fn predict<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+    most_cells: usize,
+) -> Prediction<D> {
+    let safe = formula::combined_limit(&problem.material, problem.grid.cell_size, settings.drag);
+    let problem = &one_layer(problem);
+    let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
+    let problem = if is_narrow {
+        without_middle(problem, most_cells)
+    } else {
+        corner(problem, (most_cells / 2).min(MOST_ACROSS))
+    };
+    let assembled = AssembledStep::new(&Body::new(problem));
+    let sharp = most_cells > FEW_CELLS;
+    let found = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE, sharp);
+    let step = FAR_BELOW * safe;
+    let growing = found.is_none().then(|| GrowingMode {
+        step,
+        growth: spectral_radius::growth(&assembled, step, settings).unwrap_or(f64::NAN),
+    });
+    // A column's limit is asked for less growth than counts: what takes so long is no reason to know none.
+    let is_slow = |mode: &GrowingMode| mode.growth - 1.0 <= FAR_BELOW * SLOW_GROWTH;
+    let growing = growing.filter(|mode| !is_slow(mode));
+    Prediction { critical_step: found.unwrap_or(safe), growing, assembled, settings: *settings }
+}
+
+/// The problem in one layer, with as many points as the layer that has more of them: layers of equal points have the
+/// limit of one, and unequal ones a limit between those of one layer with the points of either. Where points move, cells
+/// press with what takes their one rate, and have its limit.
+fn one_layer<const D: usize>(problem: &Problem<D>) -> Problem<D> {
+    let mut one = problem.clone();
+    // What acts from outside moves no limit.
+    one.forcing = None;
+    let moves = one.configuration.moves_points();
+    if one.water.is_some() && moves && one.method.pressure == PressureIntegration::Sri {
+        one.method.recovery = Recovery::Constant;
+    }
+    if let Some(water) = one.water.take().filter(|water| water.len() > one.points.len()) {
+        one.points = water;
+    }
+    one
+}
+
+/// The problem on so many cells of its lower corner, with the load on their top: the sides stay held,
+/// the top stays free.
+fn corner<const D: usize>(problem: &Problem<D>, most: usize) -> Problem<D> {
+    let mut cut = problem.clone();
+    let extent = most as f64 * problem.grid.cell_size;
+    let is_kept = |point: &usize| problem.points.position[*point].iter().all(|place| *place < extent);
+    let keep: Vec<usize> = (0..cut.points.len()).filter(is_kept).collect();
+    if keep.len() < cut.points.len() {
+        cut.points = cut.points.select(&keep);
+        let mut cells = problem.grid.cells;
+        for across in &mut cells[..D - 1] {
+            *across = (*across).min(most);
+        }
+        cut.grid = Grid::new(problem.grid.cell_size, cells);
+    }
+    cut
+}
+
+/// The problem with as many cells taken out of its middle as it has too many: base and surface, where
+/// it is special, stay as they are.
+fn without_middle<const D: usize>(problem: &Problem<D>, most_cells: usize) -> Problem<D> {
+    let up = D - 1;
+    let cell_size = problem.grid.cell_size;
+    let mut cut = problem.clone();
+    let first = problem.grid.cell_of(&[0.0; D])[up];
+    let rows: Vec<usize> =
+        cut.points.position.iter().map(|place| problem.grid.cell_of(place)[up] - first).collect();
+    let cells = rows.iter().max().map_or(0, |top| top + 1);
+    if cells <= most_cells {
+        return cut;
+    }
+    let (below, removed) = (most_cells / 2, cells - most_cells);
+    let keep: Vec<usize> =
+        (0..rows.len()).filter(|point| rows[*point] < below || rows[*point] >= below + removed).collect();
+    for point in keep.iter().filter(|point| rows[**point] >= below) {
+        let down = removed as f64 * cell_size;
+        cut.points.position[*point][up] -= down;
+        cut.points.initial_position[*point][up] -= down;
+    }
+    cut.points = cut.points.select(&keep);
+    let mut extent = problem.grid.cells;
+    extent[up] -= removed;
+    cut.grid = Grid::new(cell_size, extent);
+    cut
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::explicit::Drag;
+    use crate::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::arrangement::Arrangement;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use oedometer_soil::material::Material;
+
+    #[test]
+    fn a_column_without_its_middle_has_the_limit_of_the_whole() {
+        let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
+        for (name, filling) in [("GIMP", 1.0), ("GC-SRI-patch", 1.0), ("GIMP-SRI-patch", 0.1)] {
+            let points = Arrangement { filling, ..Arrangement::default() };
+            let column = Column { points, ..Column::default() };
+            let method = Method::named(name).expect("a known method");
+            let problem =
+                column_problem::<1>(SceneKind::Terzaghi, &column, &Material::default(), method, 14, 2)
+                    .expect("the seed column");
+            let whole = predict(&problem, &settings, 14).critical_step;
+            let cut = predict(&problem, &settings, FEW_CELLS).critical_step;
+            assert!((cut / whole - 1.0).abs() < 0.01, "{name} {filling}: {cut} for {whole}");
+        }
+    }
+
+    #[test]
+    fn cells_that_press_with_one_rate_step_by_its_limit() {
+        let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
+        let limit = |name: &str, scene: SceneKind, layers: usize| {
+            let points = Arrangement { layers, ..Arrangement::default() };
+            let column = Column { points, load: 2e5, ..Column::default() };
+            let law = scene.default_law();
+            let soil = Material { law, ..Material::default() };
+            let method = Method::named(name).expect("a known method");
+            let problem = column_problem::<1>(scene, &column, &soil, method, 8, 4).expect("a column");
+            predicted_critical_step(&problem, &settings)
+        };
+        let moving = |name, layers| limit(name, SceneKind::XieLeo, layers);
+        assert_eq!(moving("GIMP-SRI-patch", 2), moving("GIMP-SRI", 1));
+        assert!(moving("GIMP-SRI-patch", 1) > 1.04 * moving("GIMP-SRI", 1));
+        let frozen = |name, layers| limit(name, SceneKind::Terzaghi, layers);
+        assert_eq!(frozen("GIMP-SRI-patch", 2), frozen("GIMP-SRI-patch", 1));
+    }
+}

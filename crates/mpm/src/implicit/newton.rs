@@ -1,0 +1,423 @@
+//! A Newton iteration a stage: for finite strain, and for bodies with inertia.
+
+use crate::body::Body;
+use crate::direct_solver::bordered::{Bordered, BorderedLu};
+use crate::implicit::guess::StageGuess;
+use crate::implicit::residual::StageStart;
+use crate::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
+use crate::implicit::secants::Secants;
+use crate::implicit::tangent::Pattern;
+use crate::implicit::trial::{Skeleton, Trial};
+use crate::method::{PressureIntegration, Recovery};
+use crate::run::integrator::StepBound;
+use crate::run::profile::{Phase, enter};
+use crate::run::results::outcome::FailureKind;
+use crate::run::results::snapshot::Snapshot;
+use crate::run::run_plan::Plan;
+use crate::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
+use crate::run::watch::lost_point;
+use crate::time_limit::TimeLimit;
+use oedometer_soil::elementary;
+
+/// Iterations of a stage.
+const MOST_ITERATIONS: usize = 16;
+/// Times that a step is halved before the run is given up.
+const MOST_HALVINGS: u32 = 10;
+/// Error that an iteration may leave, over the size of the problem's strains.
+const TOLERANCE: f64 = 1e-12;
+/// Ratio of an iteration's correction to the last one's that is taken for granted where none is known.
+const SLOW: f64 = 0.1;
+/// The same beyond which the tangent is made anew, whatever is left.
+const TOO_SLOW: f64 = 0.8;
+/// Iterations with the tangent that there is which are worth a new one: that costs a residual for each of its groups,
+/// and what corrections tell makes the next ones fewer than they look.
+const PATIENCE: f64 = 12.0;
+/// What a contraction is taken to grow by in a stage that ends without a second correction to tell it.
+const UNSEEN_GROWTH: f64 = 2.0;
+
+/// What a stage lasts for and where it ends, in steps, and the share of its increment in the start of the next
+/// one, or in the step.
+type Stage = (f64, f64, f64);
+/// Those of SDIRK2.
+const SDIRK_STAGES: &[Stage] = &[(SDIRK_GAMMA, SDIRK_GAMMA, SECOND_STAGE), (SDIRK_GAMMA, 1.0, 1.0)];
+/// That of backward Euler, for what is implicit beside an explicit skeleton.
+const SINGLE_STAGE: &[Stage] = &[(1.0, 1.0, 1.0)];
+
+/// A body on its way through time.
+pub struct NewtonStepper<const D: usize> {
+    trial: Trial<D>,
+    pattern: Pattern,
+    tangent: Bordered,
+    lu: BorderedLu,
+    /// Threads that it may use, and the time.
+    threads: usize,
+    time_limit: TimeLimit,
+    /// What corrections tell of the tangent beyond its factors.
+    secants: Secants,
+    /// The last correction of the scaled unknowns.
+    correction: Vec<f64>,
+    /// Stage duration that the factors belong to, s.
+    factored: Option<f64>,
+    /// Ratio of successive corrections: the last one within a stage, the first one from stage to stage.
+    contraction: f64,
+    /// Error that a stage may leave in the scaled unknowns.
+    tolerance: f64,
+    /// Correction of the scaled unknowns that round-off makes: strains are differences of numbers near one, and a
+    /// displacement sums them up over as many cells.
+    round_off: f64,
+    error_scales: ErrorScales,
+    stages: &'static [Stage],
+    start: StageStart<D>,
+    guess: StageGuess,
+    /// Rate of the scaled unknowns at the end of the last step, 1/s.
+    rate: Vec<f64>,
+    state: Vec<f64>,
+    residual: Vec<f64>,
+    scratch: Vec<f64>,
+    initial_height: f64,
+    /// Time over which the load grows, s.
+    loading_time: f64,
+    /// Time at the start of the step, s.
+    time: f64,
+    settlement_rate: f64,
+    work: Work,
+}
+
+impl<const D: usize> NewtonStepper<D> {
+    /// A body at its start.
+    pub fn new(body: Body<D>, plan: &Plan<'_>) -> Self {
+        let (skeleton, stages) = match plan.schedule.integrator.step_bound() {
+            StepBound::SkeletonWaves => (Skeleton::Explicit, SINGLE_STAGE),
+            StepBound::AllWaves | StepBound::Accuracy => (Skeleton::Implicit, SDIRK_STAGES),
+        };
+        let trial = Trial::new(body, plan.schedule.formulation, skeleton);
+        let pattern = Pattern::of(&trial.body, &trial.unknowns);
+        let tangent = pattern.zeros();
+        let scales = trial.unknowns.scales;
+        let cells = trial.body.grid.cells.iter().fold(0.0, |most: f64, count| most.max(*count as f64));
+        let zero = vec![0.0; trial.unknowns.count];
+        Self {
+            lu: BorderedLu::of_shape(&tangent, plan.schedule.threads).within(plan.schedule.time_limit),
+            threads: plan.schedule.threads,
+            time_limit: plan.schedule.time_limit,
+            secants: Secants::default(),
+            correction: zero.clone(),
+            tangent,
+            pattern,
+            factored: None,
+            contraction: SLOW,
+            tolerance: TOLERANCE * plan.pressure_scale / scales.pressure,
+            round_off: f64::EPSILON * cells * cells,
+            error_scales: ErrorScales::of(&scales, plan),
+            stages,
+            start: StageStart::default(),
+            guess: StageGuess::of(zero.len()),
+            rate: zero.clone(),
+            state: zero.clone(),
+            residual: zero.clone(),
+            scratch: zero,
+            initial_height: plan.initial_height,
+            loading_time: plan.loading_time,
+            time: 0.0,
+            settlement_rate: 0.0,
+            work: Work::default(),
+            trial,
+        }
+    }
+
+    /// A step, in halves where the iteration does not come to an end.
+    fn step_within(&mut self, dt: f64, halvings: u32, most_error: f64) -> Result<f64, StepFailure> {
+        match self.try_step(dt, most_error) {
+            Err(failure) if halvings > 0 && failure.kind != FailureKind::Stopped => {
+                self.work.rejected_steps += 1;
+                self.step_within(0.5 * dt, halvings - 1, f64::INFINITY)?;
+                self.step_within(0.5 * dt, halvings - 1, f64::INFINITY)
+            }
+            done => done,
+        }
+    }
+
+    fn try_step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure> {
+        let mut flux = 0.0;
+        let mut first = true;
+        self.trial.begin_step(self.time);
+        for (number, (duration, end, share)) in self.stages.iter().enumerate() {
+            let stage = duration * dt;
+            if first {
+                self.start_step(stage);
+                first = false;
+            }
+            self.load_at(self.time + end * dt);
+            self.trial.act_later(end * dt);
+            self.solve_stage(number)?;
+            self.guess.keep(number, &self.rate, &self.start.unknowns, &self.state);
+            flux += share * stage * self.trial.outflow();
+            if *share != 1.0 {
+                self.start_second_stage();
+            }
+        }
+        let error = self.error();
+        if error > most_error {
+            self.work.rejected_steps += 1;
+            return Ok(error);
+        }
+        let stage = self.start.duration;
+        for (rate, (end, start)) in self.rate.iter_mut().zip(self.state.iter().zip(&self.start.unknowns)) {
+            *rate = (end - start) / stage;
+        }
+        self.settlement_rate = self.trial.settlement_rate();
+        enter(Phase::BuildWeights);
+        self.trial.end_step(&self.state, flux);
+        self.time += dt;
+        self.guess.end_step();
+        self.follow_structure();
+        Ok(error)
+    }
+
+    /// Estimated error of the step whose stages were solved last.
+    fn error(&self) -> f64 {
+        if self.stages.len() == 1 {
+            return 0.0;
+        }
+        self.error_scales.largest(&self.trial.unknowns, |unknown| {
+            let start = self.start.unknowns[unknown];
+            ERROR_SHARE * (start / SECOND_STAGE - (self.state[unknown] - start))
+        })
+    }
+
+    /// The load at a time, where it grows.
+    fn load_at(&mut self, time: f64) {
+        if self.loading_time > 0.0 {
+            self.trial.set_load_share((time / self.loading_time).min(1.0));
+        }
+    }
+
+    /// The first stage starts where the last step ended.
+    fn start_step(&mut self, stage: f64) {
+        self.start.duration = stage;
+        self.start.unknowns.clear();
+        self.start.unknowns.resize(self.state.len(), 0.0);
+        let [solid, water] = &self.trial.velocity;
+        self.start.solid_velocity.clone_from(solid);
+        self.start.water_velocity.clone_from(water);
+        self.guess.begin_step(stage);
+    }
+
+    /// The second stage starts where the first one's rates lead.
+    fn start_second_stage(&mut self) {
+        let nodes = &self.trial.body.nodes;
+        for (start, now) in [
+            (&mut self.start.solid_velocity, &nodes.solid_velocity),
+            (&mut self.start.water_velocity, &nodes.water_velocity),
+        ] {
+            for (start, now) in start.iter_mut().flatten().zip(now.iter().flatten()) {
+                *start += SECOND_STAGE * (now - *start);
+            }
+        }
+        for (start, state) in self.start.unknowns.iter_mut().zip(&self.state) {
+            *start = SECOND_STAGE * state;
+        }
+    }
+
+    /// Solves a stage from its guess; where that leads nowhere and was a bold one, or the tangent is that of points in
+    /// other cells, once more without either.
+    fn solve_stage(&mut self, number: usize) -> Result<(), StepFailure> {
+        self.guess.guess(number, &self.rate, &self.start.unknowns, &mut self.state);
+        let is_bold = !self.guess.is_plain(number)
+            || (self.factored.is_some() && !self.pattern.is_of(&self.trial.body, &self.trial.unknowns));
+        match self.iterate() {
+            Err(failure) if is_bold && failure.kind != FailureKind::Stopped => {
+                self.guess.make_plain(number);
+                self.guess.guess(number, &self.rate, &self.start.unknowns, &mut self.state);
+                self.factored = None;
+                self.iterate()
+            }
+            done => done,
+        }
+    }
+
+    /// Newton's iteration, with the tangent of an earlier state as long as it contracts well.
+    fn iterate(&mut self) -> Result<(), StepFailure> {
+        let mut last = f64::INFINITY;
+        let mut first = None;
+        let mut renew = self.factored != Some(self.start.duration);
+        for _ in 0..MOST_ITERATIONS {
+            self.ask_for_time()?;
+            enter(Phase::Balances);
+            self.trial.residual(&self.state, &self.start, &mut self.residual)?;
+            if renew {
+                self.renew_tangent()?;
+                self.contraction = SLOW;
+            }
+            enter(Phase::Solve);
+            self.scratch.copy_from_slice(&self.residual);
+            self.lu.solve(&mut self.scratch);
+            self.secants.apply(&mut self.scratch);
+            if last.is_finite() && !renew {
+                self.secants.learn(&self.correction, &mut self.scratch);
+            }
+            self.correction.copy_from_slice(&self.scratch);
+            let mut size: f64 = 0.0;
+            for (state, correction) in self.state.iter_mut().zip(&self.scratch) {
+                *state -= correction;
+                // What is no number stays, and ends no iteration.
+                let next = correction.abs();
+                size = if size > next || size.is_nan() { size } else { next };
+            }
+            self.work.iterations += 1;
+            if last.is_finite() && last > 0.0 {
+                self.contraction = (size / last).max(1e-3);
+                first.get_or_insert(self.contraction);
+            }
+            if size * self.contraction <= self.tolerance * (1.0 - self.contraction) {
+                // The next stage begins without what this one's later corrections were told.
+                self.contraction = first.unwrap_or((UNSEEN_GROWTH * self.contraction).min(SLOW));
+                return self.end_iteration(renew);
+            }
+            if size <= self.round_off && size >= SLOW * last {
+                // What round-off leaves, neither a new tangent nor smaller steps take away.
+                self.contraction = SLOW;
+                return self.end_iteration(renew);
+            }
+            let left = elementary::ln(self.tolerance / size) / elementary::ln(self.contraction);
+            renew = last.is_finite() && (self.contraction > TOO_SLOW || left > PATIENCE);
+            last = size;
+        }
+        Err(StepFailure {
+            kind: FailureKind::NotConverged,
+            reason: format!(
+                "{MOST_ITERATIONS} iterations of a stage of {:.3e} s left a correction of {last:.3e} times the cell",
+                self.start.duration
+            ),
+        })
+    }
+
+    fn ask_for_time(&self) -> Result<(), StepFailure> {
+        if self.time_limit.is_over() { Err(StepFailure::out_of_time()) } else { Ok(()) }
+    }
+
+    /// Ends an iteration: where its tangent was just made, the nodes still have the velocities and the flux of the last
+    /// difference.
+    fn end_iteration(&mut self, was_renewed: bool) -> Result<(), StepFailure> {
+        if was_renewed {
+            self.trial.residual(&self.state, &self.start, &mut self.residual)?;
+        }
+        Ok(())
+    }
+
+    fn renew_tangent(&mut self) -> Result<(), StepFailure> {
+        enter(Phase::Assembly);
+        if !self.pattern.is_of(&self.trial.body, &self.trial.unknowns) {
+            self.renew_pattern();
+        }
+        let (trial, start, time_limit) = (&mut self.trial, &self.start, self.time_limit);
+        self.pattern.differentiate(
+            &mut self.state,
+            &self.residual,
+            &mut self.scratch,
+            &mut self.tangent,
+            // Pores that a difference closes are open at the iterate itself.
+            |state, residual| {
+                // Differences that nobody will wait for are none.
+                if !time_limit.is_over() {
+                    let _ = trial.residual(state, start, residual);
+                }
+            },
+        );
+        self.ask_for_time()?;
+        self.work.factorisations += 1;
+        self.factored = Some(start.duration);
+        enter(Phase::Factors);
+        self.secants.clear();
+        self.lu.factor(&self.tangent).map_err(|singular| {
+            self.factored = None;
+            if self.time_limit.is_over() {
+                return StepFailure::out_of_time();
+            }
+            StepFailure {
+                kind: FailureKind::Singular,
+                reason: format!("the tangent has no pivot in row {}", singular.row),
+            }
+        })
+    }
+
+    /// A failure with what would be right, where the method is known to end so: in the plane, pressures that every
+    /// point has for itself leave modes that nothing holds once points have moved.
+    fn with_remedy(&self, failure: StepFailure) -> StepFailure {
+        let body = &self.trial.body;
+        let is_known = D > 1
+            && body.configuration.moves_points()
+            && body.method.pressure == PressureIntegration::Points
+            && body.method.recovery != Recovery::Nodal;
+        if !is_known || failure.kind == FailureKind::Stopped {
+            return failure;
+        }
+        let StepFailure { kind, reason } = failure;
+        let remedy = "in the plane a pressure of every point's own leaves its cell modes that nothing holds once points \
+                      have moved: take it by cells (GIMP-SRI, GIMP-SRI-patch), or weights on the initial \
+                      configuration (TL-GIMP)";
+        StepFailure { kind, reason: format!("{reason}; {remedy}") }
+    }
+
+    /// Points that went on to other cells change which balances feel which unknowns. The factors that there are serve
+    /// on while they contract well, unless the unknowns themselves are others.
+    fn follow_structure(&mut self) {
+        let (body, unknowns) = (&self.trial.body, &self.trial.unknowns);
+        if self.pattern.is_of(body, unknowns) {
+            return;
+        }
+        self.contraction = self.contraction.max(SLOW);
+        if self.pattern.has_unknowns(unknowns) {
+            return;
+        }
+        self.renew_pattern();
+        let count = self.trial.unknowns.count;
+        self.guess = StageGuess::of(count);
+        if count != self.state.len() {
+            let scratch = [&mut self.scratch, &mut self.correction];
+            for vector in [&mut self.rate, &mut self.state, &mut self.residual].into_iter().chain(scratch) {
+                vector.clear();
+                vector.resize(count, 0.0);
+            }
+        }
+    }
+
+    /// Makes the pattern anew, with room for its factors.
+    fn renew_pattern(&mut self) {
+        self.trial.unknowns.take_rows(&self.trial.body);
+        self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
+        self.tangent = self.pattern.zeros();
+        self.lu = BorderedLu::of_shape(&self.tangent, self.threads).within(self.time_limit);
+        self.factored = None;
+    }
+}
+
+impl<const D: usize> Stepper for NewtonStepper<D> {
+    fn advance(&mut self, steps: &EqualSteps, most_error: f64) -> Result<f64, StepFailure> {
+        // Smaller steps would hide that an explicit skeleton is beyond its limit.
+        let halvings = if self.stages.len() == 1 { 0 } else { MOST_HALVINGS };
+        (0..steps.count)
+            .try_fold(0.0, |_, _| self.step_within(steps.dt, halvings, most_error))
+            .map_err(|failure| self.with_remedy(failure))
+    }
+
+    fn settlement(&self) -> f64 {
+        self.trial.body.settlement(self.initial_height)
+    }
+
+    fn settlement_rate(&self) -> Option<f64> {
+        Some(self.settlement_rate)
+    }
+
+    fn lost_point(&self) -> Option<StepFailure> {
+        lost_point(&self.trial.body).map(|failure| self.with_remedy(failure))
+    }
+
+    fn snapshot(&self, time: f64) -> Snapshot {
+        self.trial.body.snapshot(time, self.settlement(), &self.trial.start)
+    }
+
+    fn work(&self) -> Work {
+        self.work
+    }
+}

@@ -1,0 +1,123 @@
+//! What the balances of a body leave at a trial state: the one residual of every nonlinear or inertial
+//! implicit step, made of the operators of the explicit one.
+
+use crate::implicit::trial::{Skeleton, Trial};
+use crate::momentum::{NodalBalance, per_water_inertia};
+use crate::run::integrator::Formulation;
+use crate::run::stepper::StepFailure;
+use crate::run::watch::pores_closed;
+use oedometer_soil::tensor::Vector;
+
+/// Where a stage starts: the unknowns' share that is known before it is solved.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StageStart<const D: usize> {
+    /// `γ Δt`, s.
+    pub duration: f64,
+    /// Unknowns, scaled.
+    pub unknowns: Vec<f64>,
+    /// Velocity of the skeleton at the nodes, m/s.
+    pub solid_velocity: Vec<Vector<D>>,
+    /// Velocity of the water at the nodes, m/s.
+    pub water_velocity: Vec<Vector<D>>,
+}
+
+impl<const D: usize> Trial<D> {
+    /// What the balances leave at increments of the unknowns, scaled: forces on the mixture that
+    /// nothing balances, and volume that a site gained beyond its storage.
+    ///
+    /// # Errors
+    /// [`StepFailure`] where the pores of a point are closed: there is no residual then.
+    pub fn residual(
+        &mut self,
+        increments: &[f64],
+        start: &StageStart<D>,
+        residual: &mut [f64],
+    ) -> Result<(), StepFailure> {
+        self.move_to(increments);
+        if self.skeleton == Skeleton::Explicit {
+            self.body.points.effective_stress.clone_from(&self.anchor.effective_stress);
+        }
+        self.body.map_forces();
+        self.momentum(increments, start, residual);
+        self.body.nodal_flux();
+        self.storage(increments, start, residual);
+        let (grains, ratios) = (1.0 - self.body.material.porosity, &self.body.points.volume_ratio);
+        match ratios.iter().position(|ratio| *ratio <= grains || ratio.is_nan()) {
+            Some(point) => Err(pores_closed(point, ratios[point], grains)),
+            None => Ok(()),
+        }
+    }
+
+    /// Nodal velocities of both phases at the end of the stage, and what is left of the mixture's
+    /// momentum.
+    fn momentum(&mut self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
+        let per_duration = 1.0 / start.duration;
+        residual.fill(0.0);
+        let water_density = self.body.material.water_density;
+        let nodes = &mut self.body.nodes;
+        for node in 0..nodes.len() {
+            nodes.solid_velocity[node] = [0.0; D];
+            nodes.water_velocity[node] = [0.0; D];
+            let drag = nodes.drag[node];
+            let (water_inertia, implicit_drag) = (water_density * nodes.volume[node], start.duration * drag);
+            // A skeleton whose motion is given does not give way to the water.
+            let balance = NodalBalance {
+                per_solid_mass: 0.0,
+                water_share: 0.0,
+                per_water_inertia: per_water_inertia(water_inertia, implicit_drag, 0.0, 1.0),
+                drag,
+                implicit_drag,
+            };
+            for d in 0..D {
+                // Where the skeleton is held, the water may still slide.
+                let number = self.unknowns.displacement[node][d];
+                let moved = number.map_or(0.0, |number| increments[number] - start.unknowns[number]);
+                let solid = self.unknowns.scales.length * per_duration * moved;
+                let solid_change = solid - start.solid_velocity[node][d];
+                let is_tied = self.body.plate.as_ref().is_some_and(|plate| plate.ties(node, d));
+                let force = nodes.water_force[node][d];
+                let before = [start.solid_velocity[node][d], start.water_velocity[node][d]];
+                let water = match self.formulation {
+                    // An impermeable plate takes its water with it.
+                    _ if is_tied => solid,
+                    Formulation::QuasiStatic => solid + force / drag,
+                    Formulation::UP => solid + (force - water_inertia * per_duration * solid_change) / drag,
+                    Formulation::VW => {
+                        let skeleton = per_duration * solid_change;
+                        before[1] + start.duration * balance.water_acceleration(force, before, skeleton)
+                    }
+                };
+                nodes.solid_velocity[node][d] = solid;
+                if nodes.water_free[node][d] > 0.0 {
+                    nodes.water_velocity[node][d] = water;
+                }
+                let Some(row) = number else { continue };
+                let water_change = match self.formulation {
+                    Formulation::QuasiStatic => {
+                        residual[row] -= nodes.mixture_force[node][d] / self.unknowns.scales.force;
+                        continue;
+                    }
+                    Formulation::UP => solid_change,
+                    Formulation::VW => water - before[1],
+                };
+                let momentum = nodes.solid_mass[node] * solid_change + nodes.water_mass[node] * water_change;
+                // A sum: the nodes of a plate share a row.
+                residual[row] +=
+                    (per_duration * momentum - nodes.mixture_force[node][d]) / self.unknowns.scales.force;
+            }
+        }
+    }
+
+    /// What is left of the mixture's volume at each site.
+    fn storage(&mut self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
+        self.body.evaluate_volume_rates();
+        let (body, unknowns) = (&self.body, &self.unknowns);
+        for (place, number) in unknowns.rows.sites.iter().zip(&unknowns.pressure) {
+            let porosity = body.porosity_of(*place);
+            let stored = porosity / body.material.water_bulk_modulus
+                * unknowns.scales.pressure
+                * (increments[*number] - start.unknowns[*number]);
+            residual[*number] = stored + start.duration * body.site_values[*place];
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! What the corrections of an iteration tell of the tangent beyond its factors (Broyden 1965).
+//!
+//! ```text
+//! H ← (I + w cᵀ/(c·c − c·w)) H,   c = H F before a correction by c,   w = H F behind it
+//! ```
+//!
+//! `H` is the inverse that the factors stand for; with this it takes what `F` changed by exactly to the step that was
+//! taken. A few vectors, and no residual, in the place of new factors: points that went on to other cells change a few
+//! rows of the tangent, and the corrections that feel them soon know by how much.
+
+use crate::wide::wide;
+
+/// Corrections that are kept: more would cost more than the iteration that they spare.
+const MOST_PAIRS: usize = 12;
+/// Least `(c·c − c·w)/(c·c)` of a correction that tells something: one that changed nothing would be taken for an endless step.
+const LEAST_CHANGE: f64 = 0.2;
+
+/// Partial sums of a sum of products.
+const PARTS: usize = 16;
+
+/// The corrections since the factors were made.
+#[derive(Clone, Debug, Default)]
+pub struct Secants {
+    /// `w/(c·c − c·w)` and `c` of each, the oldest first.
+    pairs: Vec<[Vec<f64>; 2]>,
+    /// How many of them there are; the others are room.
+    count: usize,
+}
+
+impl Secants {
+    /// Forgets them: the factors are others.
+    pub fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// Takes what the factors made of a residual to what they would make of it by what is known.
+    pub fn apply(&self, values: &mut [f64]) {
+        for [along, before] in &self.pairs[..self.count] {
+            let share = dot(before, values);
+            wide!({
+                for (value, along) in values.iter_mut().zip(along) {
+                    *value += share * along;
+                }
+            });
+        }
+    }
+
+    /// Learns from a correction `before` and the one that was to follow it, which it takes to what it should be.
+    pub fn learn(&mut self, before: &[f64], next: &mut [f64]) {
+        let (size, left) = (dot(before, before), dot(before, next));
+        let change = size - left;
+        // Of what is no number nothing is learned.
+        let is_told = change > LEAST_CHANGE * size && change.is_finite();
+        if !is_told {
+            return;
+        }
+        if self.count == MOST_PAIRS {
+            self.count = 0;
+        }
+        if self.count == self.pairs.len() {
+            self.pairs.push([Vec::new(), Vec::new()]);
+        }
+        let [along, kept] = &mut self.pairs[self.count];
+        self.count += 1;
+        kept.clear();
+        kept.extend_from_slice(before);
+        along.clear();
+        along.extend(next.iter().map(|value| value / change));
+        for value in next {
+            *value *= size / change;
+        }
+    }
+}
+
+/// Sum of products, by partial sums that wait for none of the others.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    wide!({
+        let ((a, rest_of_a), (b, rest_of_b)) = (a.as_chunks::<PARTS>(), b.as_chunks::<PARTS>());
+        let mut sums = [0.0; PARTS];
+        for (a, b) in a.iter().zip(b) {
+            for part in 0..PARTS {
+                sums[part] += a[part] * b[part];
+            }
+        }
+        let rest: f64 = rest_of_a.iter().zip(rest_of_b).map(|(a, b)| a * b).sum();
+        sums.iter().sum::<f64>() + rest
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COUNT: usize = 8;
+
+    /// `A x − b`; the factors are those of the unit matrix, from which two rows of `A` differ.
+    fn residual(x: &[f64]) -> Vec<f64> {
+        let values = [1.0, -2.0, 3.0, 0.5, -1.0, 2.0, 0.25, 4.0];
+        let mut residual: Vec<f64> = x.iter().zip(values).map(|(x, value)| x - value).collect();
+        residual[3] += 0.3 * x[2] + 0.5 * x[3] + 0.4 * x[4];
+        residual[4] += -0.4 * x[3] - 0.3 * x[4];
+        residual
+    }
+
+    /// Size of the correction after so many, each told to the next one or not.
+    fn left(corrections: usize, secants: Option<&mut Secants>) -> f64 {
+        let (mut x, mut before, mut nothing) = (vec![0.0; COUNT], Vec::new(), Secants::default());
+        let is_told = secants.is_some();
+        let secants = secants.unwrap_or(&mut nothing);
+        for _ in 0..corrections {
+            let mut next = residual(&x);
+            secants.apply(&mut next);
+            if is_told && !before.is_empty() {
+                secants.learn(&before, &mut next);
+            }
+            for (x, next) in x.iter_mut().zip(&next) {
+                *x -= next;
+            }
+            before = next;
+        }
+        before.iter().fold(0.0, |size: f64, one| size.max(one.abs()))
+    }
+
+    #[test]
+    fn corrections_that_tell_end_where_others_crawl() {
+        let mut secants = Secants::default();
+        assert!(left(6, None) > 1e-3, "{}", left(6, None));
+        // Twice as many as rows that differ, and two (Gay 1979).
+        let told = left(6, Some(&mut secants));
+        assert!(told < 1e-14, "{told}");
+        // What is known of the rows serves on, until they are others.
+        let known = left(2, Some(&mut secants));
+        assert!(known < 0.1, "{known}");
+        secants.clear();
+        let unknown = left(2, Some(&mut secants));
+        assert!(unknown > 0.7, "{unknown}");
+    }
+
+    #[test]
+    fn sums_of_products_take_every_place() {
+        for count in [0, 1, PARTS - 1, PARTS, 5 * PARTS + 3] {
+            let numbers: Vec<f64> = (1..=count).map(|i| i as f64).collect();
+            let exact = count * (count + 1) * (2 * count + 1) / 6;
+            assert_eq!(dot(&numbers, &numbers), exact as f64, "{count}");
+        }
+    }
+
+    #[test]
+    fn the_last_step_is_what_its_change_of_the_residual_asks_for() {
+        let mut secants = Secants::default();
+        let before = residual(&[0.0; COUNT]);
+        let after = residual(&before.iter().map(|one| -one).collect::<Vec<_>>());
+        let mut next = after.clone();
+        secants.learn(&before, &mut next);
+        let mut change: Vec<f64> = before.iter().zip(&after).map(|(before, after)| before - after).collect();
+        secants.apply(&mut change);
+        let mut applied = after;
+        secants.apply(&mut applied);
+        for i in 0..COUNT {
+            assert!((change[i] - before[i]).abs() < 1e-14, "{change:?} for {before:?}");
+            assert!((applied[i] - next[i]).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_correction_that_changed_nothing_and_what_is_no_number_tell_nothing() {
+        let mut secants = Secants::default();
+        for next in [[0.9, 0.0], [f64::NAN, 0.0], [f64::NEG_INFINITY, 0.0]] {
+            let mut told = next;
+            secants.learn(&[1.0, 0.0], &mut told);
+            assert_eq!(secants.count, 0, "{next:?}");
+            assert_eq!(told.map(f64::to_bits), next.map(f64::to_bits));
+        }
+        // No more of them are kept than there is room for.
+        for _ in 0..=MOST_PAIRS {
+            secants.learn(&[1.0, 0.0], &mut [0.1, 0.0]);
+        }
+        assert_eq!(secants.count, 1);
+    }
+}

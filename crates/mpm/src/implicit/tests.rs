@@ -1,0 +1,110 @@
+//! One integrator against the other, step by step; whole runs are in `crates/mpm/tests/runs/implicit.rs`.
+
+use crate::body::{Body, Problem};
+use crate::explicit::{Drag, ExplicitSettings};
+use crate::implicit::linear::LinearStepper;
+use crate::implicit::newton::NewtonStepper;
+use crate::implicit::trial::{Skeleton, Trial};
+use crate::implicit::unknowns::Unknowns;
+use crate::method::Method;
+use crate::run::integrator::{Formulation, IntegratorKind};
+use crate::run::run_plan::Plan;
+use crate::run::stepper::{EqualSteps, Stepper};
+use crate::run::{Kernel, Schedule, TimeStepRule};
+use crate::scene::SceneKind;
+use crate::scene::column::Column;
+use crate::scene::problem::column_problem;
+use crate::time_limit::TimeLimit;
+use oedometer_soil::law::Law;
+use oedometer_soil::material::Material;
+
+fn seed(method: &str, soil: &Material, cells: usize) -> Problem<1> {
+    let method = Method::named(method).expect("a known method");
+    column_problem(SceneKind::Terzaghi, &Column::default(), soil, method, cells, 2)
+        .expect("a possible column")
+}
+
+fn large_strain(method: &str, soil: &Material, cells: usize) -> Problem<1> {
+    let method = Method::named(method).expect("a known method");
+    let column = Column { load: 2e5, ..Column::default() };
+    column_problem(SceneKind::XieLeo, &column, soil, method, cells, 4).expect("a possible column")
+}
+
+fn schedule() -> Schedule {
+    Schedule {
+        critical_step: None,
+        outputs: Vec::new(),
+        history: Vec::new(),
+        rule: TimeStepRule::Seconds(1.0),
+        settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
+        kernel: Kernel::Fastest,
+        formulation: IntegratorKind::Implicit.default_formulation(),
+        integrator: IntegratorKind::Implicit,
+        threads: 1,
+        time_limit: TimeLimit::default(),
+    }
+}
+
+/// Largest difference of two fields over the largest value of the second.
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let scale = b.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
+    a.iter().zip(b).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs())) / scale
+}
+
+#[test]
+fn newton_on_a_frozen_body_is_the_linear_system() {
+    for name in ["GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch", "GIMP-mean", "GIMP-SRI-nodal"] {
+        let body = || Body::new(seed(name, &Material::default(), 6));
+        let schedule = schedule();
+        let plan = Plan::of(&seed(name, &Material::default(), 6), &schedule);
+        let mut linear = LinearStepper::new(body(), &plan);
+        let mut newton = NewtonStepper::new(body(), &plan);
+        for dt in [0.05, 0.05, 0.1, 0.1, 0.3] {
+            let step = EqualSteps::first(0.0, dt, 1);
+            let estimates = [linear.advance(&step, 1.0), newton.advance(&step, 1.0)]
+                .map(|error| error.expect("solvable"));
+            assert!((estimates[0] / estimates[1] - 1.0).abs() < 1e-6, "{name}: {estimates:?}");
+        }
+        let (one, other) = (linear.snapshot(0.6), newton.snapshot(0.6));
+        assert!(difference(&other.points.pressure, &one.points.pressure) < 1e-9, "{name}");
+        assert!((one.settlement / other.settlement - 1.0).abs() < 1e-9, "{name}");
+        let rates = [linear.settlement_rate(), newton.settlement_rate()].map(|rate| rate.expect("a rate"));
+        assert!((rates[0] / rates[1] - 1.0).abs() < 1e-6, "{name}");
+        let flux = one.totals.surface_flux - other.totals.surface_flux;
+        assert!(flux.abs() < 1e-8 * one.settlement, "{name}");
+    }
+}
+
+#[test]
+fn unknowns_follow_points_that_empty_cells_as_if_they_were_numbered_anew() {
+    let soil = Material { law: Law::LogLinear, ..Material::default() };
+    for method in ["GIMP-SRI-patch", "CE-SRI-patch-cells", "GIMP", "GC-Bbar-patch"] {
+        let body = Body::new(large_strain(method, &soil, 8));
+        let mut trial = Trial::new(body, Formulation::QuasiStatic, Skeleton::Implicit);
+        let (count, mut renumbered) = (trial.unknowns.count, 0);
+        for _ in 0..12 {
+            // Three per cent of the height a step: the cell at the top ends empty.
+            let mut increments = vec![0.0; trial.unknowns.count];
+            for (node, [number]) in trial.unknowns.displacement.iter().enumerate() {
+                let height = trial.body.grid.node_position(node)[0] / trial.unknowns.scales.length;
+                if let Some(number) = number {
+                    increments[*number] = -0.03 * height;
+                }
+            }
+            trial.begin_step(0.0);
+            trial.end_step(&increments, 0.0);
+            let anew = Unknowns::of(&trial.body);
+            let followed = &trial.unknowns;
+            assert_eq!(
+                (&followed.displacement, &followed.pressure, &followed.rows.sites, followed.count),
+                (&anew.displacement, &anew.pressure, &anew.rows.sites, anew.count),
+                "{method}"
+            );
+            renumbered += usize::from(anew.count != count);
+            trial.unknowns.take_rows(&trial.body);
+            assert_eq!(trial.unknowns.rows, anew.rows, "{method}");
+        }
+        assert!(renumbered > 0, "{method}");
+    }
+}

@@ -1,0 +1,403 @@
+//! A method is a choice of four independent operators and of the configuration they live on.
+
+use crate::attached_method::{Attached, AttachedText};
+use oedometer_soil::wording::words;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::sync::LazyLock;
+
+/// Weights between points and nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Basis {
+    /// Piecewise linear hat functions: the original MPM.
+    Hat,
+    /// GIMP with point domains that keep their length.
+    Ugimp,
+    /// GIMP with point domains that follow the deformation.
+    Cpgimp,
+    /// Hat functions averaged over the ends of domains that follow the deformation, in the plane over the corners
+    /// of parallelograms that turn and shear with it (CPDI, Sadeghirad, Brannon & Burghardt 2011): domains that
+    /// tile the material keep tiling it.
+    Cpdi,
+    /// Quadratic B-splines at the points (Steffen, Kirby & Berzins 2008).
+    Bspline2,
+    /// Cubic B-splines at the points.
+    Bspline3,
+}
+
+words!(Basis: Hat "hat", Ugimp "ugimp", Cpgimp "cpgimp", Cpdi "cpdi", Bspline2 "bspline2", Bspline3 "bspline3");
+
+/// Gradient from which the effective stress takes its strain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum StrainGradient {
+    /// The gradient of the basis.
+    Standard,
+    /// Lagrange interpolant through the nodes of the cell and of its neighbours.
+    Cmpm,
+    /// The same interpolant between the ends of the point's domain, which it also carries: strains
+    /// add up to the surface's displacement wherever the points are.
+    CmpmEnds,
+    /// The gradient of the basis with its trace replaced by the method's own volumetric rate, the
+    /// one that drives the pressure: B-bar by cells (Hughes 1980), in the rate form F-bar (de Souza
+    /// Neto et al. 1996; Coombs et al. 2018 for material points).
+    Bbar,
+    /// The composite gradient with its trace replaced so.
+    CmpmBbar,
+}
+
+words!(StrainGradient: Standard "standard",
+    Cmpm "cmpm",
+    CmpmEnds "cmpm-ends",
+    Bbar "bbar",
+    CmpmBbar "cmpm-bbar",);
+
+impl StrainGradient {
+    /// Whether the Lagrange interpolant is taken, at the points or between the ends of their domains.
+    #[inline]
+    pub fn is_composite(self) -> bool {
+        matches!(self, Self::Cmpm | Self::CmpmEnds | Self::CmpmBbar)
+    }
+
+    /// Whether the skeleton's volumetric strain goes the way of the water's.
+    #[inline]
+    pub fn is_bbar(self) -> bool {
+        matches!(self, Self::Bbar | Self::CmpmBbar)
+    }
+}
+
+/// Where the divergence that drives the pore pressure is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum PressureIntegration {
+    /// At the points: full integration.
+    Points,
+    /// At the cell centres: selective reduced integration.
+    Sri,
+    /// Mean over the points of a cell, weighted with their volumes: strain smoothing by cells (Mast,
+    /// Mackenzie-Helnwein, Arduino, Miller & Shin 2012).
+    Mean,
+}
+
+words!(PressureIntegration: Points "points", Sri "sri", Mean "mean");
+
+impl PressureIntegration {
+    /// Whether there is one value a cell.
+    #[inline]
+    pub fn is_by_cells(self) -> bool {
+        self != Self::Points
+    }
+}
+
+/// How pressure increments come back from the cell centres to the points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Recovery {
+    /// Each point takes its cell's increment.
+    Constant,
+    /// Moving least squares over the surrounding block of cells (MLSA).
+    Patch,
+    /// Means at the nodes, interpolated to the points: of the cells around a node, nodal averaging of the
+    /// volumetric rate (Detournay & Dzik 2006; Jassim, Stolle & Vermeer 2013); of the points around it,
+    /// pressure as a nodal field of its own (Chen, Zhang, Sze, Kan & Qiu 2018).
+    Nodal,
+    /// Of values at the points, without the part that no nodal force feels: null-space filter by
+    /// cells (Gritton & Berzins 2017; Tran & Sołowski 2019).
+    NullSpace,
+}
+
+words!(Recovery: Constant "constant", Patch "patch", Nodal "nodal", NullSpace "null-space");
+
+impl Recovery {
+    /// Why a recovery does not go with a place of the divergence, where it does not.
+    pub fn refuses(self, pressure: PressureIntegration) -> Option<&'static str> {
+        match (self, pressure.is_by_cells()) {
+            (Self::NullSpace, true) => Some("a single value in a cell has no null space"),
+            (Self::Patch, false) => Some("values at the points need no recovery from cells"),
+            _ => None,
+        }
+    }
+}
+
+/// What remembers stress, pressure and volume while points move through the mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Memory {
+    /// Each point, all that ever happened to it.
+    #[default]
+    Points,
+    /// The cells: within a cell the points follow the parabola through the means of its
+    /// neighbourhood. What no equation of the grid sees is forgotten.
+    Cells,
+}
+
+words!(Memory: Points "points", Cells "cells");
+
+impl Memory {
+    /// Whether it is the paper's.
+    pub fn is_points(&self) -> bool {
+        *self == Self::Points
+    }
+}
+
+/// Configuration on which weights are built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Configuration {
+    /// Points move and weights follow them.
+    Updated,
+    /// Finite strain with weights that stay on the initial configuration: gradients are pushed
+    /// forward by the inverse deformation gradient.
+    Total,
+    /// Nothing moves: infinitesimal strain on the initial configuration.
+    Frozen,
+}
+
+words!(Configuration: Updated "updated", Total "total", Frozen "frozen");
+
+impl Configuration {
+    /// Whether points change place and weights follow.
+    #[inline]
+    pub fn moves_points(self) -> bool {
+        self == Self::Updated
+    }
+
+    /// Whether volumes, porosities and conductivities follow the deformation.
+    #[inline]
+    pub fn deforms(self) -> bool {
+        self != Self::Frozen
+    }
+}
+
+/// The four operators of a method; `configuration` is left to the scene where it is `None`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Method {
+    /// Weights between points and nodes.
+    pub basis: Basis,
+    /// Strain gradient for the effective stress.
+    pub strain: StrainGradient,
+    /// Place of the pressure divergence.
+    pub pressure: PressureIntegration,
+    /// Way of the pressure increment back to the points; full integration needs none.
+    pub recovery: Recovery,
+    /// What remembers the state while points move.
+    #[serde(default, skip_serializing_if = "Memory::is_points")]
+    pub memory: Memory,
+    /// Configuration of the weights, where the method insists on one.
+    pub configuration: Option<Configuration>,
+    /// Somebody else's solver, which has operators of its own: those above are then looked at by nobody.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<AttachedText>")]
+    pub attached: Option<Attached>,
+}
+
+/// The paper's ladder of methods and others beside it, without prefixes: one line a method.
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 14] = {
+    use Basis::{Cpdi, Cpgimp, Hat};
+    use PressureIntegration::{Mean, Points, Sri};
+    use Recovery::{Constant, Nodal, NullSpace, Patch};
+    use StrainGradient::{Bbar, Cmpm, CmpmBbar, CmpmEnds, Standard};
+    [
+        ("MPM", Hat, Standard, Points, Constant),
+        ("GIMP", Cpgimp, Standard, Points, Constant),
+        ("GIMP-SRI", Cpgimp, Standard, Sri, Constant),
+        ("GIMP-SRI-patch", Cpgimp, Standard, Sri, Patch),
+        ("GC-SRI-patch", Cpgimp, Cmpm, Sri, Patch),
+        ("CPDI-SRI-patch", Cpdi, Standard, Sri, Patch),
+        ("CE-SRI-patch", Cpdi, CmpmEnds, Sri, Patch),
+        ("GIMP-null-space", Cpgimp, Standard, Points, NullSpace),
+        ("GIMP-mean", Cpgimp, Standard, Mean, Constant),
+        ("GIMP-SRI-nodal", Cpgimp, Standard, Sri, Nodal),
+        ("VP", Cpgimp, Standard, Points, Nodal),
+        ("GIMP-Bbar", Cpgimp, Bbar, Sri, Constant),
+        ("GIMP-Bbar-patch", Cpgimp, Bbar, Sri, Patch),
+        ("GC-Bbar-patch", Cpgimp, CmpmBbar, Sri, Patch),
+    ]
+};
+
+/// Every method that has a name, with its first one: every line of a plan and of a table asks.
+static KNOWN: LazyLock<Vec<(Method, String)>> = LazyLock::new(|| {
+    let with_method = |name: String| Some((Method::named(&name)?, name));
+    Method::names().into_iter().filter_map(with_method).collect()
+});
+
+/// Prefix of the names of methods with weights on the initial configuration.
+const TOTAL_PREFIX: &str = "TL-";
+/// Suffix of the names of methods whose cells remember.
+const CELLS_SUFFIX: &str = "-cells";
+
+impl Method {
+    /// Somebody else's solver.
+    pub fn of_attached(attached: Attached) -> Self {
+        Self {
+            basis: Basis::Hat,
+            strain: StrainGradient::Standard,
+            pressure: PressureIntegration::Points,
+            recovery: Recovery::Constant,
+            memory: Memory::Points,
+            configuration: None,
+            attached: Some(attached),
+        }
+    }
+
+    /// Whether it is somebody else's solver.
+    pub fn is_attached(&self) -> bool {
+        self.attached.is_some()
+    }
+
+    /// Whether every point takes the pressure of its cell's centre: reduced integration without recovery.
+    pub fn has_constant_recovery(&self) -> bool {
+        self.pressure == PressureIntegration::Sri && self.recovery == Recovery::Constant
+    }
+
+    /// The method of a name, bare, with the prefix `u` for fixed domains, with the prefix `TL-` for
+    /// weights on the initial configuration, or with the suffix `-cells` for cells that remember.
+    pub fn named(name: &str) -> Option<Self> {
+        if let Some(bare) = name.strip_suffix(CELLS_SUFFIX) {
+            let method = Self::named(bare).filter(|method| method.can_move())?;
+            return (method.memory == Memory::Points).then_some(Self { memory: Memory::Cells, ..method });
+        }
+        if let Some(bare) = name.strip_prefix(TOTAL_PREFIX) {
+            let method = Self::named(bare).filter(|method| method.configuration.is_none())?;
+            // Domains on the initial configuration have nothing to follow.
+            let total = Self { configuration: Some(Configuration::Total), ..method };
+            return (method.basis != Basis::Ugimp).then_some(total);
+        }
+        let (bare, fixed_domains) = match name.strip_prefix('u') {
+            Some(rest) => (rest, true),
+            None => (name, false),
+        };
+        let (_, basis, strain, pressure, recovery) = *NAMED.iter().find(|row| row.0 == bare)?;
+        let basis = match (fixed_domains, basis) {
+            (false, basis) => basis,
+            (true, Basis::Cpgimp) => Basis::Ugimp,
+            (true, _) => return None,
+        };
+        let memory = Memory::Points;
+        Some(Self { basis, strain, pressure, recovery, memory, configuration: None, attached: None })
+    }
+
+    /// Every name that `named` knows.
+    pub fn names() -> Vec<String> {
+        let bare = NAMED.iter().map(|row| row.0.to_owned());
+        let fixed = NAMED.iter().filter(|row| row.1 == Basis::Cpgimp).map(|row| format!("u{}", row.0));
+        let total = NAMED.iter().map(|row| format!("{TOTAL_PREFIX}{}", row.0));
+        let cells = NAMED.iter().filter(|row| row.4 == Recovery::Patch);
+        let cells = cells.map(|row| format!("{}{CELLS_SUFFIX}", row.0));
+        bare.chain(fixed).chain(total).chain(cells).collect()
+    }
+
+    /// Whether the method leaves it to the scene to move its points.
+    fn can_move(self) -> bool {
+        self.configuration.is_none()
+    }
+
+    /// The operators in the words of a study file: `basis+strain+pressure+recovery`.
+    pub fn choices(&self) -> String {
+        let mut choices = format!("{}+{}+{}", word(self.basis), self.strain.name(), self.pressure.name());
+        if (self.pressure, self.recovery) != (PressureIntegration::Points, Recovery::Constant) {
+            choices = format!("{choices}+{}", self.recovery.name());
+        }
+        match self.memory {
+            Memory::Points => choices,
+            Memory::Cells => format!("{choices}+{}", word(self.memory)),
+        }
+    }
+
+    /// Whether increments come back from the cells by a patch.
+    pub fn uses_patch(&self) -> bool {
+        self.pressure.is_by_cells() && self.recovery == Recovery::Patch
+    }
+
+    /// Whether the pressure is a nodal field of its own.
+    pub fn has_nodal_pressure(&self) -> bool {
+        self.pressure == PressureIntegration::Points && self.recovery == Recovery::Nodal
+    }
+
+    /// Whether the domains of the points follow the deformation.
+    pub fn domains_follow(&self) -> bool {
+        matches!(self.basis, Basis::Cpgimp | Basis::Cpdi)
+    }
+
+    /// Whether the weights follow moving points, given the scene's own choice.
+    pub fn configuration_or(&self, scene: Configuration) -> Configuration {
+        self.configuration.unwrap_or(scene)
+    }
+}
+
+impl fmt::Display for Method {
+    /// The name where there is one, the four choices otherwise.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(attached) = self.attached {
+            return out.write_str(attached.name());
+        }
+        let name_of = |method: Self| KNOWN.iter().find(|(known, _)| *known == method).map(|(_, name)| name);
+        if let Some(name) = name_of(*self) {
+            return out.write_str(name);
+        }
+        match (name_of(Self { configuration: None, ..*self }), self.configuration) {
+            (Some(name), None) => write!(out, "{name}"),
+            (Some(name), Some(configuration)) => write!(out, "{name} ({})", word(configuration)),
+            (None, None) => write!(out, "{}", self.choices()),
+            (None, Some(configuration)) => write!(out, "{} ({})", self.choices(), word(configuration)),
+        }
+    }
+}
+
+/// The word of a choice as the study file spells it.
+fn word<C: fmt::Debug>(choice: C) -> String {
+    // Words of two, `CmpmEnds`, are joined by a hyphen.
+    let mut word = String::new();
+    for (place, letter) in format!("{choice:?}").char_indices() {
+        if letter.is_uppercase() && place > 0 {
+            word.push('-');
+        }
+        word.extend(letter.to_lowercase());
+    }
+    word
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_its_own_display() {
+        for name in Method::names() {
+            assert_eq!(Method::named(&name).map(|method| method.to_string()), Some(name));
+        }
+    }
+
+    #[test]
+    fn names_that_are_none_are_refused() {
+        for name in [
+            "",
+            "uMPM",
+            "gimp",
+            "GC-SRI",
+            "uuGIMP",
+            "TL-",
+            "TL-uGIMP",
+            "TL-TL-GIMP",
+            "TL-GIMP-cells",
+            "GIMP-cells-cells",
+        ] {
+            assert_eq!(Method::named(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_free_combination_tells_its_choices() {
+        let method = Method {
+            basis: Basis::Hat,
+            strain: StrainGradient::Cmpm,
+            pressure: PressureIntegration::Sri,
+            recovery: Recovery::Patch,
+            memory: Memory::Points,
+            configuration: Some(Configuration::Updated),
+            attached: None,
+        };
+        assert_eq!(method.to_string(), "hat+cmpm+sri+patch (updated)");
+    }
+}

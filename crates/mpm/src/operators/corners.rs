@@ -1,0 +1,172 @@
+//! Weights of domains that turn: the hats at the four corners of a parallelogram (CPDI in the plane).
+//!
+//! ```text
+//! N_p  = ¼ Σ_c N(x_c),   x_c = x_p ± r_1 ± r_2
+//! ∇N_p = Σ_c g_c N(x_c),   g_c = [±(r_2y, −r_2x) ± (−r_1y, r_1x)]/V,   V = 4 r_1 × r_2
+//! ```
+//!
+//! The gradient is the mean over the parallelogram of the gradient of what its corners interpolate, from its
+//! boundary: exact for linear fields whatever its shape. Each corner is a block of hats, so a point has four blocks.
+
+use crate::operators::basis::{Hat, ShapeFunction};
+use crate::operators::row::Row;
+use crate::operators::stencil::{PointStencils, Stencils};
+use crate::state::grid::{GHOST_LAYERS, Grid, whole};
+use oedometer_soil::tensor::{Tensor, Vector};
+
+/// Corners of a parallelogram by the signs of its half-edges, one after the other around it.
+const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+
+/// Room for the stencils of so many points with domains that turn.
+pub fn corner_stencils<const D: usize>(points: usize) -> PointStencils<D> {
+    PointStencils::Two(Stencils::with_parts(points, CORNERS.len()))
+}
+
+/// Builds `N` and `∇N` of points at places (in cells) with half-edges of their domains (m), `[point][edge][component]`.
+pub fn build_corners<const D: usize>(
+    stencils: &mut PointStencils<D>,
+    grid: &Grid<D>,
+    places: &[Vector<D>],
+    half_edges: &[Tensor<D>],
+) {
+    let PointStencils::Two(stencils) = stencils else { unreachable!("stencils of another basis") };
+    let last = D - 1;
+    for (point, (place, [first_edge, second_edge])) in
+        places.iter().zip(half_edges.iter().map(|edges| [edges[0], edges[last]])).enumerate()
+    {
+        let per_cell = grid.inverse_cell_size();
+        let [a, b] = [first_edge, second_edge].map(|edge| edge.map(|component| component * per_cell));
+        let per_volume = 0.25 / (a[0] * b[last] - a[last] * b[0]);
+        for (part, [along, up]) in CORNERS.into_iter().enumerate() {
+            // g_c = Σ_edges of the normal of the edges that meet in the corner, half each, over the volume.
+            let slope =
+                [along * b[last] - up * a[last], up * a[0] - along * b[0]].map(|normal| per_volume * normal);
+            let rows: [Row<2>; D] = std::array::from_fn(|d| {
+                let corner = place[d] + along * a[d] + up * b[d];
+                corner_row(grid, d, corner, slope[d.min(1)])
+            });
+            stencils.set_part(grid, point, part, &rows);
+        }
+    }
+}
+
+/// Row of a corner along a direction. The product of the rows is a quarter of the hat, and that with the gradient of
+/// a direction the hat times the corner's slope there.
+#[inline]
+fn corner_row<const D: usize>(grid: &Grid<D>, direction: usize, corner: f64, slope: f64) -> Row<2> {
+    // `max` and `min`, not `clamp`: they turn a NaN into a place. The outermost node is no cell's lowest.
+    let end = (grid.cells[direction] + 2 * GHOST_LAYERS) as f64;
+    let corner = corner.max(0.0).min(end - 1e-9);
+    let hat = Hat::row(corner, whole(corner), 0.0);
+    // Weights of a half a direction, a quarter in the plane.
+    Row {
+        weights: hat.weights.map(|weight| 0.5 * weight),
+        gradients: hat.weights.map(|weight| 2.0 * slope * weight),
+        ..hat
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A point at a place, m, with a domain of half-edges, m, on cells of half a metre.
+    fn point(place: Vector<2>, half_edges: Tensor<2>) -> (Grid<2>, PointStencils<2>) {
+        let grid = Grid::new(0.5, [6, 5]);
+        let mut stencils = corner_stencils(2);
+        let places = [grid.held_in_cells(&[1.0, 1.0]), grid.held_in_cells(&place)];
+        build_corners(&mut stencils, &grid, &places, &[[[0.1, 0.0], [0.0, 0.1]], half_edges]);
+        (grid, stencils)
+    }
+
+    fn field(grid: &Grid<2>, of: impl Fn(f64, f64) -> f64) -> Vec<Vector<2>> {
+        let nodes = 0..grid.node_count();
+        nodes.map(|node| grid.node_position(node)).map(|[x, y]| [of(x, y), 0.0]).collect()
+    }
+
+    /// The hats' interpolant of a field at a place, m.
+    fn interpolated(grid: &Grid<2>, of: &impl Fn(f64, f64) -> f64, [x, y]: Vector<2>) -> f64 {
+        let h = grid.cell_size;
+        let ([i, j], [a, b]) = ([x, y].map(|at| (at / h).floor()), [x, y].map(|at| (at / h).fract()));
+        let node = |right: f64, up: f64| of((i + right) * h, (j + up) * h);
+        (1.0 - b) * ((1.0 - a) * node(0.0, 0.0) + a * node(1.0, 0.0))
+            + b * ((1.0 - a) * node(0.0, 1.0) + a * node(1.0, 1.0))
+    }
+
+    proptest! {
+        #[test]
+        fn linear_fields_are_met_and_gradients_add_up_to_nothing(
+            place in [1.0..2.0f64, 1.0..1.5f64],
+            long in [0.1..0.4f64, -0.3..0.3f64],
+            wide in [-0.09..0.09f64, 0.1..0.4f64],
+        ) {
+            let (grid, stencils) = point(place, [long, wide]);
+            let (mut weights, mut gradients) = (0.0, [0.0; 2]);
+            stencils.visit(grid.node_stride(), 1, |_, weight, gradient| {
+                weights += weight;
+                gradients = std::array::from_fn(|d| gradients[d] + gradient[d]);
+            });
+            prop_assert!((weights - 1.0).abs() < 1e-14);
+            prop_assert!(gradients[0].abs() < 1e-12 && gradients[1].abs() < 1e-12);
+            let linear = field(&grid, |x, y| 1.0 + 2.0 * x - 3.0 * y);
+            let value = stencils.value(grid.node_stride(), 1, &linear)[0];
+            prop_assert!((value - (1.0 + 2.0 * place[0] - 3.0 * place[1])).abs() < 1e-12);
+            let [slope, _] = stencils.gradient(grid.node_stride(), 1, &linear);
+            prop_assert!((slope[0] - 2.0).abs() < 1e-11 && (slope[1] + 3.0).abs() < 1e-11);
+        }
+
+        /// The gradient is the mean over the domain of that of the corners' bilinear interpolant: by its boundary,
+        /// with the trapezoidal rule on each edge.
+        #[test]
+        fn the_gradient_is_that_of_the_boundary(
+            place in [1.0..2.0f64, 1.0..1.5f64],
+            [a, b] in [[0.1..0.4f64, -0.3..0.3f64], [-0.09..0.09f64, 0.1..0.4f64]],
+        ) {
+            let (grid, stencils) = point(place, [a, b]);
+            let wavy = |x: f64, y: f64| (1.3 * x - 0.4 * y).sin() + x * y;
+            let at = |s: f64, t: f64| -> Vector<2> {
+                std::array::from_fn(|d| place[d] + s * a[d] + t * b[d])
+            };
+            let corners = [at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)];
+            let values = corners.map(|corner| interpolated(&grid, &wavy, corner));
+            let (mut area, mut boundary) = (0.0, [0.0; 2]);
+            for i in 0..4 {
+                let ([x0, y0], [x1, y1]) = (corners[i], corners[(i + 1) % 4]);
+                area += 0.5 * (x0 * y1 - x1 * y0);
+                let mean = 0.5 * (values[i] + values[(i + 1) % 4]);
+                boundary = [boundary[0] + mean * (y1 - y0), boundary[1] - mean * (x1 - x0)];
+            }
+            let nodes = field(&grid, wavy);
+            let [slope, _] = stencils.gradient(grid.node_stride(), 1, &nodes);
+            for d in 0..2 {
+                prop_assert!((slope[d] - boundary[d] / area).abs() < 1e-11, "{} for {}", slope[d], boundary[d] / area);
+            }
+            let value = stencils.value(grid.node_stride(), 1, &nodes)[0];
+            prop_assert!((value - 0.25 * values.iter().sum::<f64>()).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_domain_along_the_axes_has_the_products_of_its_ends() {
+        use crate::method::Basis;
+        use crate::state::nodes::Support;
+        let (place, half) = ([1.37, 0.81], [0.2, 0.13]);
+        let (grid, corners) = point(place, [[half[0], 0.0], [0.0, half[1]]]);
+        let mut ends = Basis::Cpdi.stencils(1);
+        let places = [&[grid.held_in_cells(&place)][..], &[half][..]];
+        Basis::Cpdi.build(&mut ends, &grid, &Support::free(), places);
+        let spread = |stencils: &PointStencils<2>, point: usize| {
+            let mut nodes = vec![[0.0; 3]; grid.node_count()];
+            stencils.visit(grid.node_stride(), point, |node, weight, [along, up]| {
+                for (sum, part) in nodes[node].iter_mut().zip([weight, *along, *up]) {
+                    *sum += part;
+                }
+            });
+            nodes
+        };
+        for (got, exact) in spread(&corners, 1).iter().flatten().zip(spread(&ends, 0).iter().flatten()) {
+            assert!((got - exact).abs() < 1e-14, "{got} for {exact}");
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! Where the points are among cells and nodes: what every way of recovery looks at.
+
+use crate::operators::stencil::PointStencils;
+use crate::state::cells::Cells;
+use crate::state::grid::Grid;
+use crate::state::nodes::Nodes;
+use oedometer_soil::tensor::Vector;
+
+/// Where the points are among cells and nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct PointsInCells<'a, const D: usize> {
+    /// Background grid.
+    pub grid: &'a Grid<D>,
+    /// Cells with their volumes, and the cell of each point.
+    pub cells: &'a Cells<D>,
+    /// Nodes with their supports.
+    pub nodes: &'a Nodes<D>,
+    /// Weights between points and nodes.
+    pub basis: &'a PointStencils<D>,
+    /// Places of the points, m, `[point][component]`.
+    pub positions: &'a [Vector<D>],
+    /// Volumes of the points in another state, m^D, and what they have become over those.
+    pub volumes: [&'a [f64]; 2],
+}
+
+impl<const D: usize> PointsInCells<'_, D> {
+    /// Volume of a point, m^D.
+    #[inline]
+    pub fn volume(&self, point: usize) -> f64 {
+        self.volumes[0][point] * self.volumes[1][point]
+    }
+}
+
+/// [`PointsInCells`] of a body, field by field: what is recovered may be another field of it.
+macro_rules! points_in_cells {
+    ($body:expr) => {
+        $crate::operators::recovery::points_in_cells::PointsInCells {
+            grid: &$body.grid,
+            cells: &$body.cells,
+            nodes: &$body.nodes,
+            basis: &$body.basis,
+            positions: &$body.points.position,
+            volumes: [&$body.points.initial_volume, &$body.points.volume_ratio],
+        }
+    };
+}
+pub(crate) use points_in_cells;

@@ -1,0 +1,216 @@
+//! The volumetric operators of a method: `D` from nodes to the sites of the dilation, `R` from the sites to the
+//! points, in place and as sparse rows.
+//!
+//! The explicit step works in place; whoever assembles (the frozen step, the undrained start, implicit
+//! integrators) takes the rows.
+
+use crate::body::Body;
+use crate::method::PressureIntegration;
+use crate::operators::recovery::points_in_cells::points_in_cells;
+use oedometer_soil::tensor::Vector;
+
+/// A linear functional of a nodal vector field: one vector of coefficients a node.
+pub type VectorRow<const D: usize> = Vec<(usize, Vector<D>)>;
+
+/// `D` and `R` of a method on a body's present operators.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct VolumetricRows<const D: usize> {
+    /// Cell or point of each site.
+    pub sites: Vec<usize>,
+    /// Site of each cell or point, where it is one.
+    pub site_of_place: Vec<Option<usize>>,
+    /// Divergence at each site, 1/m of the field: occupied cells, or points.
+    pub divergence: Vec<VectorRow<D>>,
+    /// Coupling modulus `K_w/n` of each site, Pa.
+    pub coupling: Vec<f64>,
+    /// Sites that each point recovers its value from, with their weights.
+    pub recovery: Vec<Vec<(usize, f64)>>,
+}
+
+/// A place where a divergence is taken.
+#[derive(Clone, Copy, Debug)]
+pub enum Place {
+    /// Centre of a cell.
+    Centre(usize),
+    /// A point.
+    Point(usize),
+}
+
+impl<const D: usize> Body<D> {
+    /// Divergence of a nodal field at a place, on the present configuration.
+    #[inline]
+    pub fn divergence_at(&self, place: Place, field: &[Vector<D>]) -> f64 {
+        match place {
+            Place::Centre(cell) => self.divergence_at_centre(cell, field),
+            Place::Point(point) => self.divergence_at_point(point, field),
+        }
+    }
+
+    /// Cell of a point, and the point's share of its volume.
+    #[inline]
+    fn share_of_cell(&self, point: usize) -> (usize, f64) {
+        let cell = self.cells.of_point[point];
+        (cell, self.points.volume(point) / self.cells.volume(cell))
+    }
+
+    /// Porosity of a cell or point that is a site.
+    pub fn porosity_of(&self, place: usize) -> f64 {
+        if self.method.pressure.is_by_cells() {
+            self.cells.porosity[place]
+        } else {
+            self.material.porosity_at(self.points.volume_ratio[place])
+        }
+    }
+
+    /// `D` in place: fills `site_values` with what a function gives at each site from a place and the porosity
+    /// there. Sites are points, cells at their centres, or cells as means over their points, weighted with
+    /// volume.
+    #[inline]
+    pub fn evaluate_sites(&mut self, value: impl Fn(&Self, Place, f64) -> f64) {
+        let mut sites = std::mem::take(&mut self.site_values);
+        match self.method.pressure {
+            PressureIntegration::Points => {
+                for (point, site) in sites.iter_mut().enumerate() {
+                    let porosity = self.material.porosity_at(self.points.volume_ratio[point]);
+                    *site = value(self, Place::Point(point), porosity);
+                }
+            }
+            PressureIntegration::Sri => {
+                sites.fill(0.0);
+                for cell in self.cells.occupied() {
+                    sites[cell] = value(self, Place::Centre(cell), self.cells.porosity[cell]);
+                }
+            }
+            PressureIntegration::Mean => {
+                sites.fill(0.0);
+                for point in 0..self.points.len() {
+                    let (cell, share) = self.share_of_cell(point);
+                    sites[cell] += share * value(self, Place::Point(point), self.cells.porosity[cell]);
+                }
+            }
+        }
+        self.site_values = sites;
+    }
+
+    /// Rate of the mixture's volume at each site beyond that of a source, 1/s.
+    pub fn evaluate_volume_rates(&mut self) {
+        self.evaluate_sites(|body, place, porosity| {
+            let rate = body.volume_rate(porosity, |field| body.divergence_at(place, field));
+            rate - body.source_at(place)
+        });
+    }
+
+    /// Source of water at a place, 1/s; nothing where none acts.
+    #[inline]
+    pub(crate) fn source_at(&self, place: Place) -> f64 {
+        let Some(forced) = &self.forcing else { return 0.0 };
+        match place {
+            Place::Centre(cell) => forced.source_at_centre(cell),
+            Place::Point(point) => forced.source_at_point(point),
+        }
+    }
+
+    /// The skeleton's volumetric rate at the points by the method's own `D` and `R`, 1/s: the trace that B-bar
+    /// takes.
+    pub fn recover_dilation_rates(&mut self) {
+        self.evaluate_sites(|body, place, _| body.divergence_at(place, &body.nodes.solid_velocity));
+        let at = points_in_cells!(self);
+        self.recovery
+            .recover(&at, &self.site_values, &mut self.dilation_rates, |rate, recovered| *rate = recovered);
+    }
+
+    /// `D` and `R` of the body's method as rows; gradients are those of small strain.
+    pub fn volumetric_rows(&self) -> VolumetricRows<D> {
+        let is_by_cells = self.method.pressure.is_by_cells();
+        let places = if is_by_cells { self.grid.cell_count() } else { self.points.len() };
+        let sites: Vec<usize> =
+            if is_by_cells { self.cells.occupied().collect() } else { (0..places).collect() };
+        let mut site_of_place = vec![None; places];
+        for (site, place) in sites.iter().enumerate() {
+            site_of_place[*place] = Some(site);
+        }
+        let at = points_in_cells!(self);
+        let numbered = |row: Vec<(usize, f64)>| {
+            let entries = row.into_iter().filter(|(_, weight)| *weight != 0.0);
+            entries.filter_map(|(place, weight)| Some((site_of_place[place]?, weight))).collect()
+        };
+        VolumetricRows {
+            divergence: self.divergence_rows(&sites, &site_of_place),
+            coupling: sites
+                .iter()
+                .map(|place| self.material.water_bulk_modulus / self.porosity_of(*place))
+                .collect(),
+            recovery: self.recovery.rows(&at).into_iter().map(numbered).collect(),
+            sites,
+            site_of_place,
+        }
+    }
+
+    fn divergence_rows(&self, sites: &[usize], site_of_place: &[Option<usize>]) -> Vec<VectorRow<D>> {
+        let at_point = |point: usize| self.basis.gradient_row(&self.grid, point);
+        match self.method.pressure {
+            PressureIntegration::Points => sites.iter().map(|point| at_point(*point)).collect(),
+            PressureIntegration::Sri => {
+                sites.iter().map(|cell| self.cells.centre_divergence_row(&self.grid, *cell)).collect()
+            }
+            PressureIntegration::Mean => {
+                let mut rows = vec![VectorRow::new(); sites.len()];
+                for point in 0..self.points.len() {
+                    let (cell, share) = self.share_of_cell(point);
+                    let Some(site) = site_of_place[cell] else { continue };
+                    for (node, gradient) in at_point(point) {
+                        accumulate(&mut rows[site], node, &gradient.map(|component| share * component));
+                    }
+                }
+                rows
+            }
+        }
+    }
+}
+
+/// Adds to a node's coefficients in a short row.
+fn accumulate<const D: usize>(row: &mut VectorRow<D>, node: usize, coefficients: &Vector<D>) {
+    let place = row.iter().position(|entry| entry.0 == node).unwrap_or_else(|| {
+        row.push((node, [0.0; D]));
+        row.len() - 1
+    });
+    for d in 0..D {
+        row[place].1[d] += coefficients[d];
+    }
+}
+
+impl<const D: usize> VolumetricRows<D> {
+    /// Divergence of a nodal field at every site.
+    pub fn at_sites(&self, field: &[Vector<D>]) -> Vec<f64> {
+        self.divergence.iter().map(|row| applied(row, field)).collect()
+    }
+
+    /// Values at the points from those at the sites.
+    pub fn at_points(&self, sites: &[f64]) -> Vec<f64> {
+        let value = |row: &Vec<(usize, f64)>| row.iter().map(|(site, weight)| weight * sites[*site]).sum();
+        self.recovery.iter().map(value).collect()
+    }
+
+    /// The volumetric rate at a point as a functional of the field: `R D` without moduli.
+    pub fn dilation_row(&self, point: usize) -> VectorRow<D> {
+        let mut row = VectorRow::new();
+        for (site, weight) in &self.recovery[point] {
+            for (node, coefficients) in &self.divergence[*site] {
+                accumulate(&mut row, *node, &coefficients.map(|component| weight * component));
+            }
+        }
+        row
+    }
+}
+
+/// A functional applied to a field.
+#[inline]
+pub fn applied<const D: usize>(row: &VectorRow<D>, field: &[Vector<D>]) -> f64 {
+    let mut sum = 0.0;
+    for (node, coefficients) in row {
+        for d in 0..D {
+            sum += coefficients[d] * field[*node][d];
+        }
+    }
+    sum
+}

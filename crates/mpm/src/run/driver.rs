@@ -1,0 +1,210 @@
+//! The one driver of every run: from output to output, with snapshots, history and a watch.
+
+use crate::run::profile::{Phase, enter};
+use crate::run::results::history::{History, Settled};
+use crate::run::results::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
+use crate::run::results::snapshot::Snapshot;
+use crate::run::run_plan::Plan;
+use crate::run::schedule::Observer;
+use crate::run::step_limit::{StepLimit, steps_for};
+use crate::run::stepper::{EqualSteps, StepFailure, Stepper};
+use crate::run::watch::Watch;
+
+/// Steps after which deforming points are given a new step size: the pores at the drained end
+/// close within a hundred.
+const STEP_RENEWAL: u64 = 32;
+/// Share of the step that the estimate promises to be accurate enough.
+const SAFETY: f64 = 0.9;
+/// What a step may shrink to at once.
+const SMALLEST_CHANGE: f64 = 0.2;
+/// What it may grow to at once.
+const LARGEST_CHANGE: f64 = 4.0;
+/// Share of an error that is left by a step of a fifth at most where the error is one of the start.
+const STAYS: f64 = 0.7;
+/// Growth that is worth new factors.
+const WORTH_A_CHANGE: f64 = 1.4;
+
+/// A run on its way.
+pub struct Driver<'a> {
+    stepper: &'a mut dyn Stepper,
+    plan: &'a Plan<'a>,
+    observer: Observer<'a>,
+    watch: Watch<'a>,
+    history: History<'a>,
+    time: f64,
+    sizes: StepSizes,
+    counters: Counters,
+    /// Steps that the observer is told to expect.
+    expected: u64,
+    /// Size that the errors of the steps so far ask for, s.
+    adaptive_step: f64,
+    /// Error of the last step that was tried from the start and not taken.
+    rejected_start: Option<f64>,
+}
+
+impl<'a> Driver<'a> {
+    /// A run at its start.
+    pub fn new(stepper: &'a mut dyn Stepper, plan: &'a Plan<'a>, observer: Observer<'a>) -> Self {
+        let end = plan.schedule.outputs.last().copied().unwrap_or(0.0);
+        Self {
+            watch: Watch::of(plan),
+            history: History::of(&plan.schedule.history),
+            time: 0.0,
+            sizes: plan.sizes,
+            counters: Counters { points: plan.points, nodes: plan.nodes, ..Counters::default() },
+            expected: plan.limit.expected_steps(end),
+            adaptive_step: plan.sizes.target,
+            rejected_start: None,
+            stepper,
+            plan,
+            observer,
+        }
+    }
+
+    /// Goes from output to output, unless there is no start to go from.
+    pub fn solve(mut self, start_failure: Option<Failure>) -> Outcome {
+        let start = self.stepper.snapshot(0.0);
+        self.watch.begin(&start);
+        let mut snapshots = Vec::new();
+        let mut status = start_failure.map_or(RunStatus::Ok, RunStatus::Failed);
+        for output in &self.plan.schedule.outputs {
+            if status != RunStatus::Ok {
+                break;
+            }
+            match self.output_at(*output) {
+                Ok(snapshot) => snapshots.push(snapshot),
+                Err(StepFailure { kind, reason }) => {
+                    let (step, growth) = (self.counters.steps, self.watch.growth());
+                    status = RunStatus::Failed(Failure { kind, step, time: self.time, growth, reason });
+                }
+            }
+        }
+        let work = self.stepper.work();
+        self.counters.factorisations = work.factorisations;
+        self.counters.iterations = work.iterations;
+        self.counters.rejected_steps = work.rejected_steps;
+        Outcome {
+            status,
+            start,
+            snapshots,
+            history: self.history.noted,
+            counters: self.counters,
+            step_sizes: self.sizes,
+        }
+    }
+
+    /// The state at an output, where it is one that the scene can reach.
+    fn output_at(&mut self, output: f64) -> Result<Snapshot, StepFailure> {
+        self.ask_to_go_on()?;
+        while output - self.time > 1e-9 * output {
+            match self.plan.limit {
+                StepLimit::Tolerance { tolerance, .. } => self.adapt_step(output, tolerance)?,
+                limit => self.take_row(&self.next_row(limit, output))?,
+            }
+        }
+        let snapshot = self.stepper.snapshot(self.time);
+        self.watch.look_at_output(self.stepper, &snapshot.points.pressure, &self.sizes)?;
+        Ok(snapshot)
+    }
+
+    fn ask_to_go_on(&self) -> Result<(), StepFailure> {
+        if (self.observer)(self.counters.steps, self.expected) {
+            return Ok(());
+        }
+        Err(StepFailure { kind: FailureKind::Stopped, reason: "stopped from outside".to_owned() })
+    }
+
+    /// The next steps of one size towards `output`.
+    fn next_row(&self, limit: StepLimit, output: f64) -> EqualSteps {
+        match self.stepper.step_reduction() {
+            None => limit.row(self.time, output),
+            Some(reduction) => {
+                let row = StepLimit::Constant(self.sizes.target * reduction).row(self.time, output);
+                EqualSteps { count: row.count.min(STEP_RENEWAL), ..row }
+            }
+        }
+    }
+
+    /// Takes a row of steps, from look to look.
+    fn take_row(&mut self, row: &EqualSteps) -> Result<(), StepFailure> {
+        let mut some = EqualSteps { count: 0, ..*row };
+        let mut left = row.count;
+        while left > 0 {
+            let to_look = Watch::steps_to_look(self.counters.steps, self.stepper.steps_unwatched());
+            let to_history =
+                self.history.next_due().map_or(u64::MAX, |due| steps_for(due - self.time, row.dt));
+            some = some.next(to_look.min(to_history).min(left));
+            left -= some.count;
+            self.take(&some, f64::INFINITY)?;
+        }
+        Ok(())
+    }
+
+    /// A step whose size follows the errors of those before it, changed only where that is worth
+    /// new factors.
+    fn adapt_step(&mut self, output: f64, tolerance: f64) -> Result<(), StepFailure> {
+        let rest = output - self.time;
+        let left = steps_for(rest, self.adaptive_step);
+        let dt = if left <= 2 { rest / left as f64 } else { self.adaptive_step };
+        // An error of the first step that a smaller one does not reduce is no error in time: the start is out of
+        // balance, by points off their lattice say, and the first step takes that up whatever its size.
+        let jumps = |last: f64, error: f64| error > STAYS * last;
+        let step = EqualSteps::first(self.time, dt, 1);
+        let mut error = self.take(&step, tolerance)?;
+        if error > tolerance && self.time == 0.0 {
+            if self.rejected_start.is_some_and(|last| jumps(last, error)) {
+                self.take(&step, f64::INFINITY)?;
+                error = tolerance;
+            }
+            self.rejected_start = Some(error);
+        }
+        let factor = SAFETY * (tolerance / error.max(1e-3 * tolerance)).sqrt();
+        if error > tolerance || factor < 1.0 {
+            self.adaptive_step = self.adaptive_step.min(dt * factor.max(SMALLEST_CHANGE));
+        } else if factor > WORTH_A_CHANGE {
+            self.adaptive_step = self.adaptive_step.max(dt * factor.min(LARGEST_CHANGE));
+        }
+        if left == 1 && error <= tolerance {
+            self.time = output;
+        }
+        Ok(())
+    }
+
+    /// Takes steps with a look at their end, and notes what is due within the last of them; their
+    /// estimated error.
+    fn take(&mut self, steps: &EqualSteps, most_error: f64) -> Result<f64, StepFailure> {
+        let (end, dt) = (steps.end(), steps.dt);
+        let advances = end > self.time;
+        if !advances {
+            return Err(StepFailure {
+                kind: FailureKind::NotConverged,
+                reason: format!("a step of {dt:.3e} s is too small to advance the time"),
+            });
+        }
+        let mut last = *steps;
+        let is_due = self.history.next_due().is_some_and(|due| due <= end * (1.0 + 1e-12));
+        if is_due && steps.count > 1 {
+            let most = EqualSteps { count: steps.count - 1, ..*steps };
+            self.stepper.advance(&most, most_error)?;
+            (self.time, last) = (most.end(), most.next(1));
+        }
+        let before = is_due.then(|| Settled { time: self.time, settlement: self.stepper.settlement() });
+        let error = self.stepper.advance(&last, most_error)?;
+        enter(Phase::Outputs);
+        if error > most_error {
+            self.ask_to_go_on()?;
+            return Ok(error);
+        }
+        self.time = end;
+        self.sizes.largest = self.sizes.largest.max(dt);
+        self.counters.steps += steps.count;
+        self.counters.point_updates += steps.count * self.counters.points as u64;
+        let after = Settled { time: end, settlement: self.stepper.settlement() };
+        self.watch.look(self.stepper, after.settlement, steps, &self.sizes)?;
+        if let Some(before) = before {
+            self.history.note(before, after, self.stepper.settlement_rate());
+        }
+        self.ask_to_go_on()?;
+        Ok(error)
+    }
+}

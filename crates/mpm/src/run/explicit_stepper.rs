@@ -1,0 +1,202 @@
+//! The explicit step on its way through time: point by point, or assembled where nothing moves.
+
+use crate::assembled::step::AssembledStep;
+use crate::body::Body;
+use crate::critical_step::formula;
+use crate::explicit::ExplicitSettings;
+use crate::explicit::scheme::Rhythm;
+use crate::method::Configuration;
+use crate::run::energy::Energy;
+use crate::run::results::snapshot::Snapshot;
+use crate::run::run_plan::Plan;
+use crate::run::schedule::Kernel;
+use crate::run::stepper::{EqualSteps, StepFailure, Stepper};
+use crate::run::time_step_rule::TimeStepRule;
+use crate::run::watch::lost_point;
+use crate::state::points::Points;
+
+/// Steps between two looks.
+pub(crate) const WATCH_INTERVAL: u64 = 64;
+
+/// A body that goes by explicit steps.
+pub struct ExplicitStepper<const D: usize> {
+    /// The body; at its start where the step is assembled.
+    body: Body<D>,
+    frozen: Option<AssembledStep<D>>,
+    start: Points<D>,
+    initial_height: f64,
+    initial_settlement: f64,
+    settings: ExplicitSettings,
+    /// Whether the step follows the deformation of the body.
+    step_follows: bool,
+    rhythm: Rhythm,
+    /// Kick that the assembled step is made for, s.
+    kick: f64,
+    load: GrowingLoad,
+}
+
+/// A load that grows linearly to its full value, or acts at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct GrowingLoad {
+    /// Whole load, Pa, and the time over which it grows, s.
+    load: f64,
+    loading_time: f64,
+    /// Share of it that acts.
+    pub share: f64,
+}
+
+impl GrowingLoad {
+    /// The load of a body, which grows over a time, s.
+    pub fn of<const D: usize>(body: &Body<D>, loading_time: f64) -> Self {
+        Self { load: body.surface.load, loading_time, share: 1.0 }
+    }
+
+    /// Whether it still grows.
+    pub fn grows(&self) -> bool {
+        self.share < 1.0
+    }
+
+    /// Puts the load of a time, s, on the surface, where it grows.
+    pub fn act_at<const D: usize>(&mut self, body: &mut Body<D>, time: f64) {
+        if self.loading_time > 0.0 {
+            self.share = (time / self.loading_time).min(1.0);
+            body.surface.load = self.share * self.load;
+            body.apply_loads();
+        }
+    }
+}
+
+/// Share of the first step that is stable still: it shrinks as the pores close and waves get faster, and as cells
+/// shrink that go with the points.
+pub(crate) fn step_reduction<const D: usize>(body: &Body<D>, follows: bool) -> Option<f64> {
+    if !body.configuration.deforms() {
+        return None;
+    }
+    if !follows {
+        return Some(1.0);
+    }
+    let soil = &body.material;
+    let least_ratio = body.points.volume_ratio.iter().copied().fold(1.0, f64::min);
+    let porosity = soil.porosity_at(least_ratio).max(1e-3);
+    let shrunk = if body.configuration.moves_points() { 1.0 } else { least_ratio };
+    Some(
+        shrunk * formula::fastest_wave_speed(soil, soil.porosity)
+            / formula::fastest_wave_speed(soil, porosity),
+    )
+}
+
+impl<const D: usize> ExplicitStepper<D> {
+    /// A body at its start.
+    pub fn new(body: Body<D>, plan: &Plan<'_>) -> Self {
+        let schedule = plan.schedule;
+        let is_assembled = body.configuration == Configuration::Frozen && schedule.kernel == Kernel::Fastest;
+        let mut stepper = Self {
+            frozen: is_assembled.then(|| AssembledStep::new(&body)),
+            start: body.points.clone(),
+            initial_height: plan.initial_height,
+            initial_settlement: body.settlement(plan.initial_height),
+            settings: schedule.settings,
+            step_follows: !matches!(schedule.rule, TimeStepRule::Seconds(_)),
+            rhythm: Rhythm::default(),
+            kick: f64::NAN,
+            load: GrowingLoad::of(&body, plan.loading_time),
+            body,
+        };
+        if stepper.settings.affine {
+            stepper.body.bring_slopes();
+        }
+        if stepper.settings.stress_slopes {
+            stepper.body.slope_stresses();
+        }
+        if plan.loading_time > 0.0 {
+            stepper.set_load_at(0.0);
+        }
+        stepper
+    }
+
+    /// Puts the load of a growing time on the surface.
+    fn set_load_at(&mut self, time: f64) {
+        self.load.act_at(&mut self.body, time);
+        if let Some(frozen) = &mut self.frozen {
+            frozen.set_load_share(self.load.share);
+        }
+    }
+}
+
+impl<const D: usize> Stepper for ExplicitStepper<D> {
+    fn advance(&mut self, steps: &EqualSteps, _most_error: f64) -> Result<f64, StepFailure> {
+        let (settings, dt) = (self.settings, steps.dt);
+        for step in 0..steps.count {
+            if self.load.grows() {
+                self.set_load_at(steps.time_after(step));
+            }
+            self.body.begin_forced_step(steps.time_after(step));
+            let kick = self.rhythm.kick(dt, &settings);
+            match &mut self.frozen {
+                Some(frozen) => {
+                    if kick != self.kick {
+                        frozen.set_step(kick, &settings);
+                        self.kick = kick;
+                    }
+                    frozen.kick_and_drift(kick, dt, &settings);
+                }
+                None => self.body.kick_and_drift(kick, dt, &settings),
+            }
+        }
+        Ok(0.0)
+    }
+
+    fn steps_unwatched(&self) -> u64 {
+        WATCH_INTERVAL
+    }
+
+    fn step_reduction(&self) -> Option<f64> {
+        step_reduction(&self.body, self.step_follows)
+    }
+
+    fn settlement(&self) -> f64 {
+        match &self.frozen {
+            Some(frozen) => self.initial_settlement - frozen.surface_displacement(),
+            None => self.body.settlement(self.initial_height),
+        }
+    }
+
+    fn largest_velocity(&self) -> Option<f64> {
+        Some(match &self.frozen {
+            Some(frozen) => frozen.largest_velocity(),
+            None => self.body.largest_velocity(),
+        })
+    }
+
+    fn energy(&mut self, dt: f64) -> Option<(Energy, bool)> {
+        if self.body.weight.is_some() || self.load.grows() {
+            return None;
+        }
+        if let Some(frozen) = &mut self.frozen {
+            return Some((frozen.energy(dt, self.settings.mapping_back), false));
+        }
+        let settlement = self.settlement() - self.initial_settlement;
+        let energy = self.body.energy(settlement, self.body.water_of_points())?;
+        Some((energy, self.body.configuration.deforms()))
+    }
+
+    fn unbalanced_force(&self) -> Option<f64> {
+        let largest = || match &self.frozen {
+            Some(frozen) => frozen.largest_accelerating_force(),
+            None => self.body.largest_accelerating_force(),
+        };
+        (self.settings.flip >= 1.0).then(largest)
+    }
+
+    fn lost_point(&self) -> Option<StepFailure> {
+        if self.body.configuration.deforms() { lost_point(&self.body) } else { None }
+    }
+
+    fn snapshot(&self, time: f64) -> Snapshot {
+        let settlement = self.settlement();
+        match &self.frozen {
+            Some(frozen) => frozen.body_now(&self.body).snapshot(time, settlement, &self.start),
+            None => self.body.snapshot(time, settlement, &self.start),
+        }
+    }
+}

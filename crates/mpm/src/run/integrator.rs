@@ -1,0 +1,108 @@
+//! Time integrators by name.
+
+use crate::explicit::scheme::{Drag, ExplicitSettings, Scheme};
+use crate::run::time_step_rule::TimeStepRule;
+use oedometer_soil::wording::words;
+use serde::{Deserialize, Serialize};
+
+pub use crate::formulation::Formulation;
+
+/// Share of the critical step where an explicit run names no rule.
+const DEFAULT_SHARE: f64 = 0.8;
+/// The same of a semi-implicit run: of first order in time, it needs a tenth of what it can stand.
+const SEMI_IMPLICIT_SHARE: f64 = 0.1;
+/// Growth of the steps where an implicit run names no rule: its error in time stays below a
+/// twentieth of that of ten cells in space.
+const DEFAULT_GROWTH: f64 = 0.05;
+
+/// Time integrator.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum IntegratorKind {
+    /// The eight steps of Zheng et al. (2021).
+    #[default]
+    Explicit,
+    /// Pressure and drag implicit, inertia kept, skeleton explicit: bounded by the skeleton's
+    /// waves and not by the water's.
+    SemiImplicit,
+    /// SDIRK2, L-stable.
+    Implicit,
+}
+
+words!(IntegratorKind: Explicit "explicit", SemiImplicit "semi-implicit", Implicit "implicit");
+
+/// What bounds the steps of an integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepBound {
+    /// Stability of all its waves: a critical step, predicted from the body's own operators.
+    AllWaves,
+    /// Stability of the skeleton's waves: a critical step by formula.
+    SkeletonWaves,
+    /// Nothing but accuracy.
+    Accuracy,
+}
+
+impl IntegratorKind {
+    /// What bounds its steps.
+    pub fn step_bound(self) -> StepBound {
+        match self {
+            Self::Explicit => StepBound::AllWaves,
+            Self::SemiImplicit => StepBound::SkeletonWaves,
+            Self::Implicit => StepBound::Accuracy,
+        }
+    }
+
+    /// Order of its error in time.
+    pub fn order_in_time(self, settings: &ExplicitSettings) -> f64 {
+        let is_centred = settings.scheme == Scheme::Leapfrog && settings.drag == Drag::Centred;
+        match self {
+            Self::Implicit => 2.0,
+            Self::Explicit if is_centred => 2.0,
+            Self::Explicit | Self::SemiImplicit => 1.0,
+        }
+    }
+
+    /// Step rule where none is given.
+    pub fn default_rule(self) -> TimeStepRule {
+        match self {
+            Self::Explicit => TimeStepRule::Stable(DEFAULT_SHARE),
+            Self::SemiImplicit => TimeStepRule::Stable(SEMI_IMPLICIT_SHARE),
+            Self::Implicit => TimeStepRule::Growth(DEFAULT_GROWTH),
+        }
+    }
+
+    /// Formulation where none is given.
+    pub fn default_formulation(self) -> Formulation {
+        match self {
+            Self::Explicit | Self::SemiImplicit => Formulation::VW,
+            Self::Implicit => Formulation::QuasiStatic,
+        }
+    }
+
+    /// Why a formulation is none for this integrator, where it is not.
+    pub fn refuses_formulation(self, formulation: Formulation) -> Option<&'static str> {
+        match (self, formulation) {
+            (Self::Explicit | Self::SemiImplicit, Formulation::QuasiStatic) => {
+                Some("an explicit skeleton goes by its accelerations: they cannot be left out")
+            }
+            (Self::Explicit, Formulation::UP) => Some(
+                "in `u-p` the water has no inertia of its own, its pressure diffuses, and explicit steps would \
+                     shrink with the square of the cell: take `v-w`, or `u-p` with `semi-implicit` or `implicit`",
+            ),
+            _ => None,
+        }
+    }
+
+    /// Why a step rule is none for this integrator, where it is not.
+    pub fn refuses_rule(self, rule: TimeStepRule) -> Option<&'static str> {
+        match (self, rule) {
+            (Self::Explicit, TimeStepRule::Growth(_)) => {
+                Some("the explicit integrator cannot let its steps grow: its critical step bounds them")
+            }
+            (Self::Explicit | Self::SemiImplicit, TimeStepRule::Tolerance(_)) => {
+                Some("only the implicit integrator estimates its own error in time")
+            }
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Whether a run is still sound: looked at every few steps, for every integrator alike.
+
+use crate::body::Body;
+use crate::run::energy::EnergyAccount;
+use crate::run::integrator::StepBound;
+use crate::run::physical_bounds::PhysicalBounds;
+use crate::run::results::outcome::{FailureKind, StepSizes};
+use crate::run::results::snapshot::Snapshot;
+use crate::run::run_plan::Plan;
+use crate::run::stepper::{EqualSteps, StepFailure, Stepper};
+use oedometer_soil::elementary;
+
+/// Velocities beyond this multiple of their scale have left.
+const BLOW_UP: f64 = 1e3;
+
+/// Steps between two accounts of energy and forces, each of which costs as much as a few steps.
+const STEPS_TO_ACCOUNT: u64 = 1024;
+
+/// Steps after which the energy is accounted: work and motion are taken half a step apart, which is a tenth of all
+/// that is in motion while a load has worked for a few steps.
+const STEPS_TO_ENERGY: u64 = 32;
+
+/// What the last looks have seen.
+#[derive(Clone, Copy, Debug)]
+pub struct Watch<'a> {
+    plan: &'a Plan<'a>,
+    /// Largest velocity at the last look, m/s.
+    velocity: f64,
+    /// Largest velocity over that of the look before, and the steps between them.
+    growth: Option<(f64, u64)>,
+    /// What was seen of the energy, and the steps until it is looked at again.
+    energy: EnergyAccount,
+    steps_to_account: u64,
+    /// The steps before the last look, until an output takes account of them.
+    seen: Option<EqualSteps>,
+    /// All of them so far.
+    done: u64,
+    /// What it does not leave, from its start.
+    bounds: PhysicalBounds,
+}
+
+impl<'a> Watch<'a> {
+    /// Nothing seen yet.
+    pub fn of(plan: &'a Plan<'a>) -> Self {
+        let energy = EnergyAccount::default();
+        let (steps_to_account, seen, done) = (0, None, 0);
+        Self { plan, velocity: 0.0, growth: None, energy, steps_to_account, seen, done, bounds: plan.bounds }
+    }
+
+    /// Takes its bounds from the state at the start.
+    pub fn begin(&mut self, start: &Snapshot) {
+        self.bounds = self.plan.bounds.from_start(start.points.pressures().0, start.totals.unbalanced_force);
+    }
+
+    /// Steps to the next look of at most `most`, when so many are done: at first it comes after 1, 2, 4
+    /// steps and so on, for what grows fast is soon beyond all numbers.
+    pub fn steps_to_look(done: u64, most: u64) -> u64 {
+        if done >= most { most } else { ((done + 1).next_power_of_two() - done).max(1) }
+    }
+
+    /// Growth a step of the largest velocity when it was last finite.
+    pub fn growth(&self) -> Option<f64> {
+        self.growth.map(|(ratio, steps)| elementary::powf(ratio, 1.0 / steps as f64))
+    }
+
+    /// Looks at velocities, settlement and points after some steps.
+    ///
+    /// # Errors
+    /// [`StepFailure`] where they are none of the scene's.
+    pub fn look(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        settlement: f64,
+        steps: &EqualSteps,
+        sizes: &StepSizes,
+    ) -> Result<(), StepFailure> {
+        if let Some(velocity) = stepper.largest_velocity() {
+            if velocity.is_finite() && self.velocity > 0.0 && velocity > 0.0 {
+                self.growth = Some((velocity / self.velocity, steps.count));
+            }
+            self.velocity = velocity;
+            let scale = self.plan.velocity_scale;
+            if velocity > BLOW_UP * scale {
+                let reason = format!(
+                    "a nodal velocity of {velocity:.3e} m/s is more than {BLOW_UP:.0} times its scale of \
+                     {scale:.3e} m/s"
+                );
+                return Err(self.unstable(&reason, sizes));
+            }
+        }
+        if let Some(reason) = self.bounds.left_by_settlement(settlement) {
+            return Err(self.unstable(&reason, sizes));
+        }
+        self.seen = Some(*steps);
+        self.done += steps.count;
+        self.steps_to_account = self.steps_to_account.saturating_sub(steps.count);
+        if self.steps_to_account == 0 {
+            self.account(stepper, steps, sizes)?;
+        }
+        stepper.lost_point().map_or(Ok(()), Err)
+    }
+
+    /// Takes account of forces and energy after some steps.
+    fn account(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        steps: &EqualSteps,
+        sizes: &StepSizes,
+    ) -> Result<(), StepFailure> {
+        self.steps_to_account = Self::steps_to_look(self.done, STEPS_TO_ACCOUNT);
+        if !self.bounds.are_kept {
+            return Ok(());
+        }
+        let force = stepper.unbalanced_force();
+        if let Some(reason) = force.and_then(|force| self.bounds.left_by_force(force, steps.end())) {
+            return Err(self.unstable(&reason, sizes));
+        }
+        if self.done < STEPS_TO_ENERGY {
+            return Ok(());
+        }
+        let Some((energy, moves)) = stepper.energy(steps.dt) else { return Ok(()) };
+        let grown = self.energy.note(energy, moves);
+        grown.map_or(Ok(()), |reason| Err(self.unstable(&reason, sizes)))
+    }
+
+    /// Looks at an output, with an account of its own: what has grown since the last one is in no result.
+    ///
+    /// # Errors
+    /// [`StepFailure`] where its pressures, forces or energy are none of the scene's.
+    pub fn look_at_output(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        pressures: &[f64],
+        sizes: &StepSizes,
+    ) -> Result<(), StepFailure> {
+        if let Some(steps) = self.seen.take() {
+            self.account(stepper, &steps, sizes)?;
+        }
+        let left = self.bounds.left_by_pressure(pressures);
+        left.map_or(Ok(()), |reason| Err(self.unstable(&reason, sizes)))
+    }
+
+    /// The end of a run that has left, with the step that may be to blame: an implicit skeleton has no
+    /// critical one.
+    fn unstable(&self, reason: &str, sizes: &StepSizes) -> StepFailure {
+        let (step, share) = (sizes.largest, sizes.largest / sizes.predicted_critical);
+        let blame = match self.plan.schedule.integrator.step_bound() {
+            StepBound::AllWaves => {
+                format!("; the step of {step:.4e} s is {share:.3} of the predicted critical one")
+            }
+            StepBound::SkeletonWaves => {
+                format!("; the largest step is {share:.3} of the predicted critical one")
+            }
+            StepBound::Accuracy => String::new(),
+        };
+        StepFailure { kind: FailureKind::Unstable, reason: format!("{reason}{blame}") }
+    }
+}
+
+/// A point whose pores closed or that left the grid, where there is one.
+pub fn lost_point<const D: usize>(body: &Body<D>) -> Option<StepFailure> {
+    let points = &body.points;
+    let grains = 1.0 - body.material.porosity;
+    if let Some(point) = points.volume_ratio.iter().position(|ratio| *ratio <= grains) {
+        return Some(pores_closed(point, points.volume_ratio[point], grains));
+    }
+    let outside = points.position.iter().position(|position| !body.grid.holds(position))?;
+    let reason = format!("point {outside} is at {:?} m", points.position[outside]);
+    Some(StepFailure { kind: FailureKind::LeftGrid, reason })
+}
+
+/// The end of a run one of whose points has the volume ratio of its grains, or less.
+pub fn pores_closed(point: usize, ratio: f64, grains: f64) -> StepFailure {
+    let reason = format!("point {point} has J = {ratio:.4}, its grains alone fill {grains:.4}");
+    StepFailure { kind: FailureKind::PoresClosed, reason }
+}

@@ -1,0 +1,172 @@
+//! Where the points lie in their cells: the regular lattice, or one of the arrangements that moving
+//! points come to sooner or later; and in how many layers.
+
+use crate::state::points::Points;
+use serde::{Deserialize, Serialize};
+
+/// Departure of the points from the regular lattice, the same for every point of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Arrangement {
+    /// Shift of all points upward, in spacings of the points: −0.5 puts them on cell faces.
+    pub offset: f64,
+    /// Largest shift of a row up or down, in spacings: deterministic, and different for every row.
+    pub jitter: f64,
+    /// Share of the top cell that is filled; its points share it.
+    pub filling: f64,
+    /// Layers of points: one that carries skeleton and water, or one of each.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub layers: usize,
+    /// Points of the water a cell and direction, where it has a layer of its own; 0 where it has none.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub water_per_cell: usize,
+}
+
+fn one() -> usize {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_one(count: &usize) -> bool {
+    *count == 1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
+impl Default for Arrangement {
+    /// The regular lattice, every cell full, in one layer.
+    fn default() -> Self {
+        Self { offset: 0.0, jitter: 0.0, filling: 1.0, layers: 1, water_per_cell: 0 }
+    }
+}
+
+impl Arrangement {
+    /// Whether this is the regular lattice in one layer.
+    pub fn is_regular(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Whether every point lies where the regular lattice has it, in however many layers.
+    pub fn is_lattice(&self) -> bool {
+        Self { layers: 1, water_per_cell: 0, ..*self }.is_regular()
+    }
+
+    /// Whether the water has a layer of its own.
+    pub fn has_two_layers(&self) -> bool {
+        self.layers == 2
+    }
+
+    /// Names the water's points where nothing else does: as many as the skeleton's, or none in one layer.
+    pub fn name_water_points(&mut self, points_per_cell: usize) {
+        if !self.has_two_layers() {
+            self.water_per_cell = 0;
+        } else if self.water_per_cell == 0 {
+            self.water_per_cell = points_per_cell;
+        }
+    }
+
+    /// Cell size, m, with which `cells` cells hold a column of a height, the top one partly.
+    pub fn cell_size(&self, height: f64, cells: usize) -> f64 {
+        height / ((cells - 1) as f64 + self.filling)
+    }
+
+    /// Moves the points of a full lattice of `cells` cells to their places; what a shift would take out of the body
+    /// stays on its edge.
+    pub fn arrange<const D: usize>(&self, points: &mut Points<D>, cell_size: f64, cells: usize) {
+        if self.is_lattice() {
+            return;
+        }
+        let top_cell = (cells - 1) as f64 * cell_size;
+        let surface = top_cell + self.filling * cell_size;
+        for point in 0..points.len() {
+            let up = D - 1;
+            let mut height = points.initial_position[point][up];
+            if height > top_cell {
+                height = top_cell + self.filling * (height - top_cell);
+                points.half_length[point][up] *= self.filling;
+                points.initial_volume[point] *= self.filling;
+            }
+            let spacing = 2.0 * points.half_length[point][up];
+            let row = row_of(points.initial_position[point][up], spacing);
+            height += spacing * (self.offset + self.jitter * scatter(row));
+            height = height.clamp(0.0, surface);
+            points.initial_position[point][up] = height;
+            points.position[point][up] = height;
+        }
+    }
+}
+
+/// Row of a point of the full lattice: a number that every point of the row shares.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a height above the base")]
+fn row_of(height: f64, spacing: f64) -> u64 {
+    (height / spacing) as u64
+}
+
+/// A number between −1 and 1 for a row, without pattern (splitmix64; Steele, Lea & Flood 2014).
+fn scatter(row: u64) -> f64 {
+    let mut bits = row.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arranged(arrangement: Arrangement, cells: usize, per_cell: usize) -> (f64, Points<1>) {
+        let cell_size = arrangement.cell_size(1.0, cells);
+        let mut points = Points::lattice(cell_size, [cells], per_cell);
+        arrangement.arrange(&mut points, cell_size, cells);
+        (cell_size, points)
+    }
+
+    #[test]
+    fn a_partly_filled_top_cell_keeps_the_height_and_the_volume() {
+        let (cell_size, points) = arranged(Arrangement { filling: 0.1, ..Arrangement::default() }, 5, 2);
+        assert!((cell_size - 1.0 / 4.1).abs() < 1e-15);
+        assert!((points.initial_volume.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+        let top = points.len() - 1;
+        assert!((points.position[top][0] + points.half_length[top][0] - 1.0).abs() < 1e-14);
+        let bottoms: Vec<f64> = (0..10).map(|i| points.position[i][0] - points.half_length[i][0]).collect();
+        let tops: Vec<f64> = (0..10).map(|i| points.position[i][0] + points.half_length[i][0]).collect();
+        for i in 1..10 {
+            assert!((bottoms[i] - tops[i - 1]).abs() < 1e-14, "domains tile the column");
+        }
+    }
+
+    #[test]
+    fn half_a_spacing_down_is_on_the_faces() {
+        let (cell_size, points) = arranged(Arrangement { offset: -0.5, ..Arrangement::default() }, 4, 2);
+        for (i, place) in points.position.iter().enumerate() {
+            assert!((place[0] - 0.5 * i as f64 * cell_size).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn jitter_scatters_within_its_bounds_and_is_always_the_same() {
+        let jitter = Arrangement { jitter: 0.3, ..Arrangement::default() };
+        let (cell_size, points) = arranged(jitter, 50, 2);
+        let (_, regular) = arranged(Arrangement::default(), 50, 2);
+        let shifts: Vec<f64> = (0..points.len())
+            .map(|i| (points.position[i][0] - regular.position[i][0]) / (0.5 * cell_size))
+            .collect();
+        assert!(shifts.iter().all(|shift| shift.abs() <= 0.3));
+        let mean = shifts.iter().sum::<f64>() / shifts.len() as f64;
+        let spread = shifts.iter().map(|shift| shift * shift).sum::<f64>() / shifts.len() as f64;
+        assert!(mean.abs() < 0.05 && (0.02..0.04).contains(&spread), "{mean} {spread}: uniform has 0.03");
+        assert_eq!(points, arranged(jitter, 50, 2).1);
+    }
+
+    #[test]
+    fn what_a_shift_takes_out_of_the_body_stays_on_its_edge() {
+        for (offset, jitter) in [(0.5, 0.5), (-0.5, 0.5), (0.3, 0.3)] {
+            let (_, points) = arranged(Arrangement { offset, jitter, ..Arrangement::default() }, 30, 2);
+            let heights: Vec<f64> = points.position.iter().map(|place| place[0]).collect();
+            assert!(heights.iter().all(|height| (0.0..=1.0 + 1e-15).contains(height)), "{offset} {jitter}");
+            assert!(heights.is_sorted(), "rows keep their order");
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! What makes a scene: one table per scene, each in the scene's own file.
+
+use crate::scene::column::Column;
+use crate::state::points::Points;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_soil::material::Material;
+
+/// A scene as data and a few functions.
+pub struct SceneDefinition {
+    /// Name in study files and at the command line.
+    pub name: &'static str,
+    /// One line on what it is.
+    pub summary: &'static str,
+    /// References that hold, the one whose equations the solver solves first.
+    pub references: &'static [ReferenceKind],
+    /// Why a reference is not the scene's own, where it is a second one.
+    pub model_difference: fn(ReferenceKind, &Material) -> Option<&'static str>,
+    /// What is solved in: a column's table in a study, or a layer's.
+    pub body: SceneBody,
+    /// Size of the strains that its theory holds for.
+    pub strain: SceneStrain,
+    /// Load on the surface.
+    pub load: SceneLoad,
+    /// Whether waves run in it.
+    pub has_waves: bool,
+    /// State from which it starts.
+    pub start: SceneStart,
+    /// Pore pressure at the start, written out independently of the solver.
+    pub start_pressure: StartPressure,
+}
+
+/// The body of soil.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum SceneBody {
+    /// A column, in one dimension or in two.
+    Column,
+    /// A plane layer, in two dimensions only; its soils show locking.
+    Layer,
+    /// A slab between two rigid plates, in two dimensions only; its fields vary as a column's do.
+    Slab,
+    /// A square between rollers on all sides, in two dimensions only, whose motion is chosen.
+    Square,
+}
+
+/// Size of strains.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum SceneStrain {
+    /// Infinitesimal: nothing moves.
+    Small,
+    /// Finite.
+    Large,
+}
+
+/// Load on the surface.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum SceneLoad {
+    /// None.
+    None,
+    /// Uniform, at once.
+    Sudden,
+    /// Uniform, at once or growing over a time, for which these references hold.
+    SuddenOrGrowing(&'static [ReferenceKind]),
+    /// Uniform, at once, by rigid plates across the body: its surface is free.
+    Plates,
+    /// At once, a cosine along the surface: its mean is zero.
+    Cosine,
+}
+
+/// Where the points' state at the start comes from.
+pub enum SceneStart {
+    /// A function of the depth.
+    OverDepth(fn(&Column, &Material) -> Result<ColumnStart, ExactError>),
+    /// The undrained equilibrium that the body finds by its own operators.
+    Solved,
+}
+
+/// What is known of the pore pressure at the start.
+pub enum StartPressure {
+    /// The same everywhere, Pa.
+    Uniform(fn(&Column, &Material) -> f64),
+    /// Its mean is zero, and nothing else is known.
+    ZeroMean,
+    /// That of the scene's own reference.
+    OfReference,
+}
+
+/// State at a depth.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StartFields {
+    /// Pore pressure, Pa.
+    pub pressure: f64,
+    /// Vertical effective stress, Pa.
+    pub vertical_stress: f64,
+    /// Lateral effective stress, Pa.
+    pub lateral_stress: f64,
+    /// Vertical velocity of the skeleton, m/s.
+    pub solid_velocity: f64,
+    /// Vertical velocity of the water, m/s.
+    pub water_velocity: f64,
+}
+
+/// The state from which a column starts.
+pub struct ColumnStart {
+    /// Vertical displacement gradient that was reached before any water moved.
+    pub vertical_gradient: f64,
+    /// Fields at a relative depth from 0, the surface, to 1, the base.
+    pub fields: Box<dyn Fn(f64) -> Result<StartFields, ExactError>>,
+}
+
+impl StartFields {
+    /// The stresses of an oedometer at rest: `ν/(1 − ν)` of the vertical one to the sides.
+    pub fn at_rest(soil: &Material, pressure: f64, vertical_stress: f64) -> Self {
+        let lateral_stress = soil.poissons_ratio / (1.0 - soil.poissons_ratio) * vertical_stress;
+        Self { pressure, vertical_stress, lateral_stress, ..Self::default() }
+    }
+}
+
+impl ColumnStart {
+    /// The same state at every depth.
+    pub fn uniform(vertical_gradient: f64, fields: StartFields) -> Self {
+        Self { vertical_gradient, fields: Box::new(move |_| Ok(fields)) }
+    }
+
+    /// At rest, without stress.
+    pub fn unloaded() -> Self {
+        Self::uniform(0.0, StartFields::default())
+    }
+
+    /// Gives points of a column of a height, m, their state.
+    ///
+    /// # Errors
+    /// When a solution refuses a depth.
+    pub fn apply<const D: usize>(&self, points: &mut Points<D>, height: f64) -> Result<(), ExactError> {
+        for point in 0..points.len() {
+            let fields = (self.fields)(1.0 - points.initial_position[point][D - 1] / height)?;
+            points.pressure[point] = fields.pressure;
+            for d in 0..D {
+                points.effective_stress[point][d][d] =
+                    if d + 1 == D { fields.vertical_stress } else { fields.lateral_stress };
+            }
+            points.solid_velocity[point][D - 1] = fields.solid_velocity;
+            points.water_velocity[point][D - 1] = fields.water_velocity;
+        }
+        Ok(())
+    }
+}

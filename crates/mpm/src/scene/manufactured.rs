@@ -1,0 +1,240 @@
+//! Motions of a square that are written down, and made by body forces and a source of water: large strain in the
+//! plane against exact fields. Points cross cells in both directions and come back.
+
+#![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
+
+use crate::forcing::{BodyForces, Forcing};
+use crate::formulation::Formulation;
+use crate::scene::column::{Column, column_parameters};
+use crate::scene::definition::{
+    ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
+};
+use crate::wide::wide;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::manufactured::Manufactured;
+use oedometer_exact::manufactured::four::{Four, PLACES};
+use oedometer_exact::manufactured::model::ManufacturedModel;
+use oedometer_exact::manufactured::motion::{Motion, Spot, Spots};
+use oedometer_exact::manufactured::motion_state::Inertia;
+use oedometer_exact::parameters::MotionParameters;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_soil::material::Material;
+use oedometer_soil::tensor::Vector;
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+pub(crate) static BOX: SceneDefinition = SceneDefinition {
+    name: Motion::Box.name(),
+    summary: "square stretched along its axes by body forces and back: exact fields at large strain in the plane",
+    references: &[ReferenceKind::Manufactured(ManufacturedModel::of(Motion::Box))],
+    ..OF_ALL
+};
+
+pub(crate) static SHEAR: SceneDefinition = SceneDefinition {
+    name: Motion::Shear.name(),
+    summary: "the same with shear inside, in a neo-Hookean soil",
+    references: &[ReferenceKind::Manufactured(ManufacturedModel::of(Motion::Shear))],
+    ..OF_ALL
+};
+
+pub(crate) static VORTEX: SceneDefinition = SceneDefinition {
+    name: Motion::Vortex.name(),
+    summary: "a disc that turns inside a square at rest, and back: tells domains that turn from those that do not",
+    references: &[ReferenceKind::Manufactured(ManufacturedModel::of(Motion::Vortex))],
+    ..OF_ALL
+};
+
+/// What the motions have in common: at the start nothing is displaced, presses or moves.
+const OF_ALL: SceneDefinition = SceneDefinition {
+    name: "",
+    summary: "",
+    references: &[],
+    model_difference: |_, _| None,
+    body: SceneBody::Square,
+    strain: SceneStrain::Large,
+    load: SceneLoad::None,
+    has_waves: true,
+    start: SceneStart::OverDepth(|_, _| Ok(ColumnStart::unloaded())),
+    start_pressure: StartPressure::Uniform(|_, _| 0.0),
+};
+
+/// A soil whose groups are of order one: `λ = μ = 0.4`, `K_w = 20 E`, `γ_w/k_0 = 10`, and so many pores that volumes
+/// may halve.
+pub(crate) fn soil() -> Material {
+    Material {
+        youngs_modulus: 1.0,
+        poissons_ratio: 0.25,
+        porosity: 0.6,
+        grain_density: 1.0,
+        water_density: 0.5,
+        water_bulk_modulus: 20.0,
+        hydraulic_conductivity: 0.5,
+        gravity: 10.0,
+        ..Material::default()
+    }
+}
+
+/// The unit square with the amplitudes of a motion.
+pub(crate) fn square(motion: Option<Motion>) -> Column {
+    let [amplitude_x, amplitude_y, amplitude] = match motion {
+        None => [0.0; 3],
+        Some(Motion::Box) => [0.25, 0.25, 0.0],
+        Some(Motion::Shear) => [0.25, -0.2, 0.0],
+        Some(Motion::Vortex) => [0.0, 0.0, 1.5],
+    };
+    Column {
+        horizontal_extent: 1.0,
+        dimensions: 2,
+        load: 0.2,
+        motion: MotionParameters { amplitude_x, amplitude_y, amplitude, frequency: FRAC_PI_2 },
+        ..Column::default()
+    }
+}
+
+/// The exact solution, as it acts on a body whose points are known.
+#[derive(Clone, Debug)]
+struct MadeMotion {
+    solution: Manufactured,
+    /// What the formulas take of the points' initial places, `[point]`.
+    spots: Vec<Spot>,
+}
+
+/// What acts on a body in a motion, for a square and its soil; points at initial places, m.
+///
+/// # Errors
+/// When the parameters are impossible.
+pub(crate) fn forcing<const D: usize>(
+    model: ManufacturedModel,
+    square: &Column,
+    soil: &Material,
+    points: &[Vector<D>],
+) -> Result<Arc<dyn Forcing<D>>, ExactError> {
+    let model = ManufacturedModel { law: soil.law, ..model };
+    let solution = Manufactured::new(model, &column_parameters(square, soil))?;
+    Ok(Arc::new(MadeMotion {
+        solution,
+        spots: points.iter().map(|place| Spot::of(in_plane(place))).collect(),
+    }))
+}
+
+/// A place in the plane; its last component is the vertical one.
+#[inline]
+fn in_plane<const D: usize>(place: &Vector<D>) -> [f64; 2] {
+    [place[0], place[D - 1]]
+}
+
+#[inline]
+fn in_space<const D: usize>(vector: [f64; 2]) -> Vector<D> {
+    std::array::from_fn(|d| vector[d.min(1)])
+}
+
+impl MadeMotion {
+    /// What the formulas take of a place: what is known of a point with its number, where it is that point's.
+    #[inline(always)]
+    fn spot(&self, number: usize, place: [f64; 2]) -> Spot {
+        match self.spots.get(number) {
+            Some(spot) if spot.place == place => *spot,
+            _ => Spot::of(place),
+        }
+    }
+
+    /// The same of the places of four sites.
+    #[inline(always)]
+    fn spots_of<const D: usize>(&self, places: &[Vector<D>], sites: &[usize; PLACES]) -> Spots {
+        Spots::of(&sites.map(
+            #[inline(always)]
+            |site| self.spot(site, in_plane(&places[site])),
+        ))
+    }
+}
+
+/// Takes sites four at a time; the last of them stand in for those that there are not.
+#[inline(always)]
+fn by_fours(sites: &mut dyn Iterator<Item = usize>, mut take: impl FnMut(&[usize; PLACES], usize)) {
+    while let Some(first) = sites.next() {
+        let (mut four, mut count) = ([first; PLACES], 1);
+        while count < PLACES
+            && let Some(site) = sites.next()
+        {
+            four[count..].fill(site);
+            count += 1;
+        }
+        take(&four, count);
+    }
+}
+
+/// Accelerations that the balances of a formulation keep.
+fn inertia_of(formulation: Formulation) -> Inertia {
+    match formulation {
+        Formulation::QuasiStatic => Inertia::None,
+        Formulation::UP => Inertia::Skeleton,
+        Formulation::VW => Inertia::Both,
+    }
+}
+
+impl<const D: usize> Forcing<D> for MadeMotion {
+    fn body_forces(
+        &self,
+        formulation: Formulation,
+        places: &[Vector<D>],
+        time: f64,
+        forces: &mut [BodyForces<D>],
+    ) {
+        let (moment, inertia) = (self.solution.moment(time), inertia_of(formulation));
+        wide!(by_fours(
+            &mut (0..places.len()),
+            #[inline(always)]
+            |sites, count| {
+                let states = self.solution.states_of(&self.spots_of(places, sites), &moment);
+                let [mixture, water] = states.body_forces(inertia);
+                for place in 0..count {
+                    let at = |force: [Four; 2]| in_space([force[0].0[place], force[1].0[place]]);
+                    forces[sites[place]] = [at(mixture), at(water)];
+                }
+            }
+        ));
+    }
+
+    fn sources(
+        &self,
+        places: &[Vector<D>],
+        sites: &mut dyn Iterator<Item = usize>,
+        time: f64,
+        sources: &mut [f64],
+    ) {
+        let moment = self.solution.moment(time);
+        wide!(by_fours(
+            sites,
+            #[inline(always)]
+            |sites, count| {
+                let states = self.solution.states_of(&self.spots_of(places, sites), &moment);
+                let of_each = states.source();
+                for place in 0..count {
+                    sources[sites[place]] = of_each.0[place];
+                }
+            }
+        ));
+    }
+
+    fn material_places(
+        &self,
+        present: &dyn Fn(usize) -> Vector<D>,
+        sites: &mut dyn Iterator<Item = usize>,
+        time: f64,
+        places: &mut [Vector<D>],
+    ) {
+        let moment = self.solution.moment(time);
+        wide!(by_fours(
+            sites,
+            #[inline(always)]
+            |sites, count| {
+                let guesses = sites.map(|site| in_plane(&places[site]));
+                let there = sites.map(|site| in_plane(&present(site)));
+                let found = self.solution.material_places(&there, &moment, &guesses);
+                for place in 0..count {
+                    places[sites[place]] = in_space(found[place]);
+                }
+            }
+        ));
+    }
+}

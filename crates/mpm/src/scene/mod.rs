@@ -1,0 +1,401 @@
+//! A scene is a physical problem: geometry, load, start, the physics it needs and the references
+//! that hold for it. It knows the exact solutions and the solver, and makes a problem for one from
+//! the other. Each scene is one file; what they have in common is asked here.
+
+pub mod arrangement;
+mod at_rest;
+pub mod column;
+mod cosine_layer;
+mod definition;
+mod dynamic_column;
+mod dynamic_single_mode;
+mod mandel;
+mod manufactured;
+pub mod problem;
+mod single_mode;
+mod standing_wave;
+pub mod stepped_column;
+mod terzaghi;
+mod xie_leo;
+
+use crate::explicit::scheme::Scheme;
+use crate::explicit::{Drag, ExplicitSettings};
+use crate::method::{Configuration, Method};
+use crate::run::integrator::IntegratorKind;
+use crate::scene::column::{Column, column_parameters};
+use crate::scene::definition::{
+    SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
+};
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::manufactured::Manufactured;
+use oedometer_exact::manufactured::model::ManufacturedModel;
+use oedometer_exact::manufactured::motion::Motion;
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_soil::law::Law;
+use oedometer_soil::material::Material;
+use serde::{Deserialize, Serialize};
+
+/// A physical problem by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SceneKind {
+    /// A column loaded at once and drained at its top, at small strain.
+    Terzaghi,
+    /// The slowest mode of an unloaded column.
+    SingleMode,
+    /// A column loaded and drained at its top, at large strain.
+    XieLeo,
+    /// A plane layer loaded at once by a cosine and drained at its top.
+    CosineLayer,
+    /// A column at rest, loaded at once or over a time, with all its waves.
+    DynamicColumn,
+    /// The slowest mode of an unloaded column, with its inertia.
+    DynamicSingleMode,
+    /// An undrained wave that stands in an unloaded column.
+    StandingWave,
+    /// A slab loaded at once between rigid plates and drained at its sides.
+    Mandel,
+    /// A column at rest under its own weight.
+    AtRest,
+    /// A square stretched along its axes by body forces, at large strain.
+    ManufacturedBox,
+    /// A square with shear inside, at large strain.
+    ManufacturedShear,
+    /// A square with a disc inside that turns, at large strain.
+    ManufacturedVortex,
+}
+
+impl SceneKind {
+    /// Every scene.
+    pub const ALL: [Self; 12] = [
+        Self::Terzaghi,
+        Self::SingleMode,
+        Self::XieLeo,
+        Self::CosineLayer,
+        Self::DynamicColumn,
+        Self::DynamicSingleMode,
+        Self::StandingWave,
+        Self::Mandel,
+        Self::AtRest,
+        Self::ManufacturedBox,
+        Self::ManufacturedShear,
+        Self::ManufacturedVortex,
+    ];
+
+    /// The scene's own file.
+    fn definition(self) -> &'static SceneDefinition {
+        match self {
+            Self::Terzaghi => &terzaghi::TERZAGHI,
+            Self::SingleMode => &single_mode::SINGLE_MODE,
+            Self::XieLeo => &xie_leo::XIE_LEO,
+            Self::CosineLayer => &cosine_layer::COSINE_LAYER,
+            Self::DynamicColumn => &dynamic_column::DYNAMIC_COLUMN,
+            Self::DynamicSingleMode => &dynamic_single_mode::DYNAMIC_SINGLE_MODE,
+            Self::StandingWave => &standing_wave::STANDING_WAVE,
+            Self::Mandel => &mandel::MANDEL,
+            Self::AtRest => &at_rest::AT_REST,
+            Self::ManufacturedBox => &manufactured::BOX,
+            Self::ManufacturedShear => &manufactured::SHEAR,
+            Self::ManufacturedVortex => &manufactured::VORTEX,
+        }
+    }
+
+    /// Name in study files and at the command line.
+    pub fn name(self) -> &'static str {
+        self.definition().name
+    }
+
+    /// The scene of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|scene| scene.name() == name)
+    }
+
+    /// One line on what it is.
+    pub fn summary(self) -> &'static str {
+        self.definition().summary
+    }
+
+    /// References that hold for the scene, the one whose equations the solver solves first.
+    pub fn references(self) -> &'static [ReferenceKind] {
+        self.definition().references
+    }
+
+    /// Those that hold for a column, whose load may grow.
+    pub fn references_of(self, column: &Column) -> &'static [ReferenceKind] {
+        match self.definition().load {
+            SceneLoad::SuddenOrGrowing(references) if column.loading_time > 0.0 => references,
+            _ => self.references(),
+        }
+    }
+
+    /// Why a reference is not the scene's own, where it is a second one.
+    pub fn model_difference(self, reference: ReferenceKind, soil: &Material) -> Option<&'static str> {
+        (self.definition().model_difference)(reference, soil)
+    }
+
+    /// Law of the soil where a study names none.
+    pub fn default_law(self) -> Law {
+        match self.model() {
+            Some(model) => model.law,
+            None if self.is_large_strain() => Law::LogLinear,
+            None => Law::Linear,
+        }
+    }
+
+    /// Soil where a study names nothing.
+    pub fn default_material(self) -> Material {
+        let law = self.default_law();
+        if self.is_manufactured() {
+            Material { law, ..manufactured::soil() }
+        } else {
+            Material { law, ..Material::default() }
+        }
+    }
+
+    /// Choices of the explicit integrator where a study names none: the paper's, but of second order in the step
+    /// where a smooth motion is held against exact fields.
+    pub fn default_settings(self) -> ExplicitSettings {
+        if self.is_manufactured() {
+            ExplicitSettings { scheme: Scheme::Leapfrog, drag: Drag::Centred, ..ExplicitSettings::default() }
+        } else {
+            ExplicitSettings::default()
+        }
+    }
+
+    /// The motion that was chosen, and its law where nobody names one; none where a load or a start moves the body.
+    fn model(self) -> Option<ManufacturedModel> {
+        match self.references().first() {
+            Some(ReferenceKind::Manufactured(model)) => Some(*model),
+            _ => None,
+        }
+    }
+
+    /// Whether its motion is one that was chosen, and body forces and a source make it.
+    pub fn is_manufactured(self) -> bool {
+        self.definition().body == SceneBody::Square
+    }
+
+    /// Why an input of a motion is none of this scene's, where it is not.
+    pub fn refuses_input_of_motion(self, name: &str) -> Option<&'static str> {
+        match (self.model()?.motion, name) {
+            (Motion::Vortex, "amplitude_x" | "amplitude_y") => {
+                Some("a vortex has one amplitude, its largest angle: `amplitude`")
+            }
+            (Motion::Box | Motion::Shear, "amplitude") => {
+                Some("this motion has two amplitudes: `amplitude_x` and `amplitude_y`")
+            }
+            _ => None,
+        }
+    }
+
+    /// Why the scene cannot be solved by an integrator, where it cannot.
+    pub fn refuses_integrator(self, integrator: IntegratorKind) -> Option<&'static str> {
+        (self.is_manufactured() && integrator == IntegratorKind::SemiImplicit).then_some(
+            "body forces and source of a manufactured motion act at the stages of explicit and implicit steps: a \
+             semi-implicit one takes stress and pressure at times of their own",
+        )
+    }
+
+    /// Why the scene cannot take a law, where it cannot.
+    pub fn refuses_law(self, law: Law) -> Option<&'static str> {
+        if let Some(model) = self.model() {
+            return (!ManufacturedModel { law, ..model }.has_law()).then_some(
+                "the stresses of this law are not known in closed form along the motion of this scene",
+            );
+        }
+        if self.is_large_strain() && !Law::OF_COLUMNS.contains(&law) {
+            return Some("this law has no closed form in a column: it belongs to the manufactured scenes");
+        }
+        match (self.is_large_strain(), law == Law::Linear) {
+            (true, true) => {
+                Some("the law `linear` is of small strain: its conductivity ignores that the pores close")
+            }
+            (false, false) => Some(
+                "this scene is of small strain, where every law is linear: the one named would be ignored",
+            ),
+            _ => None,
+        }
+    }
+
+    /// Whether its strains are large: degree of consolidation, not time, measures its progress.
+    pub fn is_large_strain(self) -> bool {
+        self.definition().strain == SceneStrain::Large
+    }
+
+    /// Why the scene cannot take a configuration, where it cannot.
+    pub fn refuses_configuration(self, configuration: Configuration) -> Option<&'static str> {
+        (self.is_large_strain() && configuration == Configuration::Frozen)
+            .then_some("nothing moves in a `frozen` configuration, and this scene is about large strain")
+    }
+
+    /// Why the scene cannot take a method, where it cannot.
+    pub fn refuses_method(self, method: Method) -> Option<&'static str> {
+        if self.is_manufactured() && method.is_attached() {
+            return Some(
+                "somebody else's solver is not told the body forces and the source of a manufactured motion",
+            );
+        }
+        if self.is_manufactured() && method.strain.is_bbar() {
+            return Some(
+                "B-bar changes the strain of a point by its volume alone, and a manufactured motion is followed by \
+                 the whole gradient at mid step",
+            );
+        }
+        let is_frozen = method.configuration.is_none_or(|kind| kind == Configuration::Frozen);
+        (self.has_plates() && (method.basis.is_spline() || !is_frozen)).then_some(
+            "a rigid plate holds the nodes of a face: it takes weights that stay (`frozen`), of hats or domains and \
+             not of splines, whose coefficients are no values there",
+        )
+    }
+
+    /// Configuration of the weights where the method leaves it open: small strain moves nothing.
+    pub fn configuration(self) -> Configuration {
+        if self.is_large_strain() { Configuration::Updated } else { Configuration::Frozen }
+    }
+
+    /// Whether its load may take time to come on.
+    pub fn takes_loading_time(self) -> bool {
+        matches!(self.definition().load, SceneLoad::SuddenOrGrowing(_))
+    }
+
+    /// Whether a load acts, so that `σ' − p = −q` at rest.
+    pub fn is_loaded(self) -> bool {
+        self.definition().load != SceneLoad::None
+    }
+
+    /// Whether rigid plates load it across, and not its surface.
+    pub fn has_plates(self) -> bool {
+        self.definition().load == SceneLoad::Plates
+    }
+
+    /// Whether nothing happens in it but by the method's own fault.
+    pub fn is_at_rest(self) -> bool {
+        self == Self::AtRest
+    }
+
+    /// The column that it has where a study names nothing.
+    pub fn default_column(self) -> Column {
+        match self.definition().body {
+            SceneBody::Column => Column { self_weight: self.is_at_rest(), ..Column::default() },
+            SceneBody::Layer => Column::layer(),
+            SceneBody::Slab => Column::slab(),
+            SceneBody::Square => manufactured::square(self.model().map(|model| model.motion)),
+        }
+    }
+
+    /// Whether its soil may have a weight: columns that are loaded or at rest, and no modes or waves of their own.
+    pub fn takes_self_weight(self) -> bool {
+        matches!(self, Self::Terzaghi | Self::XieLeo | Self::DynamicColumn | Self::AtRest)
+    }
+
+    /// Whether the mean of its load is zero: what one half of the body takes in, the other gives.
+    pub fn presses_out_no_water(self) -> bool {
+        self.definition().load == SceneLoad::Cosine
+    }
+
+    /// Whether balances without inertia leave out what it is about; a motion that was chosen is made in any balances.
+    pub fn needs_inertia(self) -> bool {
+        self.has_waves() && !self.is_manufactured()
+    }
+
+    /// Whether waves run in it.
+    pub fn has_waves(self) -> bool {
+        self.definition().has_waves
+    }
+
+    /// Whether it cannot be solved in one dimension.
+    pub fn needs_two_dimensions(self) -> bool {
+        self.definition().body != SceneBody::Column
+    }
+
+    /// Whether a study has its geometry in the table `[layer]`.
+    pub fn is_a_layer(self) -> bool {
+        self.definition().body == SceneBody::Layer
+    }
+
+    /// The table of a study that has its geometry, and what is done to it.
+    pub fn table_of_geometry(self) -> &'static str {
+        match self.definition().body {
+            SceneBody::Column | SceneBody::Slab => "column",
+            SceneBody::Layer => "layer",
+            SceneBody::Square => "manufactured",
+        }
+    }
+
+    /// Why its parameters make no problem, where the motion that was chosen cannot be.
+    pub fn refuses_motion(self, column: &Column, soil: &Material) -> Option<ExactError> {
+        let model = ManufacturedModel { law: soil.law, ..self.model()? };
+        Manufactured::new(model, &column_parameters(column, soil)).err()
+    }
+
+    /// Whether its exact fields vary along the body too, so that there is no profile over the depth.
+    pub fn has_plane_fields(self) -> bool {
+        self.is_a_layer() || self.is_manufactured()
+    }
+
+    /// Whether it is about locking, so that runs are told apart by the stiffness of water and soil.
+    pub fn shows_locking(self) -> bool {
+        self.is_a_layer()
+    }
+
+    /// Whether the solver finds its start, an undrained equilibrium of its own operators.
+    pub fn start_is_solved(self) -> bool {
+        matches!(self.definition().start, SceneStart::Solved)
+    }
+
+    /// The pore pressures, Pa, that points at heights, m, should start with; `found` are those they have.
+    ///
+    /// # Errors
+    /// When the scene's own reference, the first of its references, refuses a depth.
+    pub fn expected_start_pressures(
+        self,
+        column: &Column,
+        soil: &Material,
+        own: Option<&Reference>,
+        (heights, found): (&[f64], &[f64]),
+    ) -> Result<Vec<f64>, ExactError> {
+        match (&self.definition().start_pressure, own) {
+            (StartPressure::Uniform(pressure), _) => Ok(vec![pressure(column, soil); found.len()]),
+            (StartPressure::ZeroMean, _) => {
+                let mean = found.iter().sum::<f64>() / found.len() as f64;
+                Ok(found.iter().map(|pressure| pressure - mean).collect())
+            }
+            (StartPressure::OfReference, None) => Ok(found.to_vec()),
+            (StartPressure::OfReference, Some(own)) => {
+                let at = |height: &f64| Ok(own.fields(0.0, 1.0 - height / column.height)?.pressure);
+                heights.iter().map(at).collect()
+            }
+        }
+    }
+
+    /// The scene in whose words the parameters of a solution are given at the command line.
+    pub fn of_solution(kind: ReferenceKind) -> Self {
+        match kind {
+            ReferenceKind::XieLeo | ReferenceKind::LargeStrain(_) => Self::XieLeo,
+            ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible => Self::CosineLayer,
+            // The one whose load may grow.
+            ReferenceKind::DynamicColumn => Self::DynamicColumn,
+            ReferenceKind::Mandel => Self::Mandel,
+            ReferenceKind::AtRest => Self::AtRest,
+            ReferenceKind::Manufactured(model) => match model.motion {
+                Motion::Box => Self::ManufacturedBox,
+                Motion::Shear => Self::ManufacturedShear,
+                Motion::Vortex => Self::ManufacturedVortex,
+            },
+            _ => Self::Terzaghi,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_has_one_name_in_files_and_at_the_command_line() {
+        for scene in SceneKind::ALL {
+            let written = serde_json::to_value(scene).expect("a name");
+            assert_eq!((written.as_str(), SceneKind::named(scene.name())), (Some(scene.name()), Some(scene)));
+        }
+    }
+}

@@ -1,0 +1,258 @@
+//! A scene's problem for the solver: grid, lattice of points, start and load. One `match` turns the number
+//! of dimensions into a type.
+
+use crate::body::Problem;
+use crate::critical_step::observed::{CriticalStep, Stopped, critical_step};
+use crate::critical_step::predicted::{predict_for_run, predicted_critical_step, whole_growth};
+use crate::explicit::ExplicitSettings;
+use crate::method::Method;
+use crate::operators::surface_load::LoadShape;
+use crate::run::results::outcome::Outcome;
+use crate::run::{Observer, Schedule, run};
+use crate::scene::SceneKind;
+use crate::scene::column::{Column, column_parameters};
+use crate::scene::definition::{SceneLoad, SceneStart};
+use crate::scene::manufactured;
+use crate::state::grid::Grid;
+use crate::state::nodes::Support;
+use crate::state::points::Points;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::parameters::{Base, ColumnParameters};
+use oedometer_soil::material::Material;
+
+/// Cells above the column, so that a surface that rises stays on the grid.
+const HEADROOM: usize = 1;
+
+/// A problem of one or of two dimensions.
+#[derive(Clone, Debug)]
+pub enum SceneProblem {
+    /// A column.
+    Column(Problem<1>),
+    /// Plane strain.
+    Plane(Problem<2>),
+}
+
+impl SceneProblem {
+    /// The scene's problem in the dimensions of the column, as [`column_problem`] makes it. Without a type parameter: what
+    /// it makes is compiled here and not where it is asked for.
+    ///
+    /// # Errors
+    /// When the parameters are impossible.
+    pub fn of(
+        scene: SceneKind,
+        column: &Column,
+        soil: &Material,
+        method: Method,
+        cells: usize,
+        points_per_cell: usize,
+    ) -> Result<Self, ExactError> {
+        if column.dimensions == 1 {
+            column_problem(scene, column, soil, method, cells, points_per_cell).map(Self::Column)
+        } else {
+            column_problem(scene, column, soil, method, cells, points_per_cell).map(Self::Plane)
+        }
+    }
+
+    /// Predicts and observes its critical step, with runs beside it up to `end` seconds or
+    /// `most_steps` steps.
+    ///
+    /// # Errors
+    /// [`Stopped`] where the observer ends it.
+    pub fn critical_step(
+        &self,
+        settings: &ExplicitSettings,
+        end: f64,
+        most_steps: u64,
+        observer: Observer<'_>,
+    ) -> Result<CriticalStep, Stopped> {
+        match self {
+            Self::Column(problem) => critical_step(problem, settings, end, most_steps, observer),
+            Self::Plane(problem) => critical_step(problem, settings, end, most_steps, observer),
+        }
+    }
+
+    /// Its predicted critical step, s.
+    pub fn predicted_critical_step(&self, settings: &ExplicitSettings) -> f64 {
+        match self {
+            Self::Column(problem) => predicted_critical_step(problem, settings),
+            Self::Plane(problem) => predicted_critical_step(problem, settings),
+        }
+    }
+
+    /// The same, where a limit is known.
+    pub fn known_critical_step(&self, settings: &ExplicitSettings) -> Option<f64> {
+        let (step, growing) = match self {
+            Self::Column(problem) => predict_for_run(problem, settings),
+            Self::Plane(problem) => predict_for_run(problem, settings),
+        };
+        growing.is_none().then_some(step)
+    }
+
+    /// Growth per step of what grows fastest in a plane under explicit steps of a size, s, where its step is small enough
+    /// for eigenvalues.
+    pub fn growth_under(&self, settings: &ExplicitSettings, step: f64) -> Option<f64> {
+        match self {
+            Self::Column(problem) => whole_growth(problem, settings, step),
+            Self::Plane(problem) => whole_growth(problem, settings, step),
+        }
+    }
+
+    /// Solves it.
+    pub fn run(self, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
+        match self {
+            Self::Column(problem) => run(problem, schedule, observer),
+            Self::Plane(problem) => run(problem, schedule, observer),
+        }
+    }
+}
+
+impl From<Problem<1>> for SceneProblem {
+    fn from(problem: Problem<1>) -> Self {
+        Self::Column(problem)
+    }
+}
+
+impl From<Problem<2>> for SceneProblem {
+    fn from(problem: Problem<2>) -> Self {
+        Self::Plane(problem)
+    }
+}
+
+/// The scene's problem on `cells` cells over the height with `points_per_cell` points each, in the
+/// dimension that is asked for.
+///
+/// # Errors
+/// When the parameters are impossible.
+pub fn column_problem<const D: usize>(
+    scene: SceneKind,
+    column: &Column,
+    soil: &Material,
+    method: Method,
+    cells: usize,
+    points_per_cell: usize,
+) -> Result<Problem<D>, ExactError> {
+    let cell_size = column.points.cell_size(column.height, cells);
+    let mut extent = [column.cells_across(cells).unwrap_or(1); D];
+    extent[D - 1] = cells;
+    let definition = scene.definition();
+    let mut initial_gradient = [[0.0; D]; D];
+    let start = match &definition.start {
+        SceneStart::OverDepth(start) => Some(start(column, soil)?),
+        SceneStart::Solved => None,
+    };
+    if let Some(start) = &start {
+        initial_gradient[D - 1][D - 1] = start.vertical_gradient;
+    }
+    let layer_of = |per_cell: usize| -> Result<Points<D>, ExactError> {
+        let mut points = Points::lattice(cell_size, extent, per_cell);
+        column.points.arrange(&mut points, cell_size, cells);
+        if let Some(start) = &start {
+            start.apply(&mut points, column.height)?;
+            if column.self_weight {
+                add_initial_stress(&mut points, &column_parameters(column, soil));
+            }
+        }
+        Ok(points)
+    };
+    let points = layer_of(points_per_cell)?;
+    let of_water = column.points.water_per_cell;
+    let water =
+        column.points.has_two_layers().then_some(if of_water == 0 { points_per_cell } else { of_water });
+    let water = water.map(layer_of).transpose()?;
+    // A column at rest is there to show what a method leaves unbalanced.
+    let is_integrated = column.points.is_lattice() && !method.basis.is_spline();
+    let balanced_weight = if column.self_weight && !is_integrated && !scene.is_at_rest() {
+        let mut weighing =
+            Points::<D> { effective_stress: vec![[[0.0; D]; D]; points.len()], ..points.clone() };
+        add_initial_stress(&mut weighing, &column_parameters(column, soil));
+        weighing.effective_stress
+    } else {
+        Vec::new()
+    };
+    let forcing = scene
+        .model()
+        .map(|model| manufactured::forcing(model, column, soil, &points.initial_position))
+        .transpose()?;
+    if forcing.is_none() {
+        extent[D - 1] += HEADROOM;
+    }
+    let support = match column.base {
+        _ if scene.is_manufactured() => Support::closed(),
+        Some(Base::Rough) => Support::oedometer().on_rough_base(),
+        Some(Base::Smooth) | None if scene.has_plates() => Support::oedometer().with_movable_side(),
+        Some(Base::Smooth) | None => Support::oedometer(),
+    };
+    let load = column.load.abs();
+    let weight = column.self_weight.then_some(soil.gravity);
+    Ok(Problem {
+        grid: Grid::new(cell_size, extent),
+        support,
+        points,
+        water,
+        material: *soil,
+        method,
+        configuration: method.configuration_or(scene.configuration()),
+        load: if scene.is_loaded() && !scene.has_plates() { column.load } else { 0.0 },
+        load_shape: match definition.load {
+            SceneLoad::Cosine => LoadShape::Cosine { length: column.horizontal_extent },
+            SceneLoad::None | SceneLoad::Sudden | SceneLoad::SuddenOrGrowing(_) | SceneLoad::Plates => {
+                LoadShape::Uniform
+            }
+        },
+        plate_load: scene.has_plates().then_some(column.load),
+        weight,
+        balanced_weight,
+        undrained_start: scene.start_is_solved(),
+        loading_time: column.loading_time,
+        initial_gradient,
+        // Round-off is of the size of what weighs.
+        pressure_scale: weight
+            .map_or(load, |gravity| load.max(soil.mixture_density() * gravity * column.height)),
+        forcing,
+        is_bounded: true,
+    })
+}
+
+/// Gives points the stress of the soil's own weight, that to the sides as an oedometer at rest has it.
+fn add_initial_stress<const D: usize>(points: &mut Points<D>, parameters: &ColumnParameters) {
+    let lateral = parameters.poissons_ratio / (1.0 - parameters.poissons_ratio);
+    for point in 0..points.len() {
+        let depth = 1.0 - points.initial_position[point][D - 1] / parameters.height;
+        let vertical = parameters.initial_stress(depth);
+        for d in 0..D {
+            points.effective_stress[point][d][d] += if d + 1 == D { vertical } else { lateral * vertical };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::arrangement::Arrangement;
+
+    #[test]
+    fn points_of_any_height_and_arrangement_lie_in_the_body() {
+        let (soil, method) = (Material::default(), Method::named("GC-SRI-patch").expect("known"));
+        for number in 1..=300_usize {
+            let height = 0.05 + 0.01051 * number as f64;
+            let (offset, jitter) = ([0.0, 0.3, 0.5, -0.5][number % 4], [0.0, 0.5, 0.3][number % 3]);
+            for scene in SceneKind::ALL.into_iter().filter(|scene| !scene.is_manufactured()) {
+                let mut column = Column { height, ..scene.default_column() };
+                column.horizontal_extent = height;
+                column.points = Arrangement { offset, jitter, ..Arrangement::default() };
+                let cells = 3 + number % 5;
+                let problem = SceneProblem::of(scene, &column, &soil, method, cells, 2);
+                let problem = problem.unwrap_or_else(|error| panic!("{} {height}: {error}", scene.name()));
+                let is_inside = match &problem {
+                    SceneProblem::Column(problem) => {
+                        problem.points.position.iter().all(|place| problem.grid.holds(place))
+                    }
+                    SceneProblem::Plane(problem) => {
+                        problem.points.position.iter().all(|place| problem.grid.holds(place))
+                    }
+                };
+                assert!(is_inside, "{} {height} {offset} {jitter}", scene.name());
+            }
+        }
+    }
+}

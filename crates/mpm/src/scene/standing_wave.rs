@@ -1,0 +1,30 @@
+//! An undrained wave that stands in an unloaded column: smooth, and nothing but inertia.
+
+use crate::scene::column::column_parameters;
+use crate::scene::definition::{
+    ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartFields, StartPressure,
+};
+use oedometer_exact::dynamic_column::{DynamicColumn, Start};
+use oedometer_exact::reference::ReferenceKind;
+
+pub(crate) static STANDING_WAVE: SceneDefinition = SceneDefinition {
+    name: "standing-wave",
+    summary: "undrained standing wave, no load: smooth, for the order in the step",
+    references: &[ReferenceKind::StandingWave],
+    model_difference: |_, _| None,
+    body: SceneBody::Column,
+    strain: SceneStrain::Small,
+    load: SceneLoad::None,
+    has_waves: true,
+    start: SceneStart::OverDepth(|column, soil| {
+        // Skeleton and water displaced together and let go at rest.
+        let wave = DynamicColumn::new(&column_parameters(column, soil), Start::StandingWave, &[0.0])?;
+        let soil = *soil;
+        let fields = move |zeta: f64| {
+            let fields = wave.fields(0.0, zeta)?;
+            Ok(StartFields::at_rest(&soil, fields.pressure, fields.effective_stress))
+        };
+        Ok(ColumnStart { vertical_gradient: 0.0, fields: Box::new(fields) })
+    }),
+    start_pressure: StartPressure::OfReference,
+};

@@ -1,0 +1,131 @@
+//! The material points: one layer that carries skeleton and water, moving with the skeleton.
+
+use oedometer_soil::tensor::{Tensor, Vector, identity};
+
+/// State of the material points, structure of arrays; index = point.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points<const D: usize> {
+    /// Initial place, m.
+    pub initial_position: Vec<Vector<D>>,
+    /// Current place, m.
+    pub position: Vec<Vector<D>>,
+    /// Displacement of the skeleton, m.
+    pub displacement: Vec<Vector<D>>,
+    /// Half-lengths of the point's domain, m.
+    pub half_length: Vec<Vector<D>>,
+    /// Volume in the initial state, m^D.
+    pub initial_volume: Vec<f64>,
+    /// Volume ratio `J`.
+    pub volume_ratio: Vec<f64>,
+    /// Volume that a point's stress fills over `J V_0`: what its domain has kept where the cells
+    /// remember `J`, one elsewhere.
+    pub stressed_share: Vec<f64>,
+    /// Inverse `F⁻¹` of the deformation gradient, where weights stay on the initial configuration.
+    pub inverse_deformation: Vec<Tensor<D>>,
+    /// Velocity of the skeleton, m/s.
+    pub solid_velocity: Vec<Vector<D>>,
+    /// Velocity of the pore water, m/s; none where the water has a layer of points of its own.
+    pub water_velocity: Vec<Vector<D>>,
+    /// Effective Cauchy stress, Pa, tension positive.
+    pub effective_stress: Vec<Tensor<D>>,
+    /// Excess pore pressure, Pa, compression positive.
+    pub pressure: Vec<f64>,
+}
+
+impl<const D: usize> Points<D> {
+    /// A block of `cells` square cells of edge `cell_size` (m) with its corner at the origin,
+    /// `per_cell` equally spaced points a cell and direction, at rest and without stress.
+    pub fn lattice(cell_size: f64, cells: [usize; D], per_cell: usize) -> Self {
+        let along = cells.map(|count| count * per_cell);
+        let count: usize = along.iter().product();
+        let spacing = cell_size / per_cell as f64;
+        let initial_position: Vec<Vector<D>> = (0..count)
+            .map(|point| {
+                let mut rest = point;
+                std::array::from_fn(|direction| {
+                    let index = rest % along[direction];
+                    rest /= along[direction];
+                    (index as f64 + 0.5) * spacing
+                })
+            })
+            .collect();
+        Self {
+            position: initial_position.clone(),
+            initial_position,
+            displacement: vec![[0.0; D]; count],
+            half_length: vec![[0.5 * spacing; D]; count],
+            initial_volume: vec![(0..D).map(|_| spacing).product(); count],
+            volume_ratio: vec![1.0; count],
+            stressed_share: vec![1.0; count],
+            inverse_deformation: vec![identity(); count],
+            solid_velocity: vec![[0.0; D]; count],
+            water_velocity: vec![[0.0; D]; count],
+            effective_stress: vec![[[0.0; D]; D]; count],
+            pressure: vec![0.0; count],
+        }
+    }
+
+    /// Number of points.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.pressure.len()
+    }
+
+    /// Whether there is no point at all.
+    pub fn is_empty(&self) -> bool {
+        self.pressure.is_empty()
+    }
+
+    /// The points of a list of indices, in its order.
+    #[must_use]
+    pub fn select(&self, keep: &[usize]) -> Self {
+        fn pick<T: Copy>(field: &[T], keep: &[usize]) -> Vec<T> {
+            keep.iter().map(|point| field[*point]).collect()
+        }
+        Self {
+            initial_position: pick(&self.initial_position, keep),
+            position: pick(&self.position, keep),
+            displacement: pick(&self.displacement, keep),
+            half_length: pick(&self.half_length, keep),
+            initial_volume: pick(&self.initial_volume, keep),
+            volume_ratio: pick(&self.volume_ratio, keep),
+            stressed_share: pick(&self.stressed_share, keep),
+            inverse_deformation: pick(&self.inverse_deformation, keep),
+            solid_velocity: pick(&self.solid_velocity, keep),
+            water_velocity: pick(&self.water_velocity, keep),
+            effective_stress: pick(&self.effective_stress, keep),
+            pressure: pick(&self.pressure, keep),
+        }
+    }
+
+    /// Whether every point began on the lattice of the cells, a whole number of domains from their edges.
+    pub fn began_on_lattice(&self) -> bool {
+        let on_lattice = |point: usize| {
+            self.initial_position[point].iter().zip(&self.half_length[point]).all(|(place, half)| {
+                let domains = 0.5 * (place / half - 1.0);
+                (domains - domains.round()).abs() < 1e-6
+            })
+        };
+        (0..self.len()).all(on_lattice)
+    }
+
+    /// Current volume of a point, m^D.
+    #[inline]
+    pub fn volume(&self, point: usize) -> f64 {
+        self.initial_volume[point] * self.volume_ratio[point]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lattice_fills_its_block() {
+        let points = Points::<2>::lattice(0.5, [2, 3], 2);
+        assert_eq!(points.len(), 24);
+        assert!((points.initial_volume.iter().sum::<f64>() - 1.5).abs() < 1e-15);
+        assert_eq!(points.initial_position[0], [0.125, 0.125]);
+        assert_eq!(points.initial_position[23], [0.875, 1.375]);
+    }
+}

@@ -1,0 +1,120 @@
+//! No pair of eigenvalues of the explicit step grows in the plane: of the program's own step, applied to one unit of each
+//! unknown after the other, for every method, boundary, treatment of the drag, and with mapping back and without.
+//!
+//! A run of thirty thousand steps cannot show what these show in seconds: what doubles in ten thousand of them. For the
+//! combinations named here something grows under any step, and the program must say so.
+
+use crate::run;
+use oedometer_exact::parameters::Base;
+use oedometer_mpm::explicit::{Drag, ExplicitSettings};
+use oedometer_mpm::method::Method;
+use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_mpm::run::results::outcome::RunStatus;
+use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
+use oedometer_mpm::scene::SceneKind;
+use oedometer_mpm::scene::column::Column;
+use oedometer_mpm::scene::problem::SceneProblem;
+use oedometer_soil::material::Material;
+
+/// A doubling in seventy thousand steps.
+const NO_GROWTH: f64 = 1e-5;
+/// Share of the predicted step.
+const SHARE: f64 = 0.8;
+
+/// A small plane of a method.
+fn plane(method: &str, boundary: &str, cells: usize, conductivity: f64) -> SceneProblem {
+    let (scene, column) = match boundary {
+        "rough" => (SceneKind::CosineLayer, Column::layer()),
+        "smooth" => (SceneKind::CosineLayer, Column { base: Some(Base::Smooth), ..Column::layer() }),
+        _ => (SceneKind::Mandel, Column { horizontal_extent: 0.5, ..Column::slab() }),
+    };
+    let soil = Material { hydraulic_conductivity: conductivity, ..Material::default() };
+    let method = Method::named(method).expect("a known method");
+    SceneProblem::of(scene, &column, &soil, method, cells, 2).expect("a plane")
+}
+
+/// Growth a step at a share of the predicted one; none where no limit is known.
+fn growth_of(problem: &SceneProblem, settings: &ExplicitSettings) -> Option<f64> {
+    let predicted = problem.known_critical_step(settings)?;
+    Some(problem.growth_under(settings, SHARE * predicted).expect("a small plane") - 1.0)
+}
+
+/// The names of combinations in which no limit is known; none of the others may grow.
+fn without_limit(
+    methods: &[String],
+    boundary: &str,
+    cells: usize,
+    conductivities: &[(Drag, f64)],
+) -> Vec<String> {
+    let mut names = Vec::new();
+    for method in methods {
+        for (drag, conductivity) in conductivities {
+            let problem = plane(method, boundary, cells, *conductivity);
+            for mapping_back in [true, false] {
+                let settings = ExplicitSettings { drag: *drag, mapping_back, ..ExplicitSettings::default() };
+                let mapped = if mapping_back { "mapped back" } else { "not mapped back" };
+                let name = format!("{method} {boundary} {cells} {drag:?} {conductivity:e} {mapped}");
+                match growth_of(&problem, &settings) {
+                    None => names.push(name),
+                    Some(growth) => assert!(growth <= NO_GROWTH, "{name}: {growth:e} a step"),
+                }
+            }
+        }
+    }
+    names
+}
+
+/// Every method with operators of its own at the start: `u`, `TL-` and `-cells` have those of the name behind.
+fn methods() -> Vec<String> {
+    let is_own =
+        |name: &String| !name.starts_with(['u']) && !name.starts_with("TL-") && !name.ends_with("-cells");
+    Method::names().into_iter().filter(is_own).collect()
+}
+
+const DRAGS: [(Drag, f64); 3] = [(Drag::Explicit, 1e-3), (Drag::Centred, 1e-8), (Drag::Implicit, 1e-8)];
+
+#[test]
+fn nothing_grows_on_a_rough_base() {
+    assert_eq!(without_limit(&methods(), "rough", 4, &DRAGS), [""; 0]);
+}
+
+#[test]
+fn nothing_grows_on_a_smooth_base() {
+    assert_eq!(without_limit(&methods(), "smooth", 4, &DRAGS), [""; 0]);
+}
+
+#[test]
+fn nothing_grows_under_a_plate() {
+    assert_eq!(without_limit(&methods(), "plate", 4, &DRAGS), [""; 0]);
+}
+
+#[test]
+fn little_drag_shows_on_more_cells() {
+    let ladder = ["GC-SRI-patch".to_owned()];
+    let weak = [(Drag::Implicit, 1e-3), (Drag::Implicit, 0.1)];
+    // Rates of a patch are not the adjoint of the points' forces; with next to no drag their waves grow.
+    assert_eq!(without_limit(&ladder, "rough", 6, &weak), ["GC-SRI-patch rough 6 Implicit 1e-1 mapped back"]);
+}
+
+#[test]
+fn a_share_of_a_limit_that_nobody_knows_is_refused() {
+    let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
+    let schedule = |rule| Schedule {
+        outputs: vec![1e-6],
+        history: Vec::new(),
+        rule,
+        settings,
+        kernel: Kernel::Fastest,
+        integrator: IntegratorKind::Explicit,
+        critical_step: None,
+        formulation: IntegratorKind::Explicit.default_formulation(),
+        threads: 1,
+        time_limit: oedometer_mpm::time_limit::TimeLimit::default(),
+    };
+    let problem = || plane("GC-SRI-patch", "rough", 6, 0.1);
+    let RunStatus::Failed(failure) = run(problem(), &schedule(TimeStepRule::Stable(0.5))).status else {
+        panic!("it ran");
+    };
+    assert!(failure.reason.starts_with("no limit is known: "), "{}", failure.reason);
+    assert_eq!(run(problem(), &schedule(TimeStepRule::Seconds(1e-7))).status, RunStatus::Ok);
+}

@@ -1,0 +1,253 @@
+//! Stress–strain laws of the skeleton, docs/theory.md, section 2: `dσ'/dt = C(E, ν) : sym ∇v_s` on the current
+//! configuration, and the conductivity that goes with each.
+
+use crate::elementary;
+use crate::tensor::{Tensor, product_with_transpose};
+use serde::{Deserialize, Serialize};
+
+/// Stress–strain law of the skeleton and the conductivity that goes with it.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum Law {
+    /// Constant modulus and conductivity.
+    Linear,
+    /// Constant modulus against logarithmic strain, `σ' = E_oed ln J` (docs/theory.md, Eq. 6), and
+    /// `k = k_0 J²`: the material of Xie & Leo (2004).
+    LogLinear,
+    /// The modulus `E = E_0/J` in the rate form, `dσ' = (E_oed/J) dJ/J`, so `σ' = E_oed (1 − 1/J)`
+    /// (docs/theory.md, Eq. 7), and `k = k_0 J²`: Zheng et al. Eqs 7 and 8, taken as rates.
+    PorosityDependent,
+    /// The same modulus `E = E_0/J` with the engineering strain that it belongs to,
+    /// `dσ' = (E_oed/J) dJ`, and `k = k_0 J²`: the material of Xie & Leo by another way.
+    Engineering,
+    /// Hyperelastic, `σ' = [μ (F Fᵀ − I) + λ ln J I]/J` (Simo & Pister 1984; docs/theory.md, Eq. 28), and
+    /// `k = k_0 J²`: a stress that no path through shear or rotation changes.
+    NeoHookean,
+}
+
+impl Law {
+    /// Every law, in the order of the documentation.
+    pub const ALL: [Self; 5] =
+        [Self::Linear, Self::LogLinear, Self::PorosityDependent, Self::Engineering, Self::NeoHookean];
+
+    /// The laws of columns: a rate against the logarithmic strain, which a uniaxial compression integrates in closed
+    /// form.
+    pub const OF_COLUMNS: [Self; 4] =
+        [Self::Linear, Self::LogLinear, Self::PorosityDependent, Self::Engineering];
+
+    /// Whether the stress is a function of the deformation gradient, and no rate is integrated.
+    #[inline]
+    pub fn is_hyperelastic(self) -> bool {
+        self == Self::NeoHookean
+    }
+
+    /// Name in study files.
+    #[inline]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::LogLinear => "log-linear",
+            Self::PorosityDependent => "porosity-dependent",
+            Self::Engineering => "engineering",
+            Self::NeoHookean => "neo-hookean",
+        }
+    }
+
+    /// Modulus over the initial one against the logarithmic strain `dJ/J` of the rate form, over
+    /// a step from one volume ratio to another: at their geometric mean, of second order. Of a hyperelastic law,
+    /// which no rate is integrated of, that of the start.
+    #[inline]
+    pub fn modulus_ratio(self, before: f64, after: f64) -> f64 {
+        match self {
+            // The engineering law has E_0/J against dJ, and that is E_0 against dJ/J.
+            Self::Linear | Self::LogLinear | Self::Engineering | Self::NeoHookean => 1.0,
+            Self::PorosityDependent => 1.0 / (before * after).sqrt(),
+        }
+    }
+
+    /// Vertical effective stress over the oedometric modulus of a uniaxial compression to the
+    /// engineering strain `J − 1`, which may be tiny: the integral of the rate form. Not a number for laws that are
+    /// not [of columns](Self::OF_COLUMNS), which depend on Poisson's ratio too.
+    #[inline]
+    pub fn uniaxial_stress_ratio(self, strain: f64) -> f64 {
+        match self {
+            Self::Linear | Self::LogLinear | Self::Engineering => elementary::ln_1p(strain),
+            Self::PorosityDependent => strain / (1.0 + strain),
+            Self::NeoHookean => f64::NAN,
+        }
+    }
+
+    /// What a uniaxial compression `−σ'/E_oed` takes of the volume, `1 − J`; the linear law's at small
+    /// strain. Not a number for laws that are not of columns.
+    #[inline]
+    pub fn shrinkage(self, compression: f64) -> f64 {
+        match self {
+            Self::LogLinear | Self::Engineering => -elementary::exp_m1(-compression),
+            Self::PorosityDependent => compression / (1.0 + compression),
+            Self::Linear => compression,
+            Self::NeoHookean => f64::NAN,
+        }
+    }
+
+    /// What the water has to overcome at some volume ratios, `γ_w/k` in N s/m⁴, from that of the initial one: the law is
+    /// asked once, and where the conductivity is constant nothing is divided.
+    #[inline]
+    pub fn resistivities<const N: usize>(self, initial: f64, volume_ratios: &[f64; N]) -> [f64; N] {
+        match self {
+            Self::Linear => [initial; N],
+            law => volume_ratios.map(|ratio| initial / law.conductivity(1.0, ratio)),
+        }
+    }
+
+    /// Hydraulic conductivity, m/s, at volume ratio `J` from the initial one.
+    #[inline]
+    pub fn conductivity(self, initial: f64, volume_ratio: f64) -> f64 {
+        match self {
+            Self::Linear => initial,
+            Self::LogLinear | Self::PorosityDependent | Self::Engineering | Self::NeoHookean => {
+                initial * volume_ratio * volume_ratio
+            }
+        }
+    }
+}
+
+/// Isotropic elastic stiffness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stiffness {
+    /// Lamé's first parameter `λ`, Pa.
+    pub lame: f64,
+    /// Shear modulus `G`, Pa.
+    pub shear: f64,
+}
+
+impl Stiffness {
+    /// Stress of a small strain whose lateral parts vanish in the directions left out:
+    /// `λ tr(ε) I + 2 G ε` with `ε = sym` of the given displacement gradient.
+    #[inline]
+    pub fn stress<const D: usize>(&self, gradient: &Tensor<D>) -> Tensor<D> {
+        let volumetric: f64 = (0..D).map(|d| gradient[d][d]).sum();
+        let mut stress = [[0.0; D]; D];
+        for i in 0..D {
+            for j in 0..D {
+                stress[i][j] = self.shear * (gradient[i][j] + gradient[j][i]);
+            }
+            stress[i][i] += self.lame * volumetric;
+        }
+        stress
+    }
+
+    /// Neo-Hookean Cauchy stress `[μ (F Fᵀ − I) + λ ln J I]/J` of a deformation gradient, its determinant and the
+    /// determinant's logarithm, in plane strain (docs/theory.md, Eq. 28).
+    #[inline]
+    pub fn neo_hookean_stress<const D: usize>(
+        &self,
+        deformation: &Tensor<D>,
+        volume_ratio: f64,
+        log_volume: f64,
+    ) -> Tensor<D> {
+        let left = product_with_transpose(deformation, deformation);
+        let volumetric = self.lame * log_volume - self.shear;
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let whole = self.shear * left[i][j] + if i == j { volumetric } else { 0.0 };
+                whole / volume_ratio
+            })
+        })
+    }
+
+    /// Normal stress that the gradient `(b/D) I` of B-bar lacks: the volume `b` that B-bar adds to a
+    /// strain is shared by three directions, `b/3` each (Hughes 1980, Eq. 12), in whatever dimension
+    /// the problem is solved.
+    #[inline]
+    pub fn shared_dilation_stress<const D: usize>(&self, dilation: f64) -> f64 {
+        2.0 * self.shear * dilation * (1.0 / 3.0 - 1.0 / D as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::Material;
+
+    #[test]
+    fn the_resistivity_is_the_weight_of_water_over_the_conductivity() {
+        for law in Law::ALL {
+            let ratios = [1.0, 0.7, 1.3];
+            for (ratio, resistivity) in ratios.iter().zip(law.resistivities(1e4 / 1e-3, &ratios)) {
+                let expected = 1e4 / law.conductivity(1e-3, *ratio);
+                assert!((resistivity / expected - 1.0).abs() < 1e-15, "{} at {ratio}", law.name());
+            }
+        }
+    }
+
+    #[test]
+    fn a_uniaxial_strain_meets_the_oedometric_modulus() {
+        let soil = Material { poissons_ratio: 0.31, ..Material::default() };
+        let expected = soil.oedometric_modulus() * 1e-3;
+        assert!((soil.stiffness().stress(&[[1e-3]])[0][0] / expected - 1.0).abs() < 1e-14);
+        let plane = soil.stiffness().stress(&[[0.0, 0.0], [0.0, 1e-3]]);
+        assert!((plane[1][1] / expected - 1.0).abs() < 1e-14);
+        let lateral = plane[0][0] / plane[1][1];
+        assert!((lateral - 0.31 / 0.69).abs() < 1e-14, "earth pressure at rest ν/(1−ν)");
+    }
+
+    #[test]
+    fn a_neo_hookean_stress_turns_with_the_body_and_is_hookes_at_small_strain() {
+        let stiffness = Stiffness { lame: 0.7, shear: 0.4 };
+        // Uniaxial: σ_yy = [μ (J² − 1) + λ ln J]/J and σ_xx = λ ln J/J.
+        let ratio = 0.8_f64;
+        let stress = stiffness.neo_hookean_stress(&[[1.0, 0.0], [0.0, ratio]], ratio, ratio.ln());
+        assert!((stress[1][1] - (0.4 * (ratio * ratio - 1.0) + 0.7 * ratio.ln()) / ratio).abs() < 1e-15);
+        assert!((stress[0][0] - 0.7 * ratio.ln() / ratio).abs() < 1e-15);
+        // Turned by 90° after the stretch, the stresses change places.
+        let turned = stiffness.neo_hookean_stress(&[[0.0, -ratio], [1.0, 0.0]], ratio, ratio.ln());
+        assert!((turned[0][0] - stress[1][1]).abs() < 1e-15 && (turned[1][1] - stress[0][0]).abs() < 1e-15);
+        let small = [[1e-7, 3e-7], [-1e-7, 2e-7]];
+        let whole = [[1.0 + 1e-7, 3e-7], [-1e-7, 1.0 + 2e-7]];
+        let determinant = whole[0][0] * whole[1][1] - whole[0][1] * whole[1][0];
+        let (finite, hookes) =
+            (stiffness.neo_hookean_stress(&whole, determinant, determinant.ln()), stiffness.stress(&small));
+        for (finite, hookes) in finite.iter().flatten().zip(hookes.iter().flatten()) {
+            assert!((finite - hookes).abs() < 1e-12, "{finite} for {hookes}");
+        }
+    }
+
+    #[test]
+    fn the_published_modulus_belongs_to_engineering_strain() {
+        // Under q/E_oed = 1/6 the two readings of Eq. 8 end apart: docs/theory.md, section 2.
+        let end = |law: Law| {
+            let (mut low, mut high): (f64, f64) = (0.5, 1.0);
+            while high - low > 1e-15 {
+                let middle = 0.5 * (low + high);
+                if law.uniaxial_stress_ratio(middle - 1.0) < -1.0 / 6.0 {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            1.0 - low
+        };
+        assert!((end(Law::Engineering) - 0.153_518_275_1).abs() < 1e-9);
+        assert!((end(Law::PorosityDependent) - 1.0 / 7.0).abs() < 1e-9);
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn the_rate_form_integrates_to_the_closed_form(end in 0.6..1.4_f64) {
+            let steps = 20_000;
+            let strain = end.ln() / f64::from(steps);
+            for law in Law::OF_COLUMNS {
+                let (mut ratio, mut stress) = (1.0, 0.0);
+                for _ in 0..steps {
+                    let before = ratio;
+                    ratio *= strain.exp();
+                    stress += law.modulus_ratio(before, ratio) * strain;
+                }
+                let closed = law.uniaxial_stress_ratio(end - 1.0);
+                proptest::prop_assert!((stress - closed).abs() < 1e-9, "{law:?}: {stress} for {closed}");
+            }
+        }
+    }
+}

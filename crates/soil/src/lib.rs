@@ -1,0 +1,13 @@
+//! Saturated soil: its parameters, its stress–strain laws and the continuity of its water. Written once, for
+//! the solver and for everything that describes a case.
+
+// Tests may call the platform's functions: a second opinion there.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+pub mod conductivity_mean;
+pub mod continuity;
+pub mod elementary;
+pub mod law;
+pub mod material;
+pub mod tensor;
+pub mod wording;

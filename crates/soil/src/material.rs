@@ -1,0 +1,142 @@
+//! Saturated soil: its parameters and what follows from them.
+
+use crate::conductivity_mean::ConductivityMean;
+use crate::continuity::Continuity;
+use crate::elementary;
+use crate::law::{Law, Stiffness};
+use serde::{Deserialize, Serialize};
+
+/// Parameters of the saturated soil in its initial state, SI.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Material {
+    /// Stress–strain law.
+    pub law: Law,
+    /// Young's modulus `E` of the skeleton, Pa.
+    pub youngs_modulus: f64,
+    /// Poisson's ratio `ν` of the skeleton.
+    pub poissons_ratio: f64,
+    /// Initial porosity `n_0`.
+    pub porosity: f64,
+    /// Density `ρ_s` of the grains, kg/m³.
+    pub grain_density: f64,
+    /// Density `ρ_w` of the water, kg/m³.
+    pub water_density: f64,
+    /// Bulk modulus `K_w` of the water, Pa.
+    pub water_bulk_modulus: f64,
+    /// Initial hydraulic conductivity `k_0`, m/s.
+    pub hydraulic_conductivity: f64,
+    /// Gravity in the drag's unit weight of water, m/s².
+    pub gravity: f64,
+    /// Continuity equation.
+    pub continuity: Continuity,
+    /// Mean of the conductivity at a node. Left out of the identity of a case where it is the paper's.
+    #[serde(default, skip_serializing_if = "ConductivityMean::is_paper")]
+    pub conductivity_mean: ConductivityMean,
+}
+
+impl Default for Material {
+    /// The seed column of Zheng et al. (2021).
+    #[inline]
+    fn default() -> Self {
+        Self {
+            law: Law::Linear,
+            youngs_modulus: 1e6,
+            poissons_ratio: 0.25,
+            porosity: 0.3,
+            grain_density: 2650.0,
+            water_density: 1000.0,
+            water_bulk_modulus: 2.2e9,
+            hydraulic_conductivity: 1e-4,
+            gravity: 9.81,
+            continuity: Continuity::Conservative,
+            conductivity_mean: ConductivityMean::Points,
+        }
+    }
+}
+
+impl Material {
+    /// `E_oed = E(1−ν)/((1+ν)(1−2ν))`, Pa.
+    #[inline]
+    pub fn oedometric_modulus(&self) -> f64 {
+        let nu = self.poissons_ratio;
+        self.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    }
+
+    /// Coupling modulus `Q = K_w/n_0`, Pa.
+    #[inline]
+    pub fn coupling_modulus(&self) -> f64 {
+        self.water_bulk_modulus / self.porosity
+    }
+
+    /// Unit weight of water `γ_w`, N/m³.
+    #[inline]
+    pub fn unit_weight_of_water(&self) -> f64 {
+        self.water_density * self.gravity
+    }
+
+    /// Density of the saturated mixture at the initial porosity, `(1 − n)ρ_s + nρ_w`, kg/m³.
+    pub fn mixture_density(&self) -> f64 {
+        (1.0 - self.porosity) * self.grain_density + self.porosity * self.water_density
+    }
+
+    /// `c_v = k_0 E_oed/γ_w`, m²/s.
+    #[inline]
+    pub fn coefficient_of_consolidation(&self) -> f64 {
+        self.hydraulic_conductivity * self.oedometric_modulus() / self.unit_weight_of_water()
+    }
+
+    /// Porosity at volume ratio `J`: `n = 1 − (1 − n_0)/J` (docs/theory.md, Eq. 5).
+    #[inline]
+    pub fn porosity_at(&self, volume_ratio: f64) -> f64 {
+        1.0 - (1.0 - self.porosity) / volume_ratio
+    }
+
+    /// Hydraulic conductivity at volume ratio `J`, m/s.
+    #[inline]
+    pub fn hydraulic_conductivity_at(&self, volume_ratio: f64) -> f64 {
+        self.law.conductivity(self.hydraulic_conductivity, volume_ratio)
+    }
+
+    /// Pore pressure, Pa, of the undrained water at the engineering strain `J − 1`:
+    /// `ṗ = −(K_w/n) J̇/J` with `nJ = J − (1 − n_0)` integrates to `−K_w ln(nJ/n_0)`.
+    #[inline]
+    pub fn undrained_pressure_at(&self, strain: f64) -> f64 {
+        -self.water_bulk_modulus * elementary::ln_1p(strain / self.porosity)
+    }
+
+    /// The skeleton's stiffness as the stress update uses it.
+    #[inline]
+    pub fn stiffness(&self) -> Stiffness {
+        let shear = self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio));
+        Stiffness { lame: self.oedometric_modulus() - 2.0 * shear, shear }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_seed_column_has_the_published_groups() {
+        let soil = Material::default();
+        assert!((soil.oedometric_modulus() - 1.2e6).abs() < 1e-6);
+        assert!((1.0 / soil.coefficient_of_consolidation() - 81.75).abs() < 1e-10, "T_v = 1 at 81.75 s");
+    }
+
+    #[test]
+    fn conductivity_falls_with_the_square_of_the_volume_but_for_the_linear_law() {
+        for law in Law::ALL {
+            let soil = Material { law, ..Material::default() };
+            let expected = if law == Law::Linear { 1e-4 } else { 0.64e-4 };
+            assert!((soil.hydraulic_conductivity_at(0.8) / expected - 1.0).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn porosity_follows_the_volume_ratio() {
+        let soil = Material::default();
+        assert!((soil.porosity_at(1.0) - 0.3).abs() < 1e-15);
+        // Half the pores gone: J = 1 − n_0/2.
+        assert!((soil.porosity_at(0.85) - 0.15 / 0.85).abs() < 1e-15);
+    }
+}

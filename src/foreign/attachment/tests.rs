@@ -1,0 +1,186 @@
+use super::*;
+use oedometer_mpm::attached_method::Attached;
+
+/// A solver in a folder by a command, with the convention's mapping.
+pub(crate) fn solver(folder: &Path, command: &[&str]) -> Solver {
+    Solver {
+        files: Vec::new(),
+        time_step: None,
+        attached: Attached::new("toy", "0123456789abcdef").expect("a plain name"),
+        folder: folder.to_owned(),
+        command: command.iter().map(|word| (*word).to_owned()).collect(),
+        result: "{out}/result.csv".to_owned(),
+        mapping: None,
+        preset: None,
+        version: Vec::new(),
+        timeout: 60.0,
+        repeats: 1,
+        warm_up: false,
+        at_once: 1,
+        environment: Vec::new(),
+        solve_seconds: None,
+    }
+}
+
+#[cfg(unix)]
+mod runs {
+    use super::*;
+    use crate::case::Task;
+    use crate::case::norm::Norm;
+    use crate::case::quantity::Quantity;
+    use oedometer_mpm::method::Method;
+    use oedometer_mpm::run::results::outcome::FailureKind;
+    use oedometer_mpm::scene::SceneKind;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// A case on two cells with one output.
+    fn case(solver: &Solver) -> Case {
+        Case {
+            method: Method::of_attached(solver.attached),
+            cells: 2,
+            time_factors: vec![0.1].into(),
+            ..Case::seed(Task::Solve, SceneKind::Terzaghi)
+        }
+        .for_attached()
+    }
+
+    /// Runs a shell script in the place of a solver.
+    fn run(script: &str, change: impl Fn(&mut Solver)) -> Record {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let mut solver = solver(folder.path(), &["sh", "-c", script]);
+        change(&mut solver);
+        let wish = Wish {
+            references: &[ReferenceKind::Terzaghi],
+            place: Some(folder.path()),
+            alone: true,
+            is_wanted: &|| true,
+        };
+        let record = Attachment::new(&solver, false).run(&case(&solver), &wish).expect("a sound column");
+        let kept = if record.status == Status::Ok { "solver" } else { "solver.failed" };
+        let is_started = record.status.name() != "unreadable" || solver.mapping.is_none();
+        assert!(folder.path().join(kept).join("case.json").is_file() || !is_started);
+        record
+    }
+
+    /// Rows of the three nodes at an output of 8.175 s.
+    const ROWS: &str = "printf 't,y,p,u_y\\n8.175,0,0.9,0\\n8.175,0.5,0.6,-1e-7\\n8.175,1,0,-3e-7\\n'";
+
+    #[test]
+    fn a_result_becomes_a_record_with_errors_at_the_requested_time() {
+        let record = run(&format!("{ROWS} > result.csv"), |_| {});
+        assert_eq!(record.status, Status::Ok, "{:?}", record.attached);
+        let error = record.error(Quantity::Pressure, Sample::Points, Norm::L2, "terzaghi", 0.1);
+        assert!(error.is_some_and(|row| row.value.is_finite() && row.value > 0.0));
+        assert!(record.errors.iter().any(|row| row.quantity == Quantity::Settlement));
+        assert_eq!((record.wall.len(), record.snapshots.len(), record.history.len()), (1, 1, 1));
+        assert!((record.snapshots[0].settlement - 3e-7).abs() < 1e-20);
+    }
+
+    #[test]
+    fn a_version_that_hangs_takes_no_longer_than_a_run_may() {
+        let clock = std::time::Instant::now();
+        let record = run(&format!("{ROWS} > result.csv"), |solver| {
+            solver.version = ["sh", "-c", "echo 7; exec sleep 600"].map(str::to_owned).to_vec();
+            solver.timeout = 2.0;
+        });
+        let about = record.attached.expect("what it was");
+        assert_eq!((record.status, about.version), (Status::Ok, None));
+        assert!(about.notes[0].contains("did not end within 2 s"), "{:?}", about.notes);
+        assert!(clock.elapsed().as_secs() < 50, "the time that any version has");
+    }
+
+    #[test]
+    fn a_state_near_an_output_is_held_against_the_solution_at_its_own_time() {
+        let error = |time: &str| {
+            let record = run(&format!("{} > result.csv", ROWS.replace("8.175", time)), |_| {});
+            record
+                .error(Quantity::Pressure, Sample::Points, Norm::L2, "terzaghi", 0.1)
+                .expect("an error")
+                .value
+        };
+        let (on_time, late) = (error("8.175"), error("8.182"));
+        assert!((late - on_time).abs() > 1e-6 * on_time, "{on_time} {late}");
+    }
+
+    #[test]
+    fn without_a_sample_at_the_surface_no_settlement_is_made_up() {
+        let rows = "printf 't,y,p,u_y\\n8.175,0.25,0.9,0\\n8.175,0.75,0.6,-1e-7\\n' > result.csv";
+        let record = run(rows, |_| {});
+        assert_eq!(record.status, Status::Ok);
+        assert!(record.errors.iter().all(|row| row.quantity != Quantity::Settlement));
+        assert!(record.history.is_empty() && record.snapshots[0].settlement.is_nan());
+        let text = serde_json::to_string(&record).expect("plain");
+        let back: Record = serde_json::from_str(&text).expect("the record can be read again");
+        assert!(back.snapshots[0].settlement.is_nan());
+    }
+
+    #[test]
+    fn every_status_is_the_first_that_applies() {
+        let good = format!("{ROWS} > result.csv");
+        let nan = good.replace("0.6", "nan");
+        for (script, kind, told) in [
+            (format!("{good}; sleep 600"), FailureKind::TimedOut, "did not end within the 1 s"),
+            (format!("{good}; kill -ABRT $$"), FailureKind::Killed, "signal: 6"),
+            (format!("{good}; echo oh no >&2; exit 3"), FailureKind::Failed, "exit code 3"),
+            (format!("{good}; exit 77"), FailureKind::Skipped, "cannot run here"),
+            ("touch other.csv".to_owned(), FailureKind::NoResult, "there is other.csv"),
+            (good.replace("u_y", "w"), FailureKind::Unreadable, "no column `u_y`"),
+            (nan, FailureKind::NotFinite, "result.csv:3"),
+            (good.replace("8.175,0,0.9,0\\n", ""), FailureKind::Incomplete, "between the heights"),
+        ] {
+            let timeout = if kind == FailureKind::TimedOut { 1.0 } else { 60.0 };
+            let record = run(&script, |solver| solver.timeout = timeout);
+            let failure = record.status.failure().unwrap_or_else(|| panic!("{script}"));
+            assert_eq!(failure.kind, kind, "{script}: {failure}");
+            assert!(failure.to_string().contains(told), "{failure}");
+            assert!(record.errors.is_empty() && record.snapshots.is_empty());
+        }
+        let missing = run("", |solver| solver.command = vec!["./no-such-program".to_owned()]);
+        assert_eq!(missing.status.name(), "not-startable");
+    }
+
+    #[test]
+    fn the_last_words_are_told_and_tell_no_path_of_this_machine() {
+        let record = run("echo wrong in $PWD/result.csv >&2; exit 1", |_| {});
+        let told = record.status.failure().expect("it failed").to_string();
+        assert!(told.contains("The last it said: wrong in {out}/result.csv"), "{told}");
+        assert_eq!(record.attached.expect("attached").last_words, ["wrong in {out}/result.csv"]);
+    }
+
+    #[test]
+    fn repeats_are_timed_after_a_warm_up_and_compared() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let count = folder.path().join("count");
+        let counted = format!("echo run >> {}; {ROWS}", count.display());
+        let same = run(&format!("{counted} > result.csv; echo took 2.5 s"), |solver| {
+            (solver.repeats, solver.warm_up) = (3, true);
+            solver.solve_seconds = Some("took ([0-9.]+) s".to_owned());
+        });
+        assert_eq!(std::fs::read_to_string(&count).expect("counted").lines().count(), 4);
+        assert_eq!(same.wall.len(), 3, "the warm-up is not among them");
+        assert!(same.wall.iter().all(|sample| sample.own_seconds == Some(2.5) && sample.alone));
+        let about = same.attached.expect("attached");
+        assert_eq!((about.repeats_differ_by, about.notes.len()), (Some(0.0), 0));
+        // The number of the run stands in a pressure.
+        let script = format!("{counted} | sed s/0.6/0.6$(wc -l < {})/ > result.csv", count.display());
+        let differing = run(&script, |solver| solver.repeats = 2).attached.expect("attached");
+        assert!(differing.repeats_differ_by.is_some_and(|most| most > 1e-3), "{differing:?}");
+        assert!(differing.notes[0].contains("do not give the same result"));
+    }
+
+    #[test]
+    fn no_more_runs_go_on_at_once_than_a_gate_lets_pass() {
+        let (gate, inside, most) = (Gate::of(2), AtomicUsize::new(0), AtomicUsize::new(0));
+        std::thread::scope(|scope| {
+            for _ in 0..8 {
+                scope.spawn(|| {
+                    let _passed = gate.pass();
+                    most.fetch_max(inside.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
+                    std::thread::sleep(Duration::from_millis(5));
+                    inside.fetch_sub(1, Ordering::SeqCst);
+                });
+            }
+        });
+        assert_eq!(most.load(Ordering::SeqCst), 2);
+    }
+}

@@ -1,0 +1,405 @@
+//! Stores against a list in memory: random sequences of everything that happens to one, with a fixed seed.
+
+use super::*;
+use crate::case::Task;
+use crate::measure::attached_record::record_of_attached;
+use crate::record::attached_run::AttachedRun;
+use crate::record::pack::index::Place;
+use crate::record::pack::member::{HEADER, Header};
+use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+use oedometer_mpm::scene::SceneKind;
+use std::collections::BTreeMap;
+use std::fs;
+
+/// Cases of a bed.
+const CASES: usize = 6;
+
+/// Numbers that are the same everywhere: a linear congruence and its upper half.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, count: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % count
+    }
+}
+
+/// What became of what was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// It is as it was.
+    Whole,
+    /// Its header is there, its text is not.
+    Broken,
+    /// Its header is not there either.
+    Gone,
+}
+
+/// What was written, in the order of time.
+#[derive(Clone, Debug)]
+struct Written {
+    /// The record's content; none of wall times alone.
+    tag: Option<usize>,
+    end: CaseEnd,
+    wall: Vec<f64>,
+    state: State,
+}
+
+/// What a store must give of a case.
+#[derive(Clone, Debug, PartialEq)]
+struct Content {
+    tag: usize,
+    wall: Vec<f64>,
+    end: CaseEnd,
+}
+
+/// The newest record counts, and with it the newest wall times that were written alone behind it; what is broken is not
+/// replaced by something older, but for wall times: those of the record itself stand in.
+fn expected(written: &[Written]) -> Option<Content> {
+    let at = written.iter().rposition(|one| one.tag.is_some() && one.state != State::Gone)?;
+    let record = &written[at];
+    if record.state == State::Broken {
+        return None;
+    }
+    let later = written[at..].iter().rfind(|one| one.tag.is_none() && one.state != State::Gone);
+    let wall = later.filter(|wall| wall.state == State::Whole).unwrap_or(record);
+    Some(Content { tag: record.tag?, wall: wall.wall.clone(), end: record.end })
+}
+
+/// A folder with two writers, each of which has every other case, and what was written.
+struct Bed {
+    folder: tempfile::TempDir,
+    window: u64,
+    cases: Vec<Case>,
+    writers: Vec<RecordStore>,
+    swapped: usize,
+    model: BTreeMap<usize, Vec<Written>>,
+    tags: usize,
+    dice: Dice,
+}
+
+fn case(number: usize) -> Case {
+    Case { cells: number + 2, time_factors: vec![0.1].into(), ..Case::seed(Task::Solve, SceneKind::Terzaghi) }
+}
+
+fn record(case: &Case, tag: usize, wall: &[f64], end: CaseEnd) -> Record {
+    let failed = |kind| Status::Failed(Failure::of_attached(kind, format!("for {tag}")));
+    let status = match end {
+        CaseEnd::Ok => Status::Ok,
+        CaseEnd::Failed => failed(FailureKind::Unstable),
+        CaseEnd::Late => failed(FailureKind::TimedOut),
+    };
+    // Texts of unlike lengths, so that members are too.
+    let about = AttachedRun {
+        version: Some(tag.to_string()),
+        notes: vec!["x".repeat(tag * 37 % 300)],
+        ..AttachedRun::default()
+    };
+    let record = record_of_attached(case, &[], status, Vec::new(), 0.1, about).expect("a record");
+    let wall =
+        wall.iter().map(|seconds| WallSample { seconds: *seconds, alone: true, ..WallSample::default() });
+    Record { wall: wall.collect(), ..record }
+}
+
+fn content(record: &Record) -> Content {
+    let tag = record.attached.as_ref().and_then(|about| about.version.as_ref()?.parse().ok()).expect("a tag");
+    let end = match &record.status {
+        Status::Ok => CaseEnd::Ok,
+        status if status.is_worth_another_run() => CaseEnd::Late,
+        Status::Failed(_) => CaseEnd::Failed,
+    };
+    Content { tag, wall: record.wall.iter().map(|sample| sample.seconds).collect(), end }
+}
+
+fn packed(folder: &Path, window: u64) -> RecordStore {
+    let folder = folder.join("s");
+    RecordStore { packs: Arc::new(PackedStore::with_window(&folder, window)), folder, is_packed: true }
+}
+
+impl Bed {
+    fn new(seed: u64, window: u64) -> Self {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let cases = (0..CASES).map(case).collect();
+        let mut bed = Self {
+            folder,
+            window,
+            cases,
+            writers: Vec::new(),
+            swapped: 0,
+            model: BTreeMap::new(),
+            tags: 0,
+            dice: Dice(seed),
+        };
+        bed.reopen();
+        bed
+    }
+
+    fn open(&self) -> RecordStore {
+        packed(self.folder.path(), self.window)
+    }
+
+    fn reopen(&mut self) {
+        self.writers.clear();
+        self.writers = vec![self.open(), self.open()];
+        self.swapped += 1;
+    }
+
+    fn writer_of(&self, case: usize) -> &RecordStore {
+        &self.writers[(case + self.swapped) % 2]
+    }
+
+    fn wall(&mut self) -> Vec<f64> {
+        // The same time twice is two times.
+        (0..self.dice.below(4)).map(|_| 0.25 * (1 + self.dice.below(2)) as f64).collect()
+    }
+
+    fn write(&mut self, case: usize) {
+        self.tags += 1;
+        let end = [CaseEnd::Ok, CaseEnd::Ok, CaseEnd::Failed, CaseEnd::Late][self.dice.below(4)];
+        let (tag, wall) = (self.tags, self.wall());
+        self.writer_of(case).write(&record(&self.cases[case], tag, &wall, end)).expect("written");
+        let written = Written { tag: Some(tag), end, wall, state: State::Whole };
+        self.model.entry(case).or_default().push(written);
+    }
+
+    /// What timing does: the times that are known, and more.
+    fn write_wall(&mut self, case: usize) {
+        let Some(Content { tag, wall, end }) = self.of(case) else { return };
+        let wall = [wall, self.wall()].concat();
+        self.writer_of(case).write_wall(&record(&self.cases[case], tag, &wall, end)).expect("written");
+        self.model.entry(case).or_default().push(Written { tag: None, end, wall, state: State::Whole });
+    }
+
+    fn of(&self, case: usize) -> Option<Content> {
+        expected(self.model.get(&case).map_or(&[], Vec::as_slice))
+    }
+
+    /// Takes a record over from elsewhere, as a merge does; wall times that stand alone there are not left behind.
+    fn take_over(&mut self, case: usize) {
+        let elsewhere = tempfile::TempDir::new().expect("a folder");
+        let other = packed(elsewhere.path(), self.window);
+        self.tags += 1;
+        let (tag, wall) = (self.tags, self.wall());
+        let first = record(&self.cases[case], tag, &wall, CaseEnd::Ok);
+        other.write(&first).expect("written");
+        let is_timed_later = self.dice.below(2) == 0;
+        if is_timed_later {
+            let more = [wall.clone(), vec![9.0]].concat();
+            other.write_wall(&record(&self.cases[case], tag, &more, CaseEnd::Ok)).expect("written");
+        }
+        let taken = self.writer_of(case).take_over(&other, &self.cases[case]).expect("taken over");
+        assert_eq!(taken, !is_timed_later, "a record with wall times of its own is read and written");
+        if taken {
+            let written = Written { tag: Some(tag), end: CaseEnd::Ok, wall, state: State::Whole };
+            self.model.entry(case).or_default().push(written);
+        }
+    }
+
+    /// The newest whole member of a case, and its place: of its record, or of its wall times.
+    fn newest(&self, case: usize, of_wall: bool) -> Option<(usize, PathBuf, Place)> {
+        let written = self.model.get(&case)?;
+        let record = written.iter().rposition(|one| one.tag.is_some() && one.state != State::Gone)?;
+        let wall = written.iter().rposition(|one| one.tag.is_none() && one.state != State::Gone);
+        let at = if of_wall { wall.filter(|wall| *wall > record)? } else { record };
+        let (path, place) = self.open().packs.place(self.cases[case].number(), of_wall)?;
+        (written[at].state == State::Whole).then_some((at, path, place))
+    }
+
+    /// Damages the newest record or the newest wall times of a case, and says whose fault it must be.
+    fn damage(&mut self, case: usize) {
+        let of_wall = self.dice.below(3) == 0;
+        let Some((at, path, place)) = self.newest(case, of_wall) else { return };
+        self.writers.clear();
+        let mut bytes = fs::read(&path).expect("a pack");
+        let offset = usize::try_from(place.offset).expect("small");
+        let length = place.header.length as usize;
+        let is_told;
+        let state = match self.dice.below(5) {
+            0 => {
+                bytes[offset + HEADER + self.dice.below((length - HEADER).min(20))] ^= 0xff;
+                is_told = false;
+                State::Broken
+            }
+            1 => {
+                bytes[offset + self.dice.below(16)] ^= 0x10;
+                is_told = true;
+                State::Gone
+            }
+            2 => {
+                // A length that leads into the middle of the member, or behind the end of any pack.
+                bytes[offset + 45 + self.dice.below(2)] ^= 0x04;
+                is_told = true;
+                let wrong =
+                    Header::read(&bytes[offset..]).map_or(usize::MAX, |header| header.length as usize);
+                if wrong < length {
+                    State::Broken
+                } else {
+                    bytes[offset + 48] = 0x7f;
+                    State::Gone
+                }
+            }
+            3 if offset + length == bytes.len() => {
+                bytes.truncate(offset + 1 + self.dice.below(length - 1));
+                is_told = true;
+                State::Gone
+            }
+            _ => {
+                // Bytes of nobody before it, with beginnings of headers at all edges of the windows.
+                let count = self.dice.below(4 * usize::try_from(self.window).expect("small"));
+                let bait = &bytes[offset..offset + 1 + self.dice.below(20)];
+                let garbage: Vec<u8> =
+                    bait.iter().chain(&[1, 2, 3]).copied().cycle().take(1 + count).collect();
+                bytes.splice(offset..offset, garbage);
+                is_told = true;
+                State::Whole
+            }
+        };
+        fs::write(&path, bytes).expect("a pack");
+        self.model.get_mut(&case).expect("written")[at].state = state;
+        if is_told {
+            let store = self.open();
+            let told = store.damages();
+            assert!(
+                told.iter().any(|damage| damage.pack == path),
+                "{told:?} has nothing of {}",
+                path.display()
+            );
+            store.refresh();
+            assert_eq!(store.damages(), told, "damage is forgotten when the store is looked at again");
+        }
+        self.reopen();
+    }
+
+    /// Holds a store that has seen everything against the list.
+    fn hold(&self, store: &RecordStore, what: &str) {
+        let mut hashes = Vec::new();
+        for (number, case) in self.cases.iter().enumerate() {
+            let expected = self.of(number);
+            let what = format!("{what}, case {number}: {:?}", self.model.get(&number));
+            assert_eq!(store.kept(case).as_ref().map(content), expected, "{what}");
+            assert_eq!(store.has(case), expected.is_some(), "{what}");
+            assert_eq!(store.read(&case.hash()).as_ref().map(content), expected, "{what}");
+            let wall =
+                store.entry_and_wall(case).map(|(_, wall)| wall.iter().map(|one| one.seconds).collect());
+            assert_eq!(wall, expected.as_ref().map(|content| content.wall.clone()), "{what}");
+            if let Some(content) = &expected {
+                assert_eq!(store.entry(case).map(|entry| entry.end), Some(content.end), "{what}");
+                assert_eq!(store.is_done(case), content.end != CaseEnd::Late, "{what}");
+                assert_eq!(store.found(case).is_finished(), content.end != CaseEnd::Late, "{what}");
+            }
+            let is_listed = self
+                .model
+                .get(&number)
+                .is_some_and(|all| all.iter().any(|one| one.tag.is_some() && one.state != State::Gone));
+            hashes.extend(is_listed.then(|| case.hash()));
+        }
+        hashes.sort_unstable();
+        assert_eq!(store.hashes(), hashes, "{what}");
+        assert_eq!(store.entries().len(), hashes.len(), "{what}");
+    }
+
+    fn step(&mut self) {
+        let case = self.dice.below(CASES);
+        match self.dice.below(16) {
+            0..=5 => self.write(case),
+            6..=8 => self.write_wall(case),
+            9 => self.take_over(case),
+            10..=12 => self.damage(case),
+            13 => self.reopen(),
+            14 => {
+                for store in &self.writers {
+                    store.refresh();
+                    self.hold(store, "refreshed");
+                }
+            }
+            _ => self.hold(&self.open(), "opened anew"),
+        }
+        let own = self.writer_of(case).kept(&self.cases[case]).as_ref().map(content);
+        if self
+            .model
+            .get(&case)
+            .is_some_and(|written| written.last().is_some_and(|one| one.state == State::Whole))
+        {
+            assert_eq!(own, self.of(case), "what was just written is not there: {:?}", self.model.get(&case));
+        }
+    }
+}
+
+#[test]
+fn a_packed_store_keeps_what_a_list_keeps_whatever_happens_to_it() {
+    for seed in 0..24 {
+        // Windows of the search behind damage down to one byte more than a header, so that headers lie across edges.
+        let window = [HEADER as u64 + 1, 64, 101, 1 << 10][usize::try_from(seed).expect("small") % 4];
+        let mut bed = Bed::new(seed, window);
+        for _ in 0..60 {
+            bed.step();
+        }
+        bed.hold(&bed.open(), "at the end");
+    }
+}
+
+#[test]
+fn a_header_is_found_wherever_it_lies_in_the_windows_behind_damage() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    for window in [HEADER as u64 + 1, HEADER as u64 + 2, 80, 200] {
+        for count in 0..3 * usize::try_from(window).expect("small") {
+            let _ = fs::remove_dir_all(folder.path().join("s"));
+            let store = packed(folder.path(), window);
+            store.write(&record(&case(0), 1, &[1.0], CaseEnd::Ok)).expect("written");
+            let (path, place) = store.packs.place(case(0).number(), false).expect("a place");
+            drop(store);
+            let mut bytes = fs::read(&path).expect("a pack");
+            bytes.splice(..usize::try_from(place.offset).expect("small"), vec![7; count]);
+            fs::write(&path, bytes).expect("a pack");
+            let found = packed(folder.path(), window).kept(&case(0));
+            assert!(found.is_some(), "lost behind {count} bytes of damage, looking at {window} at once");
+        }
+    }
+}
+
+#[test]
+fn single_files_keep_what_a_list_keeps_and_go_on_in_packs_when_the_study_grows() {
+    for seed in 100..112 {
+        let mut dice = Dice(seed);
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let cases: Vec<Case> = (0..CASES).map(case).collect();
+        let mut model: BTreeMap<usize, Content> = BTreeMap::new();
+        let mut count = 1;
+        let mut store = RecordStore::for_cases(folder.path(), "s", count);
+        for tag in 0..80 {
+            let at = dice.below(CASES);
+            let mut wall: Vec<f64> = (0..dice.below(4)).map(|_| 0.5 * (1 + dice.below(2)) as f64).collect();
+            match dice.below(10) {
+                0..=3 => {
+                    store.write(&record(&cases[at], tag, &wall, CaseEnd::Ok)).expect("written");
+                    model.insert(at, Content { tag, wall, end: CaseEnd::Ok });
+                }
+                4..=6 => {
+                    if let Some(known) = model.get_mut(&at) {
+                        wall.splice(..0, known.wall.iter().copied());
+                        store.write_wall(&record(&cases[at], known.tag, &wall, known.end)).expect("written");
+                        known.wall = wall;
+                    }
+                }
+                7 if !store.is_packed() => {
+                    let path = store.folder_of(&cases[at].hash()).join("record.json");
+                    if let Ok(mut bytes) = fs::read(&path) {
+                        let place = dice.below(bytes.len());
+                        bytes[place] ^= 0x01;
+                        fs::write(&path, bytes).expect("a file");
+                        model.remove(&at);
+                    }
+                }
+                8 if tag > 40 => {
+                    count = 1000;
+                    store = RecordStore::for_cases(folder.path(), "s", count);
+                }
+                _ => store = RecordStore::for_cases(folder.path(), "s", count),
+            }
+            for (number, case) in cases.iter().enumerate() {
+                let kept = store.kept(case).as_ref().map(content);
+                assert_eq!(kept, model.get(&number).cloned(), "seed {seed}, step {tag}, case {number}");
+            }
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! The work of a case before it runs.
+
+use crate::case::Case;
+use crate::case::tier::Tier;
+use crate::case::work_estimate::{MOST_PROBE_STEPS, estimated_updates, estimated_work, work_of};
+use crate::study::check::Study;
+use crate::study::file::StudySource;
+use oedometer_mpm::critical_step::observed::OBSERVED_STEPS;
+
+fn cases(head: &str, sweep: &str) -> Vec<Case> {
+    let text =
+        format!("title = \"t\"\nscene = \"terzaghi\"\n{head}\n[[sweep]]\nmethod = [\"MPM\"]\n{sweep}\n");
+    let study = Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound");
+    study.cases(Tier::Full).into_iter().cloned().collect()
+}
+
+#[test]
+fn work_beyond_counting_stays_the_largest_number() {
+    let endless = cases("", "cells = [3, 4]\ntime_step = [{ seconds = 1e-300 }]");
+    assert_eq!(endless.len(), 2);
+    assert!(endless.iter().all(|case| estimated_work(case) == u64::MAX));
+    assert_eq!(work_of(endless.iter()), u64::MAX);
+    let short = cases("", "cells = [3, 4]");
+    assert_eq!(work_of(short.iter()), estimated_work(&short[0]) + estimated_work(&short[1]));
+}
+
+#[test]
+fn the_work_of_a_critical_step_has_an_end() {
+    let endless = cases("task = \"stability\"", "cells = [8]\nhydraulic_conductivity = [1e-300]");
+    let most = (4 * OBSERVED_STEPS + MOST_PROBE_STEPS) * 16;
+    assert_eq!(estimated_updates(&endless[0]), most);
+    let short = cases("task = \"stability\"\n[output]\ntime_factors = [1e-9]", "cells = [8]");
+    assert_eq!(estimated_updates(&short[0]), (4 + 1) * OBSERVED_STEPS * 16);
+}

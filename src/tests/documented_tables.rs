@@ -1,0 +1,257 @@
+//! The tables of the manual that say what the code has are made of the code: keys, methods, scenes, columns.
+//!
+//! A table stands in `docs/` behind a line `<!-- made of the code: NAME -->` and ends with an empty line.
+//! `MANUAL_UPDATE=always cargo test documented_tables` writes them anew.
+
+use crate::case::keys::{KEYS, Key, Kind, Range};
+use crate::case::{Case, Task};
+use crate::record::csv::long_tables::columns_csv;
+use crate::schema::{Document, schema_of};
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::method::Method;
+use oedometer_mpm::scene::SceneKind;
+use oedometer_soil::wording::typed;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What a line before a table begins with, and what ends it.
+const MARK: [&str; 2] = ["<!-- made of the code: ", " -->"];
+/// Variable with which the tables are written instead of compared.
+const UPDATE: &str = "MANUAL_UPDATE";
+
+/// A table by its name, as Markdown.
+fn table(name: &str) -> Option<String> {
+    Some(match name {
+        "methods" => methods(),
+        "scenes" => scenes(),
+        "exact solutions" => {
+            markdown("solution", ReferenceKind::ALL.iter().map(|kind| vec![code(kind.name())]))
+        }
+        "columns" => columns(""),
+        "columns of profiles" => columns("profiles"),
+        "columns of the history" => columns("history"),
+        "keys of a study" => own_keys("/properties"),
+        _ => match name.strip_prefix("keys of ")? {
+            "[[sweep]]" => inputs("sweep") + &own_rows("/properties/sweep/items/properties"),
+            "[[expect]]" => own_keys("/properties/expect/items/properties"),
+            "[[expect_case]]" => own_keys("/properties/expect_case/items/properties"),
+            "[output]" => own_keys("/properties/output/properties"),
+            "[timing]" => own_keys("/properties/timing/properties"),
+            "time_step" => own_keys("/properties/sweep/items/properties/time_step/items/properties"),
+            "[column]" => inputs("column") + &own_rows("/properties/column/properties"),
+            of => {
+                let table = of.strip_prefix('[')?.strip_suffix(']')?;
+                Key::of(table).next()?;
+                inputs(table)
+            }
+        },
+    })
+}
+
+fn code(word: &str) -> String {
+    format!("`{word}`")
+}
+
+/// A cell as Markdown has it.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
+fn markdown(header: &str, rows: impl Iterator<Item = Vec<String>>) -> String {
+    let columns = header.split(" | ").count();
+    let rows =
+        rows.map(|row| format!("| {} |\n", row.iter().map(|one| cell(one)).collect::<Vec<_>>().join(" | ")));
+    format!("| {header} |\n|{}\n{}", " :-- |".repeat(columns), rows.collect::<String>())
+}
+
+/// The inputs of a case that a table takes.
+fn inputs(table: &str) -> String {
+    let scene = match table {
+        "layer" => SceneKind::CosineLayer,
+        "manufactured" => SceneKind::ManufacturedBox,
+        _ => SceneKind::Terzaghi,
+    };
+    let seed = Case::seed(Task::Solve, scene);
+    let rows = Key::of(table).map(|key| {
+        let left_out = match key.name {
+            "method" | "cells" => "must be given".to_owned(),
+            "time_step" => "the integrator's own".to_owned(),
+            "formulation" => "the integrator's and scene's own".to_owned(),
+            "law" => "the scene's own".to_owned(),
+            "length" | "base" if table == "sweep" => "the layer's".to_owned(),
+            "amplitude_x" | "amplitude_y" | "amplitude" | "frequency" | "pressure" => match (table, key.name)
+            {
+                ("sweep", _) => "the motion's".to_owned(),
+                (_, "amplitude_y") => "0.25, shear -0.2".to_owned(),
+                (_, "amplitude") => "1.5".to_owned(),
+                _ => value_of(key, &seed),
+            },
+            _ => value_of(key, &seed),
+        };
+        vec![code(key.name), values(key), key.unit.to_owned(), left_out, key.meaning.to_owned()]
+    });
+    markdown("key | values | unit | where left out | meaning", rows)
+}
+
+fn value_of(key: &Key, seed: &Case) -> String {
+    match key.get(seed) {
+        crate::case::keys::Value::Number(number) => {
+            let plain = typed(number);
+            if plain.len() > 6 { format!("{number:e}") } else { plain }
+        }
+        other => other.to_string(),
+    }
+}
+
+/// What values a key takes.
+fn values(key: &Key) -> String {
+    match key.kind {
+        Kind::Method => "[a name, or a table](methods.md)".to_owned(),
+        Kind::TimeStep => "[a rule](methods.md#steps-in-time)".to_owned(),
+        Kind::Word(words) => words().into_iter().map(code).collect::<Vec<_>>().join(", "),
+        Kind::Flag => "`true`, `false`".to_owned(),
+        Kind::Count(most) => format!("1 … {most}"),
+        Kind::Number(Range::Positive) => "> 0".to_owned(),
+        Kind::Number(Range::NotNegative) => "≥ 0".to_owned(),
+        Kind::Number(Range::Between(least, most)) => format!("> {least}, < {most}"),
+        Kind::Number(Range::Within(least, most, ..)) => {
+            if least == f64::MIN_POSITIVE {
+                format!("> 0, ≤ {most}")
+            } else {
+                format!("{least} … {most}")
+            }
+        }
+    }
+}
+
+/// The keys of a table beside inputs: name, and what the schema says of it.
+fn own_of(pointer: &str) -> Vec<[String; 2]> {
+    let schema = schema_of(Document::Study);
+    let properties = schema.pointer(pointer).and_then(Value::as_object).expect(pointer);
+    let is_input = |name: &str| KEYS.iter().any(|key| key.name == name);
+    let own = properties.iter().filter(|(name, _)| pointer == "/properties" || !is_input(name));
+    own.map(|(name, value)| {
+        let meaning = value["description"].as_str().unwrap_or_default().trim_end_matches('.');
+        [code(name), meaning.to_owned()]
+    })
+    .collect()
+}
+
+fn own_keys(pointer: &str) -> String {
+    markdown("key | meaning", own_of(pointer).into_iter().map(Vec::from))
+}
+
+/// The same as further rows of a table of inputs.
+fn own_rows(pointer: &str) -> String {
+    let row = |[name, meaning]: [String; 2]| format!("| {name} |  |  |  | {} |\n", cell(&meaning));
+    own_of(pointer).into_iter().map(row).collect()
+}
+
+fn methods() -> String {
+    let row = |name: String| {
+        let choices = Method::named(&name).expect("a method").choices();
+        vec![code(&name), choices.split('+').map(code).collect::<Vec<_>>().join(" + ")]
+    };
+    // Prefixes and suffixes are explained beside the table.
+    let names = Method::names().into_iter();
+    let plain =
+        names.filter(|name| !name.starts_with('u') && !name.starts_with("TL-") && !name.ends_with("-cells"));
+    markdown("name | weights + strain gradient + divergence + recovery", plain.map(row))
+}
+
+fn scenes() -> String {
+    let row = |scene: SceneKind| {
+        let references = scene.references().iter().map(|kind| code(kind.name()));
+        vec![code(scene.name()), scene.summary().to_owned(), references.collect::<Vec<_>>().join(", ")]
+    };
+    markdown(
+        "scene | what it is | exact solutions, the first one its own",
+        SceneKind::ALL.into_iter().map(row),
+    )
+}
+
+fn columns(of: &str) -> String {
+    let text = columns_csv().expect("a table");
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
+    let rows = rows.iter().filter(|row| &row[0] == of);
+    markdown(
+        "column | unit | meaning",
+        rows.map(|row| vec![code(&row[1]), row[2].to_owned(), row[3].to_owned()]),
+    )
+}
+
+/// The pages of the manual.
+fn pages() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let mut pages: Vec<PathBuf> =
+        fs::read_dir(folder).expect("docs/").map(|entry| entry.expect("a page").path()).collect();
+    pages.retain(|path| path.extension().is_some_and(|kind| kind == "md"));
+    pages.sort();
+    pages
+}
+
+/// A page with its tables as the code has them, and their names.
+fn made_anew(text: &str, page: &Path) -> (String, Vec<String>) {
+    let (mut made, mut names) = (String::new(), Vec::new());
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        let _ = writeln!(made, "{line}");
+        let Some(name) = line.strip_prefix(MARK[0]).and_then(|rest| rest.strip_suffix(MARK[1])) else {
+            continue;
+        };
+        let of_the_code = table(name).unwrap_or_else(|| panic!("{}: no table `{name}`", page.display()));
+        let _ = writeln!(made, "\n{of_the_code}");
+        names.push(name.to_owned());
+        // The empty line, the table and the empty line behind it.
+        let rest: Vec<&str> = lines.clone().collect();
+        let old = rest.iter().skip(1).take_while(|line| line.starts_with('|')).count();
+        let old = if old == 0 { rest.iter().take_while(|line| line.is_empty()).count() } else { old + 2 };
+        for _ in 0..old {
+            lines.next();
+        }
+    }
+    (made, names)
+}
+
+#[test]
+fn the_tables_of_the_manual_are_those_of_the_code() {
+    let mut names = BTreeSet::new();
+    for page in pages() {
+        let text = fs::read_to_string(&page).expect("a page");
+        let (made, own) = made_anew(&text, &page);
+        names.extend(own);
+        if std::env::var(UPDATE).is_ok_and(|value| value == "always") {
+            fs::write(&page, &made).expect("written");
+        } else if made != text {
+            let place = made.lines().zip(text.lines()).position(|(made, text)| made != text);
+            let of = |text: &str| text.lines().nth(place.unwrap_or_default()).unwrap_or_default().to_owned();
+            panic!(
+                "{}:{}: the code has\n{}\nand the page\n{}\n{UPDATE}=always cargo test documented_tables",
+                page.display(),
+                place.map_or(0, |place| place + 1),
+                of(&made),
+                of(&text)
+            );
+        }
+    }
+    // Every table of a study file, and what else there is to choose from.
+    let tables: BTreeSet<&str> = KEYS.iter().flat_map(|key| key.tables).copied().collect();
+    for table in tables.into_iter().filter(|table| *table != "sweep") {
+        let name = format!("keys of [{table}]");
+        assert!(
+            names.contains(&name),
+            "`{}{name}{}` is on no page: add it to docs/keys.md",
+            MARK[0],
+            MARK[1]
+        );
+    }
+    for name in
+        ["methods", "scenes", "columns", "keys of [[sweep]]", "keys of [[expect]]", "keys of [[expect_case]]"]
+    {
+        assert!(names.contains(name), "{name} is on no page");
+    }
+}

@@ -1,0 +1,338 @@
+//! The worst, the best and the largest over outputs, runs, meshes and studies: hand-made records in which one value stands
+//! out, first, in the middle and last. Wherever it stands the answer is the same.
+
+use crate::campaign::costs::CostTable;
+use crate::campaign::runner::records_of;
+use crate::campaign::shares::balance_of;
+use crate::case::Case;
+use crate::case::quantity::{Quantity, Sample};
+use crate::case::tier::Tier;
+use crate::golden::GoldenError;
+use crate::judge::comparison::cheapest_method::mapped_soils;
+use crate::judge::comparison::situation::{End, Ended, Situation, ends_of};
+use crate::judge::comparison::stability_map::maps_of;
+use crate::judge::comparison::work_precision::{WorkPrecision, worst_error};
+use crate::judge::soundness;
+use crate::judge::study_check::{CheckEnd, StudyCheck};
+use crate::judge::verdict::{Beside, Verdict, judge};
+use crate::measure::record_checks::worst_of;
+use crate::record::{Balance, LayerBalance, Record, Status, WallSample};
+use crate::render::answers::{matrix, paper};
+use crate::render::tables::measures::checks_table;
+use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation};
+use crate::study::check::Study;
+use crate::study::expectation::Selection;
+use crate::study::file::StudySource;
+use oedometer_convergence::series::ErrorSeries;
+use oedometer_convergence::series_demand::{ErrorBound, SeriesDemand};
+use oedometer_mpm::critical_step::observed::CriticalStep;
+use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+
+const REFERENCE: &str = "terzaghi";
+
+fn text(sweep: &str, tail: &str) -> String {
+    format!(
+        "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05, 0.1, 0.2]\n[[sweep]]\n\
+         method = ['GC-SRI-patch']\nintegrator = ['implicit']\ntime_step = [{{ growth = 0.3 }}]\n{sweep}\n{tail}\n"
+    )
+}
+
+fn study_of(text: &str) -> Study {
+    let source = StudySource { name: "s.toml".to_owned(), text: text.to_owned() };
+    Study::check(&source).expect("a sound study")
+}
+
+/// Three outputs, each with two layers' balance of nothing wrong.
+fn calm() -> Record {
+    let mut record = records_of(&text("cells = [4]", "")).remove(0);
+    let layers = LayerBalance {
+        pore_water: 1e-6,
+        water_left: 0.1,
+        water_left_error: 1e-6,
+        water_points: 3,
+        largest_pressure: Some(0.9),
+    };
+    for balance in &mut record.balance {
+        balance.layers = Some(layers);
+        balance.spurious_velocity = Some(1e-12);
+    }
+    assert_eq!((record.balance.len(), soundness::complaints(&record)), (3, Vec::new()));
+    record
+}
+
+/// The errors of the pressure at the points at the outputs.
+fn with_pressures(record: &mut Record, errors: [f64; 3]) {
+    let mut errors = errors.into_iter();
+    for row in &mut record.errors {
+        if (row.quantity, row.sample, &*row.reference) == (Quantity::Pressure, Sample::Points, REFERENCE)
+            && row.norm == crate::case::norm::Norm::L2
+        {
+            row.value = errors.next().expect("three outputs");
+        }
+    }
+    assert_eq!(errors.next(), None);
+}
+
+fn judged(demand: &CaseDemand, record: &Record) -> Verdict {
+    let expectation =
+        CaseExpectation { selection: Selection::default(), demand: demand.clone(), tier: Tier::Ci, line: 1 };
+    expectation.judge(std::slice::from_ref(record)).remove(0).verdict
+}
+
+type Set = fn(&mut Balance, f64);
+
+#[test]
+fn a_drift_or_a_burst_at_any_output_fails_and_is_told() {
+    let bounds = Some(Bounds { above: 0.0, below: 1e-3 });
+    let demands: [(CaseDemand, Set); 6] = [
+        (CaseDemand { solid_drift_below: Some(1e-3), ..CaseDemand::default() }, |one, to| {
+            one.solid_mass_drift = to;
+        }),
+        (CaseDemand { water_drift_below: Some(1e-3), ..CaseDemand::default() }, |one, to| {
+            one.water_imbalance = to;
+        }),
+        (CaseDemand { spurious_velocity: bounds, ..CaseDemand::default() }, |one, to| {
+            one.spurious_velocity = Some(to);
+        }),
+        (CaseDemand { pore_water: Some([0.0, 1e-3]), ..CaseDemand::default() }, |one, to| {
+            one.layers.as_mut().expect("layers").pore_water = to;
+        }),
+        (CaseDemand { water_left_within: Some(1e-3), ..CaseDemand::default() }, |one, to| {
+            one.layers.as_mut().expect("layers").water_left_error = to;
+        }),
+        (CaseDemand { largest_pressure: bounds, ..CaseDemand::default() }, |one, to| {
+            one.layers.as_mut().expect("layers").largest_pressure = Some(to);
+        }),
+    ];
+    for (number, (demand, set)) in demands.iter().enumerate() {
+        let mut record = calm();
+        record.balance.iter_mut().for_each(|balance| set(balance, 1e-5));
+        assert!(judged(demand, &record).pass, "{number}");
+        for place in 0..3 {
+            for worst in [2.0, f64::NAN] {
+                let mut record = record.clone();
+                set(&mut record.balance[place], worst);
+                let verdict = judged(demand, &record);
+                assert!(!verdict.pass, "{number}: {worst} at output {place}: {}", verdict.reason);
+                assert_eq!(verdict.checks[0].measured, Some(worst).filter(|worst| worst.is_finite()));
+                if number != 2 || worst.is_nan() {
+                    assert!(
+                        !soundness::complaints(&record).is_empty(),
+                        "{number}: {worst} at output {place}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn tables_of_checks_show_the_worst_of_all_outputs_and_runs() {
+    let burst = |place: usize| {
+        let mut record = calm();
+        record.balance[place].layers.as_mut().expect("layers").largest_pressure = Some(7.25);
+        record.balance[place].water_imbalance = -0.5;
+        record
+    };
+    let value = |records: &[Record], part: &str| {
+        let worst = worst_of(records);
+        worst.iter().find(|check| check.what.contains(part)).expect("a check").value
+    };
+    let rows = checks_table(&burst(2)).rows;
+    for place in 0..3 {
+        assert_eq!(checks_table(&burst(place)).rows, rows, "at output {place}");
+        let mut records = [calm(), calm(), calm()];
+        records[place] = burst(1);
+        assert_eq!((value(&records, "burst"), value(&records, "water balance")), (7.25, -0.5), "run {place}");
+    }
+}
+
+#[test]
+fn an_error_counts_at_whatever_output_it_is_worst() {
+    for place in 0..3 {
+        let mut record = calm();
+        let mut errors = [1e-3, -2e-3, 3e-3];
+        errors[place] = -0.5;
+        with_pressures(&mut record, errors);
+        assert_eq!(worst_error(&record, REFERENCE), Some(0.5));
+        assert_eq!(paper::largest_error(&record, REFERENCE), Some((0.5, [0.05, 0.1, 0.2][place])));
+        errors[place] = f64::NAN;
+        with_pressures(&mut record, errors);
+        assert!(worst_error(&record, REFERENCE).is_some_and(f64::is_nan), "{errors:?}");
+    }
+}
+
+#[test]
+fn the_cheapest_is_chosen_by_the_worst_of_all_outputs() {
+    let soils = "cells = [4, 8]\nhydraulic_conductivity = [1e-5, 1e-3]\nyoungs_modulus = [1e6, 1e7]";
+    let all = records_of(&text(soils, ""));
+    for place in 0..3 {
+        let mut records = all.clone();
+        for record in &mut records {
+            // Four cells cost less, and are off at one output alone.
+            let mut errors = [1e-3; 3];
+            if record.case.cells == 4 {
+                errors[place] = 0.5;
+            }
+            with_pressures(record, errors);
+            let seconds = record.case.cells as f64;
+            record.wall = vec![WallSample { seconds, alone: true, ..WallSample::default() }; 2];
+        }
+        for turn in 0..2 {
+            let soils = mapped_soils(&records, REFERENCE);
+            assert_eq!(soils.len(), 4);
+            assert!(
+                soils.iter().all(|soil| soil.cheapest().is_some_and(|way| way.cells == 8)),
+                "output {place}"
+            );
+            let precision = WorkPrecision::of(&records, REFERENCE).expect("timed runs");
+            let cheapest = precision.cheapest[0].run.as_ref().expect("within a percent");
+            assert_eq!((cheapest.record.case.cells, cheapest.error), (8, 1e-3), "output {place}");
+            assert!(precision.runs.iter().all(|run| run.on_front == (run.wall.median < 9.0)), "turn {turn}");
+            records.reverse();
+        }
+    }
+}
+
+#[test]
+fn the_worst_run_of_a_situation_counts_wherever_it_stands() {
+    let text = text("cells = [4]\nporosity = [0.3, 0.35, 0.4]", "");
+    let study = study_of(&text);
+    let all = records_of(&text);
+    let end = |records: &[Record]| ends_of(&study, records).expect("sound")[0].end;
+    let failed = |record: &mut Record, kind: FailureKind| {
+        let reason = "a test".to_owned();
+        record.status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
+    };
+    for place in 0..3 {
+        let mut records = all.clone();
+        for (number, record) in records.iter_mut().enumerate() {
+            with_pressures(record, [0.9, 0.9, if number == place { 0.4 } else { 1e-3 }]);
+        }
+        assert_eq!(end(&records), End::Error(0.4), "{place}");
+        failed(&mut records[place], FailureKind::LeftGrid);
+        assert_eq!(end(&records), End::Failed { name: "left-grid", failed: 1, of: 3 });
+        // The failure that most runs have gives its name.
+        for (number, record) in records.iter_mut().enumerate() {
+            failed(record, if number == place { FailureKind::LeftGrid } else { FailureKind::PoresClosed });
+        }
+        assert_eq!(end(&records), End::Failed { name: "pores-closed", failed: 3, of: 3 });
+    }
+}
+
+#[test]
+fn the_matrix_shows_the_worst_study_in_whatever_order_they_come() {
+    let studies = ["one", "two", "three"]
+        .map(|name| Study { name: name.to_owned(), ..study_of(&text("cells = [4]", "")) });
+    let ended = |method: &str, situation, place: usize, end| Ended {
+        situation,
+        method: method.to_owned(),
+        study: &studies[place],
+        end,
+    };
+    let links = |study: &str| format!("{study}.html");
+    let cells = |ends: &[Ended<'_>]| format!("{:?}", matrix::answer(ends, &links, "all.html"));
+    for worst in [
+        End::Error(0.7),
+        End::Locked,
+        End::Oscillates(40.0),
+        End::Failed { name: "unstable", failed: 1, of: 2 },
+    ] {
+        let of = |place: usize| if place == 1 { worst } else { End::Error(0.002) };
+        let mut ends: Vec<Ended<'_>> = Vec::new();
+        for place in 0..3 {
+            ends.push(ended("GC-SRI-patch", Situation::Usual, place, of(place)));
+            ends.push(ended("MPM", Situation::Usual, place, End::Error(0.003)));
+            ends.push(ended("GC-SRI-patch", Situation::Waves, place, End::Error(0.001)));
+        }
+        let wanted = cells(&ends);
+        // The cell of the worst leads to its study.
+        assert!(wanted.contains("two.html"), "{wanted}");
+        for turn in 1..ends.len() {
+            ends.rotate_left(1);
+            // A method is where it was: of equals the first that a study names.
+            assert_eq!(cells(&ends).contains("two.html"), wanted.contains("two.html"), "{turn}");
+            let words = crate::render::report::situations::words_of(&worst).1;
+            assert!(cells(&ends).contains(&words), "{turn}: {words} in {}", cells(&ends));
+        }
+    }
+}
+
+#[test]
+fn the_largest_deviation_of_a_map_is_found_in_any_case() {
+    let all = records_of(&text("cells = [4]\nporosity = [0.3, 0.35, 0.4]", ""));
+    for place in 0..3 {
+        let mut records = all.clone();
+        for (number, record) in records.iter_mut().enumerate() {
+            let observed = Some(if number == place { 1.3 } else { 1.01 });
+            record.stability = Some(CriticalStep {
+                predicted: 1.0,
+                creeping_from: None,
+                unknown: None,
+                observed,
+                wave_limit: 2.0,
+                drag_limit: 2.0,
+                combined_limit: 2.0,
+                probes: Vec::new(),
+            });
+        }
+        let map = maps_of(&records).remove(0);
+        assert!((map.largest_deviation - 0.3).abs() < 1e-12, "{place}: {}", map.largest_deviation);
+        assert_eq!(map.curves[0].points.len(), 3);
+    }
+}
+
+#[test]
+fn a_spread_is_that_of_all_levels_and_a_share_the_largest() {
+    let spread = SeriesDemand {
+        spread: Some(ErrorBound { size: 1.0, below: 0.5, above: 0.0 }),
+        ..SeriesDemand::default()
+    };
+    let costs = CostTable::default();
+    let all = records_of(&text("cells = [4, 8, 64]", ""));
+    let cases: Vec<&Case> = all.iter().map(|record| &record.case).collect();
+    let longest = costs.seconds(cases[2]);
+    for place in 0..4 {
+        let mut errors = [1.0, 1.1, 1.05, 1.02];
+        errors[place] = 4.0;
+        let series =
+            ErrorSeries::of(&[(1.0, errors[0]), (0.5, errors[1]), (0.25, errors[2]), (0.125, errors[3])]);
+        let verdict =
+            judge(&spread, &series, &oedometer_convergence::class::Context::default(), &Beside::default());
+        let check = verdict.checks.iter().find(|check| check.name == "spread").expect("asked for");
+        let least = if place == 0 { 1.02 } else { 1.0 };
+        assert!(!check.pass && check.measured == Some(4.0 / least - 1.0), "{check:?}");
+        let mut turned = cases.clone();
+        turned.rotate_left(place % 3);
+        let balance = balance_of(&turned, &[0, 1, 2], 3, &costs);
+        assert_eq!((balance.largest, balance.longest_case), (longest, longest));
+    }
+}
+
+#[test]
+fn one_bad_run_of_a_sweep_fails_its_study_wherever_it_stands() {
+    let asked = text("cells = [4]\nporosity = [0.3, 0.35, 0.4]", "[[expect_case]]\nsolid_drift_below = 1e-9");
+    let study = study_of(&asked);
+    let all = records_of(&asked);
+    let check = |records: &[Record]| {
+        StudyCheck::new(&study, records, Tier::Full, Err(GoldenError::Missing("s.csv".into())))
+    };
+    assert_eq!(check(&all).end(), CheckEnd::Golden);
+    for place in 0..3 {
+        let label = all[place].case.label();
+        let mut records = all.clone();
+        records[place].balance[1].settlement_curve_gap = 0.5;
+        let found = check(&records);
+        assert_eq!((found.end(), found.unsound.len(), &found.unsound[0].case), (CheckEnd::Failed, 1, &label));
+        let mut records = all.clone();
+        let (kind, reason) = (FailureKind::Unstable, "a test".to_owned());
+        records[place].status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
+        let found = check(&records);
+        assert_eq!((found.end(), &found.failed_cases[0].case), (CheckEnd::CaseFailed, &label));
+        let mut records = all.clone();
+        records[place].balance[2].solid_mass_drift = f64::NAN;
+        let found = check(&records);
+        let failed: Vec<usize> = (0..3).filter(|number| !found.judgements[*number].verdict.pass).collect();
+        assert_eq!((found.end(), failed), (CheckEnd::Failed, vec![place]));
+    }
+}

@@ -1,0 +1,53 @@
+//! What is measured of a run, by runs of small studies.
+
+use crate::campaign::runner::records_of;
+use crate::case::Case;
+use crate::measure::other_measures::SPURIOUS_VELOCITY;
+use crate::measure::theory_curves::{constant_recovery_error, theory_isochrones};
+use crate::record::csv::tidy;
+use crate::study::check::Study;
+use crate::study::file::StudySource;
+use oedometer_exact::reference::ReferenceKind;
+
+#[test]
+fn a_peak_and_what_moves_at_rest_are_rows_of_the_table() {
+    for (scene, more, name, exact) in [
+        ("mandel", "output = { time_factors = [0.0645, 0.068, 0.0717] }", "peak_pressure", 0.546_059_661_7),
+        ("at-rest", "output = { time_factors = [1e-4] }", SPURIOUS_VELOCITY, 0.0),
+    ] {
+        let study = format!(
+            "title = \"t\"\nscene = \"{scene}\"\n{more}\n[[sweep]]\nmethod = [\"GIMP-SRI\"]\n\
+             integrator = [\"implicit\"]\ncells = [10]\ntime_step = [{{ growth = 0.02 }}]\n"
+        );
+        let record = records_of(&study).remove(0);
+        let row = record.measures.iter().find(|row| row.name == name).expect("the measure");
+        assert!((row.exact - exact).abs() < 1e-10 && row.error().abs() < 5e-3, "{row:?}");
+        let table = tidy::rows_of("t", &record);
+        let told = table.lines().filter(|line| line.contains(&format!(",{name},,"))).count();
+        assert_eq!(told, 1, "{table}");
+    }
+}
+
+fn seed_case() -> Case {
+    let text = "title = 'x'\nscene = 'terzaghi'\n[[sweep]]\nmethod = ['GIMP-SRI']\ncells = [10]\n".to_owned();
+    let study = Study::check(&StudySource { name: "x.toml".to_owned(), text }).expect("a sound study");
+    study.planned[0].case.clone()
+}
+
+#[test]
+fn a_theory_line_begins_at_the_drained_surface_and_falls_with_time() {
+    let case = Case { time_factors: vec![0.05, 0.5].into(), ..seed_case() };
+    let lines = theory_isochrones(&case, ReferenceKind::Terzaghi).expect("the seed column");
+    let [early, late] = [0, 1].map(|place| &lines[place].line);
+    assert!(lines[0].degree < lines[1].degree && lines[0].time_factor == 0.05);
+    assert_eq!(early[0], (0.0, 0.0));
+    assert!((early[100].0 - 1.0).abs() < 0.01 && (early[100].1 - 1.0).abs() < 1e-15);
+    assert!(late[100].0 < early[100].0);
+}
+
+#[test]
+fn the_error_of_a_constant_in_a_cell_is_that_of_the_oracle() {
+    // Two points at a quarter of the cell from its centre: offset h/4, slope π/2.
+    let expected = std::f64::consts::FRAC_PI_2 * 0.1 * 0.25;
+    assert!((constant_recovery_error(&seed_case()) - expected).abs() < 1e-15);
+}
