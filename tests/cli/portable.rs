@@ -87,6 +87,15 @@ fn matrices_are_multiplied_by_no_instruction_that_only_some_processors_have() {
     assert_eq!(nalgebra["default-features"].as_bool(), Some(false));
     let features = nalgebra["features"].as_array().expect("features");
     assert!(features.iter().all(|feature| feature.as_str() != Some("std")), "{features:?}");
+    // Features add up over the workspace: no crate may ask for its own.
+    let crates = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("crates")).expect("the crates");
+    for folder in crates.map(|entry| entry.expect("an entry").path()) {
+        let text = std::fs::read_to_string(folder.join("Cargo.toml")).expect("a manifest");
+        let manifest: toml::Table = toml::from_str(&text).expect("a manifest");
+        if let Some(nalgebra) = manifest["dependencies"].get("nalgebra") {
+            assert_eq!(nalgebra.to_string(), "{ workspace = true }", "{}", folder.display());
+        }
+    }
 }
 
 #[test]
