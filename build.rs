@@ -40,7 +40,8 @@ fn zlib(bytes: &[u8]) -> Vec<u8> {
 
 fn tell_provenance() {
     let mut sources = vec![PathBuf::from("Cargo.lock")];
-    for folder in SOURCES {
+    // A published package has no `crates`.
+    for folder in SOURCES.into_iter().filter(|folder| Path::new(folder).exists()) {
         collect(Path::new(folder), &mut sources);
         println!("cargo:rerun-if-changed={folder}");
     }
@@ -68,7 +69,7 @@ fn tell_provenance() {
 }
 
 /// Name of the build profile. `PROFILE` knows only `debug` and `release`, whichever profile inherits from them;
-/// the folder of the build, `…/quick/build/oedometer-…/out`, has the name itself.
+/// the folder of the build, `…/release/build/oedometer-…/out`, has the name itself.
 fn profile() -> String {
     let folder = PathBuf::from(std::env::var_os("OUT_DIR").unwrap_or_default());
     let parts: Vec<String> = folder.iter().map(|part| part.to_string_lossy().into_owned()).collect();
