@@ -4,7 +4,7 @@
 //! displacement upward. Depth is the Lagrangian `ζ = 1 − Y/H` below the drained surface, time the
 //! factor `T_v = c_v t/H²` with the *drained* coefficient of consolidation.
 //!
-//! [`reference::Reference`] is the one door for the rest of the program; `src/lib.rs` has an example of it that runs.
+//! [`reference::Reference`] gives the fields of any of them; the front page of `oedometer` has an example that runs.
 
 // Tests may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

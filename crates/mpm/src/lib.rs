@@ -5,10 +5,13 @@
 //! (`cells`) and recovery (`recovery`). A `body` joins them with points and nodes; `explicit` is
 //! the step of Zheng et al. (2021); `assembled` is the same step as one banded map where nothing
 //! moves; `layers` puts the water into points of its own; `run` drives any of them from output to
-//! output; `forcing` is what acts on every point from outside, `forced_body` what that does to a body; `implicit` takes steps of any size on the same operators, with the linear systems of
+//! output; `forcing` is what acts on every point from outside, `forced_body` what that does to a
+//! body; `implicit` takes steps of any size on the same operators, with the linear systems of
 //! `direct_solver`. Loops over points and dense fronts run in the widest registers that `wide` finds.
+//! `scene` describes the physical problems, and names the exact solutions that hold for each; the
+//! solver itself uses neither.
 //!
-//! Nothing here knows of studies, references or reports.
+//! Nothing here knows of studies, records or reports.
 
 // Tests may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

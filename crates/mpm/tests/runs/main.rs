@@ -11,8 +11,7 @@ mod invariants;
 mod step_growth;
 mod two_dimensions;
 
-/// Solves a problem by the code that is compiled with the solver: a function with type parameters would be compiled
-/// here, again.
+/// Solves a problem from start to end, whatever its dimension.
 fn run(problem: impl Into<SceneProblem>, schedule: &Schedule) -> Outcome {
     problem.into().run(schedule, &|_, _| true)
 }

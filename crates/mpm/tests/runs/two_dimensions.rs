@@ -126,7 +126,7 @@ fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
         {
             let run_by = |kernel: Kernel| {
                 let schedule = Schedule {
-                    // Known, for its search would take a hundred times as long as the steps.
+                    // Any step above that of the run: to search for the critical one takes far longer than the run.
                     critical_step: Some(1e-3),
                     outputs: vec![0.0, 0.001],
                     history: vec![0.0005],

@@ -34,6 +34,7 @@ pub fn write(
     start: Instant,
 ) -> anyhow::Result<PathBuf> {
     let studies = out.join("studies");
+    // Collected before the first error is taken: the same error every time.
     results
         .par_iter()
         .map(|one| write_study(&studies, one))

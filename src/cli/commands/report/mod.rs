@@ -141,7 +141,7 @@ fn kept(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunRepor
             study.cases(Tier::Full).into_iter().filter_map(|case| store.kept(case)).collect();
         RunReport { resumed: records.len(), records, ..RunReport::default() }
     };
-    let reports = studies.par_iter().map(of_study).collect::<Vec<_>>();
+    let reports: Vec<_> = studies.par_iter().map(of_study).collect();
     if reports.iter().all(|report| report.records.is_empty()) {
         let reason = format!(
             "there is no record of these studies in {}: leave `--from-records` out, and `report` makes them",
@@ -171,6 +171,6 @@ fn changes(
         Some(differences.into_iter().map(|one| (study.name.clone(), one)).collect::<Vec<_>>())
     };
     let all: Vec<(&Study, &RunReport)> = studies.iter().zip(reports).collect();
-    let held: Vec<_> = all.par_iter().map(of_study).collect::<Vec<_>>().into_iter().flatten().collect();
+    let held: Vec<_> = all.par_iter().filter_map(of_study).collect();
     (!held.is_empty()).then(|| held.concat())
 }
