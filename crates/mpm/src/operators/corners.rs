@@ -94,6 +94,11 @@ mod tests {
             + b * ((1.0 - a) * node(0.0, 1.0) + a * node(1.0, 1.0))
     }
 
+    /// Whether a domain is far from a line: round-off of the gradient grows with one over its area.
+    fn has_area([long, wide]: Tensor<2>) -> bool {
+        long[0] * wide[1] - long[1] * wide[0] > 5e-3
+    }
+
     proptest! {
         #[test]
         fn linear_fields_are_met_and_gradients_add_up_to_nothing(
@@ -101,6 +106,7 @@ mod tests {
             long in [0.1..0.4f64, -0.3..0.3f64],
             wide in [-0.09..0.09f64, 0.1..0.4f64],
         ) {
+            prop_assume!(has_area([long, wide]));
             let (grid, stencils) = point(place, [long, wide]);
             let (mut weights, mut gradients) = (0.0, [0.0; 2]);
             stencils.visit(grid.node_stride(), 1, |_, weight, gradient| {
@@ -123,6 +129,7 @@ mod tests {
             place in [1.0..2.0f64, 1.0..1.5f64],
             [a, b] in [[0.1..0.4f64, -0.3..0.3f64], [-0.09..0.09f64, 0.1..0.4f64]],
         ) {
+            prop_assume!(has_area([a, b]));
             let (grid, stencils) = point(place, [a, b]);
             let wavy = |x: f64, y: f64| (1.3 * x - 0.4 * y).sin() + x * y;
             let at = |s: f64, t: f64| -> Vector<2> {
