@@ -368,6 +368,20 @@ fn the_faults_that_check_is_held_against_are_in_the_sources() {
     }
     let names: BTreeSet<&str> = faults.iter().filter_map(|fault| fault["name"].as_str()).collect();
     assert_eq!(names.len(), faults.len(), "two faults have one name");
+    // Two faults of one text stand inside one another; two that overlap cannot both be switched.
+    let spans: BTreeSet<(&str, usize, usize)> = faults.iter().map(span_of).collect();
+    for (one, next) in spans.iter().zip(spans.iter().skip(1)) {
+        assert!(one.0 != next.0 || one.2 <= next.1, "two faults overlap: {one:?} and {next:?}");
+    }
+}
+
+/// File of a fault, and where its text starts and ends there.
+fn span_of(fault: &toml::Value) -> (&str, usize, usize) {
+    let [file, from] = ["file", "from"].map(|key| fault[key].as_str().expect(key));
+    let source = fs::read_to_string(root().join(file)).expect(file);
+    let nth = fault.get("nth").and_then(toml::Value::as_integer).and_then(|nth| usize::try_from(nth).ok());
+    let (start, _) = source.match_indices(from).nth(nth.unwrap_or(1) - 1).expect(from);
+    (file, start, start + from.len())
 }
 
 /// The tests that are to catch a fault, without the modules they stand in.
