@@ -2,7 +2,7 @@
 //! golden values is dominated by them; one that pays with one for the other makes a trade.
 
 use crate::golden::compare::{Change, Difference};
-use crate::golden::parts;
+use crate::golden::{is_counter, parts};
 use oedometer_convergence::pareto::ParetoChange;
 
 /// A case that differs from its golden values.
@@ -34,11 +34,6 @@ impl CaseChange {
             ParetoChange::Same | ParetoChange::Dominated | ParetoChange::NotComparable => false,
         }
     }
-}
-
-/// Work counters: less of them is cheaper. A critical step is none, and no change of it is for the better.
-fn is_counter(measure: &str) -> bool {
-    matches!(measure, "steps" | "point updates")
 }
 
 /// The cases of differences, in their order.

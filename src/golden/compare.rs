@@ -150,9 +150,9 @@ mod tests {
     #[test]
     fn a_value_within_its_tolerance_is_silent_and_ten_times_beyond_is_named_alone() {
         let golden = golden(&[("a", 1.0), ("b", 2.0)]);
-        assert_eq!(changes(&golden, &[("a", 1.0 + 0.9e-8), ("b", 2.0)]), []);
-        assert_eq!(changes(&golden, &[("a", 1.0 + 1e-7), ("b", 2.0)]), [("a".to_owned(), Change::Moved)]);
-        assert_eq!(changes(&golden, &[("a", 1.0), ("b", 2.0 - 2e-7)]), [("b".to_owned(), Change::Stale)]);
+        assert_eq!(changes(&golden, &[("a", 1.0 + 0.9e-9), ("b", 2.0)]), []);
+        assert_eq!(changes(&golden, &[("a", 1.0 + 1e-8), ("b", 2.0)]), [("a".to_owned(), Change::Moved)]);
+        assert_eq!(changes(&golden, &[("a", 1.0), ("b", 2.0 - 2e-8)]), [("b".to_owned(), Change::Stale)]);
     }
 
     #[test]

@@ -41,6 +41,19 @@ fn decimal(value: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
+/// A tolerance over the largest change by which a value may be rounded when it is written.
+const ROUNDING: f64 = 10.0;
+
+/// The value rounded to a power of ten that is at most `step`, so that the digits of a file say what the tolerance
+/// compares; exactly as it is where the step is 0 or beyond the powers of ten of a normal number.
+fn rounded(value: f64, step: f64) -> f64 {
+    let digits = -step.log10().floor();
+    if !(0.0..=300.0).contains(&digits) {
+        return value;
+    }
+    format!("{value:.0$}", digits as usize).parse().unwrap_or(value) + 0.0
+}
+
 /// A line of the header; tolerances as 1e-12, which TOML's writer spells with eleven zeros.
 fn header_line(line: &str) -> String {
     let tolerance =
@@ -56,8 +69,13 @@ impl GoldenFile {
     /// # Errors
     /// What refuses to be written, as a sentence.
     pub fn to_text(&self) -> Result<String, String> {
-        let values = self.values.iter().map(|(name, value)| (name, false, *value));
-        let spreads = self.spread.iter().map(|(group, spread)| (group, true, *spread));
+        let values = self.values.iter().map(|(name, value)| {
+            (name, false, rounded(*value, self.tolerance(name, value.abs()) / ROUNDING))
+        });
+        let spreads = self
+            .spread
+            .iter()
+            .map(|(group, spread)| (group, true, format!("{spread:.1e}").parse().unwrap_or(*spread)));
         let mut columns = BTreeSet::new();
         let mut rows: BTreeMap<(&str, &str), TableRow<'_>> = BTreeMap::new();
         for (name, is_spread, value) in values.chain(spreads) {
@@ -146,22 +164,38 @@ mod tests {
         let values = [
             ("MPM cells=4 (u-p, implicit drag) | steps", 46824.0),
             ("MPM cells=4 (u-p, implicit drag) | observed critical step", -1.0),
-            ("MPM cells=4 (u-p, implicit drag) | pressure points l2 terzaghi T_v=0.05", 0.1 + 0.2),
-            ("MPM cells=4 (u-p, implicit drag) | pressure points l2 terzaghi T_v=0.0000001", 5e-324),
-            ("MPM cells=4 (u-p, implicit drag) | water balance T_v=0.05", -0.0),
+            ("MPM cells=4 (u-p, implicit drag) | pressure points l2 terzaghi T_v=0.05", 0.123_456_789_01),
+            ("MPM cells=4 (u-p, implicit drag) | pressure points l2 terzaghi T_v=0.0000001", 3.1e-8),
+            ("MPM cells=4 (u-p, implicit drag) | water balance T_v=0.05", 0.0),
             ("MPM cells=8 | settlement surface relative terzaghi T_v=1", 1.797e308),
             ("cosine-layer rough | σ'_xx x=0.3 y=0.5 T_v=0", 1e-5),
             ("a name of its own", 3.0),
         ];
         let spread = [
-            ("MPM cells=4 (u-p, implicit drag) | water balance", 3.843_225_542_918_48e-15),
-            ("MPM cells=4 (u-p, implicit drag) | pressure T_v=0.05", 1e-16),
+            ("MPM cells=4 (u-p, implicit drag) | water balance", 3.8e-11),
+            ("MPM cells=4 (u-p, implicit drag) | pressure T_v=0.05", 1e-12),
         ];
         let owned = |pairs: &[(&str, f64)]| {
             pairs.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect::<BTreeMap<_, _>>()
         };
         let reason = "two lines,\nand \"quoted\" # so".to_owned();
         GoldenFile { reason, values: owned(&values), spread: owned(&spread), ..GoldenFile::of("s", &[], "-") }
+    }
+
+    #[test]
+    fn numbers_are_written_with_the_digits_that_a_comparison_sees() {
+        assert_eq!(rounded(0.1 + 0.2, 3e-10 / ROUNDING), 0.3);
+        assert_eq!(rounded(-1.234_567_890_123_456e-7, 1e-12 / ROUNDING), -1.234_568e-7);
+        assert_eq!(rounded(-1e-17, 1e-12 / ROUNDING).to_bits(), 0.0_f64.to_bits());
+        assert_eq!(rounded(171_843_680.0, 0.0), 171_843_680.0);
+        let name = "MPM cells=4 | pressure points l2 terzaghi T_v=0.1";
+        for size in [0.0, 1e-17, 1e-9, 0.123_456_789_123_456_78, 1.0 / 3.0, 12_345.678_901_234_567, 1e300] {
+            let values = BTreeMap::from([(name.to_owned(), size)]);
+            let file = GoldenFile { values, ..golden() };
+            let read = GoldenFile::from_text(&file.to_text().expect("written")).expect("read");
+            let moved = (read.values[name] - size).abs();
+            assert!(moved <= file.tolerance(name, size) / ROUNDING, "{size} moved by {moved}");
+        }
     }
 
     #[test]
@@ -179,8 +213,8 @@ mod tests {
              spread of pressure,spread of water balance"
         );
         let case = "\"MPM cells=4 (u-p, implicit drag)\"";
-        assert_eq!(table[1], format!("{case},,,-1,,,46824,,,,3.84322554291848e-15"));
-        assert_eq!(table[3], format!("{case},0.05,,,0.30000000000000004,,,-0,,1e-16,"));
+        assert_eq!(table[1], format!("{case},,,-1,,,46824,,,,3.8e-11"));
+        assert_eq!(table[3], format!("{case},0.05,,,0.12345678901,,,0,,1e-12,"));
         assert_eq!(table.len(), 7);
     }
 

@@ -44,7 +44,7 @@ impl GoldenFile {
         let values = reference_values()?;
         let spread = spread_by_group(&values, &perturbed_reference_values()?);
         let golden = Self { seconds: None, values, ..Self::of(REFERENCES, &[], reason) };
-        Ok(golden.with_spread(spread))
+        Ok(golden.widened_by(spread))
     }
 }
 

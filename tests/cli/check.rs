@@ -173,7 +173,7 @@ fn a_golden_file_that_allows_anything_is_refused_with_a_sentence() {
     let path = place.path().join("golden/short.csv");
     let sound = fs::read_to_string(&path).expect("a golden file");
     for (from, to, told) in [
-        ("relative_tolerance = 1e-8", "relative_tolerance = 1e9", "`relative_tolerance` is 1e9"),
+        ("relative_tolerance = 1e-9", "relative_tolerance = 1e9", "`relative_tolerance` is 1e9"),
         ("absolute_tolerance = 1e-12", "absolute_tolerance = -1.0", "`absolute_tolerance` is -1e0"),
         ("reason = \"for a test\"", "reason = \" \"", "its `reason` is empty"),
         ("cells=6 points=2", "cells=3 points=2", "is given twice for this case and time factor"),

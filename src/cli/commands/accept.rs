@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let golden = GoldenFile::of(&study.name, &records[number], reason);
         let others: Vec<_> = perturbed.iter().map(|records| values_of(&records[number])).collect();
         let spread = spread_by_group(&golden.values, &others);
-        keep(&golden.with_spread(spread), arguments)?;
+        keep(&golden.widened_by(spread), arguments)?;
     }
     Ok(Exit::Pass)
 }
