@@ -2,11 +2,10 @@
 
 use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::study::diagnostic::one_of;
-use oedometer_convergence::class::classify::classify;
-use oedometer_convergence::class::{Class, Classification, Context};
-use oedometer_convergence::orders::pair_orders;
-use oedometer_convergence::series::{ErrorSeries, SeriesLevel};
-use oedometer_convergence::series_demand::{ErrorBound, OrderBand, SeriesDemand};
+use oedometer_convergence::{
+    Class, Classification, Context, ErrorBound, ErrorSeries, OrderBand, SeriesDemand, SeriesLevel, classify,
+    pair_orders,
+};
 
 /// Errors up to this are round-off.
 const ROUND_OFF: f64 = 1e-12;

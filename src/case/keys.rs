@@ -7,7 +7,7 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
 use crate::case::{Case, Task, step_label};
-use oedometer_convergence::class::Class;
+use oedometer_convergence::Class;
 use oedometer_exact::parameters::Base;
 use oedometer_mpm::explicit::Drag;
 use oedometer_mpm::explicit::scheme::Scheme;

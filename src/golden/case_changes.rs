@@ -3,7 +3,7 @@
 
 use crate::golden::compare::{Change, Difference};
 use crate::golden::{is_counter, parts};
-use oedometer_convergence::pareto::ParetoChange;
+use oedometer_convergence::ParetoChange;
 
 /// A case that differs from its golden values.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]

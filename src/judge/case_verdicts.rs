@@ -1,41 +1,38 @@
 //! Judges what a study expects of single cases; hard cases are judged by this, not by series.
 
-use crate::judge::error_place::place_of_attached;
+use crate::judge::explanation::place_of_attached;
 use crate::judge::judgement::Judgement;
-use crate::judge::verdict::{Check, Verdict, VerdictOutcome, check};
+use crate::judge::verdict::{BELOW, Check, IN, Verdict, VerdictOutcome};
 use crate::measure::largest::{larger, largest};
 use crate::measure::pressure_peak::pressure_peak;
 use crate::record::{Balance, LayerBalance, Record};
 use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
-use oedometer_convergence::class::Class;
-use oedometer_convergence::class::evaluable_series::plain;
-use oedometer_soil::wording::typed;
+use oedometer_convergence::{Class, Classification};
+use oedometer_soil::wording::{short, typed};
 
 impl CaseExpectation {
-    /// One judgement a case that it selects; where it selects none, one that fails.
+    /// One judgement for each case that it selects; where it selects none, one that fails.
     pub fn judge(&self, records: &[Record]) -> Vec<Judgement> {
-        let selected: Vec<&Record> =
-            records.iter().filter(|record| self.selection.fits(&record.case)).collect();
-        if selected.is_empty() {
-            let check = check("cases", false, None, "no case is selected".to_owned());
+        let judge = |record: &Record| {
+            let mut checks = self.demand.checks(record);
+            let within = self.demand.one_layer_within;
+            checks.extend(within.map(|within| one_layer_found(within, record, records)));
+            self.judgement(record.case.label(), checks)
+        };
+        let selected = records.iter().filter(|record| self.selection.fits(&record.case));
+        let judgements: Vec<Judgement> = selected.map(judge).collect();
+        if judgements.is_empty() {
+            let check = Check::failed("cases", "no case is selected");
             return vec![self.judgement("any case".to_owned(), vec![check])];
         }
-        selected
-            .iter()
-            .map(|record| {
-                let mut checks = self.demand.checks(record);
-                let as_one = self.demand.one_layer_within;
-                checks.extend(as_one.map(|within| one_layer_found(within, record, records)));
-                self.judgement(record.case.label(), checks)
-            })
-            .collect()
+        judgements
     }
 
     fn judgement(&self, subject: String, checks: Vec<Check>) -> Judgement {
         let pass = checks.iter().all(|check| check.pass);
         let told: Vec<&str> =
             checks.iter().filter(|check| pass || !check.pass).map(|check| check.reason.as_str()).collect();
-        let classification = plain(Class::NotEvaluable, "a case is no series".to_owned());
+        let classification = Classification::new(Class::NotEvaluable, "a single case is not a series");
         let outcome = if pass { VerdictOutcome::Passed } else { VerdictOutcome::Failed };
         let verdict = Verdict { pass, outcome, reason: told.join("; "), classification, checks };
         Judgement { line: self.line, subject, verdict, uncertainty: None }
@@ -43,40 +40,49 @@ impl CaseExpectation {
 }
 
 impl CaseDemand {
-    /// Everything asked, judged; comparisons are written so that NaN fails.
+    /// Every part of the demand, judged; comparisons are written so that NaN fails.
     fn checks(&self, record: &Record) -> Vec<Check> {
         let mut checks = Vec::new();
         checks.extend(self.status.as_ref().map(|wanted| status_found(wanted, record)));
         checks.extend(self.critical_step_within.map(|within| critical_step_found(within, record)));
         checks.extend(self.error.as_ref().map(|range| error_found(range, record)));
-        let worst = |of: fn(&Balance) -> f64| largest(record.balance.iter().map(|balance| of(balance).abs()));
-        let drifts = [
-            ("mass of solids", worst(|balance| balance.solid_mass_drift), self.solid_drift_below),
-            ("water", worst(|balance| balance.water_imbalance), self.water_drift_below),
-        ];
-        let asked = drifts.into_iter().filter_map(|(what, found, below)| Some((what, found, below?)));
-        checks.extend(asked.map(|(what, found, below)| drift_found(what, found, below)));
+        let balance = &record.balance;
+        let worst = |of: fn(&Balance) -> f64| largest(balance.iter().map(|balance| of(balance).abs()));
+        // Only where every output has the balance of two layers.
         let worst_layer = |of: fn(&LayerBalance) -> f64| {
-            let layers =
-                record.balance.iter().map(|balance| balance.layers.as_ref().map(|one| of(one).abs()));
+            let layers = balance.iter().map(|balance| balance.layers.as_ref().map(|one| of(one).abs()));
             layers.reduce(|worst, next| Some(larger(worst?, next?))).flatten()
         };
-        checks.extend(self.pore_water.map(|[above, below]| {
-            layer_found("water over pores, less one", worst_layer(|one| one.pore_water), [above, below])
-        }));
-        checks.extend(self.water_left_within.map(|within| {
-            layer_found(
+        let largest_pressure =
+            largest(balance.iter().filter_map(|balance| balance.layers.as_ref()?.largest_pressure));
+        let peak = pressure_peak(&record.case, &record.snapshots);
+        let below = |below: f64| Bounds { above: 0.0, below };
+        let ranges = [
+            (
+                "drift of the mass of solids",
+                worst(|balance| balance.solid_mass_drift),
+                self.solid_drift_below.map(below),
+            ),
+            (
+                "drift of the water",
+                worst(|balance| balance.water_imbalance),
+                self.water_drift_below.map(below),
+            ),
+            (
+                "water over pores, less one",
+                worst_layer(|one| one.pore_water),
+                self.pore_water.map(|[above, below]| Bounds { above, below }),
+            ),
+            (
                 "water that left, less s/(n_0 H)",
                 worst_layer(|one| one.water_left_error),
-                [0.0, within],
-            )
-        }));
-        let spurious = largest(record.balance.iter().filter_map(|balance| balance.spurious_velocity));
-        let largest_pressure =
-            largest(record.balance.iter().filter_map(|balance| balance.layers.as_ref()?.largest_pressure));
-        let peak = pressure_peak(&record.case, &record.snapshots);
-        let ranges = [
-            ("spurious velocity over the conductivity", spurious, self.spurious_velocity),
+                self.water_left_within.map(below),
+            ),
+            (
+                "spurious velocity over the conductivity",
+                largest(balance.iter().filter_map(|balance| balance.spurious_velocity)),
+                self.spurious_velocity,
+            ),
             ("time factor of the highest pressure", peak.map(|peak| peak.time_factor), self.peak_time_factor),
             ("largest pressure of the water over the load", largest_pressure, self.largest_pressure),
             ("highest pressure over the load", peak.map(|peak| peak.height), self.peak_pressure),
@@ -87,42 +93,31 @@ impl CaseDemand {
     }
 }
 
-/// A measure of two layers, the largest at any output, between two bounds.
-fn layer_found(what: &str, found: Option<f64>, [above, below]: [f64; 2]) -> Check {
-    let Some(found) = found else {
-        let reason = format!("{what}: the case has no two layers of points that move");
-        return check("layers", false, None, reason);
-    };
-    let pass = found >= above && found < below;
-    let inside = if pass { "in" } else { "outside" };
-    check("layers", pass, Some(found), format!("{what}: {found:.2e} {inside} {above:.1e} … {below:.1e}"))
-}
-
 /// Every error of a case of two layers against that of the same case in one.
 fn one_layer_found(within: f64, record: &Record, records: &[Record]) -> Check {
-    let fail = |reason: &str| check("one layer", false, None, reason.to_owned());
+    const NAME: &str = "one layer";
     let mut twin = record.case.clone();
     twin.column.points.layers = 1;
     twin.column.points.water_per_cell = 0;
     if twin == record.case {
-        return fail("the case has one layer itself");
+        return Check::failed(NAME, "the case has one layer itself");
     }
     let Some(one) = records.iter().find(|other| other.case == twin) else {
-        return fail("the study has no such case in one layer");
+        return Check::failed(NAME, "the study has no such case in one layer");
     };
     if record.errors.is_empty() || record.errors.len() != one.errors.len() {
-        let reason = format!("{} errors in two layers and {} in one", record.errors.len(), one.errors.len());
-        return fail(&reason);
+        let (two, one) = (record.errors.len(), one.errors.len());
+        return Check::failed(NAME, format!("{two} errors in two layers and {one} in one"));
     }
     let mut worst = 0.0;
     for (two, one) in record.errors.iter().zip(&one.errors) {
         let is_same = (two.quantity, two.sample, two.norm, &two.reference, two.time_factor)
             == (one.quantity, one.sample, one.norm, &one.reference, one.time_factor);
         let difference = (two.value - one.value).abs();
-        // Written so that what is no number fails.
+        // Written so that NaN fails.
         if !(is_same && difference <= within) {
-            let reason = format!(
-                "{} {} {} at T_v = {}: {:.10e} in two layers and {:.10e} in one, {within:.0e} allowed",
+            let told = format!(
+                "{} {} {} at T_v = {}: {:.10e} in two layers and {:.10e} in one,",
                 two.quantity.name(),
                 two.norm,
                 two.sample.name(),
@@ -130,12 +125,13 @@ fn one_layer_found(within: f64, record: &Record, records: &[Record]) -> Check {
                 two.value,
                 one.value
             );
-            return check("one layer", false, Some(difference), reason);
+            let allowed = format!("{} allowed", short(within));
+            return Check::compared(NAME, false, difference, &told, ["", "more than"], &allowed);
         }
         worst = f64::max(worst, difference);
     }
-    let reason = format!("{} errors are those of one layer within {worst:.1e}", record.errors.len());
-    check("one layer", true, Some(worst), reason)
+    let told = format!("{} errors are those of one layer", record.errors.len());
+    Check::compared(NAME, true, worst, &told, ["within", ""], &short(worst))
 }
 
 fn status_found(wanted: &str, record: &Record) -> Check {
@@ -146,20 +142,20 @@ fn status_found(wanted: &str, record: &Record) -> Check {
         .map_or_else(String::new, |failure| format!("{}: {}", failure.place(), failure.reason));
     let pass = found == wanted;
     let instead = if pass { String::new() } else { format!(" instead of {wanted}") };
-    check("status", pass, None, format!("{found}{instead}{how}"))
+    Check { name: "status".to_owned(), pass, measured: None, reason: format!("{found}{instead}{how}") }
 }
 
 fn critical_step_found(within: f64, record: &Record) -> Check {
+    const NAME: &str = "critical step";
     let Some(found) = &record.stability else {
-        return check("critical step", false, None, "the critical step was not searched".to_owned());
+        return Check::failed(NAME, "the critical step was not searched");
     };
     if let Some(sentence) = &found.unknown {
-        return check("critical step", false, None, sentence.clone());
+        return Check::failed(NAME, sentence);
     }
     let Some(deviation) = found.deviation() else {
-        return check("critical step", false, None, "no step was observed to leave".to_owned());
+        return Check::failed(NAME, "no step was observed to become unstable");
     };
-    let clean = found.probes_agree();
     let probes: Vec<String> = found
         .probes
         .iter()
@@ -168,55 +164,43 @@ fn critical_step_found(within: f64, record: &Record) -> Check {
             Some(failure) => format!("{} is {} at step {}", probe.share, failure.kind.name(), failure.step),
         })
         .collect();
-    let reason = format!(
-        "observed {:+.2} % of the predicted {:.4e} s, {} % allowed; {}",
+    let pass = deviation.abs() <= within && found.probes_agree();
+    let told = format!(
+        "observed {:+.2} % off the predicted {:.4e} s, {} % allowed;",
         100.0 * deviation,
         found.predicted,
-        100.0 * within,
-        probes.join(", ")
+        100.0 * within
     );
-    check("critical step", deviation.abs() <= within && clean, Some(deviation), reason)
+    Check::compared(NAME, pass, deviation, &told, ["with", "with"], &probes.join(", "))
 }
 
 fn error_found(range: &ErrorRange, record: &Record) -> Check {
     let measure = &range.measure;
+    let time = typed(measure.time_factor);
     let Some(row) = measure.error(record) else {
-        return check("error", false, None, format!("no error at T_v = {}", typed(measure.time_factor)));
+        return Check::failed("error", format!("no error at T_v = {time}"));
     };
-    let error = row.value.abs();
-    let pass = error < range.below && error >= range.above;
-    let inside = if pass { "in" } else { "outside" };
-    let reason = format!(
-        "{} {} {} at T_v = {}: {error:.3e} {inside} {:.1e} … {:.1e}",
-        measure.quantity.name(),
-        measure.norm,
-        measure.sample.name(),
-        typed(measure.time_factor),
-        range.above,
-        range.below
-    );
-    let place = if pass { None } else { place_of_attached(record, row) };
-    let reason = place.map_or(reason.clone(), |place| format!("{reason}; {place}"));
-    check("error", pass, Some(error), reason)
+    let (quantity, sample) = (measure.quantity.name(), measure.sample.name());
+    let what = format!("{quantity} {} {sample} at T_v = {time}", measure.norm);
+    let bounds = Bounds { above: range.above, below: range.below };
+    let mut check = Check { name: "error".to_owned(), ..value_found(&what, Some(row.value.abs()), bounds) };
+    if let Some(place) = place_of_attached(record, row).filter(|_| !check.pass) {
+        check.reason = format!("{}; {place}", check.reason);
+    }
+    check
 }
 
-fn value_found(what: &'static str, found: Option<f64>, bounds: Bounds) -> Check {
+/// A value in a range whose lower end belongs to it.
+fn value_found(what: &str, found: Option<f64>, Bounds { above, below }: Bounds) -> Check {
     let Some(value) = found else {
-        return check(what, false, None, format!("no {what} was found"));
+        return Check::failed(what, format!("no {what} was measured"));
     };
-    let pass = value < bounds.below && value >= bounds.above;
-    let inside = if pass { "in" } else { "outside" };
-    let range = format!("{:.4e} … {:.4e}", bounds.above, bounds.below);
-    check(what, pass, Some(value), format!("{what}: {value:.5e} {inside} {range}"))
-}
-
-fn drift_found(what: &str, found: Option<f64>, below: f64) -> Check {
-    let Some(drift) = found else {
-        return check("drift", false, None, format!("no balance of the {what}"));
-    };
-    let pass = drift < below;
-    let relation = if pass { "below" } else { "not below" };
-    check("drift", pass, Some(drift), format!("{what}: drift {drift:.1e}, {relation} {below:.0e}"))
+    let pass = value < below && value >= above;
+    let told = format!("{what}: {}", short(value));
+    if above == 0.0 {
+        return Check::compared(what, pass, value, &told, BELOW, &short(below));
+    }
+    Check::compared(what, pass, value, &told, IN, &format!("{} … {}", short(above), short(below)))
 }
 
 #[cfg(test)]

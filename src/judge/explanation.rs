@@ -1,18 +1,20 @@
-//! Where the error of one case comes from: which norm and place carries it, how it stands among
-//! the other levels of its study, and what changed against the golden values.
+//! Where the error of one case comes from: the norm and place that dominate it, its place among the other levels of
+//! its study, and the changes from the golden values.
 
 use crate::case::Case;
 use crate::case::norm::Norm;
 use crate::golden::compare::{Difference, compare};
 use crate::golden::{GoldenFile, measure_name, values_of};
-use crate::judge::error_place::{ErrorPlace, place_of};
-use crate::judge::paths::{level_size, paths};
+use crate::judge::paths::{grouped, level_size, paths};
+use crate::measure::fields::error_contributions::largest_contribution;
+use crate::measure::fields::exact_fields::exact_samples;
+use crate::measure::known_references::known_reference;
 use crate::record::{ErrorRow, Record};
 use crate::study::expectation::Axis;
-use oedometer_convergence::class::Context;
-use oedometer_convergence::class::classify::classify;
-use oedometer_convergence::series::{ErrorSeries, SeriesLevel};
+use oedometer_convergence::{Context, ErrorSeries, classify};
 use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_soil::wording::{short, typed};
 
 /// The error of one quantity at one kind of places, at the output where it is largest.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -91,17 +93,11 @@ fn same_measure(a: &str, b: &str) -> bool {
 /// Against the first reference, the output with the largest error of every quantity and place.
 fn carriers_of(record: &Record) -> Result<Vec<Carrier>, ExactError> {
     let Some(own) = record.references.first() else { return Ok(Vec::new()) };
-    let mut largest: Vec<&ErrorRow> = Vec::new();
     let main = |row: &&ErrorRow| row.reference == own.name && matches!(row.norm, Norm::L2 | Norm::Relative);
-    for row in record.errors.iter().filter(main) {
-        match largest.iter_mut().find(|other| (other.quantity, other.sample) == (row.quantity, row.sample)) {
-            Some(other) if row.value.abs() > other.value.abs() => *other = row,
-            Some(_) => {}
-            None => largest.push(row),
-        }
-    }
-    largest
+    let groups = grouped(record.errors.iter().filter(main), |row| (row.quantity, row.sample));
+    groups
         .into_iter()
+        .filter_map(|(_, rows)| rows.into_iter().rev().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())))
         .map(|row| {
             let norm = |norm| {
                 record
@@ -126,36 +122,28 @@ fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &Err
     };
     let mut records: Vec<Record> = siblings.iter().filter(|case| **case != &record.case).map(empty).collect();
     records.push(record.clone());
-    let mut all = Vec::new();
-    for axis in Axis::REFINEMENTS.into_iter().filter(|axis| *axis != Axis::TimeStep) {
-        let path = paths(&records, axis)
-            .into_iter()
-            .find(|path| path.records.iter().any(|other| other.hash == record.hash));
-        let Some(path) = path else { continue };
-        let error = |other: &&Record| {
-            if other.hash == record.hash {
-                return Some(row.value.abs());
-            }
-            let name = format!("{} | {}", other.case.label(), measure_name(row));
-            golden.values.get(&name).map(|value| value.abs())
-        };
-        let errors: Vec<Option<f64>> = path.records.iter().map(error).collect();
-        let known = path.records.iter().zip(&errors).filter(|(_, error)| error.is_some());
-        let level = |(other, error): (&&Record, &Option<f64>)| SeriesLevel {
-            size: level_size(other, axis),
-            error: *error,
-        };
-        let found = classify(&ErrorSeries::new(known.map(level).collect()), &Context::default());
-        all.push(LevelSeries {
+    let is_own = |other: &Record| other.hash == record.hash;
+    let error = |other: &Record| {
+        let name = format!("{} | {}", other.case.label(), measure_name(row));
+        if is_own(other) { Some(row.value.abs()) } else { golden.values.get(&name).map(|value| value.abs()) }
+    };
+    let level_series = |axis: Axis| {
+        let all = paths(&records, axis);
+        let path = all.iter().find(|path| path.records.iter().any(|other| is_own(other)))?;
+        let errors: Vec<Option<f64>> = path.records.iter().map(|other| error(other)).collect();
+        let sizes = path.records.iter().map(|other| level_size(other, axis));
+        let known = sizes.zip(&errors).filter_map(|(size, error)| Some((size, (*error)?)));
+        let found = classify(&ErrorSeries::of(&known.collect::<Vec<_>>()), &Context::default());
+        Some(LevelSeries {
             axis,
             labels: path.records.iter().map(|other| level_label(&other.case, axis)).collect(),
-            own: path.records.iter().position(|other| other.hash == record.hash).unwrap_or(0),
+            own: path.records.iter().position(|other| is_own(other)).unwrap_or(0),
             errors,
             class: found.class.name(),
             reason: found.reason,
-        });
-    }
-    all
+        })
+    };
+    [Axis::Cells, Axis::PointsPerCell].into_iter().filter_map(level_series).collect()
 }
 
 fn level_label(case: &Case, axis: Axis) -> String {
@@ -174,4 +162,57 @@ fn differences_of(record: &Record, golden: &GoldenFile) -> (Vec<Difference>, usi
     let there = differences.iter().filter(|one| one.golden.is_some()).count();
     let agreeing = of_case.values.len() - there;
     (differences, agreeing)
+}
+/// A place with its computed and exact value.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct ErrorPlace {
+    /// Initial depth over the height.
+    pub zeta: f64,
+    /// Share of the squared L2 error.
+    pub share: f64,
+    /// Computed value, SI.
+    pub computed: f64,
+    /// Exact value, SI.
+    pub exact: f64,
+}
+
+/// The place with the largest share of an error; `None` where the quantity has a single place.
+///
+/// # Errors
+/// When a reference refuses the case.
+pub fn place_of(record: &Record, row: &ErrorRow) -> Result<Option<ErrorPlace>, ExactError> {
+    let case = &record.case;
+    let samples = record.snapshot(row.time_factor).and_then(|snapshot| row.sample.of(snapshot));
+    let (Some(samples), Ok(kind)) = (samples, row.reference.parse::<ReferenceKind>()) else {
+        return Ok(None);
+    };
+    let reference = known_reference(case, kind.of_soil(&case.material), &[row.time_factor])?;
+    let exact = exact_samples(case, &reference, row.time_factor, samples)?;
+    let fields = row.quantity.field(samples).zip(row.quantity.field(&exact));
+    Ok(fields.and_then(|(computed, exact)| {
+        let worst = largest_contribution(computed, exact, &samples.volume)?;
+        Some(ErrorPlace {
+            zeta: 1.0 - samples.initial_height[worst.index] / case.column.height,
+            share: worst.share,
+            computed: computed[worst.index],
+            exact: exact[worst.index],
+        })
+    }))
+}
+
+/// Where most of an error of an attached solver's result lies, as a sentence. `None` for a case of this program, which
+/// `explain` can run again.
+pub fn place_of_attached(record: &Record, row: &ErrorRow) -> Option<String> {
+    record.attached.as_ref()?;
+    let place = place_of(record, row).ok()??;
+    Some(format!(
+        "most of the error of {} at T_v = {} lies at ζ = {} (height {} m): {} for {}, {:.0} % of the squared error",
+        row.quantity.name(),
+        typed(row.time_factor),
+        short(place.zeta),
+        short((1.0 - place.zeta) * record.case.column.height),
+        short(place.computed),
+        short(place.exact),
+        100.0 * place.share
+    ))
 }

@@ -1,20 +1,16 @@
-//! From computed numbers to judgements: norms, oscillation, orders, floors, verdicts, cost.
+//! From records to judgements: verdicts on studies, scores of external results, comparisons of methods.
 //!
-//! Verdicts are mathematics on plain numbers; `paths` brings records to series of them.
-//! What has no value is returned as a named reason, never as a number that could pass a test.
+//! Verdicts are mathematics on plain numbers; `paths` turns records into series of numbers. What has no value is
+//! returned as a named reason, never as a number that could pass a test.
 
-pub mod absent;
 pub mod case_verdicts;
 pub mod comparison;
-pub mod error_place;
 pub mod explanation;
-pub mod floor_causes;
 pub mod judgement;
+pub mod path_context;
 pub mod paths;
-pub mod profile_checks;
 pub mod scatter;
 pub mod score;
 pub mod soundness;
 pub mod study_check;
-pub mod thinned;
 pub mod verdict;

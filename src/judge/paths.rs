@@ -3,23 +3,20 @@
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::{Case, step_label};
-use crate::judge::error_place::place_of_attached;
+use crate::judge::explanation::place_of_attached;
 use crate::measure::fields::norms::relative_error;
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
-use oedometer_convergence::class::classify::classify;
-use oedometer_convergence::class::{Classification, Context};
-use oedometer_convergence::orders::{SlopeFit, finest_order, pair_orders, slope};
-use oedometer_convergence::series::{ErrorSeries, SeriesLevel, Undefined};
-use oedometer_convergence::series_demand::SeriesDemand as Demand;
+use oedometer_convergence::{
+    Classification, ErrorSeries, SeriesDemand, SeriesLevel, SlopeFit, Undefined, classify, finest_order,
+    pair_orders, slope,
+};
 use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_soil::material::Material;
 use std::collections::HashMap;
+use std::hash::Hash;
 
-/// Errors up to this are round-off of a long run.
-const ROUND_OFF: f64 = 1e-12;
-
-/// The records of one path through a study: alike in everything but the axis.
+/// The records of one path through a study: equal in everything but the axis.
 #[derive(Clone, Debug)]
 pub struct Path<'a> {
     /// What is refined.
@@ -28,7 +25,7 @@ pub struct Path<'a> {
     pub records: Vec<&'a Record>,
 }
 
-/// A series of errors with everything that is said of it.
+/// A series of errors with its orders and class.
 #[derive(Clone, Debug)]
 pub struct SeriesSummary<'a> {
     /// The runs.
@@ -54,12 +51,12 @@ pub struct StudyPaths<'a> {
 }
 
 impl<'a> StudyPaths<'a> {
-    /// Those of records.
+    /// The paths of records.
     pub fn of(records: &'a [Record]) -> Self {
         Self { along: Axis::ALL.map(|axis| paths(records, axis)) }
     }
 
-    /// Those along an axis.
+    /// The paths along an axis.
     pub fn along(&self, axis: Axis) -> &[Path<'a>] {
         Axis::ALL.iter().position(|one| *one == axis).map_or(&[], |place| &self.along[place])
     }
@@ -67,25 +64,34 @@ impl<'a> StudyPaths<'a> {
 
 /// Paths of the records along an axis: every group of at least two levels.
 pub fn paths<'a>(records: impl IntoIterator<Item = &'a Record>, axis: Axis) -> Vec<Path<'a>> {
-    let mut groups: Vec<Path<'_>> = Vec::new();
-    // A group by what its cases share, so that no case of thousands is held against the others.
-    let mut places: HashMap<u64, usize> = HashMap::new();
-    for record in records {
-        let place = *places.entry(what_is_shared(&record.case, axis)).or_insert(groups.len());
+    // By a number for what cases share, so that thousands of cases are not compared pairwise.
+    let groups = grouped(records, |record| what_is_shared(&record.case, axis));
+    let path = |(_, mut records): (u64, Vec<&'a Record>)| {
+        records.sort_by(|a, b| level_size(b, axis).total_cmp(&level_size(a, axis)));
+        Path { axis, records }
+    };
+    groups.into_iter().filter(|(_, records)| records.len() > 1).map(path).collect()
+}
+
+/// Groups things by a key, groups and things in their order of appearance.
+pub(crate) fn grouped<T, K: Copy + Eq + Hash>(
+    things: impl IntoIterator<Item = T>,
+    key: impl Fn(&T) -> K,
+) -> Vec<(K, Vec<T>)> {
+    let mut groups: Vec<(K, Vec<T>)> = Vec::new();
+    let mut places: HashMap<K, usize> = HashMap::new();
+    for thing in things {
+        let key = key(&thing);
+        let place = *places.entry(key).or_insert(groups.len());
         match groups.get_mut(place) {
-            Some(group) => group.records.push(record),
-            None => groups.push(Path { axis, records: vec![record] }),
+            Some((_, group)) => group.push(thing),
+            None => groups.push((key, vec![thing])),
         }
-    }
-    groups.retain(|group| group.records.len() > 1);
-    for group in &mut groups {
-        group.records.sort_by(|a, b| level_size(b, axis).total_cmp(&level_size(a, axis)));
     }
     groups
 }
 
-/// A number for everything but the axis: the same for cases that differ along it at most. What is only asked for at
-/// the output, time factors, makes no difference.
+/// A hash of everything but the axis and the time factors: equal for cases that differ along the axis alone.
 fn what_is_shared(case: &Case, axis: Axis) -> u64 {
     case.number_with(|case| {
         case.time_factors.clear();
@@ -112,28 +118,31 @@ pub fn level_size(record: &Record, axis: Axis) -> f64 {
 
 impl<'a> Path<'a> {
     /// The series of one error along the path. Levels whose case does not ask for the time factor
-    /// are no levels of it; a level that should have an error and has none stays, empty.
+    /// are left out; a level that should have an error and has none stays, empty.
     pub fn series(&self, measure: &Measure) -> ErrorSeries {
-        if measure.reference == NO_REFERENCE {
-            return self.values(measure).differences();
-        }
+        let level = |(size, error): (f64, Option<f64>)| SeriesLevel { size, error: error.map(f64::abs) };
+        ErrorSeries::new(self.signed_levels(measure).into_iter().map(level).collect())
+    }
+
+    /// Sizes and errors with their signs; of a value without a reference its differences from level to level.
+    pub(crate) fn signed_levels(&self, measure: &Measure) -> Vec<(f64, Option<f64>)> {
         let records = self.asked(measure);
-        let level = |record: &Record, error: Option<f64>| SeriesLevel {
-            size: level_size(record, self.axis),
-            error: error.map(f64::abs),
-        };
-        let levels = if measure.reference == NEXT_FINER {
-            let neighbours = records.windows(2);
-            neighbours.map(|pair| level(pair[0], difference_of(pair[0], pair[1], measure))).collect()
-        } else {
-            let error_of = |record| measure.error(record).map(|row| row.value);
-            records.iter().map(|record| level(record, error_of(record))).collect()
-        };
-        ErrorSeries::new(levels)
+        let size = |record: &Record| level_size(record, self.axis);
+        match measure.reference.as_str() {
+            NO_REFERENCE => self.values(measure).signed_differences(),
+            NEXT_FINER => {
+                let difference = |pair: &[&Record]| (size(pair[0]), difference_of(pair[0], pair[1], measure));
+                records.windows(2).map(difference).collect()
+            }
+            _ => {
+                let error = |record: &&Record| (size(record), measure.error(record).map(|row| row.value));
+                records.iter().map(error).collect()
+            }
+        }
     }
 
     /// The runs whose case asks for the time of a measure, from coarse to fine.
-    fn asked(&self, measure: &Measure) -> Vec<&'a Record> {
+    pub(crate) fn asked(&self, measure: &Measure) -> Vec<&'a Record> {
         let asked = |record: &&&Record| record.case.time_factors.contains(&measure.time_factor);
         self.records.iter().filter(asked).copied().collect()
     }
@@ -152,56 +161,7 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// What is known beside the errors: formal order, accuracy of the reference, and the model's
-    /// difference where the reference is not of the scene's own equations.
-    pub(crate) fn context(&self, measure: &Measure) -> Context {
-        let case = &self.records[0].case;
-        let finest = self.records[self.records.len() - 1];
-        let used = finest.references.iter().find(|used| used.name == measure.reference);
-        Context {
-            formal_order: (self.axis == Axis::Cells).then(|| formal_order(case, measure)).flatten(),
-            round_off: Some(ROUND_OFF),
-            reference_accuracy: used.map(|used| used.tail_bound),
-            limiters: self.limiters(measure),
-            mobility: self.mobility(measure),
-            signed: self.signed(measure),
-        }
-    }
-
-    /// The errors with their signs, where they are of a single number; a value without a reference has its differences
-    /// from level to level.
-    fn signed(&self, measure: &Measure) -> Vec<f64> {
-        if measure.reference == NO_REFERENCE {
-            return self
-                .values(measure)
-                .signed_differences()
-                .into_iter()
-                .filter_map(|level| level.1)
-                .collect();
-        }
-        if measure.norm != Norm::Relative {
-            return Vec::new();
-        }
-        if measure.reference == NEXT_FINER {
-            let asked = self.asked(measure);
-            let neighbours = asked.windows(2);
-            return neighbours.filter_map(|pair| difference_of(pair[0], pair[1], measure)).collect();
-        }
-        self.asked(measure).into_iter().filter_map(|record| Some(measure.error(record)?.value)).collect()
-    }
-
-    /// Settlement over the exact one at each level, for the errors of displacements: a locked body
-    /// has hardly any.
-    fn mobility(&self, measure: &Measure) -> Vec<f64> {
-        if !matches!(measure.quantity, Quantity::Displacement | Quantity::Settlement) {
-            return Vec::new();
-        }
-        let (quantity, sample, norm) = (Quantity::Settlement, Sample::Surface, Norm::Relative);
-        let settlement = Measure { quantity, sample, norm, ..measure.clone() };
-        self.records.iter().filter_map(|record| Some(1.0 + settlement.error(record)?.value)).collect()
-    }
-
-    /// A measure at the points, for an attached solver at the places that it has instead.
+    /// A measure at the points; for an attached solver, at the places that it has instead.
     pub fn own_measure(&self, measure: &Measure) -> Measure {
         let own = self
             .records
@@ -215,11 +175,18 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// Where most of the error of somebody else's result is: at the level that is bounded, or the finest.
-    pub(crate) fn place(&self, demand: &Demand, measure: &Measure) -> Option<String> {
-        let is_bounded =
-            |record: &&&Record| demand.at.is_some_and(|at| at.size == level_size(record, self.axis));
-        let record = self.records.iter().find(is_bounded).or(self.records.last())?;
+    /// The level that a demand bounds, else the finest.
+    pub(crate) fn bounded_level(&self, demand: &SeriesDemand) -> &'a Record {
+        let is_bounded = |record: &&&Record| {
+            let size = level_size(record, self.axis);
+            demand.at.is_some_and(|at| (size - at.size).abs() <= 1e-9 * at.size)
+        };
+        self.records.iter().find(is_bounded).unwrap_or(&self.records[self.records.len() - 1])
+    }
+
+    /// Where most of the error of an attached solver's result lies, at the level that a demand bounds.
+    pub(crate) fn place(&self, demand: &SeriesDemand, measure: &Measure) -> Option<String> {
+        let record = self.bounded_level(demand);
         place_of_attached(record, measure.error(record)?)
     }
 
@@ -230,25 +197,23 @@ impl<'a> Path<'a> {
             case.material.water_bulk_modulus = Material::default().water_bulk_modulus;
         }
         case.swept = case.swept.iter().copied().filter(|name| *name != self.axis.name()).collect();
-        let mut parts = vec![case.method.to_string()];
+        let variant = Some(case.variant()).filter(|variant| !variant.is_empty());
+        let cells = (self.axis != Axis::Cells).then(|| format!("{} cells", case.cells));
+        let method = Some(case.method.to_string());
         if case.is_attached() {
-            parts.extend((self.axis != Axis::Cells).then(|| format!("{} cells", case.cells)));
-            parts.extend(Some(case.variant()).filter(|variant| !variant.is_empty()));
-            return parts;
+            return [method, cells, variant].into_iter().flatten().collect();
         }
-        if case.integrator != IntegratorKind::Explicit {
-            parts.push(case.integrator.name().to_owned());
-            // Steps of the explicit integrator go by its limit, and say little of the result.
-            parts.extend((self.axis != Axis::TimeStep).then(|| step_label(&case.time_step)));
-        }
-        if self.axis != Axis::Cells {
-            parts.push(format!("{} cells", case.cells));
-        }
-        if self.axis != Axis::PointsPerCell {
-            parts.push(format!("{} points a cell", case.points_per_cell));
-        }
-        parts.extend(Some(case.variant()).filter(|variant| !variant.is_empty()));
-        parts
+        let has_step = case.integrator != IntegratorKind::Explicit;
+        let parts = [
+            method,
+            has_step.then(|| case.integrator.name().to_owned()),
+            // Steps of the explicit integrator follow its limit, and say little about the result.
+            (has_step && self.axis != Axis::TimeStep).then(|| step_label(&case.time_step)),
+            cells,
+            (self.axis != Axis::PointsPerCell).then(|| format!("{} points a cell", case.points_per_cell)),
+            variant,
+        ];
+        parts.into_iter().flatten().collect()
     }
 
     /// The parts in one line.
@@ -257,7 +222,7 @@ impl<'a> Path<'a> {
     }
 }
 
-/// Difference of a run from the next finer one, whose places are the same; of a settlement with its sign.
+/// Difference of a run from the next finer one, whose places are the same; signed for a settlement.
 fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f64> {
     let (coarse, fine) = (record.snapshot(measure.time_factor)?, finer.snapshot(measure.time_factor)?);
     if measure.quantity == Quantity::Settlement {
@@ -266,26 +231,6 @@ fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f
     let (coarse, fine) = [coarse, fine].map(|one| measure.sample.of(one).unwrap_or(&one.nodes)).into();
     let (computed, exact) = (measure.quantity.field(coarse)?, measure.quantity.field(fine)?);
     relative_error(measure.norm, computed, exact, &fine.volume)
-}
-
-/// Order in the cell size that a method's operators promise at small strain, where they promise
-/// one: constant fields in a cell are of first order at points and of second at the centres.
-fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
-    let method = &case.method;
-    if case.is_attached() {
-        return None;
-    }
-    let by_points = |second: bool| if second { 2.0 } else { 1.0 };
-    match (measure.quantity, measure.sample) {
-        (Quantity::Pressure, Sample::Points) => {
-            Some(by_points(method.uses_patch() || method.has_nodal_pressure()))
-        }
-        (Quantity::EffectiveStress, Sample::Points) => Some(by_points(method.strain.is_composite())),
-        (Quantity::Pressure | Quantity::EffectiveStress, Sample::Centres)
-        | (Quantity::Settlement, _)
-        | (Quantity::Displacement, Sample::Nodes) => Some(2.0),
-        _ => None,
-    }
 }
 
 /// The norm in which a quantity is reported first.

@@ -1,35 +1,30 @@
-//! Holds a series of errors against what a study expects of it.
+//! Compares a series of errors with what a study expects of it.
 //!
-//! Every comparison is written so that NaN fails, everything asked is judged, and a missing row
+//! Every comparison is written so that NaN fails, every part of an expectation is judged, and a missing row
 //! is a failure.
 
+use oedometer_convergence::{
+    Class, Classification, Context, ErrorBound, ErrorSeries, FLOOR_LEVELS, FloorBand, NumericalUncertainty,
+    OrderBand, SeriesDemand, Undefined, classify, hidden_floor,
+};
+use oedometer_soil::wording::{order, short};
 use serde::{Deserialize, Serialize};
 
-use oedometer_convergence::class::classify::classify;
-use oedometer_convergence::class::evaluable_series::FLOOR_LEVELS;
-use oedometer_convergence::class::{Class, Classification, Context};
-use oedometer_convergence::fit::bending_order::{Bend, explain};
-use oedometer_convergence::fit::floor::fit_floor;
-use oedometer_convergence::series::{ErrorSeries, Undefined};
-use oedometer_convergence::series_demand::{ErrorBound, FloorBand, OrderBand, SeriesDemand};
-use oedometer_convergence::uncertainty::NumericalUncertainty;
-use oedometer_soil::wording::{order, short};
-
-/// How a verdict came out, the known failures told apart.
+/// How a verdict came out; known failures are separate outcomes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VerdictOutcome {
     /// Everything expected was found.
     Passed,
-    /// Something was not.
+    /// Something was not found.
     Failed,
-    /// Something was not, and that was known.
+    /// Something was not found, and that was known.
     KnownFailure,
-    /// Everything was found, and a strict known failure said that it would not be.
+    /// Everything was found, although a strict known failure was declared.
     UnexpectedPass,
 }
 
-/// One thing that was asked.
+/// One part of an expectation, judged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     /// `expectation`, `rows`, `class`, `order`, `error`, `spread`, `floor`, `oscillation` or `uncertainty`.
@@ -38,14 +33,14 @@ pub struct Check {
     pub pass: bool,
     /// The number judged, where there is one; always finite.
     pub measured: Option<f64>,
-    /// What was wanted and what was found.
+    /// What was expected and what was found.
     pub reason: String,
 }
 
 /// The judgement of one series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// Whether a gate lets it through.
+    /// Whether the check passes.
     pub pass: bool,
     /// How it came out.
     pub outcome: VerdictOutcome,
@@ -57,7 +52,7 @@ pub struct Verdict {
     pub checks: Vec<Check>,
 }
 
-/// What is measured of the runs beside their errors, where an expectation asks for it.
+/// What is measured of the runs besides their errors, where an expectation asks for it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Beside {
     /// Oscillation index of the run that the expectation is about.
@@ -66,7 +61,7 @@ pub struct Beside {
     pub uncertainty: Option<Result<NumericalUncertainty, Undefined>>,
 }
 
-/// Judges a series. Where the context names no formal order, the order expected serves as one.
+/// Judges a series. Where the context has no formal order, the expected order serves as one.
 pub fn judge(
     expectation: &SeriesDemand,
     series: &ErrorSeries,
@@ -79,7 +74,7 @@ pub fn judge(
     let problems = expectation.problems();
     let mut checks = Vec::new();
     if !problems.is_empty() {
-        checks.push(check("expectation", false, None, problems.join("; ")));
+        checks.push(Check::failed("expectation", problems.join("; ")));
     }
     if expectation.class != Some(Class::NotEvaluable) {
         checks.push(rows(series, expectation.class));
@@ -108,7 +103,7 @@ fn conclude(
     let failed: Vec<_> = checks.iter().filter(|check| !check.pass).collect();
     let sentence =
         |checks: &[&Check]| checks.iter().map(|check| check.reason.as_str()).collect::<Vec<_>>().join("; ");
-    // A known failure pardons a wrong result, not an absent one.
+    // A known failure excuses a wrong result, not a missing one.
     let absent = !failed.is_empty() && classification.class == Class::NotEvaluable
         || failed.iter().any(|check| check.name == "rows");
     match (&expectation.xfail, failed.is_empty()) {
@@ -125,25 +120,48 @@ fn conclude(
     }
 }
 
-/// Something that was asked, judged.
-pub(crate) fn check(name: &str, pass: bool, measured: Option<f64>, reason: String) -> Check {
-    let measured = measured.filter(|value| value.is_finite());
-    Check { name: name.to_owned(), pass, measured, reason }
+impl Check {
+    /// A check that fails because there is nothing to judge.
+    pub(crate) fn failed(name: &str, reason: impl Into<String>) -> Self {
+        Self { name: name.to_owned(), pass: false, measured: None, reason: reason.into() }
+    }
+
+    /// A number that was compared with bounds: `told`, one of the words for pass and failure, `bounds`.
+    pub(crate) fn compared(
+        name: &str,
+        pass: bool,
+        measured: f64,
+        told: &str,
+        words: [&str; 2],
+        bounds: &str,
+    ) -> Self {
+        let word = words[usize::from(!pass)];
+        let measured = Some(measured).filter(|value| value.is_finite());
+        Self { name: name.to_owned(), pass, measured, reason: format!("{told} {word} {bounds}") }
+    }
 }
 
-/// Every level is there with a finite error; one of zero is allowed where exactness is expected.
+/// Words for a number between two bounds.
+pub(crate) const IN: [&str; 2] = ["in", "outside"];
+/// Words for a number with an upper bound.
+pub(crate) const BELOW: [&str; 2] = ["below", "not below"];
+
+/// Every level is there with a finite error; an error of zero is allowed where exactness is expected.
 fn rows(series: &ErrorSeries, class: Option<Class>) -> Check {
-    let exact = class == Some(Class::Exact);
-    let zero = |error: Option<f64>| error.is_some_and(|error| (0.0..1e-300).contains(&error));
-    let obstacle = series
-        .levels()
+    let levels = series.levels();
+    let is_zero = |error: Option<f64>| error.is_some_and(|error| (0.0..1e-300).contains(&error));
+    let obstacle = levels
         .iter()
-        .filter(|level| !(exact && zero(level.error)))
+        .filter(|level| !(class == Some(Class::Exact) && is_zero(level.error)))
         .find_map(|level| level.positive_error().err());
-    match (obstacle, series.check_sizes()) {
-        _ if series.levels().is_empty() => check("rows", false, None, "there are no rows".into()),
-        (Some(obstacle), _) | (None, Err(obstacle)) => check("rows", false, None, obstacle.to_string()),
-        (None, Ok(())) => check("rows", true, None, format!("{} levels", series.levels().len())),
+    let obstacle = obstacle.or(series.check_sizes().err());
+    match obstacle {
+        _ if levels.is_empty() => Check::failed("rows", "there are no rows"),
+        Some(obstacle) => Check::failed("rows", obstacle.to_string()),
+        None => {
+            let reason = format!("{} levels", levels.len());
+            Check { name: "rows".to_owned(), pass: true, measured: None, reason }
+        }
     }
 }
 
@@ -155,45 +173,38 @@ fn class_found(wanted: Class, found: &Classification) -> Check {
         let advice = found.advice.as_deref().map_or_else(String::new, |text| format!(" ({text})"));
         format!("{} instead of {wanted}: {}{advice}", found.class, found.reason)
     };
-    check("class", pass, None, reason)
+    Check { name: "class".to_owned(), pass, measured: None, reason }
 }
 
 fn order_found(band: OrderBand, class: Option<Class>, found: &Classification) -> Check {
     let limits = format!("{} … {}", order(band.value - band.minus), order(band.value + band.plus));
     match found.order {
         Some(measured) if class == Some(found.class) => {
-            let pass = band.contains(measured);
-            let inside = if pass { "in" } else { "outside" };
-            let reason = format!("order {} {inside} {limits}", order(measured));
-            check("order", pass, Some(measured), reason)
+            let told = format!("order {}", order(measured));
+            Check::compared("order", band.contains(measured), measured, &told, IN, &limits)
         }
         _ => {
-            let reason = format!("no order to hold against {limits}: the series is {}", found.class);
-            check("order", false, None, reason)
+            let reason = format!("no order to compare with {limits}: the series is {}", found.class);
+            Check::failed("order", reason)
         }
     }
 }
 
 fn error_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
-    let level = format!("size {}", short(bound.size));
+    let [size, above, below] = [bound.size, bound.above, bound.below].map(short);
     let Some(found) = series.at(bound.size) else {
-        return check("error", false, None, format!("there is no level of {level}"));
+        return Check::failed("error", format!("there is no level of size {size}"));
     };
     match found.positive_error() {
-        Err(undefined) => check("error", false, None, undefined.to_string()),
+        Err(undefined) => Check::failed("error", undefined.to_string()),
         Ok(error) => {
             let pass = error < bound.below && error >= bound.above;
-            let relation = match (error < bound.below, error >= bound.above) {
-                (true, true) => "below",
-                (true, false) => "too good: expected between",
-                (false, _) => "not below",
-            };
-            let below = match relation {
-                "too good: expected between" => format!("{} and {}", short(bound.above), short(bound.below)),
-                _ => short(bound.below),
-            };
-            let reason = format!("error {} at {level} {relation} {below}", short(error));
-            check("error", pass, Some(error), reason)
+            let told = format!("error {} at size {size}", short(error));
+            if error < bound.above {
+                let words = ["", "suspiciously small: expected between"];
+                return Check::compared("error", pass, error, &told, words, &format!("{above} and {below}"));
+            }
+            Check::compared("error", pass, error, &told, BELOW, &below)
         }
     }
 }
@@ -206,81 +217,60 @@ fn spread_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
         .filter(|level| level.size <= bound.size * (1.0 + 1e-9))
         .filter_map(|level| level.positive_error().ok())
         .collect();
-    if counted.len() < 2 {
-        let reason = format!("{} levels up to size {} have no spread", counted.len(), short(bound.size));
-        return check("spread", false, None, reason);
+    let count = counted.len();
+    if count < 2 {
+        let reason = format!("{count} levels up to size {} have no spread", short(bound.size));
+        return Check::failed("spread", reason);
     }
     let largest = counted.iter().copied().fold(0.0, f64::max);
     let smallest = counted.iter().copied().fold(f64::INFINITY, f64::min);
     let spread = largest / smallest - 1.0;
-    let pass = spread < bound.below;
-    let relation = if pass { "below" } else { "not below" };
-    let reason = format!(
-        "errors of {} levels lie within {:.3} %, {relation} {} %",
-        counted.len(),
-        100.0 * spread,
-        short(100.0 * bound.below)
-    );
-    check("spread", pass, Some(spread), reason)
+    let told = format!("errors of {count} levels lie within {:.3} %,", 100.0 * spread);
+    let limit = format!("{} %", short(100.0 * bound.below));
+    Check::compared("spread", spread < bound.below, spread, &told, BELOW, &limit)
 }
 
 fn floor_found(band: FloorBand, series: &ErrorSeries, formal: Option<f64>, found: &Classification) -> Check {
     let without = [Class::NotEvaluable, Class::Divergent, Class::Oscillatory];
     if without.contains(&found.class) {
-        let reason = format!("no floor to judge: the series is {}", found.class);
-        return check("floor", false, None, reason);
+        return Check::failed("floor", format!("no floor to judge: the series is {}", found.class));
     }
     let levels = series.levels().len();
     if found.floor.is_none() && levels < FLOOR_LEVELS {
         let reason = format!("no floor to judge: {levels} levels cannot tell one from none, add a level");
-        return check("floor", false, None, reason);
+        return Check::failed("floor", reason);
     }
+    // A floor may bend the series without governing it yet.
     let floor = found.floor.as_ref().map_or_else(|| hidden_floor(series, formal), |floor| floor.value);
-    let pass = band.contains(floor);
-    let inside = if pass { "in" } else { "outside" };
-    let reason = format!("floor {} {inside} {} … {}", short(floor), short(band.above), short(band.below));
-    check("floor", pass, Some(floor), reason)
-}
-
-/// A floor that bends the series without governing it yet, or 0.
-fn hidden_floor(series: &ErrorSeries, formal: Option<f64>) -> f64 {
-    let bent = series.points().ok().and_then(|points| explain(&points, formal));
-    match (bent, fit_floor(series)) {
-        (Some(Bend::Floor(_)), Ok(fit)) => fit.significant_floor(),
-        _ => 0.0,
-    }
+    let limits = format!("{} … {}", short(band.above), short(band.below));
+    Check::compared("floor", band.contains(floor), floor, &format!("floor {}", short(floor)), IN, &limits)
 }
 
 fn oscillation_found(bound: f64, oscillation: Option<f64>) -> Check {
     let Some(index) = oscillation.filter(|index| index.is_finite()) else {
-        return check("oscillation", false, None, "the oscillation was not measured".into());
+        return Check::failed("oscillation", "the oscillation was not measured");
     };
-    let pass = index < bound;
-    let relation = if pass { "below" } else { "not below" };
-    let reason = format!("oscillation {} {relation} {}", short(index), short(bound));
-    check("oscillation", pass, Some(index), reason)
+    let told = format!("oscillation {}", short(index));
+    Check::compared("oscillation", index < bound, index, &told, BELOW, &short(bound))
 }
 
 fn uncertainty_found(bound: f64, found: Option<&Result<NumericalUncertainty, Undefined>>) -> Check {
-    let found = match found {
-        Some(Ok(found)) if found.relative().is_finite() => found,
-        Some(Ok(_)) => {
-            return check("uncertainty", false, None, "a value of zero has no relative uncertainty".into());
+    let failed = |reason: &str| Check::failed("uncertainty", reason);
+    match found {
+        None => failed("the uncertainty was not measured"),
+        Some(Err(undefined)) => failed(&format!("no uncertainty: {undefined}")),
+        Some(Ok(found)) if !found.relative().is_finite() => {
+            failed("a value of zero has no relative uncertainty")
         }
-        Some(Err(undefined)) => {
-            return check("uncertainty", false, None, format!("no uncertainty: {undefined}"));
+        Some(Ok(found)) => {
+            let relative = found.relative();
+            let told = format!(
+                "uncertainty {} of the value {} by {}",
+                short(relative),
+                short(found.finest()),
+                found.estimator.name()
+            );
+            Check::compared("uncertainty", relative < bound, relative, &told, BELOW, &short(bound))
         }
-        None => return check("uncertainty", false, None, "the uncertainty was not measured".into()),
-    };
-    let relative = found.relative();
-    let pass = relative < bound;
-    let relation = if pass { "below" } else { "not below" };
-    let reason = format!(
-        "uncertainty {} of the value {} by {} {relation} {}",
-        short(relative),
-        short(found.finest()),
-        found.estimator.name(),
-        short(bound)
-    );
-    check("uncertainty", pass, Some(relative), reason)
+    }
 }

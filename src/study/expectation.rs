@@ -6,7 +6,7 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
 use crate::record::{ErrorRow, Record};
-use oedometer_convergence::series_demand::SeriesDemand as Demand;
+use oedometer_convergence::SeriesDemand as Demand;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::method::Method;
 use oedometer_soil::wording::typed;

@@ -12,7 +12,7 @@ use crate::study::inputs::{InputTable, List, One, OwnKeys};
 use crate::study::reading::{grammar, mistakes, toml_tree};
 use crate::study::result_table::ResultTable;
 use crate::study::solver_table::SolverTable;
-use oedometer_convergence::class::Class;
+use oedometer_convergence::Class;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::scene::SceneKind;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};

@@ -23,8 +23,7 @@ use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation};
 use crate::study::check::Study;
 use crate::study::expectation::Selection;
 use crate::study::file::StudySource;
-use oedometer_convergence::series::ErrorSeries;
-use oedometer_convergence::series_demand::{ErrorBound, SeriesDemand};
+use oedometer_convergence::{ErrorBound, ErrorSeries, SeriesDemand};
 use oedometer_mpm::critical_step::observed::CriticalStep;
 use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 
@@ -297,8 +296,7 @@ fn a_spread_is_that_of_all_levels_and_a_share_the_largest() {
         errors[place] = 4.0;
         let series =
             ErrorSeries::of(&[(1.0, errors[0]), (0.5, errors[1]), (0.25, errors[2]), (0.125, errors[3])]);
-        let verdict =
-            judge(&spread, &series, &oedometer_convergence::class::Context::default(), &Beside::default());
+        let verdict = judge(&spread, &series, &oedometer_convergence::Context::default(), &Beside::default());
         let check = verdict.checks.iter().find(|check| check.name == "spread").expect("asked for");
         let least = if place == 0 { 1.02 } else { 1.0 };
         assert!(!check.pass && check.measured == Some(4.0 / least - 1.0), "{check:?}");

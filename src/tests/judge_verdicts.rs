@@ -1,9 +1,9 @@
 //! Expectations are judged in full, and nothing passes by absence or nonsense.
 
 use crate::judge::verdict::{Beside, Verdict, VerdictOutcome, judge};
-use oedometer_convergence::class::{Class, Context};
-use oedometer_convergence::series::{ErrorSeries, SeriesLevel};
-use oedometer_convergence::series_demand::{ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand};
+use oedometer_convergence::{
+    Class, Context, ErrorBound, ErrorSeries, FloorBand, KnownFailure, OrderBand, SeriesDemand, SeriesLevel,
+};
 
 fn series(error: impl Fn(f64) -> f64) -> ErrorSeries {
     let sizes = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0].map(|cells| 1.0 / cells);

@@ -1,18 +1,39 @@
-//! Convergence in numbers only: series of errors, observed orders, fits, classes and uncertainty. Knows no
-//! solver, no study and no record.
+//! Convergence in numbers only: series of errors, observed orders, fits, classes and uncertainty.
+//!
+//! The crate knows no solver, no study and no record. Every method has its source:
+//!
+//! | item | what it does | source |
+//! | :-- | :-- | :-- |
+//! | [`pair_orders`], [`slope`], [`finest_order`] | observed orders, with a Student-t interval | least squares on logarithms; Oberkampf & Roy (2010), *Verification and Validation in Scientific Computing* |
+//! | [`classify`] | class of a series, before any order is quoted | the rules are listed at [`classify`] |
+//! | [`hidden_floor`] | floor of `e = C h^p + F` | variable projection (Golub & Pereyra 1973), F-test |
+//! | [`ValueSeries::uncertainty`] | uncertainty of a value without an exact solution | grid convergence index: Roache (1998), Celik et al. (2008); least squares: Eça & Hoekstra (2014) |
+//! | [`front`], [`predict_next`] | Pareto front of error and cost; cost and error of one more level | – |
+//! | [`SeriesDemand`] | what a study expects of a series | – |
 
 // Tests may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-pub mod class;
-pub mod fit;
-pub mod limiter;
-pub mod orders;
-pub mod pareto;
-pub mod series;
-pub mod series_demand;
-pub mod student;
-pub mod uncertainty;
+mod class;
+mod demand;
+mod fit;
+mod limiter;
+mod orders;
+mod pareto;
+mod series;
+mod uncertainty;
+
+pub use class::{Class, Classification, Context, FLOOR_LEVELS, Floor, classify};
+pub use demand::{ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand};
+pub use fit::floor::hidden_floor;
+pub use limiter::{Limiter, LimiterKind};
+pub use orders::{SlopeFit, WINDOW, finest_order, pair_orders, slope};
+pub use pareto::{CostLevel, CostPoint, LevelPrediction, ParetoChange, front, predict_next};
+pub use series::{ErrorSeries, SeriesLevel, Undefined};
+pub use uncertainty::{
+    Behaviour, ErrorModel, Estimator, GridConvergence, GridUncertainty, LeastSquaresUncertainty,
+    NumericalUncertainty, ThreeGrids, ValueSeries,
+};
 
 #[cfg(test)]
 mod tests {

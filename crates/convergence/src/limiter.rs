@@ -1,4 +1,4 @@
-//! What may put a floor under an error, which candidate fits a floor, and what to do about it.
+//! Possible causes of a floor under an error, which of them fits, and what to do about it.
 
 use serde::{Deserialize, Serialize};
 
@@ -28,19 +28,26 @@ pub enum LimiterKind {
 pub struct Limiter {
     /// Its kind.
     pub kind: LimiterKind,
-    /// What it is in words, such as "the water's storage"; of a step rule what one would lower.
+    /// Its name in words, such as "the water's storage"; for a step rule, what one would lower.
     pub name: String,
     /// The floor it is known to cause, in the unit of the errors.
     pub magnitude: Option<f64>,
-    /// The order at which the floor falls when the cause is refined; 1 where not known.
+    /// The order at which the floor falls when the cause is refined; 1 where unknown.
     pub order: Option<f64>,
+}
+
+impl Limiter {
+    /// A candidate of unknown height and order.
+    pub fn new(kind: LimiterKind, name: &str) -> Self {
+        Self { kind, name: name.to_owned(), magnitude: None, order: None }
+    }
 }
 
 /// A floor and a candidate agree when they are within this factor.
 const AGREEMENT: f64 = 3.0;
 
 /// The candidate that fits a floor: the nearest in height, or the only one of unknown height.
-pub fn identify(floor: f64, candidates: &[Limiter]) -> Option<&Limiter> {
+pub(crate) fn identify(floor: f64, candidates: &[Limiter]) -> Option<&Limiter> {
     let distance = |candidate: &&Limiter| {
         let ratio = elementary::ln(candidate.magnitude? / floor).abs();
         ratio.is_finite().then_some(ratio)
@@ -61,7 +68,12 @@ pub fn identify(floor: f64, candidates: &[Limiter]) -> Option<&Limiter> {
 }
 
 /// What to change so that the floor falls to `target`, or how to find out what causes it.
-pub fn advice(floor: f64, target: Option<f64>, limiter: Option<&Limiter>, candidates: &[Limiter]) -> String {
+pub(crate) fn advice(
+    floor: f64,
+    target: Option<f64>,
+    limiter: Option<&Limiter>,
+    candidates: &[Limiter],
+) -> String {
     let Some(limiter) = limiter else {
         let names: Vec<_> = candidates.iter().map(|candidate| candidate.name.as_str()).collect();
         let suspects = if names.is_empty() {
@@ -69,7 +81,7 @@ pub fn advice(floor: f64, target: Option<f64>, limiter: Option<&Limiter>, candid
         } else {
             names.join(", ")
         };
-        return format!("no known cause fits: vary one at a time of {suspects}");
+        return format!("no known cause fits: vary {suspects}, one at a time");
     };
     let order = limiter.order.filter(|order| order.is_finite() && *order > 0.0).unwrap_or(1.0);
     let factor = target.map_or(4.0, |target| elementary::powf(floor / target, 1.0 / order));
@@ -80,10 +92,11 @@ pub fn advice(floor: f64, target: Option<f64>, limiter: Option<&Limiter>, candid
         LimiterKind::Mesh => format!("refine the mesh by {factor}"),
         LimiterKind::PointsPerCell => format!("raise the points per cell by {factor}"),
         LimiterKind::Reference => {
-            format!("use a reference good to {}, or stop refining", short(target.unwrap_or(0.1 * floor)))
+            let accuracy = short(target.unwrap_or(0.1 * floor));
+            format!("use a reference that is accurate to {accuracy}, or stop refining")
         }
         LimiterKind::Model => format!(
-            "Hold the run against the reference of its own equations: {} makes the difference",
+            "compare the run with the reference of its own equations: {} makes the difference",
             limiter.name
         ),
         LimiterKind::RoundOff => "drop the finest levels: they show round-off".to_owned(),

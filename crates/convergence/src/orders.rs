@@ -2,11 +2,11 @@
 //!
 //! An interval alone is no gate: a Student-t interval takes curvature for noise, and `h² + 8h³`
 //! over the six levels h = 1/5 … 1/160 gives 2.25 ± 0.12. Whether an order means anything is decided in
-//! [`classify`](crate::class::classify) first.
+//! [`classify`](crate::classify) first.
 
 use crate::series::{ErrorSeries, SeriesLevel, Undefined};
-use crate::student::quantile_975;
-use oedometer_soil::elementary;
+use oedometer_soil::elementary::{exp, ln, powi};
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Levels in the finest window, over which an order is judged.
 pub const WINDOW: usize = 3;
@@ -25,20 +25,27 @@ pub struct SlopeFit {
     pub levels: usize,
 }
 
+/// The 97.5 % quantile of Student's t: `|t|` stays below it with 95 %. `None` without degrees of freedom.
+pub(crate) fn quantile_975(freedom: usize) -> Option<f64> {
+    StudentsT::new(0.0, 1.0, freedom as f64).ok().map(|t| t.inverse_cdf(0.975))
+}
+
 /// Orders `ln(e_c/e_f) / ln(h_c/h_f)` between all neighbouring levels, from coarse to fine.
 pub fn pair_orders(series: &ErrorSeries) -> Vec<Result<f64, Undefined>> {
-    let order = |levels: &[SeriesLevel]| {
-        let points = ErrorSeries::new(levels.to_vec()).points()?;
-        Ok(log_ratio(points[0].1, points[1].1) / log_ratio(points[0].0, points[1].0))
-    };
+    let order = |levels: &[SeriesLevel]| Ok(pair_order(&ErrorSeries::new(levels.to_vec()).points()?));
     series.levels().windows(2).map(order).collect()
+}
+
+/// The order between two (size, error) points.
+pub(crate) fn pair_order(pair: &[(f64, f64)]) -> f64 {
+    log_ratio(pair[0].1, pair[1].1) / log_ratio(pair[0].0, pair[1].0)
 }
 
 /// `ln(a/b)` of positive numbers; the quotient keeps the digits of close numbers, the difference
 /// of logarithms serves where it leaves the range of a double.
-pub fn log_ratio(a: f64, b: f64) -> f64 {
+pub(crate) fn log_ratio(a: f64, b: f64) -> f64 {
     let quotient = a / b;
-    if quotient.is_normal() { elementary::ln(quotient) } else { elementary::ln(a) - elementary::ln(b) }
+    if quotient.is_normal() { ln(quotient) } else { ln(a) - ln(b) }
 }
 
 /// Least-squares slope of `ln e` on `ln h` over all levels, with its Student-t 95 % interval.
@@ -49,32 +56,21 @@ pub fn slope(series: &ErrorSeries) -> Result<SlopeFit, Undefined> {
     slope_of(&series.points()?)
 }
 
-/// The same from (size, error) points.
-///
-/// # Errors
-/// As [`slope`].
-pub fn slope_of(points: &[(f64, f64)]) -> Result<SlopeFit, Undefined> {
+/// [`slope`] of (size, error) points.
+pub(crate) fn slope_of(points: &[(f64, f64)]) -> Result<SlopeFit, Undefined> {
     let count = points.len();
     let [first, _, ..] = points else {
         return Err(Undefined::TooFewLevels { levels: count, needed: 2 });
     };
-    let logs = || {
-        let log = |&(size, error): &(f64, f64)| (log_ratio(size, first.0), log_ratio(error, first.1));
-        points.iter().map(log)
-    };
+    let logs = || points.iter().map(|(size, error)| (log_ratio(*size, first.0), log_ratio(*error, first.1)));
     let mean_x = logs().map(|(x, _)| x).sum::<f64>() / count as f64;
     let mean_y = logs().map(|(_, y)| y).sum::<f64>() / count as f64;
-    let spread: f64 = logs().map(|(x, _)| elementary::powi(x - mean_x, 2)).sum();
+    let spread: f64 = logs().map(|(x, _)| powi(x - mean_x, 2)).sum();
     let order = logs().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum::<f64>() / spread;
-    let residual: f64 = logs().map(|(x, y)| elementary::powi(y - mean_y - order * (x - mean_x), 2)).sum();
-    let half_width = if count > 2 {
-        let freedom = count - 2;
-        quantile_975(freedom).map(|t| t * (residual / freedom as f64 / spread).sqrt())
-    } else {
-        None
-    };
-    let coefficient =
-        elementary::exp(mean_y - order * (mean_x + elementary::ln(first.0)) + elementary::ln(first.1));
+    let residual: f64 = logs().map(|(x, y)| powi(y - mean_y - order * (x - mean_x), 2)).sum();
+    let freedom = count - 2;
+    let half_width = quantile_975(freedom).map(|t| t * (residual / freedom as f64 / spread).sqrt());
+    let coefficient = exp(mean_y - order * (mean_x + ln(first.0)) + ln(first.1));
     Ok(SlopeFit { order, coefficient, half_width, levels: count })
 }
 
@@ -88,8 +84,7 @@ pub fn finest_order(series: &ErrorSeries) -> Result<f64, Undefined> {
     let Some(window) = levels.last_chunk::<WINDOW>() else {
         return Err(Undefined::TooFewLevels { levels: levels.len(), needed: WINDOW });
     };
-    let window = ErrorSeries::new(window.to_vec());
-    Ok(slope(&window)?.order)
+    Ok(slope(&ErrorSeries::new(window.to_vec()))?.order)
 }
 
 #[cfg(test)]
@@ -116,6 +111,30 @@ mod tests {
         assert!((fit.half_width.unwrap() - 0.119_408).abs() < 1e-5, "{fit:?}");
         let finest = finest_order(&halvings(|h| h * h + 8.0 * h.powi(3))).unwrap();
         assert!((finest - 2.096).abs() < 1e-3, "{finest}");
+    }
+
+    #[test]
+    #[expect(
+        clippy::unreadable_literal,
+        clippy::excessive_precision,
+        reason = "values as they were computed"
+    )]
+    fn the_quantile_matches_high_precision_values() {
+        // mpmath, 40 digits: root of the regularised incomplete beta function.
+        for (freedom, exact) in [
+            (1, 12.706204736174705),
+            (2, 4.3026527297494639),
+            (3, 3.1824463052837096),
+            (4, 2.7764451051977944),
+            (5, 2.5705818356363155),
+            (10, 2.2281388519862747),
+            (40, 2.0210753903062734),
+            (201, 1.9718365067798593),
+        ] {
+            let found = quantile_975(freedom).unwrap();
+            assert!((found / exact - 1.0).abs() < 1e-9, "{freedom}: {found} for {exact}");
+        }
+        assert_eq!(quantile_975(0), None);
     }
 
     #[test]

@@ -1,5 +1,4 @@
-//! A series of errors over levels of refinement, and why a quantity derived from it may be
-//! undefined.
+//! A series of errors over levels of refinement, and why a number derived from it may be undefined.
 
 use thiserror::Error;
 
@@ -13,6 +12,16 @@ pub struct SeriesLevel {
 }
 
 /// Errors over levels of refinement, from coarse to fine.
+///
+/// ```
+/// use oedometer_convergence::{Class, Context, ErrorSeries, classify, finest_order};
+///
+/// let series = ErrorSeries::of(&[0.2, 0.1, 0.05, 0.025].map(|h| (h, 0.3 * h * h)));
+/// assert!((finest_order(&series)? - 2.0).abs() < 1e-12);
+/// let context = Context { formal_order: Some(2.0), ..Context::default() };
+/// assert_eq!(classify(&series, &context).class, Class::Asymptotic);
+/// # Ok::<(), oedometer_convergence::Undefined>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorSeries {
     levels: Vec<SeriesLevel>,
@@ -65,13 +74,13 @@ pub enum Undefined {
         /// Size of the level.
         size: f64,
     },
-    /// All values are equal: no difference to take an order from.
+    /// All values are equal, so that no difference shows an order.
     #[error("all values are equal")]
     EqualValues,
-    /// A fit ran to the end of the range of orders looked at: the data do not determine one.
+    /// A fit ran to the end of the range of orders searched: the data do not determine one.
     #[error("the data do not determine an order")]
     NotDetermined,
-    /// The values neither approach a limit steadily nor in any other way that has an order.
+    /// The values do not approach a limit with any order.
     #[error("the values do not converge")]
     NotConverging,
 }
@@ -99,7 +108,7 @@ impl ErrorSeries {
         self.levels.iter().find(|level| (level.size - size).abs() <= 1e-9 * size.abs())
     }
 
-    /// Sizes and errors from coarse to fine, when all of them can be worked with.
+    /// Sizes and errors from coarse to fine, when every error is a positive normal number.
     ///
     /// # Errors
     /// The first obstacle: a bad or repeated size, a missing level, an error that is not a
@@ -109,12 +118,13 @@ impl ErrorSeries {
         self.levels.iter().map(|level| Ok((level.size, level.positive_error()?))).collect()
     }
 
-    /// Sizes that are positive, finite and distinct.
+    /// Checks that the sizes are positive, finite and distinct.
     ///
     /// # Errors
     /// [`Undefined::BadSize`] and [`Undefined::SameSize`].
     pub fn check_sizes(&self) -> Result<(), Undefined> {
-        if let Some(index) = self.levels.iter().position(|level| !is_size(level.size)) {
+        let is_bad = |level: &SeriesLevel| !(level.size.is_normal() && level.size > 0.0);
+        if let Some(index) = self.levels.iter().position(is_bad) {
             return Err(Undefined::BadSize { number: index + 1 });
         }
         let same = self.levels.windows(2).find(|pair| pair[0].size <= pair[1].size * (1.0 + 1e-9));
@@ -139,8 +149,18 @@ impl SeriesLevel {
     }
 }
 
-fn is_size(size: f64) -> bool {
-    size.is_normal() && size > 0.0
+/// Sizes and values of either sign from coarse to fine.
+///
+/// # Errors
+/// A bad or repeated size, or a value that is not finite.
+pub(crate) fn finite_levels(levels: &[(f64, f64)]) -> Result<Vec<(f64, f64)>, Undefined> {
+    let series = ErrorSeries::of(levels);
+    series.check_sizes()?;
+    let finite = |level: &SeriesLevel| level.error.filter(|value| value.is_finite());
+    let pair = |level: &SeriesLevel| {
+        Ok((level.size, finite(level).ok_or(Undefined::NotFinite { size: level.size })?))
+    };
+    series.levels.iter().map(pair).collect()
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use crate::cli::study_files;
 use crate::cli::study_tables::{Beside, is_compressed, write_table};
 use crate::cli::trust::{self, TrustArguments};
 use crate::foreign::reading::mapping_of;
-use crate::judge::absent::Absent;
+use crate::judge::judgement::Absent;
 use crate::record::csv::table_file::TableForm;
 use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;

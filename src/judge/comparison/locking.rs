@@ -10,7 +10,7 @@ use crate::measure::wall_times::median;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 use crate::study::expectation::{Axis, Measure};
-use oedometer_convergence::class::Class;
+use oedometer_convergence::Class;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_mpm::critical_step::formula;
 use oedometer_mpm::method::Method;

@@ -6,7 +6,7 @@ use crate::judge::comparison::locking::{Standing, standings};
 use crate::judge::paths::first_norm;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
-use oedometer_convergence::class::Class;
+use oedometer_convergence::Class;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_mpm::method::Method;
 use oedometer_mpm::run::TimeStepRule;

@@ -6,7 +6,7 @@ use crate::measure::largest::largest;
 use crate::measure::wall_times::{WallSpread, median, noise_floor, paired_ratio, spread};
 use crate::record::{Record, Status};
 use crate::study::expectation::{Axis, Measure};
-use oedometer_convergence::pareto::{CostLevel, CostPoint, LevelPrediction, front, predict_next};
+use oedometer_convergence::{CostLevel, CostPoint, LevelPrediction, front, predict_next};
 
 /// Tolerances that are asked for.
 pub const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];

@@ -6,9 +6,7 @@ use crate::judge::score::series_row::SeriesRow;
 use crate::judge::score::times::TimeGroups;
 use crate::judge::score::{Leaning, Score};
 use crate::record::ErrorRow;
-use oedometer_convergence::class::classify::classify;
-use oedometer_convergence::class::{Classification, Context};
-use oedometer_convergence::series::{ErrorSeries, SeriesLevel};
+use oedometer_convergence::{Classification, Context, ErrorSeries, SeriesLevel, classify};
 use std::collections::HashMap;
 
 /// Errors up to this are round-off of a written number.
@@ -136,7 +134,7 @@ fn signed_by_leaning(rows: &[Option<&ErrorRow>], levels: &[(usize, &Score)]) -> 
 mod tests {
     use super::*;
     use crate::judge::score::tests::{scored, state};
-    use oedometer_convergence::class::Class;
+    use oedometer_convergence::Class;
 
     fn series(levels: &[(usize, Score)]) -> Vec<ScoredSeries> {
         let levels: Vec<(usize, &Score)> = levels.iter().map(|(cells, score)| (*cells, score)).collect();

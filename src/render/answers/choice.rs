@@ -12,7 +12,7 @@ use crate::render::report::StudyResults;
 use crate::render::report::labels::first_measure;
 use crate::render::table::{Cell, Table, columns};
 use crate::study::expectation::{Axis, NEXT_FINER};
-use oedometer_convergence::class::Class;
+use oedometer_convergence::Class;
 use oedometer_exact::exact_error::ExactError;
 
 /// The question.

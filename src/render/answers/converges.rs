@@ -8,7 +8,7 @@ use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::{StudyResults, labels, refinement};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
-use oedometer_convergence::class::Class;
+use oedometer_convergence::Class;
 
 /// The question.
 pub const QUESTION: Question =

@@ -8,8 +8,7 @@ use crate::measure::largest::largest;
 use crate::render::report::StudyResults;
 use crate::render::report::labels::first_measure;
 use crate::study::expectation::Axis;
-use oedometer_convergence::class::Class;
-use oedometer_convergence::orders::WINDOW;
+use oedometer_convergence::{Class, WINDOW};
 use oedometer_soil::elementary;
 use std::collections::BTreeMap;
 

@@ -114,7 +114,7 @@ fn case_change(one: &CaseChange) -> String {
 mod tests {
     use super::*;
     use crate::golden::compare::Change;
-    use oedometer_convergence::pareto::ParetoChange;
+    use oedometer_convergence::ParetoChange;
 
     #[test]
     fn values_of_an_input_that_changed_are_told_by_their_kind_and_hide_nothing_that_moved() {

@@ -8,8 +8,7 @@ use crate::render::report::labels::first_measure;
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure};
-use oedometer_convergence::class::Class;
-use oedometer_convergence::orders::WINDOW;
+use oedometer_convergence::{Class, WINDOW};
 use oedometer_soil::wording::typed;
 
 /// Cells at which an error is quoted.

@@ -10,7 +10,7 @@ use crate::render::report::labels::first_measure;
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
-use oedometer_convergence::orders::WINDOW;
+use oedometer_convergence::WINDOW;
 use oedometer_exact::reference::ReferenceKind;
 
 /// Quantities of one figure, side by side; a layer's settlement says less than its displacements.

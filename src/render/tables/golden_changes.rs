@@ -5,7 +5,7 @@ use crate::golden::compare::{Change, Difference};
 use crate::golden::difference_groups::DifferenceGroup;
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
-use oedometer_convergence::pareto::ParetoChange;
+use oedometer_convergence::ParetoChange;
 use std::fmt::Write;
 
 /// Differences shown in a table before the rest is only counted.

@@ -2,8 +2,7 @@
 
 use crate::judge::judgement::Judgement;
 use crate::render::table::{Cell, Table, columns};
-use oedometer_convergence::uncertainty::eca_hoekstra::ErrorModel;
-use oedometer_convergence::uncertainty::grid_convergence::Behaviour;
+use oedometer_convergence::{Behaviour, ErrorModel};
 
 /// One row a value that was asked for; none where none was.
 pub fn table_of(judgements: &[Judgement]) -> Option<Table> {

@@ -1,22 +1,6 @@
-//! Puts a series of errors into a class, before any order is quoted.
-//!
-//! The checks run in a fixed order and the first that applies decides:
-//!
-//! 1. a context of nonsense (`not-evaluable`), errors that are all round-off (`exact`), levels that are
-//!    missing, too few or too close (`not-evaluable`), a body that hardly moves (`locked`);
-//! 2. a finest error of round-off, and a limit that is not zero (`floor-limited`; `pre-asymptotic` where
-//!    only three levels say so), before any growth;
-//! 3. signs that change on the finest window (`oscillatory`; `pre-asymptotic` for a single change), growth
-//!    (`divergent`), plateaus (`floor-limited`; `pre-asymptotic` on three levels), ups and downs
-//!    (`oscillatory`, `divergent`), alternating orders (`oscillatory`);
-//! 4. what is left falls steadily, and is judged on its finest window in [`window`](crate::class::finest_window).
-//!
-//! A single level that all others contradict is named beside any class.
-//!
-//! Last, evidence of a reference no better than the smallest error makes a class of step 4, or a
-//! `pre-asymptotic` one, `not-evaluable`.
+//! The class of a series of errors, decided before any order is quoted.
 
-use crate::class::evaluable_series::{EvaluableSeries, FLOOR_LEVELS, advised, plain};
+use crate::class::evaluable_series::{EvaluableSeries, FLOOR_LEVELS};
 use crate::class::finest_window::judge_window;
 use crate::class::{Class, Classification, Context};
 use crate::fit::approach_to_limit::{Limit, limit_of};
@@ -29,7 +13,7 @@ use oedometer_soil::wording::{orders, short};
 
 /// Neighbouring sizes closer than this give no order worth quoting: at a ratio of 1.1 an error
 /// in the error of 1 % is one of 0.1 in the order. (Celik et al. 2008 ask for 1.3.)
-pub const LEAST_RATIO: f64 = 1.15;
+const LEAST_RATIO: f64 = 1.15;
 
 /// Pair orders smaller than this, of either sign, are a standstill and not a direction.
 const FLAT: f64 = 0.15;
@@ -40,7 +24,28 @@ const STALLED: f64 = 0.3;
 /// Errors within this factor over the finest levels are a plateau.
 const PLATEAU: f64 = 1.5;
 
+/// A body that reaches less than this share of its displacement on every mesh is locked.
+const LEAST_MOBILITY: f64 = 0.5;
+
+/// The advice for errors and values that go up and down.
+const LOOK_FOR_NOISE: &str = "look for cell crossing, waves or a start that differs from level to level";
+
 /// The class of a series, with its reason.
+///
+/// The checks run in a fixed order and the first that applies decides:
+///
+/// 1. an invalid context (`not-evaluable`), errors that are all round-off (`exact`), levels that are
+///    missing, too few or too close (`not-evaluable`), a body that hardly moves (`locked`);
+/// 2. a finest error of round-off, and a limit that is not zero (`floor-limited`; `pre-asymptotic` where
+///    only three levels say so), before any growth;
+/// 3. signs that change on the finest window (`oscillatory`; `pre-asymptotic` for a single change), growth
+///    (`divergent`), plateaus (`floor-limited`; `pre-asymptotic` on three levels), ups and downs
+///    (`oscillatory`, `divergent`), alternating orders (`oscillatory`);
+/// 4. a series that falls steadily is judged on its finest window: `asymptotic`, `pre-asymptotic`,
+///    `contaminated`, `superconvergent` or `floor-limited`.
+///
+/// A single level that all others contradict is named beside any class. A reference no better than the
+/// smallest error turns a class of step 4, or `pre-asymptotic`, into `not-evaluable`.
 pub fn classify(series: &ErrorSeries, context: &Context) -> Classification {
     let found = wrong_context(context)
         .or_else(|| exact(series, context))
@@ -49,15 +54,13 @@ pub fn classify(series: &ErrorSeries, context: &Context) -> Classification {
     if let Some(found) = found {
         return found;
     }
-    let evaluated = series.points().and_then(|points| {
-        let case = EvaluableSeries::of(&points, context)?;
-        Ok(case.classify(context))
-    });
-    evaluated.unwrap_or_else(|undefined| plain(Class::NotEvaluable, undefined.to_string()))
+    let evaluated =
+        series.points().and_then(|points| Ok(EvaluableSeries::of(&points, context)?.classify(context)));
+    evaluated.unwrap_or_else(|undefined| Classification::new(Class::NotEvaluable, undefined.to_string()))
 }
 
 fn wrong_context(context: &Context) -> Option<Classification> {
-    // A round-off or a reference error of exactly 0 is a claim, and a legal one.
+    // A round-off or a reference error of exactly 0 is a valid claim.
     let claimed = |value: Option<f64>| value.filter(|value| *value != 0.0);
     let given = [
         ("formal order", context.formal_order),
@@ -66,42 +69,35 @@ fn wrong_context(context: &Context) -> Option<Classification> {
     ];
     given.into_iter().find_map(|(name, value)| {
         let wrong = value.filter(|value| !value.is_finite() || *value <= 0.0)?;
-        Some(plain(Class::NotEvaluable, format!("the {name} given, {}, is none", short(wrong))))
+        let reason = format!("the {name} {} is invalid: expected a positive number", short(wrong));
+        Some(Classification::new(Class::NotEvaluable, reason))
     })
 }
 
-/// A body that reaches less than this share of its displacement on the finest mesh is locked.
-const LEAST_MOBILITY: f64 = 0.5;
-
-/// A body that gives way less than half of what it should on every mesh: whatever its errors do
-/// under refinement, they are those of a body at a standstill.
+/// Whether the body moves less than half as far as it should on every mesh: its errors under refinement are
+/// then those of a body at a standstill.
 fn locked(context: &Context) -> Option<Classification> {
     if context.mobility.is_empty() || !context.mobility.iter().all(|share| *share < LEAST_MOBILITY) {
         return None;
     }
     let shares: Vec<String> =
         context.mobility.iter().map(|share| format!("{:.1} %", 100.0 * share)).collect();
-    Some(advised(
-        Class::Locked,
-        format!("the body reaches {} of its displacement: volumetric locking", shares.join(", ")),
-        "take the divergence at the cell centres, for the skeleton too where that is what is incompressible",
+    let reason = format!("the body reaches {} of its displacement: volumetric locking", shares.join(", "));
+    Some(Classification::new(Class::Locked, reason).advise(
+        "take the divergence at the cell centres, for the skeleton too if the skeleton is incompressible",
     ))
 }
 
 fn exact(series: &ErrorSeries, context: &Context) -> Option<Classification> {
     let round_off = context.round_off.unwrap_or(0.0).max(f64::MIN_POSITIVE);
-    let levels = series.levels();
-    let below = |error: f64| (0.0..=round_off).contains(&error);
-    if levels.is_empty() || !levels.iter().all(|level| level.error.is_some_and(below)) {
-        return None;
-    }
-    let largest = levels.iter().filter_map(|level| level.error).fold(0.0, f64::max);
-    let reason = format!("every error is round-off: the largest is {}", short(largest));
-    Some(advised(
-        Class::Exact,
-        reason,
-        "make sure that the result is not held against itself; a harder scene shows an order",
-    ))
+    let is_round_off = |error: &f64| (0.0..=round_off).contains(error);
+    let errors: Vec<f64> =
+        series.levels().iter().filter_map(|level| level.error.filter(is_round_off)).collect();
+    (!errors.is_empty() && errors.len() == series.levels().len()).then(|| {
+        let largest = short(errors.iter().copied().fold(0.0, f64::max));
+        Classification::new(Class::Exact, format!("every error is round-off: the largest is {largest}"))
+            .advise("check that the result is not compared with itself; a harder scene shows an order")
+    })
 }
 
 fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
@@ -113,8 +109,8 @@ fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
                 "the error at size {} vanishes while others do not: no discretisation does that",
                 short(size)
             );
-            let advice = "look whether that level is held against itself, or was not run";
-            return Some(advised(Class::NotEvaluable, reason, advice));
+            let advice = "check whether that level was compared with itself, or was not run";
+            return Some(Classification::new(Class::NotEvaluable, reason).advise(advice));
         }
         Some(other) => other.to_string(),
         None if levels.len() < WINDOW => {
@@ -127,14 +123,13 @@ fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
         None => {
             let close = levels.windows(2).find(|pair| pair[0].size < LEAST_RATIO * pair[1].size)?;
             let ratio = close[0].size / close[1].size;
+            let [coarse, fine] = [close[0], close[1]].map(|level| short(level.size));
             format!(
-                "sizes {} and {} are too close for an order: ratio {ratio:.3}, {LEAST_RATIO} is needed",
-                short(close[0].size),
-                short(close[1].size)
+                "sizes {coarse} and {fine} are too close for an order: ratio {ratio:.3}, {LEAST_RATIO} is needed"
             )
         }
     };
-    Some(plain(Class::NotEvaluable, reason))
+    Some(Classification::new(Class::NotEvaluable, reason))
 }
 
 impl EvaluableSeries<'_> {
@@ -148,23 +143,22 @@ impl EvaluableSeries<'_> {
             .or_else(|| self.ups_and_downs())
             .or_else(|| self.alternation())
             .unwrap_or_else(|| judge_window(self));
-        let found = self.poor_reference(context, &found).unwrap_or(found);
-        self.with_odd_level(found)
+        self.with_odd_level(self.poor_reference(context, &found).unwrap_or(found))
     }
 
-    /// The classification with a level that the others contradict named: the window of the finest levels may not see it.
+    /// Names a level that the others contradict: the window of the finest levels may not see it.
     fn with_odd_level(&self, found: Classification) -> Classification {
         let Some(odd) = odd_level(self.points) else { return found };
+        let [size, factor] = [odd.size, odd.factor].map(short);
         let reason = format!(
-            "{}; the level of size {} stands alone: its error is {} times what the others say",
-            found.reason,
-            short(odd.size),
-            short(odd.factor)
+            "{}; the level of size {size} stands alone: its error is {factor} times the value that the others suggest",
+            found.reason
         );
-        let advice = found.advice.unwrap_or_else(|| {
-            format!("look whether the level of size {} is a run of the same case", short(odd.size))
-        });
-        Classification { reason, advice: Some(advice), ..found }
+        let advice = found
+            .advice
+            .clone()
+            .unwrap_or_else(|| format!("check whether the level of size {size} is a run of the same case"));
+        Classification { reason, ..found }.advise(advice)
     }
 
     /// A limit that is not zero, approached from either side.
@@ -176,77 +170,61 @@ impl EvaluableSeries<'_> {
         })
     }
 
-    /// A floor that the levels show by standing still, or by a dip that all of them fit: it needs no limit
-    /// that is only guessed.
+    /// A floor that the levels show by standing still, or by a dip that all of them fit: such a floor needs no
+    /// guessed limit.
     fn seen_floor(&self) -> Option<Classification> {
         let still = self.plateau().filter(|still| still.class == Class::FloorLimited);
         still.or_else(|| fit_cancelling(self.points).ok().map(|fit| self.cancelled(&fit)))
     }
 
-    /// Errors that change their sign on the finest window: between one of either sign there is no order. Once may be
-    /// a passage through zero on the way to somewhere; twice is to and fro. A change before the window is
-    /// that of levels too coarse to count.
+    /// Errors that change sign on the finest window have no order. A single change may be a passage through zero
+    /// on the way to a limit; two are an oscillation. A change before the window is one of levels too coarse to
+    /// count.
     fn changes_of_sign(&self) -> Option<Classification> {
         let changes = |values: &[(f64, f64)]| {
             values.windows(2).filter(|pair| pair[0].1.signum() != pair[1].1.signum()).count()
         };
-        let window = &self.values[self.values.len() - WINDOW..];
-        if changes(window) == 0 {
+        if changes(&self.values[self.values.len() - WINDOW..]) == 0 {
             return None;
         }
         let values: Vec<String> = self.values.iter().map(|value| short(value.1)).collect();
         let values = values.join(", ");
         let times = changes(&self.values);
         Some(if times > 1 {
-            advised(
-                Class::Oscillatory,
-                format!("the sign changes {times} times from level to level: {values}"),
-                "look for cell crossing, waves or a start that differs from level to level",
-            )
+            let reason = format!("the sign changes {times} times from level to level: {values}");
+            Classification::new(Class::Oscillatory, reason).advise(LOOK_FOR_NOISE)
         } else {
-            advised(
-                Class::PreAsymptotic,
-                format!("the sign changes on the finest window, and no order leads through zero: {values}"),
-                "add a finer level: it tells a passage through zero from one to and fro",
-            )
+            let reason =
+                format!("the sign changes on the finest window, where no order is defined: {values}");
+            Classification::new(Class::PreAsymptotic, reason)
+                .advise("add a finer level: it tells a single passage through zero from an oscillation")
         })
     }
 
     /// Rises that no fall makes up for.
     fn growth(&self) -> Option<Classification> {
-        let ((coarse, first), (fine, last)) = (self.coarsest(), self.finest());
         let falls = self.pairs.iter().any(|order| *order > FLAT);
-        let rises = self.pairs.iter().any(|order| *order < -FLAT) || last > 1.3 * first;
+        let rises =
+            self.pairs.iter().any(|order| *order < -FLAT) || self.finest().1 > 1.3 * self.coarsest().1;
+        let [coarse, first, fine, last] = self.ends();
         (rises && !falls).then(|| {
-            advised(
-                Class::Divergent,
-                format!(
-                    "the error grows under refinement, from {} at size {} to {} at {}",
-                    short(first),
-                    short(coarse),
-                    short(last),
-                    short(fine)
-                ),
-                "look at stability and at the reference: the method does not converge to it",
-            )
+            let reason = format!(
+                "the error grows under refinement, from {first} at size {coarse} to {last} at {fine}"
+            );
+            Classification::new(Class::Divergent, reason)
+                .advise("check stability and the reference: the method does not converge to it")
         })
     }
 
     fn round_off(&self, context: &Context) -> Option<Classification> {
-        let (size, error) = self.finest();
-        let round_off = context.round_off.filter(|round_off| error <= *round_off)?;
-        let reason = format!(
-            "the error at size {}, {}, is round-off ({})",
-            short(size),
-            short(error),
-            short(round_off)
-        );
-        let mut found = self.limited(&reason);
+        let round_off = context.round_off.filter(|round_off| self.finest().1 <= *round_off)?;
+        let [.., size, error] = self.ends();
+        let mut found =
+            self.limited(&format!("the error at size {size}, {error}, is round-off ({})", short(round_off)));
         if let Some(floor) = &mut found.floor {
             floor.limiter = Some(LimiterKind::RoundOff);
         }
-        found.advice = Some("drop the finest levels: they show round-off".to_owned());
-        Some(found)
+        Some(found.advise("drop the finest levels: they show round-off"))
     }
 
     /// The finest levels stand still.
@@ -268,79 +246,59 @@ impl EvaluableSeries<'_> {
     }
 
     fn standstill(&self) -> String {
-        let ((size, error), (before, earlier)) = (self.finest(), self.points[self.points.len() - 2]);
-        format!(
-            "refining from size {} to {} leaves the error at {} (was {})",
-            short(before),
-            short(size),
-            short(error),
-            short(earlier)
-        )
+        let (before, earlier) = self.points[self.points.len() - 2];
+        let [before, earlier] = [before, earlier].map(short);
+        let [.., size, error] = self.ends();
+        format!("refining from size {before} to {size} leaves the error at {error} (was {earlier})")
     }
 
     /// Changes of direction, standstills left out.
     fn ups_and_downs(&self) -> Option<Classification> {
         let moves: Vec<_> = self.pairs.iter().filter(|order| order.abs() > FLAT).collect();
         let turns = moves.windows(2).filter(|pair| (*pair[0] > 0.0) != (*pair[1] > 0.0)).count();
-        let (coarse, fine) = (self.coarsest(), self.finest());
+        let [coarse, first, fine, last] = self.ends();
         if turns > 1 {
             let reason = format!(
-                "the error turns {turns} times between {} at size {} and {} at {}: orders {}",
-                short(coarse.1),
-                short(coarse.0),
-                short(fine.1),
-                short(fine.0),
+                "the error turns {turns} times between {first} at size {coarse} and {last} at {fine}: orders {}",
                 orders(&self.pairs)
             );
-            let advice = "look for cell crossing, waves or a start that differs from level to level";
-            return Some(advised(Class::Oscillatory, reason, advice));
+            return Some(Classification::new(Class::Oscillatory, reason).advise(LOOK_FOR_NOISE));
         }
         moves.last().filter(|order| ***order < 0.0)?;
         if let Ok(fit) = fit_cancelling(self.points) {
             return Some(self.cancelled(&fit));
         }
-        let least = self.points.iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(&fine);
-        Some(advised(
-            Class::Divergent,
-            format!(
-                "the error falls to {} at size {} and grows again to {} at {}",
-                short(least.1),
-                short(least.0),
-                short(fine.1),
-                short(fine.0)
-            ),
-            "look at stability on the fine levels, or for two errors of opposite sign that cancel",
+        let least = self.points.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let [size, error] = [least.0, least.1].map(short);
+        let reason = format!("the error falls to {error} at size {size} and grows again to {last} at {fine}");
+        Some(Classification::new(Class::Divergent, reason).advise(
+            "check stability on the fine levels, and look for two errors of opposite sign that cancel",
         ))
     }
 
-    /// The error falls throughout, and its order jumps to and fro.
+    /// The error falls throughout, and its order alternates.
     fn alternation(&self) -> Option<Classification> {
         let [a, b, c] = *self.pairs.last_chunk::<3>()?;
         let (first, second) = (b - a, c - b);
         let jumps = first * second < 0.0 && first.abs().min(second.abs()) > 0.5;
         jumps.then(|| {
-            advised(
-                Class::Oscillatory,
-                format!("the order jumps to and fro under refinement: {}", orders(&self.pairs)),
-                "look whether every level keeps the same path of points per cell and time step",
-            )
+            let reason = format!("the order alternates under refinement: {}", orders(&self.pairs));
+            Classification::new(Class::Oscillatory, reason)
+                .advise("check that every level has the same points per cell and the same step rule")
         })
     }
 
-    /// Errors that the reference is not good enough to show are no evidence of an order.
+    /// Errors near the accuracy of the reference are no evidence of an order.
     fn poor_reference(&self, context: &Context, found: &Classification) -> Option<Classification> {
         let judged = [Class::FloorLimited, Class::Divergent, Class::Oscillatory];
         let least = self.points.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
         let accuracy = context.reference_accuracy.filter(|accuracy| 10.0 * accuracy > least)?;
         (!judged.contains(&found.class)).then(|| {
-            advised(
-                Class::NotEvaluable,
-                format!(
-                    "the reference is good to {} only, and the smallest error is {}",
-                    short(accuracy),
-                    short(least)
-                ),
-                "use a reference ten times better than the smallest error, or leave the finest levels out",
+            let [accuracy, least] = [accuracy, least].map(short);
+            let reason =
+                format!("the reference is only accurate to {accuracy}, and the smallest error is {least}");
+            Classification::new(Class::NotEvaluable, reason).advise(
+                "use a reference ten times better than the smallest error, or leave out the finest levels",
             )
         })
     }

@@ -1,21 +1,21 @@
-//! A series that can be evaluated, and how a floor under it is described.
+//! A series that can be evaluated, and the description of a floor under it.
 
 use crate::class::{Class, Classification, Context, Floor};
 use crate::fit::approach_to_limit::Approach;
 use crate::fit::cancelling_terms::CancellingFit;
 use crate::fit::floor::fit_floor;
 use crate::limiter::{Limiter, LimiterKind, advice, identify};
-use crate::orders::{WINDOW, log_ratio, slope_of};
-use crate::series::{ErrorSeries, Undefined};
-use oedometer_soil::elementary;
+use crate::orders::{WINDOW, log_ratio, pair_order, slope_of};
+use crate::series::Undefined;
+use oedometer_soil::elementary::powf;
 use oedometer_soil::wording::{order, short};
 use std::f64::consts::LN_2;
 
-/// A series that can be evaluated, with what the checks share.
+/// A series that can be evaluated, with the numbers that the checks share.
 pub struct EvaluableSeries<'a> {
     /// Sizes and errors from coarse to fine, all positive.
     pub points: &'a [(f64, f64)],
-    /// The same with the errors' signs, where they have one.
+    /// Sizes and signed errors, where errors have a sign; else `points`.
     pub values: Vec<(f64, f64)>,
     /// Orders between neighbouring levels.
     pub pairs: Vec<f64>,
@@ -29,20 +29,10 @@ pub struct EvaluableSeries<'a> {
     pub limiters: Vec<Limiter>,
 }
 
-/// A classification without order, floor and advice.
-pub fn plain(class: Class, reason: String) -> Classification {
-    Classification { class, reason, advice: None, order: None, floor: None }
-}
-
-/// A classification with advice.
-pub fn advised(class: Class, reason: String, advice: &str) -> Classification {
-    Classification { advice: Some(advice.to_owned()), ..plain(class, reason) }
-}
-
-/// Levels at which a floor can be claimed: three show it, and a fourth could have refuted it.
+/// Fewest levels on which a floor can be claimed: three show it, and a fourth could have refuted it.
 pub const FLOOR_LEVELS: usize = 4;
 
-/// The points with the signs of values of the same size; as they are where the values are others.
+/// The points with the signs of the values, where these are the errors with signs; else the points.
 fn with_signs(points: &[(f64, f64)], signed: &[f64]) -> Vec<(f64, f64)> {
     let same = |(point, value): (&(f64, f64), &f64)| (value.abs() - point.1).abs() <= 1e-9 * point.1;
     if signed.len() != points.len() || !points.iter().zip(signed).all(same) {
@@ -51,7 +41,7 @@ fn with_signs(points: &[(f64, f64)], signed: &[f64]) -> Vec<(f64, f64)> {
     points.iter().zip(signed).map(|(point, value)| (point.0, *value)).collect()
 }
 
-/// `, by the inertia`; of a cause whose height nobody knows, that no other is left.
+/// `, by the inertia`; for a cause of unknown height, that no other cause is known.
 fn put_down_to(limiter: Option<&Limiter>) -> String {
     match limiter {
         None => String::new(),
@@ -68,29 +58,22 @@ fn drift_per_halving(window: &[(f64, f64)], pairs: &[f64]) -> f64 {
 }
 
 impl<'a> EvaluableSeries<'a> {
-    /// A series of (size, error) with what is known of it.
+    /// A series of (size, error) points in a context.
     ///
     /// # Errors
     /// [`Undefined`] where its finest levels have no slope.
     pub fn of(points: &'a [(f64, f64)], context: &Context) -> Result<Self, Undefined> {
-        let pair = |pair: &[(f64, f64)]| log_ratio(pair[0].1, pair[1].1) / log_ratio(pair[0].0, pair[1].0);
+        let known = [
+            (LimiterKind::Reference, "the reference's accuracy", context.reference_accuracy),
+            (LimiterKind::RoundOff, "round-off", context.round_off),
+        ];
         let mut limiters = context.limiters.clone();
-        let known = |kind, name: &str, magnitude: Option<f64>| {
-            magnitude.filter(|magnitude| *magnitude > 0.0).map(|magnitude| Limiter {
-                kind,
-                name: name.to_owned(),
-                magnitude: Some(magnitude),
-                order: None,
-            })
-        };
-        limiters.extend(known(
-            LimiterKind::Reference,
-            "the reference's accuracy",
-            context.reference_accuracy,
-        ));
-        limiters.extend(known(LimiterKind::RoundOff, "round-off", context.round_off));
+        limiters.extend(known.into_iter().filter_map(|(kind, name, magnitude)| {
+            let magnitude = Some(magnitude.filter(|magnitude| *magnitude > 0.0)?);
+            Some(Limiter { magnitude, ..Limiter::new(kind, name) })
+        }));
         let window = &points[points.len().saturating_sub(WINDOW)..];
-        let pairs: Vec<f64> = points.windows(2).map(pair).collect();
+        let pairs: Vec<f64> = points.windows(2).map(pair_order).collect();
         Ok(Self {
             points,
             values: with_signs(points, &context.signed),
@@ -102,24 +85,30 @@ impl<'a> EvaluableSeries<'a> {
         })
     }
 
+    /// Sizes and errors of the coarsest and the finest level, in words.
+    pub fn ends(&self) -> [String; 4] {
+        let (coarse, fine) = (self.coarsest(), self.finest());
+        [coarse.0, coarse.1, fine.0, fine.1].map(short)
+    }
+
     /// Size and error of the finest level.
     pub fn finest(&self) -> (f64, f64) {
         self.points.last().copied().unwrap_or((f64::NAN, f64::NAN))
     }
 
-    /// Share of the finest error that a floor has to have if it is what lowers the order over the finest window,
-    /// 0 where the order does not fall.
+    /// Share of the finest error that a floor must have to explain the falling order over the finest window; 0 where
+    /// the order does not fall.
     ///
-    /// Of `C h^p + F` with the share `s = F/e` the order is `q = p (1 − s)`, and falls by `d = p² s (1 − s)` per unit of
-    /// ln *h*: so that `p = q + d/q` and `s = d/(q² + d)`, half way between the last two levels. The slower the
-    /// order, the smaller the drift that tells.
+    /// The error `C h^p + F` with the floor's share `s = F/e` has the order `q = p (1 − s)`, which falls by
+    /// `d = p² s (1 − s)` per unit of ln *h*. Hence `p = q + d/q` and `s = d/(q² + d)`, half way between the last two
+    /// levels. The lower the order, the smaller the drift that matters.
     pub fn floor_that_would_bend(&self) -> f64 {
         let [.., (before, _), (finest, _)] = *self.points else { return f64::NAN };
         let fall = (-self.drift / LN_2).max(0.0);
         let order = self.pairs.last().map_or(f64::NAN, |last| last.max(0.0));
         let half_way = fall / (order * order + fall);
         let without_floor = order + fall / order;
-        half_way / (half_way + (1.0 - half_way) * elementary::powf(finest / before, 0.5 * without_floor))
+        half_way / (half_way + (1.0 - half_way) * powf(finest / before, 0.5 * without_floor))
     }
 
     /// Size and error of the coarsest level.
@@ -128,7 +117,7 @@ impl<'a> EvaluableSeries<'a> {
     }
 
     /// A floor-limited classification: which levels a floor limits, its cause, and how to lower it to a target.
-    /// `told` is the reason up to what the floor limits.
+    /// `told` is the first half of the sentence.
     fn over_floor(
         &self,
         told: &str,
@@ -141,96 +130,85 @@ impl<'a> EvaluableSeries<'a> {
         let limits_from = self.points.iter().find(|(_, error)| *error <= 2.0 * value);
         let limits_from = limits_from.map_or(self.finest().0, |point| point.0);
         let cause = put_down_to(limiter);
-        Classification {
-            class: Class::FloorLimited,
-            reason: format!("{told} limits the levels from size {} on{cause}", short(limits_from)),
-            advice: Some(advice(value, target.filter(|target| *target > 0.0), limiter, &self.limiters)),
-            order,
-            floor: Some(Floor { value, fitted, limits_from, limiter: limiter.map(|limiter| limiter.kind) }),
-        }
+        let reason = format!("{told} limits the levels from size {} on{cause}", short(limits_from));
+        let target = target.filter(|target| *target > 0.0);
+        let floor = Floor { value, fitted, limits_from, limiter: limiter.map(|limiter| limiter.kind) };
+        Classification { order, floor: Some(floor), ..Classification::new(Class::FloorLimited, reason) }
+            .advise(advice(value, target, limiter, &self.limiters))
     }
 
     /// A converging error and a floor of opposite sign that cancel at one level.
     pub fn cancelled(&self, fit: &CancellingFit) -> Classification {
-        let target = 0.1 * fit.coefficient * elementary::powf(self.finest().0, fit.order);
+        let target = 0.1 * fit.coefficient * powf(self.finest().0, fit.order);
+        let [size, floor] = [fit.cancels_at, fit.floor].map(short);
         let told = format!(
-            "the error falls, cancels near size {} and grows again to a floor of {} of opposite sign, which",
-            short(fit.cancels_at),
-            short(fit.floor)
+            "the error falls, cancels near size {size} and grows again to a floor of {floor} of opposite sign, which"
         );
         self.over_floor(&told, Some(fit.order), Some(target), (fit.floor, true))
     }
 
-    /// A series that goes to a limit which is not zero.
+    /// The first and the last value, in words.
+    fn from_to(&self) -> String {
+        let [first, last] = [self.values[0], self.values[self.values.len() - 1]].map(|value| short(value.1));
+        format!("the error goes from {first} to {last}")
+    }
+
+    /// A series that approaches a limit which is not zero.
     pub fn approaching(&self, found: &Approach) -> Classification {
         let target = 0.1 * (found.at(self.finest().0) - found.limit).abs();
         let told = format!(
-            "the error goes from {} to {} at order {} towards a limit of {}, and the finest level lies where \
-             those before it say: a floor that",
-            short(self.values[0].1),
-            short(self.values[self.values.len() - 1].1),
+            "{} at order {} towards a limit of {}, and the finest level lies where those before it say: a floor that",
+            self.from_to(),
             order(found.order),
             short(found.limit)
         );
         self.over_floor(&told, Some(found.order), Some(target), (found.limit.abs(), true))
     }
 
-    /// A limit that the three finest levels suggest and none confirms.
+    /// A limit that the three finest levels suggest and no other level confirms.
     pub fn may_approach(&self, found: &Approach) -> Classification {
-        let (size, _) = self.finest();
-        advised(
-            Class::PreAsymptotic,
-            format!(
-                "the error goes from {} to {} as if towards a limit of {} at order {}: {} levels cannot tell a \
-                 limit from growth",
-                short(self.values[0].1),
-                short(self.values[self.values.len() - 1].1),
-                short(found.limit),
-                order(found.order),
-                self.points.len()
-            ),
-            &format!(
-                "add a level: at size {} the limit promises {}",
-                short(0.5 * size),
-                short(found.at(0.5 * size))
-            ),
-        )
+        let next = 0.5 * self.finest().0;
+        let reason = format!(
+            "{} as if towards a limit of {} at order {}: {} levels cannot tell a limit from growth",
+            self.from_to(),
+            short(found.limit),
+            order(found.order),
+            self.points.len()
+        );
+        let advice =
+            format!("add a level: at size {} the limit predicts {}", short(next), short(found.at(next)));
+        Classification::new(Class::PreAsymptotic, reason).advise(advice)
     }
 
-    /// The floor that a short series may have, and what is not known.
+    /// The floor that a short series may have.
     pub fn may_be_limited(&self, reason: &str, height: f64) -> Classification {
         let limiter = identify(height, &self.limiters);
         let suspect = limiter.map_or_else(String::new, |limiter| format!(" ({})", limiter.name));
-        advised(
-            Class::PreAsymptotic,
-            format!(
-                "{reason}; {} levels cannot tell a floor of about {}{suspect} from an order that has not settled",
-                self.points.len(),
-                short(height)
-            ),
-            if self.points.len() < FLOOR_LEVELS {
-                "add a finer level: a floor shows itself on four"
-            } else {
-                "add a finer level: a floor stops the error, a lower order does not"
-            },
-        )
+        let reason = format!(
+            "{reason}; {} levels cannot tell a floor of about {}{suspect} from an order that has not settled",
+            self.points.len(),
+            short(height)
+        );
+        Classification::new(Class::PreAsymptotic, reason).advise(if self.points.len() < FLOOR_LEVELS {
+            "add a finer level: a floor shows on four"
+        } else {
+            "add a finer level: a floor stops the error, a lower order does not"
+        })
     }
 
     /// Whether a power and a floor fit the levels far better than a power alone.
     pub fn has_significant_floor(&self) -> bool {
-        fit_floor(&ErrorSeries::of(self.points)).is_ok_and(|fit| fit.significant)
+        fit_floor(self.points).is_ok_and(|fit| fit.significant)
     }
 
     /// A floor-limited classification with the floor fitted, its cause and advice.
     pub fn limited(&self, reason: &str) -> Classification {
-        let series = ErrorSeries::of(self.points);
-        let fit = fit_floor(&series).ok().filter(|fit| fit.significant && fit.residual < 0.1);
+        let fit = fit_floor(self.points).ok().filter(|fit| fit.significant && fit.residual < 0.1);
         let (size, error) = self.finest();
         let value = fit.map_or(error, |fit| fit.floor);
-        let converging = fit.map(|fit| fit.coefficient * elementary::powf(size, fit.order));
+        let target = fit.map(|fit| 0.1 * fit.coefficient * powf(size, fit.order));
         let height = if fit.is_some() { "a floor of" } else { "a floor not above" };
         let told = format!("{reason}; {height} {}", short(value));
-        let target = converging.map(|part| 0.1 * part);
         self.over_floor(&told, fit.map(|fit| fit.order), target, (value, fit.is_some()))
     }
 }

@@ -1,18 +1,18 @@
 //! The class of a steadily falling error, judged on its finest window.
 
-use crate::class::evaluable_series::{EvaluableSeries, FLOOR_LEVELS, plain};
+use crate::class::evaluable_series::{EvaluableSeries, FLOOR_LEVELS};
 use crate::class::{Class, Classification};
 use crate::fit::bending_order::{Bend, explain};
 use oedometer_soil::wording::{order, orders, short};
 
-/// An observed order within this of the formal one is the formal one.
-pub const FORMAL_TOLERANCE: f64 = 0.25;
+/// An observed order this close to the formal one counts as the formal one.
+const FORMAL_TOLERANCE: f64 = 0.25;
 
-/// An order that changes by no more than this per halving of the size has settled. Levels that lie closer change it by
-/// less from pair to pair, however far it still has to go.
-pub const SETTLED: f64 = 0.1;
+/// An order that changes by no more than this per halving of the size has settled. The change is measured per halving
+/// because closer levels change the order by less from pair to pair, however far it still is from its limit.
+const SETTLED: f64 = 0.1;
 
-/// A second term that makes up less of the finest error than this does not govern it.
+/// A second term with a smaller share of the finest error than this does not govern it.
 const GOVERNS: f64 = 0.2;
 
 /// No method here has an order above this.
@@ -21,18 +21,18 @@ const ABSURD: f64 = 6.0;
 /// Judges a series that falls steadily.
 pub fn judge_window(case: &EvaluableSeries) -> Classification {
     let [.., coarse, fine] = *case.pairs.as_slice() else {
-        return plain(Class::NotEvaluable, "fewer than two pairs of levels".to_owned());
+        return Classification::new(Class::NotEvaluable, "fewer than two pairs of levels");
     };
+    let window = format!("order {} on the finest window ({})", order(case.order), orders(&[coarse, fine]));
     let found = match case.formal {
-        Some(formal) => with_formal(case, formal, coarse, fine),
-        None => without_formal(case, coarse, fine),
+        Some(formal) => with_formal(case, &window, formal, coarse, fine),
+        None => without_formal(case, &window, fine),
     };
     let counts = found.class != Class::FloorLimited && found.class != Class::NotEvaluable;
     if counts { Classification { order: Some(case.order), ..found } } else { found }
 }
 
-fn with_formal(case: &EvaluableSeries, formal: f64, coarse: f64, fine: f64) -> Classification {
-    let window = format!("order {} on the finest window ({})", order(case.order), orders(&[coarse, fine]));
+fn with_formal(case: &EvaluableSeries, window: &str, formal: f64, coarse: f64, fine: f64) -> Classification {
     let wanted = order(formal);
     let drift = case.drift;
     // An order below 1 is bent by a floor in proportion: its drift goes with its square.
@@ -42,7 +42,7 @@ fn with_formal(case: &EvaluableSeries, formal: f64, coarse: f64, fine: f64) -> C
     let stays_below = case.order < formal - tolerance && drift < 0.5 * SETTLED;
     let bend = || explain(case.points, Some(formal));
     if falls_away || stays_below {
-        if let Some(found) = bend().and_then(|bend| governed(case, &bend, &window)) {
+        if let Some(found) = bend().and_then(|bend| governed(case, &bend, window)) {
             return found;
         }
         if stays_below && drift.abs() <= SETTLED {
@@ -53,18 +53,14 @@ fn with_formal(case: &EvaluableSeries, formal: f64, coarse: f64, fine: f64) -> C
     let near = |value: f64| (value - formal).abs() <= tolerance;
     // Orders that are both near the formal one are where they go, whatever they do between close levels.
     if near(coarse) && near(fine) && near(case.order) && (fine - coarse).abs() <= FORMAL_TOLERANCE {
-        return plain(Class::Asymptotic, format!("{window}, formal {wanted}"));
+        return Classification::new(Class::Asymptotic, format!("{window}, formal {wanted}"));
     }
     if case.order > formal {
         let dying = matches!(bend(), Some(Bend::Higher(terms)) if terms.low_share(case.finest().0) > 0.1);
         if drift.abs() <= SETTLED && !dying {
             let reason = format!("{window}: steady and above the formal {wanted}");
-            return Classification {
-                advice: Some(
-                    "look whether the scene is too easy, or the samples sit at superconvergent places".into(),
-                ),
-                ..plain(Class::Superconvergent, reason)
-            };
+            return Classification::new(Class::Superconvergent, reason)
+                .advise("check whether the scene is too easy, or the samples lie at superconvergent places");
         }
         let why = if drift > 0.0 { "still rising, as when two terms cancel" } else { "still falling" };
         return unsettled(format!("{window}: above the formal {wanted} and {why}"));
@@ -72,11 +68,12 @@ fn with_formal(case: &EvaluableSeries, formal: f64, coarse: f64, fine: f64) -> C
     unsettled(format!("{window}: not settled at the formal {wanted}"))
 }
 
-fn without_formal(case: &EvaluableSeries, coarse: f64, fine: f64) -> Classification {
-    let window = format!("order {} on the finest window ({})", order(case.order), orders(&[coarse, fine]));
+fn without_formal(case: &EvaluableSeries, window: &str, fine: f64) -> Classification {
     if case.order > ABSURD {
-        let reason = format!("{window}: no method here has an order above {ABSURD}");
-        return plain(Class::Superconvergent, reason);
+        return Classification::new(
+            Class::Superconvergent,
+            format!("{window}: no method here has an order above {ABSURD}"),
+        );
     }
     let drift = case.drift;
     let fall = case.pairs.first().map_or(0.0, |first| first - fine);
@@ -86,13 +83,13 @@ fn without_formal(case: &EvaluableSeries, coarse: f64, fine: f64) -> Classificat
         let settled = |bend: &Bend| (fine - bend.terms().low).abs() <= SETTLED;
         let found = bend
             .filter(|bend| matches!(bend, Bend::Floor(_)) || !settled(bend))
-            .and_then(|bend| governed(case, &bend, &window));
+            .and_then(|bend| governed(case, &bend, window));
         if let Some(found) = found {
             return found;
         }
     }
     if drift.abs() <= SETTLED && !may_be_floor {
-        return plain(Class::Asymptotic, format!("{window}, no formal order known"));
+        return Classification::new(Class::Asymptotic, format!("{window}, no formal order known"));
     }
     unsettled(format!("{window}: not settled"))
 }
@@ -131,11 +128,11 @@ fn governed(case: &EvaluableSeries, bend: &Bend, window: &str) -> Option<Classif
 }
 
 fn contaminated(reason: String, note: &str) -> Classification {
-    let advice = format!("{note}: look for a boundary, a recovery, an integrator or a path of lower order");
-    Classification { advice: Some(advice), ..plain(Class::Contaminated, reason) }
+    let advice =
+        format!("{note}: look for a boundary, a recovery, an integrator or a refinement path of lower order");
+    Classification::new(Class::Contaminated, reason).advise(advice)
 }
 
 fn unsettled(reason: String) -> Classification {
-    let advice = "add a finer level, and look again".to_owned();
-    Classification { advice: Some(advice), ..plain(Class::PreAsymptotic, reason) }
+    Classification::new(Class::PreAsymptotic, reason).advise("add a finer level and look again")
 }

@@ -1,8 +1,11 @@
-//! The classes a series of errors may fall into, and what is said with them.
+//! The classes of a series of errors, and what a classification contains.
 
-pub mod classify;
-pub mod evaluable_series;
-pub mod finest_window;
+mod classify;
+mod evaluable_series;
+mod finest_window;
+
+pub use classify::classify;
+pub use evaluable_series::FLOOR_LEVELS;
 
 use std::fmt;
 
@@ -17,15 +20,15 @@ use oedometer_soil::wording::words;
 pub enum Class {
     /// The order is steady on the finest window, and is the formal one where that is known.
     Asymptotic,
-    /// The error falls, and its order has not settled yet.
+    /// The error falls, but its order has not settled yet.
     PreAsymptotic,
-    /// Something else than the refined size limits the error: it stands still, or goes to a limit that
-    /// is not zero. Four levels at least say so, for a floor is a claim that one more level can refute;
-    /// only round-off, whose height is known, is a floor to fewer.
+    /// Something other than the refined size limits the error: it stands still, or approaches a limit that
+    /// is not zero. This takes at least four levels, because one more level can refute a floor; only
+    /// round-off, whose height is known, is a floor on fewer.
     FloorLimited,
     /// The error goes up and down, or its order does.
     Oscillatory,
-    /// The error grows under refinement, and goes to no limit.
+    /// The error grows under refinement and approaches no limit.
     Divergent,
     /// The order is steady and well above the formal one.
     Superconvergent,
@@ -33,9 +36,9 @@ pub enum Class {
     Exact,
     /// A term of lower order than the formal one governs the fine levels.
     Contaminated,
-    /// The body hardly moves: its cells cannot keep their volume and deform (volumetric locking).
+    /// The body hardly moves: its cells cannot deform at constant volume (volumetric locking).
     Locked,
-    /// Nothing can be said: levels are missing, not finite, too few or too close.
+    /// No class can be given: levels are missing, not finite, too few or too close.
     NotEvaluable,
 }
 
@@ -52,21 +55,20 @@ impl fmt::Display for Class {
     }
 }
 
-/// What is known about a series beside its errors.
+/// What is known about a series besides its errors.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Context {
     /// The order the method should have.
     pub formal_order: Option<f64>,
     /// Errors up to this are round-off; in the unit of the errors. 1e-13 suits relative errors.
     pub round_off: Option<f64>,
-    /// What the reference itself may be off by, in the unit of the errors.
+    /// How far the reference itself may be off, in the unit of the errors.
     pub reference_accuracy: Option<f64>,
     /// What might put a floor under the errors.
     pub limiters: Vec<Limiter>,
     /// Displacement over the exact one at each level, coarse to fine, where it is known.
     pub mobility: Vec<f64>,
-    /// The errors with their signs, coarse to fine, where they have one: those of a settlement. Empty
-    /// for norms of fields.
+    /// Signed errors, coarse to fine, where errors have a sign, as those of a settlement; empty for norms of fields.
     pub signed: Vec<f64>,
 }
 
@@ -85,6 +87,19 @@ pub struct Classification {
     pub order: Option<f64>,
     /// The floor of a floor-limited series.
     pub floor: Option<Floor>,
+}
+
+impl Classification {
+    /// A classification without order, floor and advice.
+    pub fn new(class: Class, reason: impl Into<String>) -> Self {
+        Self { class, reason: reason.into(), advice: None, order: None, floor: None }
+    }
+
+    /// The classification with advice.
+    #[must_use]
+    pub fn advise(self, advice: impl Into<String>) -> Self {
+        Self { advice: Some(advice.into()), ..self }
+    }
 }
 
 /// A floor under a series of errors.

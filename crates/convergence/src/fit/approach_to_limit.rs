@@ -4,8 +4,7 @@
 //! to the reference. The differences between levels tell: they fall with an order. Three levels have
 //! one such order, and any limit fits them; it takes a fourth to confirm what three say.
 
-use crate::fit::least_squares::solve;
-use crate::fit::two_terms::{Exponent, minimum};
+use crate::fit::{Exponent, best_power, fit_powers, order_of_differences};
 use oedometer_soil::elementary::powf;
 
 /// Orders at which differences between levels may fall; slower ones are no approach.
@@ -19,7 +18,7 @@ const NEAR: f64 = 0.01;
 
 /// A limit with the way towards it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Approach {
+pub(crate) struct Approach {
     /// `F`, in the unit of the values.
     pub limit: f64,
     /// `C`.
@@ -30,7 +29,7 @@ pub struct Approach {
 
 /// What the values say of a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Limit {
+pub(crate) enum Limit {
     /// The finest level lies where the three before it said.
     Confirmed(Approach),
     /// The three finest levels say so, and no level confirms it.
@@ -48,43 +47,28 @@ impl Approach {
     /// The curve through three levels whose differences fall and keep their sign.
     fn through(levels: &[(f64, f64)]) -> Option<Self> {
         let [(h1, e1), (h2, e2), (h3, e3)] = *levels else { return None };
+        let order = order_of_differences((e1 - e2) / (e2 - e3), h2 / h3, h1 / h2)?;
         // Sizes in units of the coarsest keep powers in range.
-        let (r2, r3) = (h2 / h1, h3 / h1);
-        let wanted = (e1 - e2) / (e2 - e3);
-        let ratio = |order: f64| (1.0 - powf(r2, order)) / (powf(r2, order) - powf(r3, order));
-        let (mut low, mut high) = ORDERS;
-        let falls = wanted.is_finite() && wanted >= ratio(low) && wanted <= ratio(high);
-        if !falls {
-            return None;
-        }
-        for _ in 0..60 {
-            let middle = f64::midpoint(low, high);
-            if ratio(middle) < wanted { low = middle } else { high = middle }
-        }
-        let order = f64::midpoint(low, high);
-        let scaled = (e2 - e3) / (powf(r2, order) - powf(r3, order));
-        Some(Self { limit: e3 - scaled * powf(r3, order), coefficient: scaled / powf(h1, order), order })
+        let finest = powf(h3 / h1, order);
+        let scaled = (e2 - e3) / (powf(h2 / h1, order) - finest);
+        let found = Self { limit: e3 - scaled * finest, coefficient: scaled / powf(h1, order), order };
+        (ORDERS.0..=ORDERS.1).contains(&order).then_some(found)
     }
 
     /// The best curve for more than three levels.
     fn fitted(levels: &[(f64, f64)]) -> Option<Self> {
         let first = levels.first()?.0;
-        let target: Vec<f64> = levels.iter().map(|level| level.1).collect();
+        let scaled: Vec<_> = levels.iter().map(|(size, value)| (size / first, *value)).collect();
         let weights = vec![1.0; levels.len()];
-        let project = |order: f64| {
-            let powers = levels.iter().map(|level| powf(level.0 / first, order)).collect();
-            solve(&[vec![1.0; levels.len()], powers], &target, &weights)
-        };
-        let off = |order: f64| project(order).map_or(f64::INFINITY, |(_, square)| square);
-        let order = minimum(Exponent::Between(ORDERS.0, ORDERS.1), off);
-        let (found, _) = project(order)?;
+        let order = best_power(&scaled, Exponent::Between(ORDERS.0, ORDERS.1), &weights);
+        let (found, _) = fit_powers(&scaled, &[order], &weights)?;
         Some(Self { limit: found[0], coefficient: found[1] / powf(first, order), order })
     }
 }
 
-/// The limit that values go to while they move away from zero or through it; none where they fall
-/// towards zero, or go nowhere.
-pub fn limit_of(values: &[(f64, f64)]) -> Option<Limit> {
+/// The limit that values approach while they move away from zero or through it; `None` where they fall
+/// towards zero or approach nothing.
+pub(crate) fn limit_of(values: &[(f64, f64)]) -> Option<Limit> {
     let window = values.last_chunk::<3>()?;
     let [before, finest] = [window[1].1, window[2].1];
     let four = values.last_chunk::<4>();

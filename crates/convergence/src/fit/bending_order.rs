@@ -3,11 +3,12 @@
 //! The candidates are fits of two powers with as many free numbers as the levels allow; the one
 //! with the least residual is the explanation, if it is good at all.
 
-use crate::fit::two_terms::{Exponent, TwoTerms, fit_two_terms};
+use crate::fit::Exponent;
+use crate::fit::two_terms::{TwoTerms, fit_two_terms};
 
 /// The second term that explains a falling order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Bend {
+pub(crate) enum Bend {
     /// A floor: the lower exponent is 0.
     Floor(TwoTerms),
     /// A term of lower order than the one sought, or than the one seen on the coarse levels.
@@ -22,7 +23,7 @@ const POOR: f64 = 0.05;
 /// Lowest exponent told apart from a floor.
 const LEAST_ORDER: f64 = 0.3;
 
-/// A second term with less of the finest error than this is none.
+/// A second term with a smaller share of the finest error than this does not count.
 const LEAST_SHARE: f64 = 0.01;
 
 impl Bend {
@@ -35,7 +36,7 @@ impl Bend {
 }
 
 /// The best explanation of a falling order, with the formal order where it is known.
-pub fn explain(points: &[(f64, f64)], formal: Option<f64>) -> Option<Bend> {
+pub(crate) fn explain(points: &[(f64, f64)], formal: Option<f64>) -> Option<Bend> {
     let best = match formal {
         Some(formal) => about_formal(points, formal),
         None => without_formal(points),

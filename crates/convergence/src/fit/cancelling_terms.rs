@@ -1,20 +1,21 @@
 //! A converging error and a floor of opposite sign: `e = |C h^p − F|`.
 //!
-//! Such a series dips where the two cancel and then rises to the floor. The dip is luck and the
-//! rise is no divergence.
+//! Such a series dips where the two cancel and then rises to the floor. The dip is a coincidence,
+//! and the rise is no divergence.
 
-use crate::fit::two_terms::{Exponent, both, minimum};
+use crate::fit::two_terms::both;
+use crate::fit::{Exponent, minimum};
 use crate::series::Undefined;
 use oedometer_soil::elementary;
 
 /// The fit of a dip.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CancellingFit {
-    /// p.
+pub(crate) struct CancellingFit {
+    /// Order `p` of the converging part.
     pub order: f64,
-    /// C.
+    /// Its coefficient `C`.
     pub coefficient: f64,
-    /// F.
+    /// The floor `F`.
     pub floor: f64,
     /// Size at which the two cancel.
     pub cancels_at: f64,
@@ -28,7 +29,7 @@ const POOR: f64 = 0.03;
 ///
 /// # Errors
 /// [`Undefined`] where there are fewer, or one of them cannot be used.
-pub fn fit_cancelling(points: &[(f64, f64)]) -> Result<CancellingFit, Undefined> {
+pub(crate) fn fit_cancelling(points: &[(f64, f64)]) -> Result<CancellingFit, Undefined> {
     let levels = points.len();
     if levels < 5 {
         return Err(Undefined::TooFewLevels { levels, needed: 5 });

@@ -4,13 +4,13 @@
 //! levels and one goes through all but this.
 
 use crate::fit::cancelling_terms::fit_cancelling;
-use crate::fit::least_squares::solve;
-use crate::fit::two_terms::{Exponent, TwoTerms, fit_two_terms};
+use crate::fit::two_terms::{TwoTerms, fit_two_terms};
+use crate::fit::{Exponent, solve};
 use oedometer_soil::elementary::{exp, ln};
 
 /// A level off what the others say.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OddLevel {
+pub(crate) struct OddLevel {
     /// Size of the level.
     pub size: f64,
     /// Its error over what the others say that it is.
@@ -36,7 +36,7 @@ const CLEAR: f64 = 10.0;
 const NEAR_EXPONENTS: f64 = 3.0;
 
 /// The level that stands alone among (size, error) points, where there is one.
-pub fn odd_level(points: &[(f64, f64)]) -> Option<OddLevel> {
+pub(crate) fn odd_level(points: &[(f64, f64)]) -> Option<OddLevel> {
     if points.len() < LEAST_LEVELS {
         return None;
     }

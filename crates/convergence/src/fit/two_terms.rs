@@ -6,12 +6,13 @@
 //! The coefficients are eliminated (variable projection, Golub & Pereyra 1973); only exponents
 //! are searched for.
 
+use crate::fit::{Exponent, minimum};
 use crate::series::Undefined;
 use oedometer_soil::elementary;
 
 /// Two powers fitted to an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TwoTerms {
+pub(crate) struct TwoTerms {
     /// The lower exponent `a`.
     pub low: f64,
     /// The higher exponent `b`.
@@ -22,15 +23,6 @@ pub struct TwoTerms {
     pub high_coefficient: f64,
     /// Root mean square of the relative residuals.
     pub residual: f64,
-}
-
-/// An exponent that is given, or searched for in a range.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Exponent {
-    /// This one.
-    Fixed(f64),
-    /// The best between these two.
-    Between(f64, f64),
 }
 
 impl TwoTerms {
@@ -55,7 +47,11 @@ impl TwoTerms {
 /// # Errors
 /// [`Undefined::TooFewLevels`] when there are not more points than free numbers,
 /// [`Undefined::NotDetermined`] when a coefficient leaves the range of a double.
-pub fn fit_two_terms(points: &[(f64, f64)], low: Exponent, high: Exponent) -> Result<TwoTerms, Undefined> {
+pub(crate) fn fit_two_terms(
+    points: &[(f64, f64)],
+    low: Exponent,
+    high: Exponent,
+) -> Result<TwoTerms, Undefined> {
     let free = |exponent| usize::from(matches!(exponent, Exponent::Between(..)));
     let needed = 3 + free(low) + free(high);
     let (levels, [reference, ..]) = (points.len(), points) else {
@@ -86,7 +82,7 @@ pub fn fit_two_terms(points: &[(f64, f64)], low: Exponent, high: Exponent) -> Re
 }
 
 /// Closest the two exponents may come: nearer powers look the same over a few levels.
-pub const GAP: f64 = 0.25;
+const GAP: f64 = 0.25;
 
 /// The best coefficients for given exponents.
 fn project(points: &[(f64, f64)], low: f64, high: f64) -> TwoTerms {
@@ -118,7 +114,7 @@ fn project(points: &[(f64, f64)], low: f64, high: f64) -> TwoTerms {
 }
 
 /// Unconstrained least squares of `a u + b v = 1` by orthogonalisation.
-pub fn both(columns: &[(f64, f64)]) -> Option<(f64, f64)> {
+pub(crate) fn both(columns: &[(f64, f64)]) -> Option<(f64, f64)> {
     let norm = columns.iter().map(|(u, _)| u * u).sum::<f64>().sqrt();
     let along = columns.iter().map(|(u, v)| u / norm * v).sum::<f64>();
     let rest = || columns.iter().map(|(u, v)| v - along * u / norm);
@@ -126,42 +122,6 @@ pub fn both(columns: &[(f64, f64)]) -> Option<(f64, f64)> {
     let b = rest().sum::<f64>() / square;
     let a = (columns.iter().map(|(u, _)| u / norm).sum::<f64>() - along * b) / norm;
     (a.is_finite() && b.is_finite()).then_some((a, b))
-}
-
-/// Where a function of one exponent is least: a scan, then golden sections about the best place.
-pub fn minimum(exponent: Exponent, value: impl Fn(f64) -> f64) -> f64 {
-    const STEPS: u32 = 48;
-    const SHRINK: f64 = 0.618_033_988_749_894_9;
-    let (from, to) = match exponent {
-        Exponent::Fixed(exponent) => return exponent,
-        Exponent::Between(from, to) => (from, to),
-    };
-    let place = |step: u32| from + (to - from) * f64::from(step) / f64::from(STEPS);
-    let best = (0..=STEPS)
-        .map(|step| (step, value(place(step))))
-        .fold((0, f64::INFINITY), |best, new| if new.1 < best.1 { new } else { best });
-    let (mut left, mut right) = (place(best.0.saturating_sub(1)), place((best.0 + 1).min(STEPS)));
-    let (mut a, mut b) = (right - SHRINK * (right - left), left + SHRINK * (right - left));
-    let (mut at_a, mut at_b) = (value(a), value(b));
-    while right - left > 1e-15 * right.abs().max(1.0) && a < b {
-        if at_a <= at_b {
-            (right, b, at_b) = (b, a, at_a);
-            a = right - SHRINK * (right - left);
-            at_a = value(a);
-        } else {
-            (left, a, at_a) = (a, b, at_b);
-            b = left + SHRINK * (right - left);
-            at_b = value(b);
-        }
-    }
-    let middle = f64::midpoint(left, right);
-    // The end of the range itself may be best, and the scan is never worse than what it found.
-    [from, to, place(best.0)].into_iter().fold(
-        middle,
-        |best, other| {
-            if value(other) < value(best) { other } else { best }
-        },
-    )
 }
 
 #[cfg(test)]

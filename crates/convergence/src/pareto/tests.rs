@@ -1,6 +1,5 @@
 use super::*;
-use crate::class::Context;
-use crate::class::classify::classify;
+use crate::class::{Context, classify};
 use crate::series::ErrorSeries;
 use proptest::prelude::*;
 

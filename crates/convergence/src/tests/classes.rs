@@ -1,7 +1,6 @@
 //! Every series of errors gets its class, and nonsense never passes as asymptotic.
 
-use crate::class::classify::classify;
-use crate::class::{Class, Classification, Context};
+use crate::class::{Class, Classification, Context, classify};
 use crate::limiter::{Limiter, LimiterKind};
 use crate::series::{ErrorSeries, SeriesLevel};
 use proptest::prelude::*;

@@ -3,11 +3,9 @@
 //! The table of right and wrong calls is a snapshot: a rule that changes shows what it gains and what it costs. What is called
 //! wrong there: a per cent of noise on levels a fifth apart moves an order by a tenth, and may hide how a floor bends it.
 
-use crate::class::classify::classify;
-use crate::class::{Class, Classification, Context};
+use crate::class::{Class, Classification, Context, classify};
 use crate::series::ErrorSeries;
-use crate::uncertainty::ValueSeries;
-use crate::uncertainty::grid_convergence::Behaviour;
+use crate::uncertainty::{Behaviour, ValueSeries};
 use std::fmt::Write as _;
 
 const RATIOS: [f64; 6] = [1.2, 1.5, 2.0, 2.5, 3.0, 4.0];

@@ -5,11 +5,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fit::least_squares::solve;
-use crate::fit::two_terms::{Exponent, minimum};
-use crate::series::Undefined;
-use crate::uncertainty::grid_convergence::check;
-use oedometer_soil::elementary;
+use crate::fit::{Exponent, best_power, fit_powers};
+use crate::series::{Undefined, finite_levels};
+use oedometer_soil::elementary::powf;
 
 /// The error models of the procedure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -45,7 +43,7 @@ pub struct LeastSquaresUncertainty {
     pub model: ErrorModel,
     /// Whether the fit weights fine grids more (`w ∝ 1/h`).
     pub weighted: bool,
-    /// Order found by the power law, even where another model was chosen.
+    /// Order of the power law, even where another model was chosen.
     pub observed_order: f64,
     /// Extrapolated value `φ_0`.
     pub extrapolated: f64,
@@ -59,7 +57,7 @@ pub struct LeastSquaresUncertainty {
     pub grids: Vec<GridUncertainty>,
 }
 
-/// Orders looked for by the power law.
+/// Orders that the power law searches.
 const ORDERS: Exponent = Exponent::Between(0.01, 8.0);
 
 /// Fewest grids: three numbers are fitted and a deviation is needed.
@@ -78,42 +76,46 @@ struct Fit {
 /// The procedure for (size, value) pairs in any order, with the formal order of the method.
 ///
 /// # Errors
-/// [`Undefined`] for fewer than four grids, sizes or values that are no numbers, repeated sizes,
-/// and [`Undefined::EqualValues`] where all values are equal to round-off: no uncertainty of zero
-/// is made of that.
-pub fn least_squares_uncertainty(
+/// [`Undefined`] for fewer than four grids, bad or repeated sizes, values that are not finite, and
+/// [`Undefined::EqualValues`] where all values are equal to round-off, which shows no uncertainty of zero.
+pub(crate) fn least_squares_uncertainty(
     grids: &[(f64, f64)],
     formal_order: f64,
 ) -> Result<LeastSquaresUncertainty, Undefined> {
-    let grids = checked(grids, formal_order)?;
+    if grids.len() < LEAST_GRIDS {
+        return Err(Undefined::TooFewLevels { levels: grids.len(), needed: LEAST_GRIDS });
+    }
+    if !formal_order.is_finite() || formal_order < 0.5 {
+        return Err(Undefined::NotDetermined);
+    }
+    let grids = finite_levels(grids)?;
     let largest = grids[0].0;
     let scaled: Vec<_> = grids.iter().map(|(size, value)| (size / largest, *value)).collect();
-    let extremes = |pick: fn(f64, f64) -> f64| grids.iter().map(|grid| grid.1).reduce(pick);
-    let (highest, lowest) = (extremes(f64::max), extremes(f64::min));
-    let range = highest.zip(lowest).map_or(f64::NAN, |(high, low)| high - low);
-    let magnitude = grids.iter().map(|grid| grid.1.abs()).fold(0.0, f64::max);
-    if !range.is_finite() || !magnitude.is_finite() {
+    let highest = grids.iter().map(|grid| grid.1).fold(f64::NEG_INFINITY, f64::max);
+    let lowest = grids.iter().map(|grid| grid.1).fold(f64::INFINITY, f64::min);
+    let range = highest - lowest;
+    if !range.is_finite() {
         return Err(Undefined::NotFinite { size: largest });
     }
-    if range <= 16.0 * f64::EPSILON * magnitude {
+    if range <= 16.0 * f64::EPSILON * highest.abs().max(lowest.abs()) {
         return Err(Undefined::EqualValues);
     }
     let data_range = range / (grids.len() - 1) as f64;
     let power = best(&scaled, &[ErrorModel::PowerLaw])?;
     let observed_order = power.order;
-    let fit = if (0.5..=formal_order).contains(&observed_order) {
-        power
-    } else if observed_order > formal_order {
-        best(&scaled, &[ErrorModel::FirstOrder, ErrorModel::SecondOrder])?
-    } else {
-        let rest = [ErrorModel::FirstOrder, ErrorModel::SecondOrder, ErrorModel::FirstAndSecondOrder];
-        best(&scaled, &rest)?
+    let fit = match observed_order {
+        order if order > formal_order => best(&scaled, &[ErrorModel::FirstOrder, ErrorModel::SecondOrder])?,
+        order if order >= 0.5 => power,
+        _ => best(
+            &scaled,
+            &[ErrorModel::FirstOrder, ErrorModel::SecondOrder, ErrorModel::FirstAndSecondOrder],
+        )?,
     };
     let good = fit.deviation < data_range;
     let credible = (0.5..1.05 * formal_order).contains(&observed_order);
     let safety_factor = if good && credible { 1.25 } else { 3.0 };
     let estimate = |(size, value): &(f64, f64)| {
-        let part = |(exponent, c): &(f64, f64)| c * elementary::powf(size / largest, *exponent);
+        let part = |(exponent, c): &(f64, f64)| c * powf(size / largest, *exponent);
         let error: f64 = fit.terms.iter().map(part).sum();
         let misfit = value - fit.limit - error;
         let uncertainty = if good {
@@ -146,24 +148,13 @@ fn fit(grids: &[(f64, f64)], model: ErrorModel, weighted: bool) -> Option<Fit> {
     let total: f64 = grids.iter().map(|(size, _)| 1.0 / size).sum();
     let weight = |(size, _): &(f64, f64)| if weighted { count / size / total } else { 1.0 };
     let weights: Vec<_> = grids.iter().map(weight).collect();
-    let values: Vec<_> = grids.iter().map(|grid| grid.1).collect();
-    let solution = |exponents: &[f64]| {
-        let mut columns = vec![vec![1.0; grids.len()]];
-        columns.extend(
-            exponents.iter().map(|p| grids.iter().map(|(size, _)| elementary::powf(*size, *p)).collect()),
-        );
-        solve(&columns, &values, &weights)
-    };
     let (exponents, freedom) = match model {
         ErrorModel::FirstOrder => (vec![1.0], count - 2.0),
         ErrorModel::SecondOrder => (vec![2.0], count - 2.0),
         ErrorModel::FirstAndSecondOrder => (vec![1.0, 2.0], count - 3.0),
-        ErrorModel::PowerLaw => {
-            let square = |p: f64| solution(&[p]).map_or(f64::INFINITY, |found| found.1);
-            (vec![minimum(ORDERS, square)], count - 3.0)
-        }
+        ErrorModel::PowerLaw => (vec![best_power(grids, ORDERS, &weights)], count - 3.0),
     };
-    let (coefficients, square) = solution(&exponents)?;
+    let (coefficients, square) = fit_powers(grids, &exponents, &weights)?;
     Some(Fit {
         model,
         weighted,
@@ -172,22 +163,6 @@ fn fit(grids: &[(f64, f64)], model: ErrorModel, weighted: bool) -> Option<Fit> {
         terms: exponents.iter().copied().zip(coefficients[1..].iter().copied()).collect(),
         deviation: (square / freedom).sqrt(),
     })
-}
-
-/// The grids from coarse to fine.
-fn checked(grids: &[(f64, f64)], formal_order: f64) -> Result<Vec<(f64, f64)>, Undefined> {
-    if grids.len() < LEAST_GRIDS {
-        return Err(Undefined::TooFewLevels { levels: grids.len(), needed: LEAST_GRIDS });
-    }
-    if !formal_order.is_finite() || formal_order < 0.5 {
-        return Err(Undefined::NotDetermined);
-    }
-    check(grids)?;
-    let mut grids = grids.to_vec();
-    grids.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let same = grids.windows(2).find(|pair| pair[0].0 <= pair[1].0 * (1.0 + 1e-9));
-    same.map_or(Ok(()), |pair| Err(Undefined::SameSize { size: pair[1].0 }))?;
-    Ok(grids)
 }
 
 #[cfg(test)]

@@ -1,15 +1,19 @@
-//! How far a value without an exact one may be off: all that refinement alone tells of it.
+//! Numerical uncertainty of a value that has no exact solution, from refinement alone.
 //!
 //! Behaviour is decided first. Four levels and more are fitted by least squares (Eça & Hoekstra
 //! 2014); three give the grid convergence index (Roache 1998; Celik et al. 2008). A value that
-//! diverges, or that is the same on all levels, has no uncertainty that could pass a test.
+//! diverges, or that is equal on all levels, has no uncertainty that could pass a test.
 
-pub mod eca_hoekstra;
-pub mod grid_convergence;
+mod eca_hoekstra;
+mod grid_convergence;
+
+pub use eca_hoekstra::{ErrorModel, GridUncertainty, LeastSquaresUncertainty};
+pub use grid_convergence::{Behaviour, GridConvergence, ThreeGrids};
 
 use crate::series::{ErrorSeries, SeriesLevel, Undefined};
-use crate::uncertainty::eca_hoekstra::{LeastSquaresUncertainty, least_squares_uncertainty};
-use crate::uncertainty::grid_convergence::{Behaviour, SAFETY_ASSUMED, ThreeGrids, three_grids};
+pub(crate) use eca_hoekstra::least_squares_uncertainty;
+use grid_convergence::SAFETY_ASSUMED;
+pub(crate) use grid_convergence::three_grids;
 use serde::{Deserialize, Serialize};
 
 /// Levels that an index needs.
@@ -30,11 +34,11 @@ pub enum Estimator {
     LeastSquares,
     /// Grid convergence index of the finest three levels (Celik et al. 2008).
     GridConvergenceIndex,
-    /// Three times the range of three values that go to and fro (Eça & Hoekstra 2009).
+    /// Three times the range of three values that go up and down (Eça & Hoekstra 2009).
     Range,
 }
 
-/// What refinement tells of a value.
+/// What refinement tells about a value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NumericalUncertainty {
     /// Sizes and values from coarse to fine.
@@ -43,7 +47,7 @@ pub struct NumericalUncertainty {
     pub finest_three: ThreeGrids,
     /// Least squares over all levels, where there are enough.
     pub least_squares: Option<LeastSquaresUncertainty>,
-    /// What `uncertainty` is from.
+    /// Where `uncertainty` comes from.
     pub estimator: Estimator,
     /// Uncertainty of the finest value, in its unit, with 95 % coverage intended.
     pub uncertainty: f64,
@@ -60,8 +64,8 @@ impl ValueSeries {
         Self { levels }
     }
 
-    /// Differences of each level from the next finer one, with the size of the coarser. They fall with the order of the
-    /// values; values that go to and fro have differences of either sign.
+    /// Difference of each level from the next finer one, with the size of the coarser. Differences fall with the order
+    /// of the values; those of values that go up and down change sign.
     pub fn signed_differences(&self) -> Vec<(f64, Option<f64>)> {
         let difference = |pair: &[(f64, Option<f64>)]| {
             (pair[0].0, pair[0].1.zip(pair[1].1).map(|(coarse, fine)| coarse - fine))
@@ -69,7 +73,7 @@ impl ValueSeries {
         self.levels.windows(2).map(difference).collect()
     }
 
-    /// Their absolute values, a series of errors.
+    /// The absolute differences, as a series of errors.
     pub fn differences(&self) -> ErrorSeries {
         let level = |(size, error): (f64, Option<f64>)| SeriesLevel { size, error: error.map(f64::abs) };
         ErrorSeries::new(self.signed_differences().into_iter().map(level).collect())
@@ -78,8 +82,8 @@ impl ValueSeries {
     /// The uncertainty of the finest value, by the formal order of the method.
     ///
     /// # Errors
-    /// [`Undefined`] for fewer than three levels, missing ones, sizes and values that are no
-    /// numbers, equal values, and values that do not converge.
+    /// [`Undefined`] for fewer than three levels, missing ones, bad sizes, values that are not finite, equal values,
+    /// and values that do not converge.
     pub fn uncertainty(&self, formal_order: f64) -> Result<NumericalUncertainty, Undefined> {
         let values = self
             .levels

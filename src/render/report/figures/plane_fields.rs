@@ -9,7 +9,7 @@ use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::{StudyResults, stiffness_sweeps};
 use crate::render::table::{Cell, Mood, Table, columns};
-use oedometer_convergence::class::Class;
+use oedometer_convergence::Class;
 use oedometer_exact::exact_error::ExactError;
 
 /// Cells over the height of the runs whose fields are drawn.

@@ -10,9 +10,7 @@ use crate::study::choice_tables::Named;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE, Selection, SeriesExpectation};
 use crate::study::file::{ExpectTable, LevelTable};
 use crate::study::inputs::One;
-use oedometer_convergence::series_demand::{
-    ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand as Demand,
-};
+use oedometer_convergence::{ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand as Demand};
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::scene::SceneKind;
 use std::ops::Range;

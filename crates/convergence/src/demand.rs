@@ -2,7 +2,7 @@
 
 use crate::class::Class;
 
-/// A two-sided band about an order: an order that is too high is no better than one too low.
+/// A two-sided band about an order: an order that is too high is as suspect as one too low.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrderBand {
     /// The order expected.
@@ -24,7 +24,7 @@ pub struct ErrorBound {
     pub above: f64,
 }
 
-/// Where the floor under the errors must lie; none at all counts as 0.
+/// Where the floor under the errors must lie; no floor counts as 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FloorBand {
     /// Lowest floor allowed, in the unit of the errors.
@@ -33,16 +33,16 @@ pub struct FloorBand {
     pub below: f64,
 }
 
-/// Marks an expectation that is known not to be met.
+/// Marks an expectation that is known to fail.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownFailure {
     /// Whether meeting the expectation after all is a failure.
     pub strict: bool,
-    /// Why it is not met.
+    /// Why it fails.
     pub reason: String,
 }
 
-/// What is expected of one series; everything asked is judged.
+/// What is expected of one series; every part that is given is judged.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SeriesDemand {
     /// Order on the finest window.
@@ -59,7 +59,7 @@ pub struct SeriesDemand {
     pub oscillation_below: Option<f64>,
     /// Bound on the numerical uncertainty of the finest value, over that value.
     pub uncertainty_below: Option<f64>,
-    /// That the expectation is known not to be met.
+    /// Marks the expectation as known to fail.
     pub xfail: Option<KnownFailure>,
 }
 
@@ -83,60 +83,58 @@ impl SeriesDemand {
         self.class.or_else(|| self.order.map(|_| Class::Asymptotic))
     }
 
-    /// What is wrong with the expectation itself; such a one never passes.
+    /// What is wrong with the expectation itself; such an expectation never passes.
     pub fn problems(&self) -> Vec<String> {
-        let mut problems = Vec::new();
-        let mut demand = |met: bool, problem: &str| {
-            if !met {
-                problems.push(problem.to_owned());
-            }
-        };
         let positive = |value: f64| value.is_finite() && value > 0.0;
         let width = |value: f64| value.is_finite() && value >= 0.0;
-        if let Some(band) = self.order {
-            demand(positive(band.value), "the order expected must be a positive number");
-            demand(
-                width(band.minus) && width(band.plus),
-                "`minus` and `plus` of the order must be numbers from 0 on",
-            );
-        }
-        if let Some(at) = self.at {
-            demand(positive(at.size), "the level of `at` must have a positive size");
-            demand(positive(at.below), "`below` of `at` must be a positive number");
-            demand(
-                width(at.above) && at.above < at.below,
-                "`above` of `at` must be a number from 0 on and smaller than `below`",
-            );
-        }
-        if let Some(spread) = self.spread {
-            demand(
-                positive(spread.size) && positive(spread.below),
+        let asks = [
+            self.order.is_some(),
+            self.at.is_some(),
+            self.class.is_some(),
+            self.floor.is_some(),
+            self.spread.is_some(),
+            self.oscillation_below.is_some(),
+            self.uncertainty_below.is_some(),
+        ];
+        let rules = [
+            (
+                self.order.is_none_or(|band| positive(band.value)),
+                "the expected order must be a positive number",
+            ),
+            (
+                self.order.is_none_or(|band| width(band.minus) && width(band.plus)),
+                "`minus` and `plus` of the order must be 0 or more",
+            ),
+            (self.at.is_none_or(|at| positive(at.size)), "the level of `at` must have a positive size"),
+            (self.at.is_none_or(|at| positive(at.below)), "`below` of `at` must be a positive number"),
+            (
+                self.at.is_none_or(|at| width(at.above) && at.above < at.below),
+                "`above` of `at` must be 0 or more and smaller than `below`",
+            ),
+            (
+                self.spread.is_none_or(|spread| positive(spread.size) && positive(spread.below)),
                 "`spread` needs a level of a positive size and a positive bound",
-            );
-        }
-        if let Some(floor) = self.floor {
-            demand(
-                width(floor.above) && positive(floor.below) && floor.above <= floor.below,
+            ),
+            (
+                self.floor.is_none_or(|floor| {
+                    width(floor.above) && positive(floor.below) && floor.above <= floor.below
+                }),
                 "the floor must lie between `above`, 0 or more, and a larger `below`",
-            );
-        }
-        if let Some(bound) = self.oscillation_below {
-            demand(bound.is_finite(), "the bound on the oscillation must be a number");
-        }
-        if let Some(bound) = self.uncertainty_below {
-            demand(positive(bound), "the bound on the uncertainty must be a positive number");
-        }
-        if let Some(known) = &self.xfail {
-            demand(!known.reason.trim().is_empty(), "a known failure needs a reason");
-        }
-        let asked = self.order.is_some()
-            || self.at.is_some()
-            || self.class.is_some()
-            || self.floor.is_some()
-            || self.spread.is_some()
-            || self.oscillation_below.is_some()
-            || self.uncertainty_below.is_some();
-        demand(asked, "the expectation asks for nothing");
-        problems
+            ),
+            (
+                self.oscillation_below.is_none_or(f64::is_finite),
+                "the bound on the oscillation must be a number",
+            ),
+            (
+                self.uncertainty_below.is_none_or(positive),
+                "the bound on the uncertainty must be a positive number",
+            ),
+            (
+                self.xfail.as_ref().is_none_or(|known| !known.reason.trim().is_empty()),
+                "a known failure needs a reason",
+            ),
+            (asks.contains(&true), "the expectation asks for nothing"),
+        ];
+        rules.into_iter().filter(|(met, _)| !met).map(|(_, problem)| problem.to_owned()).collect()
     }
 }

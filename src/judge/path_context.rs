@@ -1,0 +1,293 @@
+//! What is known along a path of runs besides the errors: formal order, possible causes of a floor, signs,
+//! mobility, oscillation, and the values of quantities without a reference.
+
+use crate::case::Case;
+use crate::case::norm::Norm;
+use crate::case::quantity::{Quantity, Sample};
+use crate::judge::paths::{Path, level_size};
+use crate::judge::verdict::Beside;
+use crate::measure::fields::exact_fields::exact_samples;
+use crate::measure::fields::norms::relative_error;
+use crate::measure::fields::oscillation::reversal;
+use crate::measure::fields::plane_field::PlaneField;
+use crate::measure::known_references::known_reference;
+use crate::record::Record;
+use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
+use oedometer_convergence::{Context, Limiter, LimiterKind, SeriesDemand, ValueSeries};
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_mpm::run::TimeStepRule;
+use oedometer_mpm::scene::column::column_parameters;
+
+/// Errors up to this are round-off of a long run.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Order of the values where neither the method nor the study promises one.
+const USUAL_ORDER: f64 = 2.0;
+
+impl Path<'_> {
+    /// What is known besides the errors: formal order, accuracy of the reference, and the model's
+    /// difference where the reference does not solve the scene's own equations.
+    pub(crate) fn context(&self, measure: &Measure) -> Context {
+        let case = &self.records[0].case;
+        let finest = self.records[self.records.len() - 1];
+        let used = finest.references.iter().find(|used| used.name == measure.reference);
+        Context {
+            formal_order: (self.axis == Axis::Cells).then(|| formal_order(case, measure)).flatten(),
+            round_off: Some(ROUND_OFF),
+            reference_accuracy: used.map(|used| used.tail_bound),
+            limiters: self.limiters(measure),
+            mobility: self.mobility(measure),
+            signed: self.signed(measure),
+        }
+    }
+
+    /// Signed errors of single numbers, a settlement or a value without a reference; empty for norms of fields.
+    fn signed(&self, measure: &Measure) -> Vec<f64> {
+        if measure.norm != Norm::Relative && measure.reference != NO_REFERENCE {
+            return Vec::new();
+        }
+        self.signed_levels(measure).into_iter().filter_map(|level| level.1).collect()
+    }
+
+    /// Settlement over the exact one at each level, for the errors of displacements: it is near zero for a locked body.
+    fn mobility(&self, measure: &Measure) -> Vec<f64> {
+        if !matches!(measure.quantity, Quantity::Displacement | Quantity::Settlement) {
+            return Vec::new();
+        }
+        let (quantity, sample, norm) = (Quantity::Settlement, Sample::Surface, Norm::Relative);
+        let settlement = Measure { quantity, sample, norm, ..measure.clone() };
+        self.records.iter().filter_map(|record| Some(1.0 + settlement.error(record)?.value)).collect()
+    }
+
+    /// Everything that might limit an error along the path, but for its reference's accuracy.
+    pub(crate) fn limiters(&self, measure: &Measure) -> Vec<Limiter> {
+        let finest = self.records[self.records.len() - 1];
+        model_limiter(finest, measure)
+            .into_iter()
+            .chain(self.mesh_limiter(measure))
+            .chain(self.held_limiters(measure))
+            .collect()
+    }
+
+    /// What a series over meshes keeps while the mesh is refined: a step rule that does not follow the mesh,
+    /// and the points per cell where points move through it. How high a floor they cause is not known
+    /// without varying them.
+    fn held_limiters(&self, measure: &Measure) -> Vec<Limiter> {
+        let case = &self.records[0].case;
+        // What an attached solver keeps while the mesh is refined is not known here.
+        if self.axis != Axis::Cells || measure.reference == NEXT_FINER || case.is_attached() {
+            return Vec::new();
+        }
+        let moves = case.method.configuration_or(case.scene.configuration()).moves_points();
+        let points = moves.then(|| Limiter::new(LimiterKind::PointsPerCell, "the points per cell"));
+        step_limiter(case).into_iter().chain(points).collect()
+    }
+
+    /// Along any other axis the mesh limits the error.
+    fn mesh_limiter(&self, measure: &Measure) -> Option<Limiter> {
+        (self.axis != Axis::Cells && measure.reference != NEXT_FINER)
+            .then(|| Limiter { order: Some(2.0), ..Limiter::new(LimiterKind::Mesh, "the mesh") })
+    }
+
+    /// Everything that a demand asks besides the errors.
+    pub(crate) fn beside(
+        &self,
+        demand: &SeriesDemand,
+        measure: &Measure,
+        formal_order: Option<f64>,
+    ) -> Beside {
+        let order = formal_order.or(demand.order.map(|band| band.value)).unwrap_or(USUAL_ORDER);
+        Beside {
+            oscillation: demand.oscillation_below.and_then(|_| self.oscillation(demand, measure)),
+            uncertainty: demand.uncertainty_below.map(|_| self.values(measure).uncertainty(order)),
+        }
+    }
+
+    /// The values of a quantity without a reference, over its scale: a settlement over
+    /// the final one of small strain, a pressure at a place over the load.
+    pub(crate) fn values(&self, measure: &Measure) -> ValueSeries {
+        let level = |record: &Record| (level_size(record, self.axis), value_of(record, measure));
+        ValueSeries::new(self.asked(measure).into_iter().map(level).collect())
+    }
+
+    /// Spurious oscillation of the profile at the level that a demand names, else at the finest.
+    ///
+    /// In a column, the variation beyond the net changes that the exact profile has too, over those; in
+    /// a plane, the variation along all rows and columns of points over that of the exact field, less one.
+    fn oscillation(&self, demand: &SeriesDemand, measure: &Measure) -> Option<f64> {
+        let record = self.bounded_level(demand);
+        if record.case.scene.has_plane_fields() {
+            let is_measured = (measure.quantity, measure.sample) == (Quantity::Pressure, Sample::Points);
+            let field = PlaneField::of(record, measure.time_factor).ok()?;
+            return field.filter(|_| is_measured).map(|field| field.oscillation_index());
+        }
+        let case = &record.case;
+        let samples = measure.sample.of(record.snapshot(measure.time_factor)?)?;
+        let kind = measure.reference.parse::<ReferenceKind>().ok()?.of_soil(&case.material);
+        let reference = known_reference(case, kind, &[measure.time_factor]).ok()?;
+        let exact = exact_samples(case, &reference, measure.time_factor, samples).ok()?;
+        reversal(measure.quantity.field(samples)?, measure.quantity.field(&exact)?)
+    }
+}
+
+/// Order in the cell size that a method's operators promise at small strain, where they promise
+/// one: constant fields in a cell are of first order at points and of second at the centres.
+fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
+    let method = &case.method;
+    if case.is_attached() {
+        return None;
+    }
+    let by_points = |second: bool| if second { 2.0 } else { 1.0 };
+    match (measure.quantity, measure.sample) {
+        (Quantity::Pressure, Sample::Points) => {
+            Some(by_points(method.uses_patch() || method.has_nodal_pressure()))
+        }
+        (Quantity::EffectiveStress, Sample::Points) => Some(by_points(method.strain.is_composite())),
+        (Quantity::Pressure | Quantity::EffectiveStress, Sample::Centres)
+        | (Quantity::Settlement, _)
+        | (Quantity::Displacement, Sample::Nodes) => Some(2.0),
+        _ => None,
+    }
+}
+
+/// The floor that the error in time puts under errors on ever finer meshes, where the step does not fall
+/// with the cells.
+fn step_limiter(case: &Case) -> Option<Limiter> {
+    let of_steps = case.integrator.order_in_time(&case.settings);
+    let (name, order) = match case.time_step {
+        TimeStepRule::Stable(_) | TimeStepRule::Courant(_) => return None,
+        TimeStepRule::Seconds(_) => ("the time step", Some(of_steps)),
+        TimeStepRule::Growth(_) => ("`growth`", Some(of_steps)),
+        TimeStepRule::Tolerance(_) => ("`tolerance`", None),
+    };
+    Some(Limiter { order, ..Limiter::new(LimiterKind::Step, name) })
+}
+
+/// The floor that a reference of other equations puts under an error: its own distance from the
+/// scene's reference, in the same norm and at the same places.
+fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
+    let case = &finest.case;
+    let kind: ReferenceKind = measure.reference.parse().ok()?;
+    let difference = case.scene.model_difference(kind, &case.material)?;
+    let of = |kind: ReferenceKind| known_reference(case, kind, &[measure.time_factor]).ok();
+    let (own, other) = (of(case.scene.references()[0].of_soil(&case.material))?, of(kind)?);
+    let magnitude = if measure.quantity == Quantity::Settlement {
+        let settlement = |reference: &Reference| reference.settlement(measure.time_factor).ok();
+        (settlement(&own)? / settlement(&other)? - 1.0).abs()
+    } else {
+        let snapshot = finest.snapshot(measure.time_factor)?;
+        let samples = measure.sample.of(snapshot).unwrap_or(&snapshot.nodes);
+        let exact = |reference| exact_samples(case, reference, measure.time_factor, samples).ok();
+        let (own, other) = (exact(&own)?, exact(&other)?);
+        let field = |samples| measure.quantity.field(samples);
+        relative_error(measure.norm, field(&own)?, field(&other)?, &samples.volume)?
+    };
+    Some(Limiter { magnitude: Some(magnitude), ..Limiter::new(LimiterKind::Model, difference) })
+}
+
+/// The value of a run: its settlement, or a field between the two cell centres about the probe.
+fn value_of(record: &Record, measure: &Measure) -> Option<f64> {
+    let case = &record.case;
+    let snapshot = record.snapshot(measure.time_factor)?;
+    let final_settlement = column_parameters(&case.column, &case.material).final_settlement();
+    let scale = match measure.quantity {
+        Quantity::Settlement => return Some(snapshot.settlement / final_settlement),
+        Quantity::Pressure | Quantity::EffectiveStress => case.column.load,
+        Quantity::Displacement => final_settlement,
+    };
+    let height = (1.0 - measure.probe?) * case.column.height;
+    let field = measure.quantity.field(&snapshot.centres)?;
+    Some(between(&snapshot.centres.initial_height, field, height)? / scale)
+}
+
+/// A field at a height between two of its own, which ascend; none beyond the ends.
+fn between(heights: &[f64], field: &[f64], height: f64) -> Option<f64> {
+    let upper = heights.iter().position(|one| *one >= height)?;
+    if heights[upper] == height {
+        return field.get(upper).copied();
+    }
+    let lower = upper.checked_sub(1)?;
+    let share = (height - heights[lower]) / (heights[upper] - heights[lower]);
+    Some(field.get(lower)? + share * (field.get(upper)? - field.get(lower)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::case::norm::Norm;
+    use crate::case::quantity::Sample;
+    use crate::judge::paths::{first_norm, paths};
+    use oedometer_convergence::{Class, Classification};
+    use oedometer_mpm::run::integrator::IntegratorKind;
+
+    fn records(rule: &str, cells: &str) -> Vec<Record> {
+        let text = format!(
+            "title = \"Causes\"\nscene = \"terzaghi\"\noutput = {{ time_factors = [0.05, 0.2] }}\n[[sweep]]\n\
+             method = [\"GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = {cells}\ntime_step = [{rule}]\n"
+        );
+        records_of(&text)
+    }
+
+    fn class_of(records: &[Record], quantity: Quantity, reference: &str, time_factor: f64) -> Classification {
+        let all = paths(records, Axis::Cells);
+        let sample = if quantity == Quantity::Settlement { Sample::Surface } else { Sample::Points };
+        let norm: Norm = first_norm(quantity);
+        let reference = reference.to_owned();
+        let measure = Measure { quantity, sample, norm, reference, time_factor, probe: None };
+        all[0].summary(&measure).classification
+    }
+
+    #[test]
+    fn a_floor_of_the_step_rule_names_the_rule() {
+        let runs = records("{ tolerance = 1e-3 }", "[5, 10, 20, 40, 80, 160]");
+        let found = class_of(&runs, Quantity::Pressure, "terzaghi", 0.2);
+        assert_eq!(found.class, Class::FloorLimited, "{found:?}");
+        assert_eq!(found.floor.expect("a floor").limiter, Some(LimiterKind::Step));
+        assert!(found.advice.expect("advice").starts_with("lower `tolerance` by"), "{}", found.reason);
+        // Where the model's difference is of the floor's height, it is the cause.
+        let model = class_of(&runs, Quantity::Pressure, "terzaghi-incompressible", 0.2);
+        assert_eq!(model.floor.expect("a floor").limiter, Some(LimiterKind::Model), "{}", model.reason);
+    }
+
+    #[test]
+    fn a_settlement_that_passes_through_zero_goes_to_the_difference_of_the_models() {
+        let runs = records("{ growth = 0.002 }", "[10, 20, 40, 80]");
+        let found = class_of(&runs, Quantity::Settlement, "terzaghi-incompressible", 0.05);
+        assert_eq!(found.class, Class::FloorLimited, "{found:?}");
+        let floor = found.floor.expect("a floor");
+        assert_eq!(floor.limiter, Some(LimiterKind::Model));
+        // Settlements without the water's storage differ by 4.0e-4 at T_v = 0.05.
+        assert!((floor.value / 4.0e-4 - 1.0).abs() < 0.05, "{floor:?}");
+        let three = class_of(&runs[..3], Quantity::Settlement, "terzaghi-incompressible", 0.05);
+        assert_ne!(three.class, Class::FloorLimited, "{three:?}");
+    }
+
+    #[test]
+    fn steps_that_fall_with_the_cells_are_no_cause_and_held_ones_are() {
+        let named = |rule: &str| {
+            let runs = records(rule, "[4, 8]");
+            step_limiter(&runs[0].case).map(|limiter| (limiter.name, limiter.order))
+        };
+        assert_eq!(named("{ growth = 0.02 }"), Some(("`growth`".to_owned(), Some(2.0))));
+        assert_eq!(named("{ seconds = 0.1 }"), Some(("the time step".to_owned(), Some(2.0))));
+        assert_eq!(named("{ tolerance = 1e-3 }"), Some(("`tolerance`".to_owned(), None)));
+        let mut case = records("{ growth = 0.02 }", "[4, 8]").remove(0).case;
+        case.integrator = IntegratorKind::SemiImplicit;
+        assert_eq!(step_limiter(&case).and_then(|limiter| limiter.order), Some(1.0));
+        for rule in [TimeStepRule::Stable(0.8), TimeStepRule::Courant(0.5)] {
+            assert_eq!(step_limiter(&Case { time_step: rule, ..case.clone() }), None);
+        }
+    }
+
+    #[test]
+    fn a_probe_lies_between_centres_and_never_beyond_them() {
+        let (heights, field) = ([0.25, 0.75], [1.0, 3.0]);
+        assert_eq!(between(&heights, &field, 0.5), Some(2.0));
+        assert_eq!(between(&heights, &field, 0.25), Some(1.0));
+        assert_eq!(between(&heights, &field, 0.75), Some(3.0));
+        assert_eq!(between(&heights, &field, 0.2), None);
+        assert_eq!(between(&heights, &field, 0.8), None);
+        assert_eq!(between(&heights, &[], 0.5), None);
+    }
+}
