@@ -4,7 +4,7 @@ use crate::campaign::cpu_clock::{process_seconds, thread_seconds};
 use crate::campaign::deadline::Deadline;
 use crate::case::work_estimate::MOST_PROBE_STEPS;
 use crate::case::{Case, Task};
-use crate::measure::case_record::{record_of, record_of_critical_step, record_of_stopped_search};
+use crate::measure::record::{record_of, record_of_critical_step, record_of_stopped_search};
 use crate::record::machines::Machine;
 use crate::record::{Record, Status, WallSample};
 use oedometer_exact::exact_error::{ExactError, normal};

@@ -12,7 +12,7 @@ use crate::foreign::wholeness::states_at_outputs;
 use crate::foreign::{ending, process};
 use crate::import::mapping::Mapping;
 use crate::import::table::SampledState;
-use crate::measure::attached_record::record_of_attached;
+use crate::measure::record::record_of_attached;
 use crate::record::attached_run::AttachedRun;
 use crate::record::machines::Machine;
 use crate::record::{Record, Status, WallSample};

@@ -3,8 +3,8 @@
 use crate::judge::explanation::place_of_attached;
 use crate::judge::judgement::Judgement;
 use crate::judge::verdict::{BELOW, Check, IN, Verdict, VerdictOutcome};
-use crate::measure::largest::{larger, largest};
-use crate::measure::pressure_peak::pressure_peak;
+use crate::measure::other_measures::pressure_peak;
+use crate::measure::statistics::{larger, largest};
 use crate::record::{Balance, LayerBalance, Record};
 use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
 use oedometer_convergence::{Class, Classification};

@@ -74,7 +74,7 @@ pub fn paths<'a>(records: impl IntoIterator<Item = &'a Record>, axis: Axis) -> V
 }
 
 /// Groups things by a key, groups and things in their order of appearance.
-pub(crate) fn grouped<T, K: Copy + Eq + Hash>(
+pub(crate) fn grouped<T, K: Clone + Eq + Hash>(
     things: impl IntoIterator<Item = T>,
     key: impl Fn(&T) -> K,
 ) -> Vec<(K, Vec<T>)> {
@@ -82,7 +82,7 @@ pub(crate) fn grouped<T, K: Copy + Eq + Hash>(
     let mut places: HashMap<K, usize> = HashMap::new();
     for thing in things {
         let key = key(&thing);
-        let place = *places.entry(key).or_insert(groups.len());
+        let place = *places.entry(key.clone()).or_insert(groups.len());
         match groups.get_mut(place) {
             Some((_, group)) => group.push(thing),
             None => groups.push((key, vec![thing])),
@@ -236,6 +236,24 @@ fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f
 /// The norm in which a quantity is reported first.
 pub fn first_norm(quantity: Quantity) -> Norm {
     if quantity == Quantity::Settlement { Norm::Relative } else { Norm::L2 }
+}
+
+/// A quantity in its first norm, against a reference at a time factor.
+pub fn first_measure(quantity: Quantity, sample: Sample, reference: &str, time_factor: f64) -> Measure {
+    let (norm, reference) = (first_norm(quantity), reference.to_owned());
+    Measure { quantity, sample, norm, reference, time_factor, probe: None }
+}
+
+/// The size of a record's error of a quantity in its first norm.
+pub fn first_error(
+    record: &Record,
+    quantity: Quantity,
+    sample: Sample,
+    reference: &str,
+    time_factor: f64,
+) -> Option<f64> {
+    let row = record.error(quantity, sample, first_norm(quantity), reference, time_factor)?;
+    Some(row.value.abs())
 }
 
 #[cfg(test)]

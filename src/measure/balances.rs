@@ -1,7 +1,7 @@
 //! What a run keeps: the state at its start, masses, forces, and its settlement curve.
 
 use crate::case::Case;
-use crate::measure::largest::largest;
+use crate::measure::statistics::largest;
 use crate::record::{Balance, HistoryRow, LayerBalance, StartChecks};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::reference::Reference;

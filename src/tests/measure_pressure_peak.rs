@@ -1,7 +1,7 @@
 //! The peak of the pressure.
 
 use crate::campaign::runner::records_of;
-use crate::measure::pressure_peak::{pressure_at_the_end, pressure_peak};
+use crate::measure::other_measures::{pressure_at_the_end, pressure_peak};
 use crate::record::Record;
 
 #[test]

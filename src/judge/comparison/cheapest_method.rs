@@ -1,4 +1,4 @@
-//! Over conductivity and stiffness: which method is the cheapest within a tolerance, and which ones break.
+//! The cheapest method within a tolerance, and the methods that fail, over conductivity and stiffness.
 
 use crate::case::step_cost::seconds_per_step;
 use crate::judge::comparison::work_precision::worst_error;
@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Error of the pore pressure at the points that is asked for.
 pub const TOLERANCE: f64 = 1e-2;
 
-/// A soil of the map, by the bits of its two numbers: they order as positive numbers do.
+/// A soil of the map, by the bits of its two numbers, which have the order of positive numbers.
 type SoilKey = (u64, u64);
 
 /// One soil of the map.
@@ -20,7 +20,7 @@ pub struct MappedSoil {
     pub stiffness: f64,
     /// Methods and integrators that were tried, each once.
     pub tried: Vec<String>,
-    /// Of each that comes within the tolerance the way that takes least time; the cheapest of all first.
+    /// The fastest way of each that comes within the tolerance; the cheapest of all first.
     pub ways: Vec<Way>,
     /// Methods and integrators of which some case failed, each once.
     pub broken: Vec<String>,
@@ -45,7 +45,7 @@ pub struct Way {
     pub name: String,
     /// Cells over the height.
     pub cells: usize,
-    /// Seconds on one core, by the steps that were taken and what one costs: the same on any machine.
+    /// Seconds on one core, from the number of steps and the cost of one: equal on any machine.
     pub seconds: f64,
     /// Its error.
     pub error: f64,
@@ -56,7 +56,7 @@ fn name_of(record: &Record) -> String {
     format!("{} {}", record.case.method, record.case.integrator.name())
 }
 
-/// The soils of records, by conductivity and stiffness; nothing where fewer than two values of each vary.
+/// The soils of records, by conductivity and stiffness; empty unless both vary.
 pub fn mapped_soils(records: &[Record], reference: &str) -> Vec<MappedSoil> {
     let mut soils: BTreeMap<SoilKey, Vec<&Record>> = BTreeMap::new();
     for record in records {
@@ -64,10 +64,8 @@ pub fn mapped_soils(records: &[Record], reference: &str) -> Vec<MappedSoil> {
         let key = (soil.hydraulic_conductivity.to_bits(), soil.youngs_modulus.to_bits());
         soils.entry(key).or_default().push(record);
     }
-    let several = |values: Vec<u64>| values.iter().any(|value| *value != values[0]);
-    let varies =
-        several(soils.keys().map(|key| key.0).collect()) && several(soils.keys().map(|key| key.1).collect());
-    if soils.is_empty() || !varies {
+    let varies = |part: fn(&SoilKey) -> u64| soils.keys().map(part).collect::<BTreeSet<_>>().len() > 1;
+    if !(varies(|key| key.0) && varies(|key| key.1)) {
         return Vec::new();
     }
     soils
@@ -82,27 +80,21 @@ pub fn mapped_soils(records: &[Record], reference: &str) -> Vec<MappedSoil> {
         .collect()
 }
 
-/// Of every method and integrator its cheapest way to the tolerance, the cheapest of all first; of two that cost alike
-/// the better one.
+/// The cheapest way of every method and integrator to the tolerance, the cheapest of all first; of two with equal cost
+/// the more accurate one.
 fn ways(records: &[&Record], reference: &str) -> Vec<Way> {
-    let mut best: BTreeMap<String, Way> = BTreeMap::new();
-    let is_better = |one: &Way, other: &Way| {
-        one.seconds.total_cmp(&other.seconds).then(one.error.total_cmp(&other.error)).is_lt()
-    };
-    for record in records.iter().filter(|record| record.status == Status::Ok) {
-        let Some(error) = worst_error(record, reference).filter(|error| *error <= TOLERANCE) else {
-            continue;
-        };
+    let way = |record: &&Record| {
+        let error = worst_error(record, reference).filter(|error| *error <= TOLERANCE)?;
         let seconds = record.counters.steps as f64 * seconds_per_step(&record.case);
-        let way = Way { name: name_of(record), cells: record.case.cells, seconds, error };
-        match best.get_mut(&way.name) {
-            Some(known) if is_better(&way, known) => *known = way,
-            Some(_) => {}
-            None => drop(best.insert(way.name.clone(), way)),
-        }
-    }
-    let mut ways: Vec<Way> = best.into_values().collect();
-    ways.sort_by(|a, b| a.seconds.total_cmp(&b.seconds).then(a.error.total_cmp(&b.error)));
+        Some(Way { name: name_of(record), cells: record.case.cells, seconds, error })
+    };
+    let sound = records.iter().filter(|record| record.status == Status::Ok);
+    let mut ways: Vec<Way> = sound.filter_map(way).collect();
+    ways.sort_by(|a, b| {
+        a.seconds.total_cmp(&b.seconds).then(a.error.total_cmp(&b.error)).then_with(|| a.name.cmp(&b.name))
+    });
+    let mut seen = BTreeSet::new();
+    ways.retain(|way| seen.insert(way.name.clone()));
     ways
 }
 

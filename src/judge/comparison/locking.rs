@@ -1,15 +1,15 @@
-//! Methods ranked by how they stand incompressibility: error, oscillation, order, stiff water, stiff
-//! skeleton, stable step and cost.
+//! Methods ranked by how well they handle incompressibility: error, oscillation, order, stiff water, stiff skeleton,
+//! stable step and cost; and their errors over the stiffness of the water and of the skeleton, at the start and
+//! through consolidation.
 
-use crate::case::norm::Norm;
+use crate::case::Case;
 use crate::case::quantity::{Quantity, Sample};
-use crate::judge::paths::paths;
-use crate::measure::fields::plane_field::PlaneField;
-use crate::measure::largest::largest;
-use crate::measure::wall_times::median;
+use crate::judge::paths::{first_error, first_measure, grouped, paths};
+use crate::measure::fields::oscillation::PlaneField;
+use crate::measure::statistics::{largest, median};
 use crate::record::{Record, Status};
 use crate::study::check::Study;
-use crate::study::expectation::{Axis, Measure};
+use crate::study::expectation::Axis;
 use oedometer_convergence::Class;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_mpm::critical_step::formula;
@@ -17,10 +17,10 @@ use oedometer_mpm::method::Method;
 use oedometer_soil::material::Material;
 use std::collections::BTreeSet;
 
-/// Water so much stiffer than the skeleton that a further stiffening should change nothing.
+/// `K_w/E` from which on stiffer water should change nothing.
 const STIFF_WATER: f64 = 1e3;
 
-/// What one method showed, with what was not measured left out.
+/// The results of one method; `None` where something was not measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standing {
     /// The method.
@@ -71,17 +71,12 @@ pub fn standings(study: &Study, records: &[Record]) -> Result<Vec<Standing>, Exa
 }
 
 /// The methods of records, each once, in their order.
-pub(crate) fn methods_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Method> {
-    let mut methods: Vec<Method> = Vec::new();
-    for record in records {
-        if !methods.contains(&record.case.method) {
-            methods.push(record.case.method);
-        }
-    }
-    methods
+fn methods_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Method> {
+    let groups = grouped(records, |record| record.case.method.to_string());
+    groups.into_iter().map(|(_, records)| records[0].case.method).collect()
 }
 
-/// Whether a record is of the undisturbed soil, by the implicit integrator, and sound.
+/// Whether a record is of the usual soil, by the implicit integrator, and sound.
 fn is_plain(record: &Record) -> bool {
     record.case.has_usual_compressibility() && !record.case.is_explicit() && record.status == Status::Ok
 }
@@ -111,50 +106,44 @@ fn standing(
 ) -> Result<Standing, ExactError> {
     let own: Vec<&Record> = records.iter().filter(|record| record.case.method == method).collect();
     let on_mesh = || own.iter().copied().filter(|record| record.case.cells == cells);
-    let error = |record: &Record, quantity, sample, time_factor| {
-        record.error(quantity, sample, Norm::L2, reference, time_factor).map(|row| row.value)
-    };
-    let moved = |record: &Record| error(record, Quantity::Displacement, Sample::Nodes, 0.0);
+    let moved = |record: &Record| first_error(record, Quantity::Displacement, Sample::Nodes, reference, 0.0);
+    let pressure_at =
+        |record: &Record, time| first_error(record, Quantity::Pressure, Sample::Points, reference, time);
+    let pressure = |record: &Record| pressure_at(record, 0.0);
     let plain = on_mesh().find(|record| is_plain(record));
     let last = plain.and_then(|record| record.case.time_factors.last().copied()).filter(|time| *time > 0.0);
-    let stiff: Vec<f64> = on_mesh()
-        .filter(|record| {
-            let soil = &record.case.material;
-            soil.water_bulk_modulus >= STIFF_WATER * soil.youngs_modulus
-                && soil.poissons_ratio == Material::default().poissons_ratio
-                && !record.case.is_explicit()
-        })
-        .filter_map(moved)
-        .collect();
+    let seed_ratio = Material::default().poissons_ratio;
+    let is_stiff = |record: &&Record| {
+        let soil = &record.case.material;
+        soil.water_bulk_modulus >= STIFF_WATER * soil.youngs_modulus
+            && soil.poissons_ratio == seed_ratio
+            && !record.case.is_explicit()
+    };
+    let stiff: Vec<f64> = on_mesh().filter(is_stiff).filter_map(moved).collect();
     let spread = largest(stiff.iter().map(|error| -error)).zip(largest(stiff.iter().copied()));
     let ratio = |record: &Record| record.case.material.poissons_ratio;
-    let largest_ratio =
-        largest(on_mesh().map(ratio)).filter(|most| *most > Material::default().poissons_ratio);
-    // Of runs with the same ratio the worst counts, in whatever order they stand.
+    let largest_ratio = largest(on_mesh().map(ratio)).filter(|most| *most > seed_ratio);
+    // Of runs with the same ratio the worst counts, whatever their order.
     let hardest = |of: &dyn Fn(&Record) -> Option<f64>| {
         largest(on_mesh().filter(|record| Some(ratio(record)) == largest_ratio).filter_map(of))
     };
     let explicit = own.iter().find(|record| record.case.is_explicit());
     let order = |quantity, sample| series_order(records, method, quantity, sample, reference);
-    let field = match plain {
-        Some(record) => PlaneField::of(record, 0.0)?,
-        None => None,
-    };
+    let (class, displacement_order) = order(Quantity::Displacement, Sample::Nodes);
+    let field = plain.map(|record| PlaneField::of(record, 0.0)).transpose()?.flatten();
     Ok(Standing {
         method,
         rank: f64::NAN,
         displacement: plain.and_then(moved),
-        pressure: plain.and_then(|record| error(record, Quantity::Pressure, Sample::Points, 0.0)),
-        consolidated: plain
-            .zip(last)
-            .and_then(|(record, last)| error(record, Quantity::Pressure, Sample::Points, last)),
+        pressure: plain.and_then(pressure),
+        consolidated: plain.zip(last).and_then(|(record, last)| pressure_at(record, last)),
         oscillation: field.map(|field| field.oscillation_index()),
-        displacement_order: order(Quantity::Displacement, Sample::Nodes).1,
+        displacement_order,
         pressure_order: order(Quantity::Pressure, Sample::Points).1,
-        class: order(Quantity::Displacement, Sample::Nodes).0,
+        class,
         spread: spread.filter(|_| stiff.len() > 1).map(|(minus_least, most)| most / -minus_least - 1.0),
         stiff_skeleton: hardest(&moved),
-        stiff_skeleton_pressure: hardest(&|record| error(record, Quantity::Pressure, Sample::Points, 0.0)),
+        stiff_skeleton_pressure: hardest(&pressure),
         critical_step: explicit.map(|record| {
             let soil = &record.case.material;
             let speed = formula::fastest_wave_speed(soil, soil.porosity);
@@ -164,7 +153,7 @@ fn standing(
     })
 }
 
-/// What a run cost, s: the median wall time of runs alone, or the processor's time where none was alone.
+/// Cost of a run, s: the median wall time of runs that had the machine to themselves, or else the processor time.
 fn seconds_of_work(record: &Record) -> Option<f64> {
     let worked: Vec<f64> = record.wall.iter().filter_map(|sample| sample.cpu_seconds).collect();
     median(&record.wall_alone()).or_else(|| median(&worked))
@@ -179,22 +168,14 @@ fn series_order(
     reference: &str,
 ) -> (Option<Class>, Option<f64>) {
     let plain = records.iter().filter(|record| record.case.method == method && is_plain(record));
-    let measure = Measure {
-        quantity,
-        sample,
-        norm: Norm::L2,
-        reference: reference.to_owned(),
-        time_factor: 0.0,
-        probe: None,
-    };
     let found = paths(plain, Axis::Cells);
     let Some(path) = found.first() else { return (None, None) };
-    let summary = path.summary(&measure);
-    let order = summary.finest.ok();
-    (Some(summary.classification.class), order.filter(|_| summary.classification.class != Class::Locked))
+    let summary = path.summary(&first_measure(quantity, sample, reference, 0.0));
+    let class = summary.classification.class;
+    (Some(class), summary.finest.ok().filter(|_| class != Class::Locked))
 }
 
-/// Mean rank over the criteria; what was not measured counts in none.
+/// Mean rank over the criteria; a criterion that was not measured does not count.
 fn rank(standings: &mut [Standing]) {
     let criteria: [fn(&Standing) -> Option<f64>; 9] = [
         |one| one.displacement,
@@ -207,22 +188,167 @@ fn rank(standings: &mut [Standing]) {
         |one| one.critical_step.map(|step| -step),
         |one| one.seconds,
     ];
-    let ranks: Vec<f64> = standings
-        .iter()
-        .map(|one| {
-            let of = |criterion: &fn(&Standing) -> Option<f64>| {
-                let value = criterion(one)?;
-                // What differs by less than a percent shares its rank.
-                let better = |other: &Standing| {
-                    criterion(other).is_some_and(|other| other < value - 0.01 * value.abs())
-                };
-                Some(1.0 + standings.iter().filter(|other| better(other)).count() as f64)
-            };
-            let ranks: Vec<f64> = criteria.iter().filter_map(of).collect();
-            ranks.iter().sum::<f64>() / ranks.len() as f64
-        })
-        .collect();
+    // What differs by less than a percent shares its rank.
+    let rank_in = |one: &Standing, criterion: &fn(&Standing) -> Option<f64>| {
+        let bound = criterion(one)? - 0.01 * criterion(one)?.abs();
+        let better = standings.iter().filter(|other| criterion(other).is_some_and(|other| other < bound));
+        Some(1.0 + better.count() as f64)
+    };
+    let mean_rank = |one: &Standing| {
+        let ranks: Vec<f64> = criteria.iter().filter_map(|criterion| rank_in(one, criterion)).collect();
+        ranks.iter().sum::<f64>() / ranks.len() as f64
+    };
+    let ranks: Vec<f64> = standings.iter().map(mean_rank).collect();
     for (one, rank) in standings.iter_mut().zip(ranks) {
         one.rank = rank;
     }
+}
+
+/// Fewest values of a sweep.
+const LEAST_VALUES: usize = 3;
+
+/// What makes a soil hard to compress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SweptStiffness {
+    /// The water, by `K_w/E`.
+    Water,
+    /// The skeleton, by Poisson's ratio.
+    Skeleton,
+}
+
+impl SweptStiffness {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Water, Self::Skeleton];
+
+    /// Its number in a case.
+    fn of(self, case: &Case) -> f64 {
+        match self {
+            Self::Water => case.material.water_bulk_modulus / case.material.youngs_modulus,
+            Self::Skeleton => case.material.poissons_ratio,
+        }
+    }
+
+    /// Whether a case differs from the seed's soil in this stiffness alone.
+    fn is_alone_in(self, case: &Case) -> bool {
+        let seed = Material::default();
+        match self {
+            Self::Water => case.material.poissons_ratio == seed.poissons_ratio,
+            Self::Skeleton => case.material.water_bulk_modulus == seed.water_bulk_modulus,
+        }
+    }
+}
+
+/// What is measured of each run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Showing {
+    /// Relative L2 error of the nodal displacement.
+    Displacement,
+    /// Relative L2 error of the pressure at the points.
+    Pressure,
+    /// Oscillation index of the pressure.
+    Oscillation,
+}
+
+impl Showing {
+    /// Everything measured.
+    pub const ALL: [Self; 3] = [Self::Displacement, Self::Pressure, Self::Oscillation];
+}
+
+/// One method at one time over all values of a stiffness.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepRow {
+    /// The method.
+    pub method: Method,
+    /// Time factor of the output.
+    pub time_factor: f64,
+    /// What was found at each value of the sweep, in the order of [`Showing::ALL`].
+    pub found: Vec<[Option<f64>; Showing::ALL.len()]>,
+}
+
+/// Every method over one stiffness.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StiffnessSweep {
+    /// What varies.
+    pub stiffness: SweptStiffness,
+    /// Cells over the height.
+    pub cells: usize,
+    /// Values, ascending.
+    pub values: Vec<f64>,
+    /// Time factors of the outputs, ascending.
+    pub time_factors: Vec<f64>,
+    /// One row for each method and time.
+    pub rows: Vec<SweepRow>,
+}
+
+impl StiffnessSweep {
+    /// The sweep of a study's records over a stiffness on one mesh; `None` where the study has none beyond
+    /// the start. Step sizes may differ: a stiffer skeleton consolidates faster.
+    ///
+    /// # Errors
+    /// When a reference refuses a case.
+    pub fn of(
+        study: &Study,
+        records: &[Record],
+        stiffness: SweptStiffness,
+    ) -> Result<Option<Self>, ExactError> {
+        let swept: Vec<&Record> = records
+            .iter()
+            .filter(|record| {
+                let case = &record.case;
+                record.status == Status::Ok
+                    && !case.is_explicit()
+                    && case.time_factors.last().is_some_and(|last| *last > 0.0)
+                    && stiffness.is_alone_in(case)
+            })
+            .collect();
+        // The mesh of the runs with the least compressible soil.
+        let Some(hardest) = swept.iter().max_by(|a, b| {
+            stiffness.of(&a.case).total_cmp(&stiffness.of(&b.case)).then(a.case.cells.cmp(&b.case.cells))
+        }) else {
+            return Ok(None);
+        };
+        let (cells, per_cell) = (hardest.case.cells, hardest.case.points_per_cell);
+        let alike: Vec<&Record> = swept
+            .iter()
+            .copied()
+            .filter(|record| (record.case.cells, record.case.points_per_cell) == (cells, per_cell))
+            .collect();
+        let mut values: Vec<f64> = alike.iter().map(|record| stiffness.of(&record.case)).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        if values.len() < LEAST_VALUES {
+            return Ok(None);
+        }
+        let methods = methods_of(alike.iter().copied());
+        let time_factors = hardest.case.time_factors.to_vec();
+        let reference = study.references[0].name();
+        let found = |method: Method, time_factor: f64, value: f64| {
+            let record = alike
+                .iter()
+                .find(|record| record.case.method == method && stiffness.of(&record.case) == value);
+            record.map_or(Ok([None; 3]), |record| found(record, time_factor, reference))
+        };
+        let mut rows = Vec::new();
+        for time_factor in time_factors.iter().copied() {
+            for method in methods.iter().copied() {
+                let found = values.iter().map(|value| found(method, time_factor, *value));
+                rows.push(SweepRow { method, time_factor, found: found.collect::<Result<_, _>>()? });
+            }
+        }
+        Ok(Some(Self { stiffness, cells, values, time_factors, rows }))
+    }
+
+    /// The rows of one output.
+    pub fn at(&self, time_factor: f64) -> impl Iterator<Item = &SweepRow> {
+        self.rows.iter().filter(move |row| row.time_factor == time_factor)
+    }
+}
+
+fn found(record: &Record, time_factor: f64, reference: &str) -> Result<[Option<f64>; 3], ExactError> {
+    let error = |quantity, sample| first_error(record, quantity, sample, reference, time_factor);
+    Ok([
+        error(Quantity::Displacement, Sample::Nodes),
+        error(Quantity::Pressure, Sample::Points),
+        PlaneField::of(record, time_factor)?.map(|field| field.oscillation_index()),
+    ])
 }

@@ -1,11 +1,10 @@
-//! Methods held against each other: by cost, by situation, by stiffness, by one differing input, and
-//! beside other programs.
+//! Methods compared with each other: by cost, by situation, by stiffness, by one differing input, and
+//! with other programs.
 
 pub mod cheapest_method;
 pub mod locking;
 pub mod peers;
 pub mod situation;
 pub mod stability_map;
-pub mod stiffness_sweep;
 pub mod twins;
 pub mod work_precision;

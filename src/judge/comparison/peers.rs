@@ -1,9 +1,9 @@
-//! Other programs on the seed column, as they were measured: `peers.csv`, which says of what and how.
+//! Measurements of other programs on the seed column; `peers.csv` says what was measured and how.
 
-use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::comparison::work_precision::TimedRun;
-use crate::measure::largest::largest;
+use crate::judge::paths::first_error;
+use crate::measure::statistics::largest;
 use oedometer_exact::reference::ReferenceKind;
 use std::sync::LazyLock;
 
@@ -39,12 +39,7 @@ impl Peer {
 }
 
 /// Every program that was measured.
-pub fn all() -> &'static [Peer] {
-    &PEERS
-}
-
-/// The programs that were measured.
-static PEERS: LazyLock<Vec<Peer>> =
+pub static PEERS: LazyLock<Vec<Peer>> =
     LazyLock::new(|| read(include_str!("peers.csv")).expect("a test reads the table of the sources"));
 
 fn read(text: &str) -> Result<Vec<Peer>, csv::Error> {
@@ -59,44 +54,37 @@ fn read(text: &str) -> Result<Vec<Peer>, csv::Error> {
     reader.deserialize().map(peer).collect()
 }
 
-/// Errors of a run as the peers' were measured, where it has them.
+/// Errors of a run at the places and times of the peers' errors, where it has them.
 pub fn comparable_errors(run: &TimedRun<'_>) -> [Option<f64>; 3] {
     let reference = ReferenceKind::TerzaghiIncompressible.name();
-    TIME_FACTORS.map(|factor| {
-        let row = run.record.error(Quantity::Pressure, Sample::Points, Norm::L2, reference, factor);
-        row.map(|row| row.value.abs())
-    })
+    TIME_FACTORS.map(|factor| first_error(run.record, Quantity::Pressure, Sample::Points, reference, factor))
 }
 
-/// Whether some of the runs have what the peers' errors can be held against: elsewhere they say nothing.
+/// Whether some of the runs have errors that can be compared with the peers'.
 pub fn solve_their_column(runs: &[TimedRun<'_>]) -> bool {
     runs.iter().any(|run| comparable_errors(run).iter().any(Option::is_some))
 }
 
-/// A peer beside the fastest run that is nowhere worse than it.
+/// A peer and the fastest run that is nowhere worse.
 #[derive(Clone, Debug)]
 pub struct Comparison<'a, 'b> {
     /// The peer.
     pub peer: &'static Peer,
-    /// The run, and its errors; none where every run is somewhere worse.
+    /// The run and its errors; `None` where every run is somewhere worse.
     pub ahead: Option<(&'b TimedRun<'a>, [Option<f64>; 3])>,
 }
 
-/// Each peer beside the first of the runs, the cheapest first, that is nowhere worse.
+/// Each peer with the first of the runs, the cheapest first, that is nowhere worse.
 pub fn compare<'a, 'b>(runs: &'b [TimedRun<'a>]) -> Vec<Comparison<'a, 'b>> {
-    PEERS
-        .iter()
-        .map(|peer| {
-            let ahead = runs.iter().map(|run| (run, comparable_errors(run))).find(|(_, errors)| {
-                peer.errors.iter().zip(errors).all(|(theirs, own)| match (theirs, own) {
-                    (Some(theirs), Some(own)) => own <= theirs,
-                    (None, _) => true,
-                    (Some(_), None) => false,
-                })
-            });
-            Comparison { peer, ahead }
-        })
-        .collect()
+    let is_nowhere_worse = |peer: &Peer, errors: &[Option<f64>; 3]| {
+        let mut pairs = peer.errors.iter().zip(errors);
+        pairs.all(|(theirs, own)| theirs.is_none_or(|theirs| own.is_some_and(|own| own <= theirs)))
+    };
+    let ahead_of = |peer: &Peer| {
+        let mut all = runs.iter().map(|run| (run, comparable_errors(run)));
+        all.find(|(_, errors)| is_nowhere_worse(peer, errors))
+    };
+    PEERS.iter().map(|peer| Comparison { peer, ahead: ahead_of(peer) }).collect()
 }
 
 #[cfg(test)]

@@ -1,20 +1,18 @@
-//! Situations: what a run has to stand, read off its inputs, and how each method of a study came out of it.
+//! Situations: what makes a run hard, derived from its inputs, and how each method of a study performed in them.
 
 use crate::case::Task;
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::comparison::locking::{Standing, standings};
-use crate::judge::paths::first_norm;
+use crate::judge::paths::{first_error, grouped};
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 use oedometer_convergence::Class;
 use oedometer_exact::exact_error::ExactError;
-use oedometer_mpm::method::Method;
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::results::outcome::FailureKind;
 use oedometer_soil::elementary;
-use std::collections::{HashMap, HashSet};
 
-/// Strain in the end from which on a column has lost so much of its height that nothing else counts.
+/// Final strain from which on the loss of height dominates everything else.
 const MUCH_OF_THE_HEIGHT: f64 = 0.4;
 /// Heights, m, of a usual column.
 const USUAL_HEIGHTS: [f64; 2] = [0.05, 500.0];
@@ -26,13 +24,13 @@ const USUAL_STORAGE: [f64; 2] = [1e-6, 1e-1];
 const USUAL_INERTIA: f64 = 1e-9;
 /// A last output before this time factor is a very early one.
 const EARLY: f64 = 1e-3;
-/// Variation of the pressure beyond that of the exact one, over it, from which on it oscillates.
+/// Excess variation of the pressure over that of the exact one from which on it counts as oscillating.
 const OSCILLATES: f64 = 1.0;
-/// A displacement that misses more than this is what the class `locked` means.
+/// A displacement with a larger error than this counts as locked.
 const LOCKS: f64 = 0.5;
 
-/// What a run has to stand. In the order of a report: the easy ones first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// What makes a run hard, in the order of a report: the easy ones first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Situation {
     /// Small strain in a usual soil, points on their lattice.
     Usual,
@@ -44,11 +42,11 @@ pub enum Situation {
     Waves,
     /// A layer at its undrained start: how far it moves.
     LayerDisplacement,
-    /// The same: its pressure.
+    /// A layer at its undrained start: its pressure.
     LayerPressure,
-    /// The same with a skeleton that hardly compresses: how far it moves.
+    /// A layer whose skeleton hardly compresses at its undrained start: how far it moves.
     StiffSkeleton,
-    /// Large strain under a load that is there at once.
+    /// Large strain under a load that is applied at once.
     LoadAtOnce,
     /// Large strain under a load that grows.
     GrowingLoad,
@@ -58,48 +56,49 @@ pub enum Situation {
     BodyForces,
 }
 
+/// Name in tables of every situation, and what its runs have in common, in the order of the enumeration.
+const NAMES_AND_MEANINGS: [[&str; 2]; 11] = [
+    ["Small strain, usual soil", "points on their lattice, soil and water of the seed column or near it"],
+    [
+        "Small strain, points out of place",
+        "points jittered, on cell faces, one per cell, or in a top cell that is partly filled",
+    ],
+    [
+        "Small strain, extreme soil, size or time",
+        "water or pores far stiffer or softer than usual, columns of a micrometre or of kilometres, hardly any \
+         permeability, or outputs before a thousandth of the consolidation time",
+    ],
+    ["Waves", "columns with the inertia of both phases, compared with solutions that have it too"],
+    [
+        "Undrained layer in the plane: displacement",
+        "a layer under a cosine load before any water has left: does it move as it should?",
+    ],
+    [
+        "Undrained layer in the plane: pressure",
+        "the same layer: is its pressure right, or does it jump from cell to cell?",
+    ],
+    [
+        "The same, skeleton nearly incompressible: displacement",
+        "the same layer with the largest Poisson's ratio that was tried",
+    ],
+    [
+        "Large strain, load at once",
+        "the whole load at once, points that cross cells where the method lets them",
+    ],
+    ["Large strain, load that grows", "the same column under a load that is applied gradually"],
+    ["Large strain of 40 % and more", "columns that lose 40 % of their height or more"],
+    ["Large strain under body forces", "forces and sources that make a known motion"],
+];
+
 impl Situation {
     /// Its name in tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Usual => "Small strain, usual soil",
-            Self::OutOfPlace => "Small strain, points out of place",
-            Self::Extreme => "Small strain, extreme soil, size or time",
-            Self::Waves => "Waves",
-            Self::LayerDisplacement => "Undrained layer in the plane: displacement",
-            Self::LayerPressure => "Undrained layer in the plane: pressure",
-            Self::StiffSkeleton => "The same, skeleton nearly incompressible: displacement",
-            Self::LoadAtOnce => "Large strain, load at once",
-            Self::GrowingLoad => "Large strain, load that grows",
-            Self::MuchOfTheHeight => "Large strain of 40 % and more",
-            Self::BodyForces => "Large strain under body forces",
-        }
+        NAMES_AND_MEANINGS[self as usize][0]
     }
 
     /// What its runs have in common, in a sentence without its full stop.
     pub fn meaning(self) -> &'static str {
-        match self {
-            Self::Usual => "points on their lattice, soil and water of the seed column or near it",
-            Self::OutOfPlace => {
-                "points jittered, on cell faces, one a cell, or in a top cell that is partly filled"
-            }
-            Self::Extreme => {
-                "water or pores far stiffer or softer than usual, columns of a micrometre or of kilometres, hardly any \
-                 permeability, or outputs before a thousandth of the consolidation time"
-            }
-            Self::Waves => "columns with the inertia of both phases, held against solutions that have it too",
-            Self::LayerDisplacement => {
-                "a layer under a cosine load before any water has left: does it move as it should?"
-            }
-            Self::LayerPressure => {
-                "the same layer: is its pressure right, or does it jump from cell to cell?"
-            }
-            Self::StiffSkeleton => "the same layer with the largest Poisson's ratio that was tried",
-            Self::LoadAtOnce => "the whole load at once, points that cross cells where the method lets them",
-            Self::GrowingLoad => "the same column under a load that takes its time",
-            Self::MuchOfTheHeight => "columns that lose 40 % of their height or more",
-            Self::BodyForces => "forces and sources that make a known motion",
-        }
+        NAMES_AND_MEANINGS[self as usize][1]
     }
 
     /// The situation of a run.
@@ -135,24 +134,24 @@ impl Situation {
 pub enum End {
     /// With this largest error.
     Error(f64),
-    /// With a pressure whose variation is so many times that of the exact one.
+    /// With a pressure whose variation is this multiple of that of the exact one.
     Oscillates(f64),
-    /// Hardly moved at all.
+    /// Hardly moved.
     Locked,
-    /// So many runs by this failure.
+    /// Failed.
     Failed {
-        /// Name of the failure that most runs have.
+        /// Name of the most frequent failure.
         name: &'static str,
         /// Runs that failed.
         failed: usize,
-        /// Runs there are.
+        /// All runs.
         of: usize,
     },
 }
 
 impl End {
-    /// How bad it is: no answer at all, then no answer that is one, then by the error. What is no number is as bad
-    /// as an error can be.
+    /// How bad it is: no answer is worst, then a useless answer, then the size of the error. NaN is as bad as an
+    /// error can be.
     fn badness(&self) -> (u8, f64) {
         match self {
             Self::Error(error) => (0, error.abs()),
@@ -169,7 +168,7 @@ impl End {
     }
 }
 
-/// How a method came out of one situation in one study.
+/// How a method performed in one situation of one study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ended<'a> {
     /// The situation.
@@ -182,32 +181,23 @@ pub struct Ended<'a> {
     pub end: End,
 }
 
-/// How every method of a study came out of every situation that the study has.
+/// How every method of a study performed in every situation that the study has.
 ///
 /// # Errors
 /// When a reference refuses a case.
 pub fn ends_of<'a>(study: &'a Study, records: &[Record]) -> Result<Vec<Ended<'a>>, ExactError> {
-    let ended = |situation, method: Method, end| Ended { situation, method: method.to_string(), study, end };
     if study.scene.shows_locking() {
-        let standings = standings(study, records)?;
-        return Ok(standings
-            .iter()
-            .flat_map(|one| {
-                of_layer(one).into_iter().map(|(situation, end)| ended(situation, one.method, end))
-            })
-            .collect());
+        let of_method = |one: &Standing| {
+            let of = |(situation, end)| Ended { situation, method: one.method.to_string(), study, end };
+            of_layer(one).into_iter().map(of).collect::<Vec<_>>()
+        };
+        return Ok(standings(study, records)?.iter().flat_map(of_method).collect());
     }
     let Some(reference) = study.references.first() else { return Ok(Vec::new()) };
-    let mut groups: Vec<(Situation, Method, Vec<&Record>)> = Vec::new();
-    for record in records.iter().filter(|record| record.case.task == Task::Solve) {
-        let (situation, method) = (Situation::of(record), record.case.method);
-        match groups.iter_mut().find(|group| (group.0, group.1) == (situation, method)) {
-            Some(group) => group.2.push(record),
-            None => groups.push((situation, method, vec![record])),
-        }
-    }
-    let end = |group: (Situation, Method, Vec<&Record>)| {
-        Some(ended(group.0, group.1, end_of(&group.2, reference.name())?))
+    let solved = records.iter().filter(|record| record.case.task == Task::Solve);
+    let groups = grouped(solved, |record| (Situation::of(record), record.case.method.to_string()));
+    let end = |((situation, method), group): ((Situation, String), Vec<&Record>)| {
+        Some(Ended { situation, method, study, end: end_of(&group, reference.name())? })
     };
     Ok(groups.into_iter().filter_map(end).collect())
 }
@@ -221,45 +211,35 @@ pub fn situations_of(ends: &[Ended<'_>]) -> Vec<Situation> {
 }
 
 /// The failures of runs, or else the largest error of the pressure at the points at the last output on the finest
-/// mesh; none where no run has one. Of runs alike but for their step the best counts: a study of steps has long ones,
-/// and some beyond the limit.
+/// mesh; `None` where no run has one. Of runs that differ in their step alone the best counts: a study of steps has long
+/// ones, and some beyond the limit.
 fn end_of(records: &[&Record], reference: &str) -> Option<End> {
-    let without_step =
-        |record: &Record| record.case.number_with(|case| case.time_step = TimeStepRule::Stable(1.0));
-    let (sound, failed): (Vec<&Record>, Vec<&Record>) =
-        records.iter().copied().partition(|record| record.status == Status::Ok);
-    // Where nothing failed nobody asks what was answered.
-    let asked = if failed.is_empty() { &[][..] } else { &sound };
-    let answered: HashSet<u64> = asked.iter().map(|record| without_step(record)).collect();
-    let failures: Vec<FailureKind> = failed
+    let groups = grouped(records.iter().copied(), |record| {
+        record.case.number_with(|case| case.time_step = TimeStepRule::Stable(1.0))
+    });
+    let failures: Vec<FailureKind> = groups
         .iter()
-        .filter(|record| !answered.contains(&without_step(record)))
-        .filter_map(|record| Some(record.status.failure()?.kind))
+        .filter(|(_, group)| group.iter().all(|record| record.status != Status::Ok))
+        .flat_map(|(_, group)| group.iter().filter_map(|record| Some(record.status.failure()?.kind)))
         .collect();
     let count = |kind: FailureKind| failures.iter().filter(|one| **one == kind).count();
-    // The last of those that are most: in reverse the first, whatever the order of the runs.
-    if let Some(most) =
-        FailureKind::ALL.into_iter().rev().max_by_key(|kind| count(*kind)).filter(|_| !failures.is_empty())
-    {
+    // In reverse, because the last of equal maxima is taken: the first kind, whatever the order of the runs.
+    let most = FailureKind::ALL.into_iter().rev().max_by_key(|kind| count(*kind))?;
+    if !failures.is_empty() {
         return Some(End::Failed { name: most.name(), failed: failures.len(), of: records.len() });
     }
     let finest = records.iter().map(|record| record.case.cells).max()?;
-    let mut best: HashMap<u64, f64> = HashMap::new();
-    for record in sound.into_iter().filter(|record| record.case.cells == finest) {
-        let Some(error) = last_error(record, reference) else { continue };
-        let known = best.entry(without_step(record)).or_insert(error);
-        if error.total_cmp(known).is_lt() {
-            *known = error;
-        }
-    }
-    best.into_values().max_by(f64::total_cmp).map(End::Error)
+    let best = |group: &[&Record]| {
+        let sound = group.iter().filter(|one| one.case.cells == finest && one.status == Status::Ok);
+        sound.filter_map(|record| last_error(record, reference)).min_by(f64::total_cmp)
+    };
+    groups.iter().filter_map(|(_, group)| best(group)).max_by(f64::total_cmp).map(End::Error)
 }
 
 /// Error of the pressure at the points at the last output.
 fn last_error(record: &Record, reference: &str) -> Option<f64> {
-    let (quantity, sample) = (Quantity::Pressure, Sample::Points);
     let time = *record.case.time_factors.last()?;
-    Some(record.error(quantity, sample, first_norm(quantity), reference, time)?.value.abs())
+    first_error(record, Quantity::Pressure, Sample::Points, reference, time)
 }
 
 /// A layer at its undrained start: displacement and pressure in the usual soil, displacement in a stiff one.

@@ -1,24 +1,29 @@
-//! Records of critical steps as maps: curves over the parameter that varies, one a method.
+//! Critical steps as maps: curves over the parameter that varies, one for each method.
 
 use crate::case::Case;
-use crate::measure::largest::larger;
-use crate::record::Record;
+use crate::judge::paths::grouped;
+use crate::measure::statistics::largest;
+use crate::record::{CriticalStep, Record};
+
+/// How the axis of a map is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapScale {
+    /// Logarithmic.
+    Log,
+    /// Linear.
+    Linear,
+    /// Linear with a tick at every small whole number.
+    Counts,
+}
 
 /// What a map is drawn over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MapAxis {
-    /// Hydraulic conductivity, m/s.
-    Conductivity,
-    /// `K_w/E`.
-    Stiffness,
-    /// Porosity.
-    Porosity,
-    /// Points a cell.
-    Points,
-    /// Shift of the points in spacings.
-    Offset,
-    /// FLIP share.
-    Flip,
+#[derive(Debug)]
+pub struct MapAxis {
+    /// Its label in a chart.
+    pub label: &'static str,
+    /// How it is drawn.
+    pub scale: MapScale,
+    of: fn(&Case) -> f64,
 }
 
 /// One case of a map; steps over `h/c`.
@@ -42,85 +47,73 @@ pub struct MapCurve {
 }
 
 /// A map.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct StabilityMap {
     /// What it is drawn over.
-    pub axis: MapAxis,
-    /// What its cases share beside the method, in words.
+    pub axis: &'static MapAxis,
+    /// What its cases have in common besides the method, in words.
     pub shared: String,
-    /// One a method.
+    /// One curve for each method.
     pub curves: Vec<MapCurve>,
     /// Largest difference of observed from predicted, relative.
     pub largest_deviation: f64,
 }
 
-const AXES: [MapAxis; 6] = [
-    MapAxis::Conductivity,
-    MapAxis::Stiffness,
-    MapAxis::Porosity,
-    MapAxis::Points,
-    MapAxis::Offset,
-    MapAxis::Flip,
+static AXES: [MapAxis; 6] = [
+    MapAxis {
+        label: "hydraulic conductivity k (m/s)",
+        scale: MapScale::Log,
+        of: |case| case.material.hydraulic_conductivity,
+    },
+    MapAxis {
+        label: "stiffness of the water K_w/E (–)",
+        scale: MapScale::Log,
+        of: |case| case.material.water_bulk_modulus / case.material.youngs_modulus,
+    },
+    MapAxis { label: "porosity n (–)", scale: MapScale::Log, of: |case| case.material.porosity },
+    MapAxis { label: "points a cell (–)", scale: MapScale::Counts, of: |case| case.points_per_cell as f64 },
+    MapAxis {
+        label: "shift of the points, in spacings (–)",
+        scale: MapScale::Linear,
+        of: |case| case.column.points.offset,
+    },
+    MapAxis { label: "FLIP share (–)", scale: MapScale::Linear, of: |case| case.settings.flip },
 ];
 
-impl MapAxis {
-    fn of(self, case: &Case) -> f64 {
-        match self {
-            Self::Conductivity => case.material.hydraulic_conductivity,
-            Self::Stiffness => case.material.water_bulk_modulus / case.material.youngs_modulus,
-            Self::Porosity => case.material.porosity,
-            Self::Points => case.points_per_cell as f64,
-            Self::Offset => case.column.points.offset,
-            Self::Flip => case.settings.flip,
-        }
-    }
-}
-
-/// The maps of records: over the one parameter that takes most values, apart for every choice of the
+/// The maps of records: over the one parameter that takes most values, one map for every choice of the
 /// integrator.
 pub fn maps_of(records: &[Record]) -> Vec<StabilityMap> {
     let Some(axis) = widest_axis(records) else { return Vec::new() };
-    let mut maps: Vec<StabilityMap> = Vec::new();
-    for record in records {
-        let Some(found) = &record.stability else { continue };
-        let shared = settings_of(&record.case);
-        let place = maps.iter().position(|map| map.shared == shared).unwrap_or_else(|| {
-            maps.push(StabilityMap { axis, shared, curves: Vec::new(), largest_deviation: 0.0 });
-            maps.len() - 1
-        });
-        let map = &mut maps[place];
-        let deviation = found.deviation().map_or(0.0, f64::abs);
-        map.largest_deviation = larger(map.largest_deviation, deviation);
-        let name = record.case.method.to_string();
-        let curve = map.curves.iter().position(|curve| curve.name == name).unwrap_or_else(|| {
-            map.curves.push(MapCurve { name, points: Vec::new() });
-            map.curves.len() - 1
-        });
-        map.curves[curve].points.push(MapPoint {
-            at: axis.of(&record.case),
-            predicted: found.predicted / found.wave_limit,
-            observed: found.observed.map(|observed| observed / found.wave_limit),
-        });
-    }
-    for curve in maps.iter_mut().flat_map(|map| &mut map.curves) {
-        curve.points.sort_by(|a, b| a.at.total_cmp(&b.at));
-    }
-    maps
+    let searched = records.iter().filter_map(|record| Some((&record.case, record.stability.as_ref()?)));
+    let map = |(shared, cases): (String, Vec<_>)| {
+        let deviations =
+            cases.iter().map(|(_, found): &(&Case, &CriticalStep)| found.deviation().map_or(0.0, f64::abs));
+        let largest_deviation = largest(deviations).unwrap_or(0.0);
+        let curve = |(name, cases): (String, Vec<(&Case, &CriticalStep)>)| {
+            let point = |(case, found): (&Case, &CriticalStep)| MapPoint {
+                at: (axis.of)(case),
+                predicted: found.predicted / found.wave_limit,
+                observed: found.observed.map(|observed| observed / found.wave_limit),
+            };
+            let mut points: Vec<MapPoint> = cases.into_iter().map(point).collect();
+            points.sort_by(|a, b| a.at.total_cmp(&b.at));
+            MapCurve { name, points }
+        };
+        let curves = grouped(cases, |(case, _)| case.method.to_string()).into_iter().map(curve).collect();
+        StabilityMap { axis, shared, curves, largest_deviation }
+    };
+    grouped(searched, |(case, _)| settings_of(case)).into_iter().map(map).collect()
 }
 
 /// The parameter that takes most values, two at least.
-fn widest_axis(records: &[Record]) -> Option<MapAxis> {
-    let values = |axis: MapAxis| {
-        let mut values: Vec<f64> = records.iter().map(|record| axis.of(&record.case)).collect();
+fn widest_axis(records: &[Record]) -> Option<&'static MapAxis> {
+    let values = |axis: &MapAxis| {
+        let mut values: Vec<f64> = records.iter().map(|record| (axis.of)(&record.case)).collect();
         values.sort_by(f64::total_cmp);
         values.dedup();
         values.len()
     };
-    AXES.into_iter()
-        .map(|axis| (axis, values(axis)))
-        .filter(|(_, count)| *count > 1)
-        .max_by_key(|one| one.1)
-        .map(|one| one.0)
+    AXES.iter().filter(|axis| values(axis) > 1).max_by_key(|axis| values(axis))
 }
 
 /// The choices of the integrator, in words.

@@ -1,15 +1,15 @@
-//! Runs that differ in one input alone: what the input costs and brings.
+//! Runs that differ in one input alone: the cost and the benefit of the input.
 
 use crate::case::keys::{Key, Value};
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::comparison::situation::Situation;
-use crate::judge::paths::first_norm;
-use crate::measure::wall_times::median;
+use crate::judge::paths::{first_error, grouped};
+use crate::measure::statistics::median;
 use crate::record::{Record, Status};
 use oedometer_mpm::method::Method;
 use std::collections::HashMap;
 
-/// Two runs alike in everything but one input.
+/// Two runs that are equal in everything but one input.
 #[derive(Clone, Copy, Debug)]
 pub struct Twins<'a> {
     /// With the first value.
@@ -42,9 +42,9 @@ pub fn twins<'a>(records: &'a [Record], key: &Key, (first, second): (Value, Valu
 pub struct TwinsOfSituation {
     /// The situation.
     pub situation: Situation,
-    /// The method; none of all that have the same errors on both sides.
+    /// The method; `None` for all methods that have equal errors on both sides.
     pub method: Option<Method>,
-    /// Pairs there are.
+    /// Number of pairs.
     pub pairs: usize,
     /// Error of the pressure at the points of the second over that of the first: least, median and largest of the pairs
     /// and outputs in which both have one.
@@ -57,41 +57,32 @@ pub struct TwinsOfSituation {
 
 /// Pairs by their situation, the easy ones first.
 pub fn by_situation(all: &[Twins<'_>]) -> Vec<TwinsOfSituation> {
-    let mut situations: Vec<Situation> = all.iter().map(|pair| Situation::of(pair.one)).collect();
-    situations.sort_unstable();
-    situations.dedup();
-    situations.into_iter().flat_map(|situation| by_method(situation, all)).collect()
+    let mut situations = grouped(all, |pair| Situation::of(pair.one));
+    situations.sort_by_key(|group| group.0);
+    situations.into_iter().flat_map(|(situation, pairs)| by_method(situation, pairs)).collect()
 }
 
-/// Errors that differ by less than this share are the same, but for round-off.
+/// Errors that differ by less than this share are equal up to round-off.
 const SAME: f64 = 1e-6;
 
-/// The pairs of a situation by their method; those of methods for which the input changes nothing in one, at the end.
-fn by_method(situation: Situation, all: &[Twins<'_>]) -> Vec<TwinsOfSituation> {
-    let mut methods: Vec<(Method, Vec<&Twins<'_>>)> = Vec::new();
-    for pair in all.iter().filter(|pair| Situation::of(pair.one) == situation) {
-        let method = pair.one.case.method;
-        match methods.iter_mut().find(|(known, _)| *known == method) {
-            Some((_, own)) => own.push(pair),
-            None => methods.push((method, vec![pair])),
-        }
-    }
+/// The pairs of a situation by their method; last, in one row, those of methods for which the input changes nothing.
+fn by_method(situation: Situation, pairs: Vec<&Twins<'_>>) -> Vec<TwinsOfSituation> {
     let is_same = |ratio: f64| (ratio - 1.0).abs() <= SAME;
-    let (alike, differing): (Vec<_>, Vec<_>) =
-        methods.into_iter().partition(|(_, own)| own.iter().flat_map(|pair| ratios_of(pair)).all(is_same));
-    let mut told: Vec<TwinsOfSituation> =
-        differing.iter().map(|(method, own)| in_numbers(situation, Some(*method), own)).collect();
+    let (alike, differing): (Vec<_>, Vec<_>) = grouped(pairs, |pair| pair.one.case.method.to_string())
+        .into_iter()
+        .partition(|(_, own)| own.iter().flat_map(|pair| ratios_of(pair)).all(is_same));
+    let differing = differing.iter().map(|(_, own)| in_numbers(situation, Some(own[0].one.case.method), own));
     let alike: Vec<&Twins<'_>> = alike.into_iter().flat_map(|(_, own)| own).collect();
-    if !alike.is_empty() {
-        told.push(in_numbers(situation, None, &alike));
-    }
-    told
+    let alike = (!alike.is_empty()).then(|| in_numbers(situation, None, &alike));
+    differing.chain(alike).collect()
 }
 
 fn in_numbers(situation: Situation, method: Option<Method>, own: &[&Twins<'_>]) -> TwinsOfSituation {
     let mut ratios: Vec<f64> = own.iter().flat_map(|pair| ratios_of(pair)).collect();
     ratios.sort_by(f64::total_cmp);
-    let failed = |side: fn(&Twins<'_>) -> bool| own.iter().filter(|pair| side(pair)).count();
+    let failed = |status: for<'a> fn(&'a Twins<'_>) -> &'a Status| {
+        own.iter().filter(|pair| *status(pair) != Status::Ok).count()
+    };
     let costs: Vec<f64> =
         own.iter().filter_map(|pair| Some(seconds(pair.other)? / seconds(pair.one)?)).collect();
     TwinsOfSituation {
@@ -99,10 +90,7 @@ fn in_numbers(situation: Situation, method: Option<Method>, own: &[&Twins<'_>]) 
         method,
         pairs: own.len(),
         ratios: median(&ratios).and_then(|middle| Some([*ratios.first()?, middle, *ratios.last()?])),
-        failed: [
-            failed(|pair| pair.one.status != Status::Ok),
-            failed(|pair| pair.other.status != Status::Ok),
-        ],
+        failed: [failed(|pair| &pair.one.status), failed(|pair| &pair.other.status)],
         cost: median(&costs),
     }
 }
@@ -110,18 +98,16 @@ fn in_numbers(situation: Situation, method: Option<Method>, own: &[&Twins<'_>]) 
 /// Error of the pressure at the points of the second over that of the first at every output that both have.
 fn ratios_of(pair: &Twins<'_>) -> Vec<f64> {
     let times = pair.one.case.time_factors.iter();
+    // Against the first reference of each.
+    let error_at = |record: &Record, time: f64| {
+        let reference = &record.references.first()?.name;
+        first_error(record, Quantity::Pressure, Sample::Points, reference, time)
+    };
     let both = times.filter_map(|time| Some((error_at(pair.one, *time)?, error_at(pair.other, *time)?)));
     both.filter(|(one, _)| *one > 0.0).map(|(one, other)| other / one).collect()
 }
 
-/// Error of the pressure at the points at an output, against the first reference that it was held against.
-fn error_at(record: &Record, time: f64) -> Option<f64> {
-    let reference = &record.references.first()?.name;
-    let quantity = Quantity::Pressure;
-    Some(record.error(quantity, Sample::Points, first_norm(quantity), reference, time)?.value.abs())
-}
-
-/// Median time of a run: of the processor where it is known, which other runs beside it do not lengthen.
+/// Median time of a run: processor time where it is known, because other runs do not lengthen it.
 fn seconds(record: &Record) -> Option<f64> {
     let times: Vec<f64> =
         record.wall.iter().map(|sample| sample.cpu_seconds.unwrap_or(sample.seconds)).collect();
@@ -156,7 +142,13 @@ mod tests {
             let own = |record: &&Record| {
                 record.case.points_per_cell == points && Some(record.case.method) == told[0].method
             };
-            records.iter().filter(own).filter_map(|record| error_at(record, 0.1)).collect()
+            records
+                .iter()
+                .filter(own)
+                .filter_map(|record| {
+                    first_error(record, Quantity::Pressure, Sample::Points, &record.references[0].name, 0.1)
+                })
+                .collect()
         };
         let mut ratios: Vec<f64> = errors(4).iter().zip(errors(2)).map(|(four, two)| four / two).collect();
         ratios.sort_by(f64::total_cmp);

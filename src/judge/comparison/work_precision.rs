@@ -1,14 +1,13 @@
-//! What an error costs: timed runs on one scale of error and wall time.
+//! Error against cost: timed runs by error and wall time.
 
-use crate::case::quantity::{Quantity, Sample};
-use crate::judge::paths::{Path, first_norm, paths};
-use crate::measure::largest::largest;
-use crate::measure::wall_times::{WallSpread, median, noise_floor, paired_ratio, spread};
+use crate::case::quantity::Quantity;
+use crate::judge::paths::{Path, first_error, first_measure, paths};
+use crate::measure::statistics::{WallSpread, largest, median, noise_floor, paired_ratio, spread};
 use crate::record::{Record, Status};
-use crate::study::expectation::{Axis, Measure};
+use crate::study::expectation::Axis;
 use oedometer_convergence::{CostLevel, CostPoint, LevelPrediction, front, predict_next};
 
-/// Tolerances that are asked for.
+/// Tolerances of the comparison.
 pub const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 /// Ratio of the cell size of one more level.
 const REFINEMENT: f64 = 2.0;
@@ -26,7 +25,7 @@ pub struct TimedRun<'a> {
     pub on_front: bool,
 }
 
-/// The first way to a tolerance.
+/// The cheapest run within a tolerance.
 #[derive(Clone, Debug)]
 pub struct Cheapest<'a> {
     /// The tolerance.
@@ -38,13 +37,13 @@ pub struct Cheapest<'a> {
 /// One more level of a path over the mesh, as its last levels predict it.
 #[derive(Clone, Debug)]
 pub struct NextLevel {
-    /// What the path is.
+    /// Label of the path.
     pub label: String,
     /// Wall time, s, and error of its finest level.
     pub finest: CostPoint,
     /// Wall time and error of the next.
     pub next: LevelPrediction,
-    /// The finest level as the coarser ones predict it: how far such predictions are to be trusted.
+    /// The finest level as the coarser ones predict it: shows how far such predictions can be trusted.
     pub finest_predicted: Option<LevelPrediction>,
 }
 
@@ -53,17 +52,17 @@ pub struct NextLevel {
 pub struct WorkPrecision<'a> {
     /// Every run that was timed alone, the cheapest first.
     pub runs: Vec<TimedRun<'a>>,
-    /// The first way to each tolerance.
+    /// The cheapest run within each tolerance.
     pub cheapest: Vec<Cheapest<'a>>,
     /// One more level of each path.
     pub next_levels: Vec<NextLevel>,
-    /// How far from 1 the ratio of the same run against itself lay in this session, the median over
-    /// the runs; none for fewer than two repeats.
+    /// How far from 1 the ratio of a run to itself was in this session, the median over
+    /// the runs; `None` for fewer than two repeats.
     pub noise_floor: Option<f64>,
 }
 
 impl<'a> WorkPrecision<'a> {
-    /// Compares the timed runs among records by the error against a reference; none where fewer
+    /// Compares the timed runs among records by the error against a reference; `None` where fewer
     /// than two were timed.
     pub fn of(records: &'a [Record], reference: &str) -> Option<Self> {
         let mut runs: Vec<_> = records.iter().filter_map(|record| timed(record, reference)).collect();
@@ -103,23 +102,12 @@ fn timed<'a>(record: &'a Record, reference: &str) -> Option<TimedRun<'a>> {
 /// Error of the pore pressure at the points in its first norm, the worst of all outputs.
 pub fn worst_error(record: &Record, reference: &str) -> Option<f64> {
     let later = record.case.time_factors.iter().filter(|factor| **factor > 0.0);
-    let errors = later
-        .map(|factor| Some(pressure(record.main_sample(), reference, *factor).error(record)?.value.abs()));
+    let sample = record.main_sample();
+    let errors = later.map(|factor| first_error(record, Quantity::Pressure, sample, reference, *factor));
     largest(errors.collect::<Option<Vec<_>>>()?)
 }
 
-fn pressure(sample: Sample, reference: &str, time_factor: f64) -> Measure {
-    Measure {
-        quantity: Quantity::Pressure,
-        sample,
-        norm: first_norm(Quantity::Pressure),
-        reference: reference.to_owned(),
-        time_factor,
-        probe: None,
-    }
-}
-
-/// The same run against itself: rounds of even number against those of odd.
+/// A run compared with itself: even rounds with odd ones.
 fn session_noise(runs: &[TimedRun<'_>]) -> Option<f64> {
     let floors: Vec<f64> = runs
         .iter()
@@ -146,12 +134,13 @@ fn next_levels(records: &[Record], reference: &str) -> Vec<NextLevel> {
             .collect();
         let last = *path.records.last()?.case.time_factors.last()?;
         let class_of = |path: &Path<'_>| {
-            path.summary(&pressure(path.records[0].main_sample(), reference, last)).classification
+            let sample = path.records[0].main_sample();
+            path.summary(&first_measure(Quantity::Pressure, sample, reference, last)).classification
         };
         let next = predict_next(&levels, &class_of(&path), REFINEMENT)?;
         let (finest, coarser) = levels.split_last()?;
-        let known = path.records.len() - 1;
-        let coarser_path = Path { axis: path.axis, records: path.records[..known].to_vec() };
+        let records = path.records[..path.records.len() - 1].to_vec();
+        let coarser_path = Path { axis: path.axis, records };
         let ratio = coarser.last()?.size / finest.size;
         let finest_predicted = predict_next(coarser, &class_of(&coarser_path), ratio);
         Some(NextLevel { label: path.label(), finest: finest.point, next, finest_predicted })

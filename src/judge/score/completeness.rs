@@ -1,27 +1,30 @@
-//! Whether an external result is whole: what is missing makes an error small.
+//! Whether an external result is complete: missing parts make an error small.
 
 use crate::import::table::SampledState;
 use crate::judge::score::coverage;
 use crate::judge::score::coverage::Bare;
-use crate::judge::score::times::time_factors;
+use crate::judge::score::score_series::time_factors;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_soil::elementary::ln;
+use oedometer_soil::wording::{short, typed, words};
 
+/// Share of the height within which a sample lies on the surface or the base.
+const RIM: f64 = 1e-6;
 /// Share by which volumes may differ beyond what consolidation explains: round-off of written
 /// numbers.
 const VOLUME: f64 = 1e-3;
-/// Ratio of the volumes' sum to that of the scene from which on they are weights of another unit.
+/// Ratio of the sum of volumes to that of the scene from which on they count as weights in another unit.
 const OTHER_UNIT: f64 = 2.5;
-/// Ratio of the samples a cell of two meshes from which on one lacks some.
+/// Ratio of the samples per cell of two meshes from which on one lacks some.
 const UNEVEN: f64 = 1.5;
-/// Up to so many distances from the crest are profiles of a layer, chosen to be looked at.
+/// Up to this many distances from the crest are profiles of a layer that were chosen for display.
 const PROFILES: usize = 3;
-/// Bins of places without order hold so many samples on average.
+/// Samples that a band has on average where places have no order.
 const PER_BIN: usize = 12;
 
-/// In what a result is not whole.
+/// In what way a result is incomplete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Lack {
@@ -33,7 +36,7 @@ pub enum Lack {
     LengthNotCovered,
     /// Places of a lattice are missing.
     PlacesMissing,
-    /// Rows stand twice.
+    /// Rows are repeated.
     RowsRepeated,
     /// Times have different numbers of samples.
     SamplesDiffer,
@@ -41,9 +44,9 @@ pub enum Lack {
     TimeMissing,
     /// Pressures of exactly 0 stand inside the body.
     ZerosInside,
-    /// Nobody said which units and signs the columns have.
+    /// The mapping does not declare the units and signs of the columns.
     Undeclared,
-    /// A quantity is gone at a time.
+    /// A quantity is missing at a time.
     QuantityMissing,
     /// The last line of a table does not end.
     EndMissing,
@@ -51,25 +54,14 @@ pub enum Lack {
     ValueImpossible,
 }
 
-impl Lack {
-    /// Its name.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::VolumeDiffers => "volume-differs",
-            Self::HeightNotCovered => "height-not-covered",
-            Self::LengthNotCovered => "length-not-covered",
-            Self::PlacesMissing => "places-missing",
-            Self::RowsRepeated => "rows-repeated",
-            Self::SamplesDiffer => "samples-differ",
-            Self::TimeMissing => "time-missing",
-            Self::ZerosInside => "zeros-inside",
-            Self::Undeclared => "undeclared",
-            Self::QuantityMissing => "quantity-missing",
-            Self::EndMissing => "end-missing",
-            Self::ValueImpossible => "value-impossible",
-        }
-    }
-}
+words!(
+    Lack:
+    VolumeDiffers "volume-differs", HeightNotCovered "height-not-covered",
+    LengthNotCovered "length-not-covered", PlacesMissing "places-missing", RowsRepeated "rows-repeated",
+    SamplesDiffer "samples-differ", TimeMissing "time-missing", ZerosInside "zeros-inside",
+    Undeclared "undeclared", QuantityMissing "quantity-missing", EndMissing "end-missing",
+    ValueImpossible "value-impossible",
+);
 
 /// One thing that is missing from a result.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
@@ -80,7 +72,14 @@ pub struct Finding {
     pub sentence: String,
 }
 
-/// What a whole result would have.
+impl Finding {
+    /// What is missing, and a sentence on where and how much.
+    pub fn new(name: Lack, sentence: String) -> Self {
+        Self { name, sentence }
+    }
+}
+
+/// What a complete result would have.
 #[derive(Clone, Copy, Debug)]
 pub struct Whole<'a> {
     /// The column or layer.
@@ -97,33 +96,33 @@ pub struct Whole<'a> {
 }
 
 impl Whole<'_> {
-    /// What the states of one result lack, one finding a kind.
+    /// What the states of one result lack, one finding for each kind.
     ///
     /// # Errors
     /// When the reference refuses a time.
     pub fn findings(&self, states: &[SampledState]) -> Result<Vec<Finding>, ExactError> {
-        let mut findings = Vec::new();
-        if self.has_volumes {
-            findings.extend(self.volume(states)?);
-        }
-        findings.extend(self.first(states, Lack::HeightNotCovered, |state| self.bare_height(state)));
-        findings.extend(self.first(states, Lack::LengthNotCovered, |state| self.bare_length(state)));
-        findings.extend(self.first(states, Lack::PlacesMissing, |state| self.holes(state)));
-        findings.extend(self.first(states, Lack::RowsRepeated, |state| {
-            (state.repeated > 0).then(|| {
+        let volume = if self.has_volumes { self.volume(states)? } else { None };
+        let repeated = |state: &SampledState| {
+            let (repeated, all) = (state.repeated, state.initial_height.len());
+            (repeated > 0).then(|| {
                 format!(
-                    "{} of {} rows repeat the place of another; where they are samples side by side, keep the column \
-                     that tells them apart",
-                    state.repeated,
-                    state.initial_height.len()
+                    "{repeated} of {all} rows repeat the place of another; where they are samples side by side, keep \
+                     the column that tells them apart"
                 )
             })
-        }));
-        findings.extend(self.counts(states));
-        Ok(findings)
+        };
+        let findings = [
+            volume,
+            self.first(states, Lack::HeightNotCovered, |state| self.bare_height(state)),
+            self.first(states, Lack::LengthNotCovered, |state| self.bare_length(state)),
+            self.first(states, Lack::PlacesMissing, |state| self.holes(state)),
+            self.first(states, Lack::RowsRepeated, repeated),
+            self.counts(states),
+        ];
+        Ok(findings.into_iter().flatten().collect())
     }
 
-    /// The first state of which something is to be said, and how many more there are.
+    /// The first state with a problem, and how many more there are.
     fn first(
         &self,
         states: &[SampledState],
@@ -134,9 +133,9 @@ impl Whole<'_> {
         let (state, what) = all.next()?;
         let more = match all.count() {
             0 => String::new(),
-            more => format!("; so it is at {more} more of {} times", states.len()),
+            more => format!("; the same at {more} more of {} times", states.len()),
         };
-        Some(Finding { name, sentence: format!("at {}, {what}{more}", self.when(state)) })
+        Some(Finding::new(name, format!("at {}, {what}{more}", self.when(state))))
     }
 
     fn when(&self, state: &SampledState) -> String {
@@ -153,30 +152,28 @@ impl Whole<'_> {
         let whole = scene.unwrap_or(largest);
         let times = time_factors(self.parameters, states);
         let reference = Reference::new(self.reference, self.parameters, &times)?;
-        let mut worst: Option<(usize, f64)> = None;
-        for (place, (sum, time)) in sums.iter().zip(&times).enumerate() {
+        let mut off = Vec::new();
+        for ((state, sum), time) in states.iter().zip(&sums).zip(&times) {
             let settled = reference.settlement(*time)? / self.parameters.height;
             let share = sum / whole - 1.0;
-            let is_whole = (-VOLUME - settled.max(0.0)..=VOLUME).contains(&share);
-            if !is_whole && worst.is_none_or(|(_, other)| share.abs() > other.abs()) {
-                worst = Some((place, share));
+            if !(-VOLUME - settled.max(0.0)..=VOLUME).contains(&share) {
+                off.push((state, *sum, share));
             }
         }
+        let worst = off.into_iter().rev().max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
         let of = if scene.is_some() { "that of the scene" } else { "the largest of all times" };
-        Ok(worst.map(|(place, share)| Finding {
-            name: Lack::VolumeDiffers,
-            sentence: format!(
-                "at {}, the volumes add up to {}, and {of} is {}: {:.2} % {}",
-                self.when(&states[place]),
-                short(sums[place]),
-                short(whole),
-                100.0 * share.abs(),
-                if share < 0.0 { "are missing" } else { "are too many" }
-            ),
+        Ok(worst.map(|(state, sum, share)| {
+            let (when, [sum, whole]) = (self.when(state), [sum, whole].map(short));
+            let wrong = if share < 0.0 { "are missing" } else { "are too many" };
+            let percent = 100.0 * share.abs();
+            let sentence = format!(
+                "at {when}, the volumes add up to {sum}, and {of} is {whole}: {percent:.2} % {wrong}"
+            );
+            Finding::new(Lack::VolumeDiffers, sentence)
         }))
     }
 
-    /// A note where the volumes are in a unit of their own, so that their sum tells nothing.
+    /// A note where the volumes are in a unit of their own, so that their sum cannot be checked.
     pub fn unit_of_volume(&self, states: &[SampledState]) -> Option<String> {
         let sum: f64 = states.first()?.volume.iter().sum();
         let is_other = |volume: &f64| ln(sum / volume).abs() > ln(OTHER_UNIT);
@@ -190,8 +187,7 @@ impl Whole<'_> {
         })
     }
 
-    /// A note where samples lie at one height, or along a few verticals of a layer: they were
-    /// chosen to be looked at.
+    /// A note where samples lie at one height, or along a few verticals of a layer that were chosen for display.
     pub fn profiles(&self, states: &[SampledState]) -> Option<String> {
         let state = states.first()?;
         let heights = coverage::lines(&state.initial_height, self.parameters.height);
@@ -204,21 +200,21 @@ impl Whole<'_> {
         } else {
             return None;
         };
-        Some(format!("the samples lie at {place} m: nothing is known of the rest"))
+        Some(format!("the samples lie at {place} m: nothing is known about the rest"))
     }
 
     fn bare_height(&self, state: &SampledState) -> Option<String> {
-        let is_one_height = |lines: &[f64]| lines.len() == 1;
         let can_scatter = !state.initial_distance.is_empty();
-        let bare = bare_along(&state.initial_height, self.parameters.height, can_scatter, is_one_height);
-        bare.map(|bare| stretch(bare, "over the base"))
+        let is_one_height = |lines: &[f64]| lines.len() == 1;
+        let bare = bare_along(&state.initial_height, self.parameters.height, can_scatter, is_one_height)?;
+        Some(stretch(bare, "over the base"))
     }
 
     fn bare_length(&self, state: &SampledState) -> Option<String> {
         let places = Some(&state.initial_distance).filter(|places| self.is_plane() && !places.is_empty())?;
         let are_profiles = |lines: &[f64]| lines.len() <= PROFILES;
-        let bare = bare_along(places, self.parameters.length, true, are_profiles);
-        bare.map(|bare| stretch(bare, "from the crest"))
+        let bare = bare_along(places, self.parameters.length, true, are_profiles)?;
+        Some(stretch(bare, "from the crest"))
     }
 
     fn holes(&self, state: &SampledState) -> Option<String> {
@@ -226,12 +222,9 @@ impl Whole<'_> {
             return None;
         }
         let extent = [self.parameters.length, self.parameters.height];
-        coverage::incomplete_lattice(&state.initial_distance, &state.initial_height, extent).map(|lattice| {
-            format!(
-                "samples stand at {} of the {} crossings of their lines",
-                lattice.samples, lattice.crossings
-            )
-        })
+        let [samples, crossings] =
+            coverage::incomplete_lattice(&state.initial_distance, &state.initial_height, extent)?;
+        Some(format!("samples stand at {samples} of the {crossings} crossings of their lines"))
     }
 
     fn counts(&self, states: &[SampledState]) -> Option<Finding> {
@@ -241,18 +234,11 @@ impl Whole<'_> {
         let first = fewer.first()?;
         let more = match fewer.len() - 1 {
             0 => String::new(),
-            more => format!("; fewer than the most there are at {more} more"),
+            more => format!("; {more} more times have fewer samples than that"),
         };
-        Some(Finding {
-            name: Lack::SamplesDiffer,
-            sentence: format!(
-                "{} has {} samples, and {} has {}{more}",
-                self.when(first),
-                count(first),
-                self.when(most),
-                count(most)
-            ),
-        })
+        let [few, many] = [*first, most].map(|state| (self.when(state), count(state)));
+        let sentence = format!("{} has {} samples, and {} has {}{more}", few.0, few.1, many.0, many.1);
+        Some(Finding::new(Lack::SamplesDiffer, sentence))
     }
 
     fn is_plane(&self) -> bool {
@@ -260,8 +246,8 @@ impl Whole<'_> {
     }
 }
 
-/// A bare stretch along one direction, of bands where the places lie without order; none where their lines were
-/// chosen to be looked at.
+/// A bare stretch along one direction, of bands where the places have no order; `None` where their lines were
+/// chosen for display.
 fn bare_along(
     places: &[f64],
     extent: f64,
@@ -296,25 +282,20 @@ pub fn missing_times(missing: &[f64], has: &[f64], asked: bool) -> Option<Findin
     let first = missing.first()?;
     let nearest = has.iter().copied().min_by(|a, b| (a - first).abs().total_cmp(&(b - first).abs()));
     let near = nearest.map_or(String::new(), |time| {
-        format!(
-            "; the nearest it has is T_v = {}, {:.2e} off in relative terms",
-            short(time),
-            (time / first - 1.0).abs()
-        )
+        let off = (time / first - 1.0).abs();
+        format!("; the nearest it has is T_v = {}, {off:.2e} off in relative terms", typed(time))
     });
     let more = match missing.len() {
         1 => String::new(),
         many => format!(" (and {} more)", many - 1),
     };
     let who = if asked { "which was asked for" } else { "which another result has" };
-    Some(Finding {
-        name: Lack::TimeMissing,
-        sentence: format!("there is no T_v = {}{more}, {who}{near}", short(*first)),
-    })
+    let sentence = format!("there is no T_v = {}{more}, {who}{near}", typed(*first));
+    Some(Finding::new(Lack::TimeMissing, sentence))
 }
 
-/// The mesh, by its place from the coarsest, that has far fewer samples a cell over the height than
-/// another; the same number on all meshes is a choice of places.
+/// The mesh, by its place from the coarsest, that has far fewer samples per cell over the height than
+/// another; equal numbers on all meshes are a choice of places.
 pub fn uneven_meshes(
     meshes: &[(usize, &SampledState)],
     parameters: &ColumnParameters,
@@ -337,15 +318,10 @@ pub fn uneven_meshes(
     let (most, largest) = per_cell.iter().enumerate().max_by(by_size)?;
     let count = |place: usize| meshes[place].1.initial_height.len();
     let are_alike = (0..meshes.len()).all(|place| count(place) == count(0));
-    let is_uneven = *largest > UNEVEN * least && !are_alike;
-    is_uneven.then(|| {
-        let sentence = format!(
-            "there are {} heights a cell, and {} on {} cells",
-            short(*least),
-            short(*largest),
-            meshes[most].0
-        );
-        (fewest, Finding { name: Lack::SamplesDiffer, sentence })
+    (*largest > UNEVEN * least && !are_alike).then(|| {
+        let ([least, largest], cells) = ([*least, *largest].map(short), meshes[most].0);
+        let sentence = format!("there are {least} heights a cell, and {largest} on {cells} cells");
+        (fewest, Finding::new(Lack::SamplesDiffer, sentence))
     })
 }
 
@@ -353,11 +329,41 @@ fn stretch(bare: Bare, from: &str) -> String {
     format!("no sample lies between {} m and {} m {from}", short(bare.from), short(bare.to))
 }
 
-/// A number in a sentence: six digits at most.
-pub(crate) fn short(value: f64) -> String {
-    let digits = format!("{value:.5e}");
-    digits.parse::<f64>().map_or(digits, |rounded| {
-        let is_plain = rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs());
-        if is_plain { format!("{rounded}") } else { format!("{rounded:e}") }
+/// Zeros where none can be, as programs write them at nodes without a pressure: pressures of exactly 0 inside the body
+/// beside others. The first such state is named.
+pub fn interior_zeros(parameters: &ColumnParameters, states: &[SampledState]) -> Option<Finding> {
+    states.iter().find_map(|state| {
+        let is_inside = |height: &f64| (RIM..1.0 - RIM).contains(&(height / parameters.height));
+        let inside = state.initial_height.iter().zip(&state.pressure).filter(|(height, _)| is_inside(height));
+        let all = inside.clone().count();
+        let zeros = inside.filter(|(_, pressure)| **pressure == 0.0).count();
+        let when = typed(parameters.time_factor(state.time));
+        let sentence = format!(
+            "at T_v = {when}, {zeros} of {all} pressures inside are exactly 0 and the others are not: programs write 0 \
+             at the middle of sides; keep the corners of the cells ([rows] corners = true in the mapping) or take an \
+             interpolated array"
+        );
+        (zeros > 0 && zeros < all).then(|| Finding::new(Lack::ZerosInside, sentence))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_at_the_middle_of_sides_are_told_and_those_of_the_surface_are_not() {
+        let column = ColumnParameters::default();
+        let heights: Vec<f64> = (0..=4).map(|node| f64::from(node) / 4.0).collect();
+        let state = |pressure: [f64; 5]| SampledState {
+            time: column.time(0.1),
+            initial_height: heights.clone(),
+            pressure: pressure.to_vec(),
+            ..SampledState::default()
+        };
+        let found = interior_zeros(&column, &[state([1.0, 0.0, 0.8, 0.0, 0.0])]).expect("a finding");
+        assert!(found.sentence.contains("2 of 3"), "{}", found.sentence);
+        assert_eq!(interior_zeros(&column, &[state([1.0, 0.9, 0.8, 0.4, 0.0])]), None);
+        assert_eq!(interior_zeros(&column, &[state([0.0; 5])]), None, "nothing but zeros is another mistake");
+    }
 }

@@ -1,26 +1,23 @@
-//! An external result held against the references of a scene.
+//! An external result compared with the references of a scene.
 
 pub mod completeness;
 pub mod coverage;
 pub mod diagnosis;
-pub mod interior_zeros;
 pub mod score_series;
-pub mod series_row;
-pub mod times;
 
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::import::table::SampledState;
-use crate::judge::score::completeness::{Finding, Lack, short};
-use crate::judge::score::series_row::SeriesRow;
-use crate::judge::score::times::time_factors;
-use crate::measure::fields::error_contributions::largest_contribution;
+use crate::judge::score::completeness::{Finding, Lack};
+use crate::judge::score::score_series::{SeriesRow, time_factors};
 use crate::measure::fields::exact_fields::{ExactFields, SamplePlaces};
 use crate::measure::fields::field_errors::{FieldError, LONG_AFTER, resolution, settlement_error};
+use crate::measure::fields::norms::largest_contribution;
 use crate::record::ErrorRow;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_soil::wording::short;
 use std::borrow::Cow;
 use std::collections::HashMap;
 
@@ -28,7 +25,7 @@ use std::collections::HashMap;
 /// under the crest.
 const RIM: f64 = 1e-6;
 
-/// Multiple of the load, of the final settlement, or of the largest exact value that no result has.
+/// Multiple of the load, of the final settlement, or of the largest exact value that no correct result reaches.
 const IMPOSSIBLE: f64 = 100.0;
 
 /// The place that carries most of a field's error.
@@ -60,22 +57,22 @@ pub struct Score {
     pub errors: Vec<ErrorRow>,
     /// Worst places against the first reference.
     pub worst: Vec<WorstPlace>,
-    /// In what the result is not whole.
+    /// In what way the result is incomplete.
     pub warnings: Vec<Finding>,
-    /// What seems to be wrong with its numbers, a sentence each.
+    /// What seems to be wrong with its numbers, one sentence for each.
     pub diagnosis: Vec<String>,
-    /// What has no relative error, for the exact value is zero or below round-off.
+    /// What has no relative error because the exact value is zero or below round-off.
     pub unresolved: Vec<Unresolved>,
-    /// Orders and classes over the meshes beside this result, the same for each of them.
+    /// Orders and classes over all meshes of which this result is one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub series: Vec<SeriesRow>,
-    /// Which way fields are off the first reference.
+    /// In which direction fields are off the first reference.
     #[serde(skip)]
     pub leanings: Vec<Leaning>,
 }
 
-/// Which way a field is off: a norm has no sign, and an error that changes its sign between two meshes falls to
-/// next to nothing there and grows again.
+/// In which direction a field is off. A norm has no sign: an error that changes sign between two meshes nearly
+/// vanishes there and grows again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leaning {
     /// Time factor.
@@ -86,7 +83,7 @@ pub struct Leaning {
     pub cosine: f64,
 }
 
-/// A quantity that cannot be held against a reference at a time.
+/// A quantity that cannot be compared with a reference at a time.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Unresolved {
     /// Time factor.
@@ -99,23 +96,12 @@ pub struct Unresolved {
     pub reference: String,
 }
 
-/// Errors by what they are of.
-pub struct ErrorIndex<'a> {
-    rows: HashMap<ErrorKey<'a>, &'a ErrorRow>,
-}
+/// What an error is of: time factor (its bits), quantity, sample, norm, reference.
+pub type ErrorKey<'a> = (u64, Quantity, Sample, Norm, &'a str);
 
-/// Time factor (its bits), quantity, sample, norm, reference.
-type ErrorKey<'a> = (u64, Quantity, Sample, Norm, &'a str);
-
-fn key(row: &ErrorRow) -> ErrorKey<'_> {
+/// What an error is of.
+pub fn error_key(row: &ErrorRow) -> ErrorKey<'_> {
     (row.time_factor.to_bits(), row.quantity, row.sample, row.norm, &row.reference)
-}
-
-impl<'a> ErrorIndex<'a> {
-    /// The error of a kind at its time, where it is defined.
-    pub fn find(&self, like: &ErrorRow) -> Option<&'a ErrorRow> {
-        self.rows.get(&key(like)).copied()
-    }
 }
 
 impl SampledState {
@@ -125,7 +111,7 @@ impl SampledState {
     }
 }
 
-/// Holds states against references.
+/// Compares states with references.
 ///
 /// ```
 /// use oedometer::exact::{ColumnParameters, Reference, ReferenceKind};
@@ -209,24 +195,25 @@ impl Score {
                 continue;
             }
             let volumes = &volumes[..computed.len()];
-            let resolution = resolution(reference, time_factor);
-            let name = reference.name();
             let components = if state.volume.len() < computed.len() { 2 } else { 1 };
+            let (name, resolution) = (reference.name(), resolution(reference, time_factor));
             let field =
                 FieldError { time_factor, quantity, sample, reference: name, scale, components, resolution };
-            let known = self.errors.len();
-            self.errors.extend(field.rows(computed, exact, volumes));
-            if self.errors.len() == known {
+            let rows = field.rows(computed, exact, volumes);
+            if rows.is_empty() {
                 self.unresolved.push(compared.unresolved(quantity, sample));
             }
+            self.errors.extend(rows);
             if is_first {
-                self.warnings.extend(impossible_value(
-                    compared,
-                    quantity,
-                    (computed, exact),
-                    scale,
-                    &self.warnings,
-                ));
+                // One finding for each quantity.
+                let begin = format!("{} of ", quantity.name());
+                let is_known = self
+                    .warnings
+                    .iter()
+                    .any(|known| known.name == Lack::ValueImpossible && known.sentence.starts_with(&begin));
+                let found = impossible_value(quantity, computed, exact, scale, time_factor);
+                let sentence = found.filter(|_| !is_known);
+                self.warnings.extend(sentence.map(|told| Finding::new(Lack::ValueImpossible, told)));
                 let cosine = cosine_of_error(computed, exact, volumes);
                 self.leanings.push(Leaning { time_factor, quantity, cosine });
                 self.worst.extend(compared.worst_place(quantity, computed, exact, volumes));
@@ -242,40 +229,35 @@ impl Score {
     }
 
     /// Its errors by what they are of.
-    pub fn index(&self) -> ErrorIndex<'_> {
-        ErrorIndex { rows: self.errors.iter().map(|row| (key(row), row)).collect() }
+    pub fn index(&self) -> HashMap<ErrorKey<'_>, &ErrorRow> {
+        self.errors.iter().map(|row| (error_key(row), row)).collect()
     }
 }
 
-/// The value farthest beyond what the load can bring about, where one is: one finding a quantity.
+/// A sentence on the value farthest beyond what the load can cause, where one is.
 fn impossible_value(
-    compared: &ScoredState<'_>,
     quantity: Quantity,
-    (computed, exact): (&[f64], &[f64]),
+    computed: &[f64],
+    exact: &[f64],
     scale: f64,
-    known: &[Finding],
-) -> Option<Finding> {
-    let begin = format!("{} of ", quantity.name());
-    let is_known =
-        |finding: &&Finding| finding.name == Lack::ValueImpossible && finding.sentence.starts_with(&begin);
+    time_factor: f64,
+) -> Option<String> {
     let largest = |list: &[f64]| list.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    let (found, bound) = (largest(computed), IMPOSSIBLE * largest(exact).max(scale.abs()));
-    (found > bound && known.iter().find(is_known).is_none()).then(|| Finding {
-        name: Lack::ValueImpossible,
-        sentence: format!(
-            "{begin}{found:.3e} at T_v = {}: more than {IMPOSSIBLE} times what the load brings about ({:.3e})",
-            short(compared.time_factor),
-            bound / IMPOSSIBLE
-        ),
+    let (found, possible) = (largest(computed), largest(exact).max(scale.abs()));
+    (found > IMPOSSIBLE * possible).then(|| {
+        let (name, time) = (quantity.name(), short(time_factor));
+        format!(
+            "{name} of {found:.3e} at T_v = {time}: more than {IMPOSSIBLE} times what the load can cause ({possible:.3e})"
+        )
     })
 }
 
-/// Two lists as one: a million samples are copied only where they must be.
+/// Two lists as one, copied only where both have values.
 fn one_after_the_other<'a>(first: &'a [f64], second: &[f64]) -> Cow<'a, [f64]> {
     if second.is_empty() { Cow::Borrowed(first) } else { Cow::Owned([first, second].concat()) }
 }
 
-/// Cosine between the error of a field and the exact field, weighted by volumes; 0 where one of them is.
+/// Cosine between the error of a field and the exact field, weighted by volumes; 0 where one of them vanishes.
 fn cosine_of_error(computed: &[f64], exact: &[f64], volumes: &[f64]) -> f64 {
     let (mut product, mut of_error, mut of_exact) = (0.0, 0.0, 0.0);
     for ((computed, exact), volume) in computed.iter().zip(exact).zip(volumes) {
@@ -316,8 +298,8 @@ impl ScoredState<'_> {
         })
     }
 
-    /// Vertical displacement of the surface, of a layer under the crest of its load: that of a curve of its own, or
-    /// where a sample lies there. The settlement of a slab is its plate's, which presses across: no sample has it.
+    /// Vertical displacement of the surface, in a layer under the crest of its load: from a settlement curve, or from a
+    /// sample there. The settlement of a slab is that of its plate, which no sample has.
     fn displacement_of_surface(&self) -> Option<f64> {
         let (state, parameters) = (self.state, self.parameters);
         if state.surface_displacement.is_some() || self.reference.kind() == ReferenceKind::Mandel {

@@ -1,17 +1,14 @@
 //! The exact fields at the places of samples.
 
 use crate::case::Case;
-use oedometer_exact::cosine_layer::{LayerFields, LayerState};
+use crate::case::quantity::Quantity;
 use oedometer_exact::exact_error::ExactError;
-use oedometer_exact::field_values::FieldValues;
-use oedometer_exact::manufactured::Manufactured;
 use oedometer_exact::reference::Reference;
 use oedometer_mpm::run::results::snapshot::{PlaneSamples, Samples, WaterSamples};
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
+use rayon::prelude::*;
 
-/// Samples from which on several threads take a part of them each.
-const MANY_SAMPLES: usize = 50_000;
+/// Number of different heights from which on they are evaluated in parallel.
+const MANY_HEIGHTS: usize = 5_000;
 
 /// Exact fields, `[sample]`; SI, signs as in [`Samples`].
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,136 +35,81 @@ pub struct SamplePlaces<'a> {
 }
 
 impl ExactFields {
-    /// The fields of a reference at places: one evaluation per height, for a grid of samples has few.
+    /// The fields of a reference at places.
     ///
     /// # Errors
     /// When the reference refuses the time factor.
     pub fn of(reference: &Reference, time_factor: f64, places: SamplePlaces<'_>) -> Result<Self, ExactError> {
-        if let Some(motion) = reference.manufactured().filter(|_| !places.distances.is_empty()) {
-            return Self::of_motion(motion, time_factor, places);
+        let SamplePlaces { height, heights, distances } = places;
+        let mut exact = Self::default();
+        if let Some(motion) = reference.manufactured().filter(|_| !distances.is_empty()) {
+            for (x, y) in distances.iter().zip(heights) {
+                let fields = motion.plane_fields(time_factor, [*x, *y])?;
+                exact.push(fields.pressure, fields.effective_stress[1][1], fields.displacement);
+            }
+            return Ok(exact);
         }
-        match reference.plane_state(time_factor)? {
-            Some(layer) if !places.distances.is_empty() => Self::along_layer(&layer, places),
-            _ => Self::over_height(reference, time_factor, places),
+        if let Some(layer) = reference.plane_state(time_factor)?.filter(|_| !distances.is_empty()) {
+            let amplitudes = ByHeight::of(heights, |y| layer.amplitudes(y.clamp(0.0, height)))?;
+            for (x, y) in distances.iter().zip(heights) {
+                let fields = amplitudes.at(*y).at(layer.wave_number() * x);
+                exact.push(fields.pressure, fields.effective_stress[1], fields.displacement);
+            }
+            return Ok(exact);
         }
-    }
-
-    fn over_height(
-        reference: &Reference,
-        time_factor: f64,
-        places: SamplePlaces<'_>,
-    ) -> Result<Self, ExactError> {
-        let all = places.heights.len();
-        let mut exact = Self {
-            pressure: vec![0.0; all],
-            effective_stress: vec![0.0; all],
-            displacement: vec![0.0; all],
-            horizontal_displacement: vec![0.0; all],
-        };
         // A column strains vertically only, a slab between rigid plates evenly across.
         let across = reference.strain_across(time_factor)?;
-        for (horizontal, distance) in exact.horizontal_displacement.iter_mut().zip(places.distances) {
-            *horizontal = across * distance;
+        let depth = |y: f64| (1.0 - y / height).clamp(0.0, 1.0);
+        let fields = ByHeight::of(heights, |y| reference.fields(time_factor, depth(y)))?;
+        for (place, y) in heights.iter().enumerate() {
+            let fields = fields.at(*y);
+            let horizontal = distances.get(place).map_or(0.0, |x| across * x);
+            exact.push(fields.pressure, fields.effective_stress, [horizontal, fields.displacement]);
         }
-        let threads = if all < MANY_SAMPLES {
-            1
+        Ok(exact)
+    }
+
+    fn push(&mut self, pressure: f64, effective_stress: f64, [horizontal, vertical]: [f64; 2]) {
+        self.pressure.push(pressure);
+        self.effective_stress.push(effective_stress);
+        self.horizontal_displacement.push(horizontal);
+        self.displacement.push(vertical);
+    }
+
+    /// The field of a quantity; a settlement has that of the displacement.
+    pub fn field(&self, quantity: Quantity) -> &[f64] {
+        match quantity {
+            Quantity::Pressure => &self.pressure,
+            Quantity::EffectiveStress => &self.effective_stress,
+            Quantity::Displacement | Quantity::Settlement => &self.displacement,
+        }
+    }
+}
+
+/// Values at heights, each evaluated once, because a grid of samples has few different heights.
+struct ByHeight<T> {
+    /// The different heights in rising order.
+    heights: Vec<f64>,
+    values: Vec<T>,
+}
+
+impl<T: Copy + Send> ByHeight<T> {
+    /// Evaluates at the different ones of some heights, on all cores where these are many.
+    fn of(heights: &[f64], value: impl Fn(f64) -> Result<T, ExactError> + Sync) -> Result<Self, ExactError> {
+        let mut heights = heights.to_vec();
+        heights.sort_unstable_by(f64::total_cmp);
+        heights.dedup_by_key(|height| height.to_bits());
+        let values = if heights.len() < MANY_HEIGHTS {
+            heights.iter().map(|height| value(*height)).collect::<Result<_, _>>()
         } else {
-            std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get)
+            heights.par_iter().map(|height| value(*height)).collect()
         };
-        let part = all.div_ceil(threads).max(1);
-        let parts = (places.heights.chunks(part).zip(exact.pressure.chunks_mut(part)))
-            .zip(exact.effective_stress.chunks_mut(part).zip(exact.displacement.chunks_mut(part)));
-        std::thread::scope(|scope| {
-            let fill = |((heights, pressure), (effective_stress, displacement))| {
-                let of_heights = HeightFields { reference, time_factor, height: places.height };
-                let into = [pressure, effective_stress, displacement];
-                move || of_heights.fill(heights, into)
-            };
-            // The last part is this thread's own.
-            let mut parts: Vec<_> = parts.map(fill).collect();
-            let own = parts.pop();
-            let others: Vec<_> = parts.into_iter().map(|part| scope.spawn(part)).collect();
-            own.map_or(Ok(()), |part| part())?;
-            others.into_iter().try_for_each(|part| match part.join() {
-                Ok(filled) => filled,
-                Err(panic) => std::panic::resume_unwind(panic),
-            })
-        })?;
-        Ok(exact)
+        Ok(Self { values: values?, heights })
     }
 
-    fn of_motion(
-        motion: &Manufactured,
-        time_factor: f64,
-        places: SamplePlaces<'_>,
-    ) -> Result<Self, ExactError> {
-        let mut exact = Self::default();
-        for (distance, height) in places.distances.iter().zip(places.heights) {
-            let fields = motion.plane_fields(time_factor, [*distance, *height])?;
-            exact.pressure.push(fields.pressure);
-            exact.effective_stress.push(fields.effective_stress[1][1]);
-            exact.horizontal_displacement.push(fields.displacement[0]);
-            exact.displacement.push(fields.displacement[1]);
-        }
-        Ok(exact)
-    }
-
-    fn along_layer(layer: &LayerState, places: SamplePlaces<'_>) -> Result<Self, ExactError> {
-        let mut known: HashMap<u64, LayerFields> = HashMap::new();
-        let mut exact = Self::default();
-        for (distance, height) in places.distances.iter().zip(places.heights) {
-            let amplitudes = match known.entry(height.to_bits()) {
-                Entry::Occupied(found) => *found.get(),
-                Entry::Vacant(new) => *new.insert(layer.amplitudes(height.clamp(0.0, places.height))?),
-            };
-            let fields = amplitudes.at(layer.wave_number() * distance);
-            exact.pressure.push(fields.pressure);
-            exact.effective_stress.push(fields.effective_stress[1]);
-            let [horizontal, vertical] = fields.displacement;
-            exact.displacement.push(vertical);
-            exact.horizontal_displacement.push(horizontal);
-        }
-        Ok(exact)
-    }
-}
-
-/// Fields of a reference over the height at a time factor.
-#[derive(Clone, Copy)]
-struct HeightFields<'a> {
-    reference: &'a Reference,
-    time_factor: f64,
-    /// Height of the column or layer, m.
-    height: f64,
-}
-
-impl HeightFields<'_> {
-    /// Fills in pressure, effective stress and displacement at heights. Where these are in order, equal ones are
-    /// neighbours and the last one is all that has to be known.
-    fn fill(self, heights: &[f64], into: [&mut [f64]; 3]) -> Result<(), ExactError> {
-        let is_in_order = heights.is_sorted();
-        let mut last: Option<(u64, FieldValues)> = None;
-        let mut known: HashMap<u64, FieldValues> = HashMap::new();
-        let [pressure, effective_stress, displacement] = into;
-        for (place, height) in heights.iter().enumerate() {
-            let key = height.to_bits();
-            let fields = match last.filter(|(known, _)| *known == key) {
-                Some((_, fields)) => fields,
-                None if is_in_order => self.at(*height)?,
-                None => match known.entry(key) {
-                    Entry::Occupied(found) => *found.get(),
-                    Entry::Vacant(new) => *new.insert(self.at(*height)?),
-                },
-            };
-            last = Some((key, fields));
-            pressure[place] = fields.pressure;
-            effective_stress[place] = fields.effective_stress;
-            displacement[place] = fields.displacement;
-        }
-        Ok(())
-    }
-
-    fn at(self, height: f64) -> Result<FieldValues, ExactError> {
-        self.reference.fields(self.time_factor, (1.0 - height / self.height).clamp(0.0, 1.0))
+    /// The value at one of the heights.
+    fn at(&self, height: f64) -> T {
+        self.values[self.heights.partition_point(|one| one.total_cmp(&height).is_lt())]
     }
 }
 
@@ -230,10 +172,9 @@ mod tests {
     fn many_samples_in_any_order_have_the_values_of_single_ones_to_the_bit() {
         let column = ColumnParameters::default();
         let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[0.1]).expect("the seed column");
-        let rows = MANY_SAMPLES / 50;
-        let in_order: Vec<f64> = (0..MANY_SAMPLES + 7)
-            .map(|place| (place * rows / (MANY_SAMPLES + 7)) as f64 / rows as f64)
-            .collect();
+        let rows = 2 * MANY_HEIGHTS;
+        let in_order: Vec<f64> =
+            (0..5 * rows + 7).map(|place| (place * rows / (5 * rows + 7)) as f64 / rows as f64).collect();
         let mut mixed = in_order.clone();
         mixed.rotate_left(rows / 3);
         mixed.reverse();

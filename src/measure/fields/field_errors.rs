@@ -16,7 +16,7 @@ const FIELD_NORMS: [Norm; 3] = [Norm::L1, Norm::L2, Norm::Linf];
 /// Time factor by which every column is consolidated to round-off.
 pub const LONG_AFTER: f64 = 50.0;
 
-/// Which field of which sample is held against which reference.
+/// Which field of which sample is compared with which reference.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldError<'a> {
     /// Time factor.
@@ -29,48 +29,47 @@ pub struct FieldError<'a> {
     pub reference: &'a str,
     /// What absolute errors are divided by, in the unit of the field.
     pub scale: f64,
-    /// Components of the field, which stand one after the other: a mean is over the volume, and over it once.
+    /// Components of the field, listed one after the other; a mean counts the volume once.
     pub components: usize,
-    /// Share of the scale down to which the reference tells a field from zero: see [`resolution`].
+    /// Share of the scale below which the reference cannot tell a field from zero: see [`resolution`].
     pub resolution: f64,
 }
 
 /// Exact values below this share of their scale are lost in the round-off of a run, whose pressures
 /// and displacements are of the size of the scale: an error relative to them means nothing.
-pub const UNRESOLVED: f64 = 1e4 * f64::EPSILON;
+const UNRESOLVED: f64 = 1e4 * f64::EPSILON;
 
-/// Share of the load, or of the final settlement, below which a reference has no value to hold an
-/// error against: its own accuracy at that time, and round-off at least.
+/// Share of the load, or of the final settlement, below which no error against a reference
+/// is defined: its own accuracy at that time, and round-off at least.
 pub fn resolution(reference: &Reference, time_factor: f64) -> f64 {
     let accuracy = reference.accuracy(time_factor).map_or(0.0, |accuracy| accuracy.bound());
     accuracy.max(UNRESOLVED)
 }
 
 impl FieldError<'_> {
-    /// The error in every norm of fields in which it is defined; in none where the exact field is zero
-    /// or too small to be told from it.
-    pub fn rows(self, computed: &[f64], exact: &[f64], volume: &[f64]) -> impl Iterator<Item = ErrorRow> {
+    /// The error in every norm in which it is defined; no row where the exact field is zero or too small to be told
+    /// from zero.
+    pub fn rows(self, computed: &[f64], exact: &[f64], volume: &[f64]) -> Vec<ErrorRow> {
         let largest = exact.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         let is_lost = largest <= self.resolution * self.scale.abs();
-        let difference = if is_lost { None } else { FieldDifference::of(computed, exact, volume) };
-        let errors = difference.map(|difference| difference.in_norms(FIELD_NORMS));
-        FIELD_NORMS.into_iter().zip(errors.into_iter().flatten()).filter_map(
-            move |(norm, (absolute, relative))| {
-                Some(ErrorRow {
-                    time_factor: self.time_factor,
-                    quantity: self.quantity,
-                    sample: self.sample,
-                    norm,
-                    reference: self.reference.to_owned(),
-                    value: relative?,
-                    absolute: absolute? * of_components(norm, self.components) / self.scale,
-                })
-            },
-        )
+        let difference = FieldDifference::of(computed, exact, volume).filter(|_| !is_lost);
+        let row = |norm| {
+            let (absolute, relative) = difference.as_ref()?.in_norm(norm);
+            Some(ErrorRow {
+                time_factor: self.time_factor,
+                quantity: self.quantity,
+                sample: self.sample,
+                norm,
+                reference: self.reference.to_owned(),
+                value: relative?,
+                absolute: absolute? * of_components(norm, self.components) / self.scale,
+            })
+        };
+        FIELD_NORMS.into_iter().filter_map(row).collect()
     }
 }
 
-/// What the mean of a norm over all components makes of that over the volume, in which components add up.
+/// Factor from the mean of a norm over all components to the mean over the volume, in which components add up.
 fn of_components(norm: Norm, components: usize) -> f64 {
     match norm {
         Norm::L1 => components as f64,
@@ -79,8 +78,8 @@ fn of_components(norm: Norm, components: usize) -> f64 {
     }
 }
 
-/// The signed error of a settlement, m, where it is defined and the exact one is no round-off;
-/// absolute over a scale, m.
+/// The signed error of a settlement, m, where it is defined and the exact one is above round-off; its absolute value
+/// is over a scale, m.
 ///
 /// # Errors
 /// When the reference refuses the time factor.
@@ -106,8 +105,8 @@ pub fn settlement_error(
     }))
 }
 
-/// Every error of a snapshot against a reference; where a relative error is not defined, for the
-/// exact field is zero or below round-off, there is no row.
+/// Every error of a snapshot against a reference; no row where a relative error is not defined because the
+/// exact field is zero or below round-off.
 ///
 /// # Errors
 /// When the reference refuses the time factor.
@@ -184,7 +183,7 @@ mod tests {
     #[test]
     fn an_exact_field_below_the_resolution_has_no_relative_error() {
         let rows = |exact: f64, resolution: f64| {
-            field(100.0, resolution).rows(&[1e-11, 2e-11], &[exact, 0.5 * exact], &[1.0, 1.0]).count()
+            field(100.0, resolution).rows(&[1e-11, 2e-11], &[exact, 0.5 * exact], &[1.0, 1.0]).len()
         };
         assert_eq!(rows(1e-50, UNRESOLVED), 0);
         assert_eq!(rows(0.9 * 100.0 * UNRESOLVED, UNRESOLVED), 0);

@@ -5,19 +5,9 @@
 //! has norm `h²` times a constant, whatever the number of samples.
 
 use crate::case::norm::Norm;
+use oedometer_soil::elementary;
 
-/// A field with its weights, ready for means over the volume.
-struct WeightedField<'a> {
-    values: &'a [f64],
-    volumes: &'a [f64],
-    /// Largest size of a value that counts.
-    largest: f64,
-    largest_volume: f64,
-    /// Sum of the volumes over the largest of them.
-    total: f64,
-}
-
-/// The error of a field beside the exact one, for as many norms as are asked for.
+/// The error of a field and the exact one, for as many norms as are needed.
 pub struct FieldDifference<'a> {
     difference: Vec<f64>,
     exact: &'a [f64],
@@ -25,7 +15,7 @@ pub struct FieldDifference<'a> {
 }
 
 impl<'a> FieldDifference<'a> {
-    /// `computed − exact`. None where the lists are empty, do not match, hold what is not a number or no volume at all.
+    /// `computed − exact`. `None` where the lists are empty, differ in length, are not finite, or have no volume.
     pub fn of(computed: &'a [f64], exact: &'a [f64], volumes: &'a [f64]) -> Option<Self> {
         let is_measurable = computed.len() == exact.len()
             && computed.len() == volumes.len()
@@ -38,71 +28,75 @@ impl<'a> FieldDifference<'a> {
         })
     }
 
-    /// Absolute and relative error in some norms, as [`absolute_error`] and [`relative_error`] give them one by one.
-    pub fn in_norms<const N: usize>(&self, norms: [Norm; N]) -> [(Option<f64>, Option<f64>); N] {
-        let difference = WeightedField::of(&self.difference, self.volumes);
-        let exact = WeightedField::of(self.exact, self.volumes);
-        norms.map(|norm| {
-            if norm == Norm::Relative && self.exact.len() != 1 {
-                return (None, None);
-            }
-            let error = finite(difference.mean_norm(norm));
-            let size = finite(exact.mean_norm(norm)).filter(|size| *size > 0.0);
-            (error, error.zip(size).and_then(|(error, size)| finite(error / size)))
-        })
+    /// Absolute and relative error in a norm: that of `computed − exact` as a mean over the volume, in the unit of the
+    /// field, and over the same norm of `exact` ([`Norm::formula`]).
+    ///
+    /// Samples of zero volume count in no norm. `None` beyond the range of a double; no relative error where the exact
+    /// field is zero. [`Norm::Relative`] is of one number.
+    pub fn in_norm(&self, norm: Norm) -> (Option<f64>, Option<f64>) {
+        if norm == Norm::Relative && self.exact.len() != 1 {
+            return (None, None);
+        }
+        let finite = |value: f64| Some(value).filter(|value| value.is_finite());
+        let error = finite(mean_norm(norm, &self.difference, self.volumes));
+        let size = finite(mean_norm(norm, self.exact, self.volumes)).filter(|size| *size > 0.0);
+        (error, error.zip(size).and_then(|(error, size)| finite(error / size)))
     }
 }
 
-/// Norm of `computed − exact` as a mean over the volume, in the unit of the field.
-///
-/// Samples of zero volume count in no norm. None where the lists are empty, do not match, hold what is not a
-/// number or no volume at all, or where the norm is beyond the range of a double.
-#[cfg(test)]
-fn absolute_error(norm: Norm, computed: &[f64], exact: &[f64], volumes: &[f64]) -> Option<f64> {
-    FieldDifference::of(computed, exact, volumes)?.in_norms([norm])[0].0
-}
-
-/// Norm of `computed − exact` over the same norm of `exact` ([`Norm::formula`]); none as for
-/// an absolute one, and where the exact field is zero. A relative error is of one number.
+/// The relative error of [`FieldDifference::in_norm`].
 pub fn relative_error(norm: Norm, computed: &[f64], exact: &[f64], volumes: &[f64]) -> Option<f64> {
-    FieldDifference::of(computed, exact, volumes)?.in_norms([norm])[0].1
+    FieldDifference::of(computed, exact, volumes)?.in_norm(norm).1
 }
 
-impl<'a> WeightedField<'a> {
-    fn of(values: &'a [f64], volumes: &'a [f64]) -> Self {
-        let counted = values.iter().zip(volumes).filter(|(_, volume)| **volume > 0.0);
-        let largest = counted.map(|(value, _)| value.abs()).fold(0.0, f64::max);
-        let largest_volume = volumes.iter().copied().fold(0.0, f64::max);
-        let counted = volumes.iter().take(values.len()).filter(|volume| **volume > 0.0);
-        let total = counted.map(|volume| volume / largest_volume).sum();
-        Self { values, volumes, largest, largest_volume, total }
+/// The norm of a field as a mean over the volume, scaled by the largest value and volume so that squares of very small
+/// or very large numbers neither vanish nor overflow.
+fn mean_norm(norm: Norm, values: &[f64], volumes: &[f64]) -> f64 {
+    let counted = || values.iter().zip(volumes).filter(|(_, volume)| **volume > 0.0);
+    let largest = counted().map(|(value, _)| value.abs()).fold(0.0, f64::max);
+    if largest == 0.0 || !largest.is_finite() {
+        return largest;
     }
-
-    /// The norm as a mean over the volume, scaled by the largest entry so that squares of very small
-    /// or very large fields neither vanish nor overflow.
-    fn mean_norm(&self, norm: Norm) -> f64 {
-        let largest = self.largest;
-        if largest == 0.0 || !largest.is_finite() {
-            return largest;
-        }
-        match norm {
-            Norm::L1 => largest * self.mean(|share| share),
-            Norm::L2 => largest * self.mean(|share| share * share).sqrt(),
-            Norm::Linf | Norm::Relative => largest,
-        }
-    }
-
-    /// Mean over the volume of a power of the values' sizes over the largest one.
-    fn mean(&self, power: impl Fn(f64) -> f64) -> f64 {
-        let counted = self.values.iter().zip(self.volumes).filter(|(_, volume)| **volume > 0.0);
+    let largest_volume = volumes.iter().copied().fold(0.0, f64::max);
+    let total: f64 = counted().map(|(_, volume)| volume / largest_volume).sum();
+    let mean = |power: fn(f64) -> f64| {
         let weighted =
-            counted.map(|(value, volume)| volume / self.largest_volume * power((value / self.largest).abs()));
-        weighted.sum::<f64>() / self.total
+            counted().map(|(value, volume)| volume / largest_volume * power((value / largest).abs()));
+        weighted.sum::<f64>() / total
+    };
+    match norm {
+        Norm::L1 => largest * mean(|share| share),
+        Norm::L2 => largest * mean(|share| share * share).sqrt(),
+        Norm::Linf | Norm::Relative => largest,
     }
 }
 
-fn finite(value: f64) -> Option<f64> {
-    Some(value).filter(|value| value.is_finite())
+/// One place's part in the error of a field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contribution {
+    /// Place in the list of samples, from 0.
+    pub index: usize,
+    /// Computed less exact, in the unit of the field.
+    pub error: f64,
+    /// Share of the squared L2 error, from 0 to 1.
+    pub share: f64,
+}
+
+/// The largest part of all places, the first of several alike; none where the error vanishes or is no number.
+pub fn largest_contribution(computed: &[f64], exact: &[f64], volumes: &[f64]) -> Option<Contribution> {
+    // Scaled by the largest, so that the squares of tiny errors do not vanish.
+    let errors = || computed.iter().zip(exact).map(|(computed, exact)| computed - exact);
+    let largest = errors().fold(0.0_f64, |largest, error| largest.max(error.abs()));
+    let weights =
+        || errors().zip(volumes).map(|(error, volume)| volume * elementary::powi(error / largest, 2));
+    let total: f64 = weights().sum();
+    if !(total.is_finite() && total > 0.0) {
+        return None;
+    }
+    let (index, weight) = weights()
+        .enumerate()
+        .reduce(|most, one| if one.1.total_cmp(&most.1).is_gt() { one } else { most })?;
+    Some(Contribution { index, error: computed[index] - exact[index], share: weight / total })
 }
 
 #[cfg(test)]

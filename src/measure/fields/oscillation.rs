@@ -1,7 +1,14 @@
-//! How much of a computed profile is spurious oscillation.
+//! Spurious oscillation of a computed profile, and of the pressure of a plane run.
 //!
-//! An error norm sees a checkerboard and a smooth offset of the same size as one and the same number; the
-//! variation of the profile beyond its net changes tells them apart.
+//! An error norm cannot tell a checkerboard from a smooth offset of the same size; the variation of the profile
+//! beyond its net changes can.
+
+use crate::measure::fields::exact_fields::exact_samples;
+use crate::measure::known_references::{Known, key_of, known_or, known_reference};
+use crate::record::Record;
+use oedometer_exact::exact_error::ExactError;
+use oedometer_mpm::run::results::snapshot::Samples;
+use std::sync::{Arc, LazyLock, Mutex};
 
 /// Reversals of the exact profile smaller than this share of its range are round-off, not turns.
 const TURN_TOLERANCE: f64 = 1e-9;
@@ -10,8 +17,8 @@ const TURN_TOLERANCE: f64 = 1e-9;
 /// `TV(x) / Σ |Δx| − 1` with the net changes `Δx` of the computed one over the stretches where the exact one is
 /// monotone. Zero for every profile that rises and falls where the exact one does, whatever its error.
 ///
-/// None for fewer than three samples, lists that do not match, what is not a number or too large to subtract, an
-/// exact profile of zero, and a computed one without any net change.
+/// `None` for fewer than three samples, lists of different lengths, values that are not finite or too large to
+/// subtract, an exact profile of zero, and a computed one without any net change.
 pub fn reversal(computed: &[f64], exact: &[f64]) -> Option<f64> {
     let variation = total_variation(computed);
     let is_measurable = computed.len() == exact.len()
@@ -24,7 +31,7 @@ pub fn reversal(computed: &[f64], exact: &[f64]) -> Option<f64> {
 }
 
 /// Total variation `Σ |x_{i+1} − x_i|` of a profile, in its unit.
-pub fn total_variation(profile: &[f64]) -> f64 {
+fn total_variation(profile: &[f64]) -> f64 {
     profile.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
 }
 
@@ -70,6 +77,81 @@ fn turning_points(profile: &[f64]) -> Vec<usize> {
         }
     }
     turns
+}
+
+/// Pressures over the load at the points, row after row from the base, each from `x = 0` on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlaneField {
+    /// Points along the layer.
+    pub columns: usize,
+    /// Lines between the points over the length, from 0 to `L/H`.
+    pub x_edges: Vec<f64>,
+    /// Lines between the points over the height.
+    pub y_edges: Vec<f64>,
+    /// `p/q` of the run.
+    pub computed: Vec<f64>,
+    /// `p/q` of the scene's own reference.
+    pub exact: Vec<f64>,
+}
+
+impl PlaneField {
+    /// The field of a record at one of its outputs; `None` where there is no such output or the run has no
+    /// second dimension.
+    ///
+    /// # Errors
+    /// When the reference refuses the case.
+    pub fn of(record: &Record, time_factor: f64) -> Result<Option<Self>, ExactError> {
+        let case = &record.case;
+        let Some(snapshot) = record.snapshot(time_factor) else { return Ok(None) };
+        let Some(across) = case.column.cells_across(case.cells).filter(|_| snapshot.points.plane.is_some())
+        else {
+            return Ok(None);
+        };
+        let exact = exact_pressure(record, time_factor, &snapshot.points)?;
+        let columns = across * case.points_per_cell;
+        let rows = case.cells * case.points_per_cell;
+        let per_height = 1.0 / rows as f64;
+        let over_load = |pressures: &[f64]| pressures.iter().map(|p| p / case.column.load).collect();
+        Ok(Some(Self {
+            columns,
+            x_edges: (0..=columns).map(|i| i as f64 * per_height).collect(),
+            y_edges: (0..=rows).map(|i| i as f64 * per_height).collect(),
+            computed: over_load(&snapshot.points.pressure),
+            exact: over_load(&exact),
+        }))
+    }
+
+    /// Oscillation index: total variation of the run's pressure along every row and column of
+    /// points over that of the exact one, minus one. A staircase of the right height has index 0.
+    pub fn oscillation_index(&self) -> f64 {
+        let variation = |field: &[f64]| {
+            let along: f64 = field.chunks(self.columns).map(total_variation).sum();
+            let up: f64 = (0..self.columns)
+                .map(|column| {
+                    let line: Vec<f64> = field.iter().skip(column).step_by(self.columns).copied().collect();
+                    total_variation(&line)
+                })
+                .sum();
+            along + up
+        };
+        variation(&self.computed) / variation(&self.exact) - 1.0
+    }
+}
+
+/// Pressures, Pa, of the scene's own reference at the points of a run.
+///
+/// A study of many methods asks for the same field repeatedly, and it is the most expensive part of a report: it is
+/// cached by everything that it depends on, geometry, soil, lattice of the points and time.
+fn exact_pressure(record: &Record, time_factor: f64, points: &Samples) -> Result<Arc<Vec<f64>>, ExactError> {
+    static KNOWN: Known<Arc<Vec<f64>>> = LazyLock::new(Mutex::default);
+    let case = &record.case;
+    let own = case.scene.references()[0].of_soil(&case.material);
+    let lattice = format!("{} {} {}", case.cells, case.points_per_cell, points.pressure.len());
+    let key = key_of(case, own, &[time_factor]) + &lattice;
+    known_or(&KNOWN, key, || {
+        let reference = known_reference(case, own, &[time_factor])?;
+        Ok(Arc::new(exact_samples(case, &reference, time_factor, points)?.pressure))
+    })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::case::Task;
-use crate::measure::attached_record::record_of_attached;
+use crate::measure::record::record_of_attached;
 use crate::record::attached_run::AttachedRun;
 use crate::record::pack::index::Place;
 use crate::record::pack::member::{HEADER, Header};

@@ -79,7 +79,7 @@ fn chart_of(precision: &WorkPrecision<'_>, has_peers: bool) -> Chart {
     chart.names.extend(front.iter().map(|run| PointName { at: point(run), name: short_name(run) }));
     if has_peers {
         let known =
-            peers::all().iter().filter_map(|peer| Some((peer, (peer.wall_seconds?, peer.worst_error()?))));
+            peers::PEERS.iter().filter_map(|peer| Some((peer, (peer.wall_seconds?, peer.worst_error()?))));
         let known: Vec<(&Peer, (f64, f64))> = known.collect();
         let points = known.iter().map(|(_, at)| *at).collect();
         chart.series.push(Series::new("other programs", points).style(Style::Markers).slot(PEERS_SLOT));
@@ -122,7 +122,7 @@ fn on_cells<'b, 'a>(
 /// Where the other programs are ahead on the same number of cells.
 fn equal_cells(precision: &WorkPrecision<'_>) -> String {
     let mut ahead = Vec::new();
-    for peer in peers::all() {
+    for peer in peers::PEERS.iter() {
         let Some((_, own)) = peer.cells.and_then(|cells| on_cells(precision, cells)) else { continue };
         let better: Vec<String> = peers::TIME_FACTORS
             .iter()
@@ -151,7 +151,7 @@ fn equal_cells(precision: &WorkPrecision<'_>) -> String {
 }
 
 fn peers_table(precision: &WorkPrecision<'_>) -> Table {
-    let rows = peers::all().iter().map(|peer| {
+    let rows = peers::PEERS.iter().map(|peer| {
         let own = peer.cells.and_then(|cells| on_cells(precision, cells));
         let measured = |value: Option<f64>, kind| Cell::of(value, kind, "not measured");
         let mut row: Vec<Cell> = vec![

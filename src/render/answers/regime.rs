@@ -4,7 +4,7 @@
 use crate::case::Case;
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::{Path, SeriesSummary};
-use crate::measure::largest::largest;
+use crate::measure::statistics::largest;
 use crate::render::report::StudyResults;
 use crate::render::report::labels::first_measure;
 use crate::study::expectation::Axis;

@@ -1,7 +1,7 @@
 //! Errors and oscillation against the stiffness of the water and of the skeleton, through
 //! consolidation.
 
-use crate::judge::comparison::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
+use crate::judge::comparison::locking::{Showing, StiffnessSweep, SweptStiffness};
 use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size};
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;

@@ -1,6 +1,6 @@
 //! What is told of the run of an attached solver below the table of its case.
 
-use crate::measure::wall_times::spread;
+use crate::measure::statistics::spread;
 use crate::record::{Record, WallSample};
 use crate::render::tables::attached_runs::is_busy;
 use oedometer_soil::wording::{count_of, short};

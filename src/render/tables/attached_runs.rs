@@ -1,6 +1,6 @@
 //! The runs of attached solvers: how each ended, what it took, and whether its repeats agree.
 
-use crate::measure::wall_times::spread;
+use crate::measure::statistics::spread;
 use crate::record::{Record, WallSample};
 use crate::render::table::{Cell, Mood, Table, columns};
 

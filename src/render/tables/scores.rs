@@ -3,7 +3,7 @@
 use crate::case::norm::Norm;
 use crate::case::quantity::Quantity;
 use crate::judge::score::score_series::ScoredSeries;
-use crate::judge::score::{Score, WorstPlace};
+use crate::judge::score::{Score, WorstPlace, error_key};
 use crate::record::ErrorRow;
 use crate::render::table;
 use crate::render::table::{Cell, Table, TableColumn, columns};
@@ -39,7 +39,7 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
             vec![Cell::Number(row.time_factor), row.quantity.name().into(), row.sample.name().into()];
         cells.extend(references.iter().map(|name| {
             let like = ErrorRow { reference: (*name).to_owned(), ..row.clone() };
-            error_cell(index.find(&like))
+            error_cell(index.get(&error_key(&like)).copied())
         }));
         let worst = worst_of.get(&(row.time_factor.to_bits(), row.quantity)).copied();
         cells.extend(place_cells(worst, is_plane));

@@ -1,5 +1,9 @@
 use super::*;
 
+fn absolute_error(norm: Norm, computed: &[f64], exact: &[f64], volumes: &[f64]) -> Option<f64> {
+    FieldDifference::of(computed, exact, volumes)?.in_norm(norm).0
+}
+
 /// A field with a pointwise error of `h²` times a smooth shape, on uneven volumes.
 fn manufactured(cells: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let h = 1.0 / cells as f64;
@@ -89,4 +93,22 @@ fn a_sample_without_volume_counts_in_no_norm() {
         let error = absolute_error(norm, &[1.5, 9.0], &[1.0, 1.0], &[2.0, 0.0]).unwrap();
         assert!((error - 0.5).abs() < 1e-15, "{norm}: {error}");
     }
+}
+
+#[test]
+fn the_place_that_is_off_most_is_found_with_its_share() {
+    let part = largest_contribution(&[1.0, 2.0, 3.5], &[1.1, 2.0, 3.0], &[1.0, 1.0, 2.0]).expect("an error");
+    assert_eq!((part.index, part.error), (2, 0.5));
+    assert!((part.share - 0.5 / 0.51).abs() < 1e-12);
+    let tiny = largest_contribution(&[1e-200, 0.0], &[0.0, 0.0], &[1.0, 1.0]).expect("an error");
+    assert_eq!(tiny.share, 1.0);
+    let alike = largest_contribution(&[0.0, 1.0, 1.0], &[0.0; 3], &[1.0; 3]).expect("an error");
+    assert_eq!((alike.index, alike.share), (1, 0.5));
+}
+
+#[test]
+fn no_error_and_no_number_have_no_place() {
+    assert!(largest_contribution(&[1.0], &[1.0], &[1.0]).is_none());
+    assert!(largest_contribution(&[f64::NAN], &[1.0], &[1.0]).is_none());
+    assert!(largest_contribution(&[], &[], &[]).is_none());
 }

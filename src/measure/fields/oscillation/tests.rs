@@ -57,3 +57,27 @@ fn what_is_no_profile_has_no_oscillation() {
         assert_eq!(reversal(&[1.0, 2.0, 3.0], &[1.0, bad, 1.0]), None);
     }
 }
+
+fn field(computed: impl Fn(usize, usize) -> f64) -> PlaneField {
+    let exact = |i: usize, j: usize| (i + 2 * j) as f64;
+    let all = |f: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+        (0..6).flat_map(|j| (0..4).map(move |i| (i, j))).map(|(i, j)| f(i, j)).collect()
+    };
+    PlaneField {
+        columns: 4,
+        x_edges: Vec::new(),
+        y_edges: Vec::new(),
+        computed: all(&computed),
+        exact: all(&exact),
+    }
+}
+
+#[test]
+fn a_smooth_error_has_no_oscillation_and_a_checkerboard_has() {
+    assert_eq!(field(|i, j| (i + 2 * j) as f64 + 7.0).oscillation_index(), 0.0);
+    // A staircase of two points a step.
+    let staircase = field(|i, j| (i / 2 * 2) as f64 + 2.0 * j as f64);
+    assert!(staircase.oscillation_index() <= 0.0);
+    let board = field(|i, j| (i + 2 * j) as f64 + if (i + j) % 2 == 0 { 5.0 } else { -5.0 });
+    assert!(board.oscillation_index() > 4.0, "{}", board.oscillation_index());
+}

@@ -1,7 +1,7 @@
 //! A map of soils: the colour of each is the method that is the cheapest for one percent there.
 
 use crate::judge::comparison::cheapest_method::{MappedSoil, TOLERANCE, Way, mapped_soils};
-use crate::measure::wall_times::median;
+use crate::measure::statistics::median;
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::Block;
 use crate::render::report::StudyResults;

@@ -1,6 +1,6 @@
 //! Maps of the critical step: the predicted line with the observed marks, a method a colour.
 
-use crate::judge::comparison::stability_map::{MapAxis, maps_of};
+use crate::judge::comparison::stability_map::{MapScale, maps_of};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
@@ -20,12 +20,12 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
         let most = steps().fold(0.0, f64::max);
         let least = steps().fold(f64::INFINITY, f64::min);
         let label = "critical step over h/c (–)";
-        let x = match map.axis {
-            MapAxis::Points => {
-                ChartAxis::linear(axis_label(map.axis)).with_ticks((1..=5).map(f64::from).collect())
+        let x = match map.axis.scale {
+            MapScale::Counts => {
+                ChartAxis::linear(map.axis.label).with_ticks((1..=5).map(f64::from).collect())
             }
-            MapAxis::Flip | MapAxis::Offset => ChartAxis::linear(axis_label(map.axis)),
-            _ => ChartAxis::log10(axis_label(map.axis)),
+            MapScale::Linear => ChartAxis::linear(map.axis.label),
+            MapScale::Log => ChartAxis::log10(map.axis.label),
         };
         let y = if most > WIDE * least { ChartAxis::log10(label) } else { ChartAxis::linear(label) };
         let mut chart = Chart::new(format!("Critical step, {}", map.shared), x, y);
@@ -55,15 +55,4 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
             blocks: vec![Block::Table(table_of(results.records))],
         },
     ]
-}
-
-fn axis_label(axis: MapAxis) -> &'static str {
-    match axis {
-        MapAxis::Conductivity => "hydraulic conductivity k (m/s)",
-        MapAxis::Stiffness => "stiffness of the water K_w/E (–)",
-        MapAxis::Porosity => "porosity n (–)",
-        MapAxis::Points => "points a cell (–)",
-        MapAxis::Offset => "shift of the points, in spacings (–)",
-        MapAxis::Flip => "FLIP share (–)",
-    }
 }

@@ -1,7 +1,7 @@
 //! Error against work, and the wall times that were measured fairly.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::measure::wall_times::median;
+use crate::measure::statistics::median;
 use crate::record::{Record, Status};
 use crate::render::chart::describe::{Chart, ChartAxis, Series};
 use crate::render::page::Block;

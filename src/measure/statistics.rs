@@ -1,10 +1,22 @@
-//! Statistics of wall times: medians, spreads, ratios of interleaved pairs, and their noise.
+//! Statistics of samples: largest values that keep NaN; medians, spreads, and ratios of interleaved pairs of wall times.
 //!
 //! On a busy machine medians of the *same* code taken one after the other differ by up to 26 %,
 //! medians of interleaved paired ratios by 4 %: so variants are timed in rounds, every sample is
 //! kept, and a difference counts only beyond what the code shows against itself.
 
-use oedometer_soil::elementary;
+use statrs::distribution::{Binomial, DiscreteCDF};
+use statrs::statistics::{Data, Max, Min, OrderStatistics};
+
+/// The larger of two numbers; NaN is larger than any. `f64::max` drops NaN, so that a run without an answer would
+/// pass.
+pub fn larger(one: f64, other: f64) -> f64 {
+    if one > other || one.is_nan() { one } else { other }
+}
+
+/// The largest of numbers, or NaN where one of them is; `None` for no numbers.
+pub fn largest(numbers: impl IntoIterator<Item = f64>) -> Option<f64> {
+    numbers.into_iter().reduce(larger)
+}
 
 /// A list of samples in a few numbers, in their unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,22 +44,23 @@ pub struct PairedRatio {
     pub interval: Option<(f64, f64)>,
 }
 
-/// Median of samples, the mean of the middle two for an even number; none for none, or what is no number.
+/// Median of samples, the mean of the middle two for an even number; `None` for no samples, or where one is not finite.
 pub fn median(samples: &[f64]) -> Option<f64> {
-    Some(middle(&sorted(samples)?))
+    let is_sound = !samples.is_empty() && samples.iter().all(|sample| sample.is_finite());
+    is_sound.then(|| Data::new(samples.to_vec()).median())
 }
 
-/// Median, deviation and extremes of samples; none for none, or what is no number.
+/// Median, deviation and extremes of samples; `None` for no samples, or where one is not finite.
 pub fn spread(samples: &[f64]) -> Option<WallSpread> {
-    let ordered = sorted(samples)?;
-    let median = middle(&ordered);
-    let deviations: Vec<_> = ordered.iter().map(|sample| (sample - median).abs()).collect();
+    let median_of_all = median(samples)?;
+    let deviations: Vec<_> = samples.iter().map(|sample| (sample - median_of_all).abs()).collect();
+    let data = Data::new(samples.to_vec());
     Some(WallSpread {
-        count: ordered.len(),
-        median,
-        deviation: 1.4826 * middle(&sorted(&deviations)?),
-        minimum: ordered[0],
-        maximum: ordered[ordered.len() - 1],
+        count: samples.len(),
+        median: median_of_all,
+        deviation: 1.4826 * median(&deviations)?,
+        minimum: data.min(),
+        maximum: data.max(),
     })
 }
 
@@ -57,9 +70,11 @@ pub fn paired_ratio(first: &[f64], second: &[f64]) -> Option<PairedRatio> {
     let is_time = |time: &f64| time.is_finite() && *time > 0.0;
     let are_times = first.len() == second.len() && first.iter().chain(second).all(is_time);
     let ratios: Vec<_> = first.iter().zip(second).map(|(a, b)| a / b).collect();
-    let ordered = sorted(&ratios).filter(|_| are_times)?;
-    let interval = median_rank(ordered.len()).map(|rank| (ordered[rank - 1], ordered[ordered.len() - rank]));
-    Some(PairedRatio { ratios: spread(&ratios)?, interval })
+    let spread = spread(&ratios).filter(|_| are_times)?;
+    let mut data = Data::new(ratios);
+    let interval = median_rank(spread.count)
+        .map(|rank| (data.order_statistic(rank), data.order_statistic(spread.count + 1 - rank)));
+    Some(PairedRatio { ratios: spread, interval })
 }
 
 /// How far from 1 the ratio of the same code against itself may lie: the far end of the median's
@@ -73,27 +88,9 @@ pub fn noise_floor(against_itself: &PairedRatio) -> f64 {
 /// Rank `k` such that the `k`-th smallest and `k`-th largest of `count` samples enclose the median
 /// with at least 95 %: the largest with `P(Binomial(count, ½) < k) ≤ 2.5 %`.
 fn median_rank(count: usize) -> Option<usize> {
-    let mut term = elementary::powi(0.5, i32::try_from(count).ok()?);
-    let (mut below, mut rank) = (0.0, 0);
-    while below + term <= 0.025 && rank < count {
-        below += term;
-        term *= (count - rank) as f64 / (rank + 1) as f64;
-        rank += 1;
-    }
-    // For thousands of samples the first term underflows; nobody times that many rounds.
-    (rank > 0 && rank < count.div_ceil(2)).then_some(rank)
-}
-
-fn middle(ordered: &[f64]) -> f64 {
-    let half = ordered.len() / 2;
-    if ordered.len() % 2 == 1 { ordered[half] } else { f64::midpoint(ordered[half - 1], ordered[half]) }
-}
-
-/// The samples in order; they are at least one, and finite.
-fn sorted(samples: &[f64]) -> Option<Vec<f64>> {
-    let mut ordered = samples.to_vec();
-    ordered.sort_by(f64::total_cmp);
-    (!ordered.is_empty() && ordered.iter().all(|sample| sample.is_finite())).then_some(ordered)
+    let below_median = Binomial::new(0.5, u64::try_from(count).ok()?).ok()?;
+    let rank = usize::try_from(below_median.inverse_cdf(0.025)).ok()?;
+    (rank > 0).then_some(rank)
 }
 
 #[cfg(test)]
@@ -157,5 +154,18 @@ mod tests {
         }
         assert_eq!(paired_ratio(&[1.0], &[]), None);
         assert_eq!(paired_ratio(&[], &[]), None);
+    }
+
+    #[test]
+    fn the_largest_and_what_is_no_number_are_found_wherever_they_stand() {
+        for worst in [9.0, f64::INFINITY, f64::NAN] {
+            for place in 0..3 {
+                let mut numbers = [1.0, -20.0, 3.0];
+                numbers[place] = worst;
+                let found = largest(numbers).expect("three numbers");
+                assert!(found == worst || found.is_nan() && worst.is_nan(), "{numbers:?}: {found}");
+            }
+        }
+        assert_eq!(largest([]), None);
     }
 }

@@ -1,0 +1,204 @@
+//! From a run, of this program or of an attached solver, to its record.
+
+use crate::case::Case;
+use crate::measure::balances::{balance, curve_gap, start_checks};
+use crate::measure::dimensionless_groups::{groups, inertia_rules};
+use crate::measure::fields::field_errors::{LONG_AFTER, snapshot_errors};
+use crate::measure::known_references::known_reference;
+use crate::measure::other_measures::measures_of;
+use crate::record::attached_run::AttachedRun;
+use crate::record::provenance::Provenance;
+use crate::record::{Balance, ErrorRow, HistoryRow, Record, ReferenceUse, SCHEMA, Status};
+use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_mpm::critical_step::observed::CriticalStep;
+use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
+use oedometer_mpm::run::results::snapshot::Snapshot;
+use oedometer_mpm::scene::column::column_parameters;
+use std::sync::Arc;
+
+/// A record without results.
+fn empty_record(case: &Case, status: Status, step_sizes: StepSizes, step_over_limit: f64) -> Record {
+    Record {
+        schema: SCHEMA,
+        hash: case.hash(),
+        case: case.clone(),
+        status,
+        counters: Counters::default(),
+        step_sizes,
+        wall: Vec::new(),
+        stability: None,
+        groups: groups(case, step_over_limit),
+        start: None,
+        balance: Vec::new(),
+        errors: Vec::new(),
+        measures: Vec::new(),
+        history: Vec::new(),
+        references: Vec::new(),
+        snapshots: Vec::new(),
+        attached: None,
+        provenance: Provenance::of_this_program(),
+        digest: String::new(),
+    }
+}
+
+/// The record of a run; the caller adds wall times.
+///
+/// # Errors
+/// When a reference refuses the case's parameters.
+pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) -> Result<Record, ExactError> {
+    let steps = outcome.step_sizes;
+    let status = match outcome.status {
+        RunStatus::Ok => Status::Ok,
+        RunStatus::Failed(failure) => Status::Failed(failure),
+    };
+    let parameters = column_parameters(&case.column, &case.material);
+    let curve = outcome.history.iter().map(|point| (parameters.time_factor(point.time), point.settlement));
+    let results = Results {
+        times: case.time_factors.to_vec(),
+        curve: curve.collect(),
+        start: Some(&outcome.start),
+        snapshots: outcome.snapshots,
+    };
+    let record = empty_record(case, status, steps, steps.largest / steps.predicted_critical);
+    results.added_to(Record { counters: outcome.counters, ..record }, references)
+}
+
+/// The record of a case whose states at its outputs came from an attached solver, one state for each output; none
+/// where it failed. Each state is compared with the exact solution at its own time. The caller adds wall times.
+///
+/// # Errors
+/// When a reference refuses the case's parameters.
+pub fn record_of_attached(
+    case: &Case,
+    references: &[ReferenceKind],
+    status: Status,
+    snapshots: Vec<Snapshot>,
+    suggested_step: f64,
+    attached: AttachedRun,
+) -> Result<Record, ExactError> {
+    let parameters = column_parameters(&case.column, &case.material);
+    let times: Vec<f64> = snapshots.iter().map(|snapshot| parameters.time_factor(snapshot.time)).collect();
+    let curve = times.iter().copied().zip(snapshots.iter().map(|snapshot| snapshot.settlement)).collect();
+    let steps = StepSizes { predicted_critical: 0.0, target: suggested_step, largest: suggested_step };
+    let record = Record { attached: Some(attached), ..empty_record(case, status, steps, 0.0) };
+    Results { times, curve, start: None, snapshots }.added_to(record, references)
+}
+
+/// What a run computed.
+struct Results<'a> {
+    /// Time factors of the snapshots.
+    times: Vec<f64>,
+    /// Time factors and settlements, m.
+    curve: Vec<(f64, f64)>,
+    /// The state at the start, where it is known.
+    start: Option<&'a Snapshot>,
+    snapshots: Vec<Snapshot>,
+}
+
+impl Results<'_> {
+    /// The record with everything that is measured of the results.
+    fn added_to(self, record: Record, kinds: &[ReferenceKind]) -> Result<Record, ExactError> {
+        let case = &record.case;
+        let mut prepared = case.time_factors.to_vec();
+        if record.attached.is_some() {
+            prepared.extend(&self.times);
+        }
+        prepared.push(LONG_AFTER);
+        let references: Vec<Arc<Reference>> = kinds
+            .iter()
+            .map(|kind| known_reference(case, kind.of_soil(&case.material), &prepared))
+            .collect::<Result<_, _>>()?;
+        let own = references.first().map(|own| &**own);
+        let mut errors = Vec::new();
+        for ((asked, time), snapshot) in case.time_factors.iter().zip(&self.times).zip(&self.snapshots) {
+            // Runs of this program are not compared with a theory that leaves out the inertia they have.
+            let hold = references
+                .iter()
+                .filter(|one| record.attached.is_some() || inertia_rules(case, one.kind()).is_none());
+            for reference in hold {
+                let rows = snapshot_errors(case, reference, *time, snapshot)?;
+                errors.extend(rows.into_iter().map(|row| ErrorRow { time_factor: *asked, ..row }));
+            }
+        }
+        let final_settlement = match own {
+            None => f64::NAN,
+            // Where nothing settles, the settlement that a load of the same size would cause.
+            Some(own) if own.kind() == ReferenceKind::AtRest || own.kind().is_manufactured() => {
+                column_parameters(&case.column, &case.material).final_settlement()
+            }
+            Some(own) => own.settlement(LONG_AFTER)?,
+        };
+        let degree = |(time_factor, settlement): &(f64, f64)| HistoryRow {
+            time_factor: *time_factor,
+            degree_of_consolidation: settlement / final_settlement,
+        };
+        let history: Vec<HistoryRow> = self.curve.iter().map(degree).collect();
+        let balance = self.start.map_or_else(Vec::new, |start| {
+            let outputs = case.time_factors.iter().zip(&self.snapshots);
+            let balance_at = |(time_factor, snapshot): (&f64, &Snapshot)| Balance {
+                settlement_curve_gap: curve_gap(
+                    &history,
+                    *time_factor,
+                    snapshot.settlement / final_settlement,
+                ),
+                ..balance(case, *time_factor, start, snapshot)
+            };
+            outputs.map(balance_at).collect()
+        });
+        Ok(Record {
+            start: self.start.map(|start| start_checks(case, own, start)).transpose()?,
+            measures: measures_of(case, own, &balance, &self.snapshots),
+            balance,
+            errors,
+            history: history.into_iter().filter(|row| row.degree_of_consolidation.is_finite()).collect(),
+            references: references.iter().map(|one| reference_use(case, one)).collect::<Result<_, _>>()?,
+            snapshots: self.snapshots,
+            ..record
+        })
+    }
+}
+
+/// The record of a case whose critical step was searched.
+pub fn record_of_critical_step(case: &Case, found: CriticalStep) -> Record {
+    let largest = found.observed.unwrap_or(found.predicted);
+    let steps = StepSizes { predicted_critical: found.predicted, target: found.predicted, largest };
+    let share = found.observed.map_or(1.0, |observed| observed / found.predicted);
+    let counters = Counters {
+        points: case.cells * case.points_per_cell,
+        steps: found.probes.iter().map(|probe| probe.steps).sum(),
+        ..Counters::default()
+    };
+    Record { counters, stability: Some(found), ..empty_record(case, Status::Ok, steps, share) }
+}
+
+/// The record of a case whose search for the critical step was stopped from outside.
+pub fn record_of_stopped_search(case: &Case) -> Record {
+    let steps = StepSizes { predicted_critical: 0.0, target: 0.0, largest: 0.0 };
+    let failure = Failure {
+        kind: FailureKind::Stopped,
+        step: 0,
+        time: 0.0,
+        growth: None,
+        reason: "stopped from outside".to_owned(),
+    };
+    let points = case.cells * case.points_per_cell;
+    let counters = Counters { points, ..Counters::default() };
+    Record { counters, ..empty_record(case, Status::Failed(failure), steps, 1.0) }
+}
+
+/// How far a reference can be trusted for a case, over all of its outputs.
+///
+/// # Errors
+/// When it refuses a time.
+fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, ExactError> {
+    let does_not_hold = inertia_rules(case, reference.kind());
+    let mut entry =
+        ReferenceUse { name: reference.name().to_owned(), terms: 0, tail_bound: 0.0, does_not_hold };
+    for time_factor in case.time_factors.iter() {
+        let accuracy = reference.accuracy(*time_factor)?;
+        entry.terms = entry.terms.max(accuracy.terms);
+        entry.tail_bound = entry.tail_bound.max(accuracy.bound());
+    }
+    Ok(entry)
+}
