@@ -8,7 +8,7 @@ use crate::golden::{GoldenFile, measure_name, values_of};
 use crate::judge::paths::{grouped, level_size, paths};
 use crate::measure::fields::exact_fields::exact_samples;
 use crate::measure::fields::norms::largest_contribution;
-use crate::measure::known_references::known_reference;
+use crate::measure::theory::known_reference;
 use crate::record::{ErrorRow, Record};
 use crate::study::expectation::Axis;
 use oedometer_convergence::{Context, ErrorSeries, classify};

@@ -10,7 +10,7 @@ use crate::measure::fields::exact_fields::exact_samples;
 use crate::measure::fields::norms::relative_error;
 use crate::measure::fields::oscillation::PlaneField;
 use crate::measure::fields::oscillation::reversal;
-use crate::measure::known_references::known_reference;
+use crate::measure::theory::known_reference;
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
 use oedometer_convergence::{Context, Limiter, LimiterKind, SeriesDemand, ValueSeries};

@@ -3,9 +3,8 @@
 pub mod balances;
 pub mod dimensionless_groups;
 pub mod fields;
-pub mod known_references;
 pub mod other_measures;
 pub mod record;
 pub mod record_checks;
 pub mod statistics;
-pub mod theory_curves;
+pub mod theory;

@@ -114,7 +114,7 @@ fn a_result_that_is_too_good_fails_the_level() {
     assert!(!verdict(&at(1e-3, error), &squares).pass, "the upper end does not");
     let good = verdict(&at(1.1e-2, 1.2e-2), &squares);
     assert!(!good.pass, "{good:?}");
-    assert_eq!(good.reason, "error 0.01 at size 0.1 too good: expected between 0.011 and 0.012");
+    assert_eq!(good.reason, "error 0.01 at size 0.1 suspiciously small: expected between 0.011 and 0.012");
     // Bounds that shut everything out are no expectation.
     let crossed = verdict(&at(1.2e-2, 1.1e-2), &squares);
     assert!(!crossed.pass && crossed.reason.contains("`above` of `at`"), "{crossed:?}");

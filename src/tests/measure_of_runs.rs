@@ -3,7 +3,7 @@
 use crate::campaign::runner::records_of;
 use crate::case::Case;
 use crate::measure::other_measures::SPURIOUS_VELOCITY;
-use crate::measure::theory_curves::{constant_recovery_error, theory_isochrones};
+use crate::measure::theory::{constant_recovery_error, theory_isochrones};
 use crate::record::csv::tidy;
 use crate::study::check::Study;
 use crate::study::file::StudySource;

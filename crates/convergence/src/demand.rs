@@ -87,53 +87,31 @@ impl SeriesDemand {
     pub fn problems(&self) -> Vec<String> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         let width = |value: f64| value.is_finite() && value >= 0.0;
-        let asks = [
-            self.order.is_some(),
-            self.at.is_some(),
-            self.class.is_some(),
-            self.floor.is_some(),
-            self.spread.is_some(),
-            self.oscillation_below.is_some(),
-            self.uncertainty_below.is_some(),
-        ];
+        let &Self { order, at, class, floor, spread, oscillation_below: oscillation, .. } = self;
+        let uncertainty = self.uncertainty_below;
+        let asks = class.is_some() || order.is_some() || at.is_some() || floor.is_some() || spread.is_some();
+        let order_width = |band: OrderBand| width(band.minus) && width(band.plus);
+        let range = |at: ErrorBound| width(at.above) && at.above < at.below;
+        let is_band = |band: FloorBand| width(band.above) && positive(band.below) && band.above <= band.below;
+        let has_reason = |known: &KnownFailure| !known.reason.trim().is_empty();
         let rules = [
+            (order.is_none_or(|band| positive(band.value)), "the expected order must be a positive number"),
+            (order.is_none_or(order_width), "`minus` and `plus` of the order must be 0 or more"),
+            (at.is_none_or(|at| positive(at.size)), "the level of `at` must have a positive size"),
+            (at.is_none_or(|at| positive(at.below)), "`below` of `at` must be a positive number"),
+            (at.is_none_or(range), "`above` of `at` must be 0 or more and smaller than `below`"),
             (
-                self.order.is_none_or(|band| positive(band.value)),
-                "the expected order must be a positive number",
-            ),
-            (
-                self.order.is_none_or(|band| width(band.minus) && width(band.plus)),
-                "`minus` and `plus` of the order must be 0 or more",
-            ),
-            (self.at.is_none_or(|at| positive(at.size)), "the level of `at` must have a positive size"),
-            (self.at.is_none_or(|at| positive(at.below)), "`below` of `at` must be a positive number"),
-            (
-                self.at.is_none_or(|at| width(at.above) && at.above < at.below),
-                "`above` of `at` must be 0 or more and smaller than `below`",
-            ),
-            (
-                self.spread.is_none_or(|spread| positive(spread.size) && positive(spread.below)),
+                spread.is_none_or(|spread| positive(spread.size) && positive(spread.below)),
                 "`spread` needs a level of a positive size and a positive bound",
             ),
             (
-                self.floor.is_none_or(|floor| {
-                    width(floor.above) && positive(floor.below) && floor.above <= floor.below
-                }),
+                floor.is_none_or(is_band),
                 "the floor must lie between `above`, 0 or more, and a larger `below`",
             ),
-            (
-                self.oscillation_below.is_none_or(f64::is_finite),
-                "the bound on the oscillation must be a number",
-            ),
-            (
-                self.uncertainty_below.is_none_or(positive),
-                "the bound on the uncertainty must be a positive number",
-            ),
-            (
-                self.xfail.as_ref().is_none_or(|known| !known.reason.trim().is_empty()),
-                "a known failure needs a reason",
-            ),
-            (asks.contains(&true), "the expectation asks for nothing"),
+            (oscillation.is_none_or(f64::is_finite), "the bound on the oscillation must be a number"),
+            (uncertainty.is_none_or(positive), "the bound on the uncertainty must be a positive number"),
+            (self.xfail.as_ref().is_none_or(has_reason), "a known failure needs a reason"),
+            (asks || oscillation.is_some() || uncertainty.is_some(), "the expectation asks for nothing"),
         ];
         rules.into_iter().filter(|(met, _)| !met).map(|(_, problem)| problem.to_owned()).collect()
     }

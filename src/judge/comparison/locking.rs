@@ -15,7 +15,6 @@ use oedometer_exact::exact_error::ExactError;
 use oedometer_mpm::critical_step::formula;
 use oedometer_mpm::method::Method;
 use oedometer_soil::material::Material;
-use std::collections::BTreeSet;
 
 /// `K_w/E` from which on stiffer water should change nothing.
 const STIFF_WATER: f64 = 1e3;
@@ -85,17 +84,13 @@ fn is_plain(record: &Record) -> bool {
 fn common_cells(records: &[Record], methods: &[Method]) -> usize {
     let last = records.iter().filter_map(|record| record.case.time_factors.last());
     let last = last.copied().fold(0.0, f64::max);
+    let is_whole = |record: &&Record| is_plain(record) && record.case.time_factors.contains(&last);
+    let runs: Vec<&Record> = records.iter().filter(is_whole).collect();
     let has_run = |method: &Method, cells: usize| {
-        records.iter().any(|record| {
-            is_plain(record)
-                && record.case.method == *method
-                && record.case.cells == cells
-                && record.case.time_factors.contains(&last)
-        })
+        runs.iter().any(|record| record.case.method == *method && record.case.cells == cells)
     };
-    let all: BTreeSet<usize> = records.iter().map(|record| record.case.cells).collect();
-    let of_all = |cells: &usize| methods.iter().all(|method| has_run(method, *cells));
-    all.into_iter().rev().find(of_all).unwrap_or(0)
+    let cells = runs.iter().map(|record| record.case.cells);
+    cells.filter(|cells| methods.iter().all(|method| has_run(method, *cells))).max().unwrap_or(0)
 }
 
 fn standing(
@@ -291,28 +286,21 @@ impl StiffnessSweep {
         records: &[Record],
         stiffness: SweptStiffness,
     ) -> Result<Option<Self>, ExactError> {
-        let swept: Vec<&Record> = records
-            .iter()
-            .filter(|record| {
-                let case = &record.case;
-                record.status == Status::Ok
-                    && !case.is_explicit()
-                    && case.time_factors.last().is_some_and(|last| *last > 0.0)
-                    && stiffness.is_alone_in(case)
-            })
-            .collect();
-        // The mesh of the runs with the least compressible soil.
-        let Some(hardest) = swept.iter().max_by(|a, b| {
-            stiffness.of(&a.case).total_cmp(&stiffness.of(&b.case)).then(a.case.cells.cmp(&b.case.cells))
-        }) else {
-            return Ok(None);
+        let is_swept = |record: &&Record| {
+            let case = &record.case;
+            record.status == Status::Ok
+                && !case.is_explicit()
+                && case.time_factors.last().is_some_and(|last| *last > 0.0)
+                && stiffness.is_alone_in(case)
         };
-        let (cells, per_cell) = (hardest.case.cells, hardest.case.points_per_cell);
-        let alike: Vec<&Record> = swept
-            .iter()
-            .copied()
-            .filter(|record| (record.case.cells, record.case.points_per_cell) == (cells, per_cell))
-            .collect();
+        let swept = records.iter().filter(is_swept);
+        // The mesh of the runs with the least compressible soil.
+        let hardest = swept.clone().max_by(|a, b| {
+            stiffness.of(&a.case).total_cmp(&stiffness.of(&b.case)).then(a.case.cells.cmp(&b.case.cells))
+        });
+        let Some(hardest) = hardest else { return Ok(None) };
+        let mesh = |record: &Record| (record.case.cells, record.case.points_per_cell);
+        let alike: Vec<&Record> = swept.filter(|record| mesh(record) == mesh(hardest)).collect();
         let mut values: Vec<f64> = alike.iter().map(|record| stiffness.of(&record.case)).collect();
         values.sort_by(f64::total_cmp);
         values.dedup();
@@ -335,7 +323,7 @@ impl StiffnessSweep {
                 rows.push(SweepRow { method, time_factor, found: found.collect::<Result<_, _>>()? });
             }
         }
-        Ok(Some(Self { stiffness, cells, values, time_factors, rows }))
+        Ok(Some(Self { stiffness, cells: hardest.case.cells, values, time_factors, rows }))
     }
 
     /// The rows of one output.

@@ -258,23 +258,12 @@ fn bare_along(
     let is_scattered = can_scatter && 2 * lines.len() > places.len() && lines.len() > 2 * PER_BIN;
     match (are_chosen(&lines), is_scattered) {
         (true, _) => None,
-        (false, true) => empty_band(places, extent),
+        (false, true) => {
+            let bands = (places.len() / PER_BIN).clamp(2, 100);
+            coverage::longest(coverage::empty_bands(places, extent, bands))
+        }
         (false, false) => coverage::bare(&lines, extent),
     }
-}
-
-/// A band in which no sample lies, where a dozen would on average.
-fn empty_band(places: &[f64], extent: f64) -> Option<Bare> {
-    let count = (places.len() / PER_BIN).clamp(2, 100);
-    let length = extent / count as f64;
-    let mut taken = vec![false; count];
-    for place in places {
-        let band = (0..count).find(|band| *place <= (*band + 1) as f64 * length).unwrap_or(count - 1);
-        taken[band] = true;
-    }
-    let empty = taken.iter().position(|taken| !taken)?;
-    let end = taken[empty..].iter().position(|taken| *taken).map_or(count, |more| empty + more);
-    Some(Bare { from: empty as f64 * length, to: end as f64 * length })
 }
 
 /// The times that a result lacks.

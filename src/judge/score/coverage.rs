@@ -1,17 +1,17 @@
-//! Where a set of samples leaves a stretch of the column bare.
+//! Stretches of a column or layer without samples.
 
-/// A gap counts as bare from this many times the spacing around it on.
+/// A gap of more than this many times the spacing around it counts as bare.
 const BARE: f64 = 1.5;
-/// And that beside an end of the column from this many times on: samples stand half a spacing from
+/// [`BARE`] for a gap at an end of the column: samples stand half a spacing from
 /// it, or a whole one where the value at the end is prescribed.
 const BARE_AT_END: f64 = 1.25;
 /// Places closer than this share of the extent are one.
 pub(crate) const SAME_PLACE: f64 = 1e-6;
 /// Spacings closer than this, relative, are equal.
 const SAME_SPACING: f64 = 0.02;
-/// Neighbours on either side of a gap that tell the spacing around it.
+/// Neighbours on either side of a gap that define the spacing around it.
 const AROUND: usize = 4;
-/// Samples that an interval has on average where they lie without order.
+/// Samples that a band has on average where they have no order.
 const PER_INTERVAL: usize = 8;
 
 /// A stretch without samples.
@@ -41,12 +41,18 @@ pub fn bare(lines: &[f64], extent: f64) -> Option<Bare> {
     let stretches: Vec<Bare> = if has_order(&gaps) {
         between(lines, &gaps).chain(at_ends(lines, &gaps, extent)).collect()
     } else {
-        empty_intervals(lines, extent)
+        // So many bands that several samples lie in each on average.
+        empty_bands(lines, extent, (lines.len() / PER_INTERVAL).max(2))
     };
+    longest(stretches)
+}
+
+/// The longest of bare stretches.
+pub(crate) fn longest(stretches: Vec<Bare>) -> Option<Bare> {
     stretches.into_iter().max_by(|a, b| (a.to - a.from).total_cmp(&(b.to - b.from)))
 }
 
-/// Whether the places follow a rule: neighbouring gaps are alike, or all are multiples of one, as
+/// Whether the places have an order: neighbouring gaps are similar, or all are multiples of one, as
 /// on a lattice with holes.
 fn has_order(gaps: &[f64]) -> bool {
     let pairs = gaps.windows(2);
@@ -94,17 +100,16 @@ fn at_ends<'a>(lines: &'a [f64], gaps: &'a [f64], extent: f64) -> impl Iterator<
     low.into_iter().chain(high)
 }
 
-/// Intervals of equal length in which no sample lies, where several do on average.
-fn empty_intervals(lines: &[f64], extent: f64) -> Vec<Bare> {
-    let count = (lines.len() / PER_INTERVAL).max(2);
+/// Runs of empty bands among some of equal length over an extent.
+pub(crate) fn empty_bands(places: &[f64], extent: f64, count: usize) -> Vec<Bare> {
     let length = extent / count as f64;
-    let is_empty = |interval: usize| {
-        let ends = interval as f64 * length..=(interval + 1) as f64 * length;
-        !lines.iter().any(|line| ends.contains(line))
+    let is_empty = |band: usize| {
+        let ends = band as f64 * length..=(band + 1) as f64 * length;
+        !places.iter().any(|place| ends.contains(place))
     };
     let mut stretches: Vec<Bare> = Vec::new();
-    for interval in (0..count).filter(|interval| is_empty(*interval)) {
-        let (from, to) = (interval as f64 * length, (interval + 1) as f64 * length);
+    for band in (0..count).filter(|band| is_empty(*band)) {
+        let (from, to) = (band as f64 * length, (band + 1) as f64 * length);
         match stretches.last_mut() {
             Some(before) if before.to == from => before.to = to,
             _ => stretches.push(Bare { from, to }),

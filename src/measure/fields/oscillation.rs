@@ -4,7 +4,7 @@
 //! beyond its net changes can.
 
 use crate::measure::fields::exact_fields::exact_samples;
-use crate::measure::known_references::{Known, key_of, known_or, known_reference};
+use crate::measure::theory::{Known, key_of, known_or, known_reference};
 use crate::record::Record;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_mpm::run::results::snapshot::Samples;

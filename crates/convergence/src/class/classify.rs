@@ -3,8 +3,7 @@
 use crate::class::evaluable_series::{EvaluableSeries, FLOOR_LEVELS};
 use crate::class::finest_window::judge_window;
 use crate::class::{Class, Classification, Context};
-use crate::fit::approach_to_limit::{Limit, limit_of};
-use crate::fit::cancelling_terms::fit_cancelling;
+use crate::fit::approach_to_limit::{Limit, fit_cancelling, limit_of};
 use crate::fit::odd_level::odd_level;
 use crate::limiter::LimiterKind;
 use crate::orders::{WINDOW, pair_orders};

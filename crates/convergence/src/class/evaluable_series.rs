@@ -1,8 +1,7 @@
 //! A series that can be evaluated, and the description of a floor under it.
 
 use crate::class::{Class, Classification, Context, Floor};
-use crate::fit::approach_to_limit::Approach;
-use crate::fit::cancelling_terms::CancellingFit;
+use crate::fit::approach_to_limit::{Approach, CancellingFit};
 use crate::fit::floor::fit_floor;
 use crate::limiter::{Limiter, LimiterKind, advice, identify};
 use crate::orders::{WINDOW, log_ratio, pair_order, slope_of};

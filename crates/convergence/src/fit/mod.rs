@@ -2,7 +2,6 @@
 
 pub(crate) mod approach_to_limit;
 pub(crate) mod bending_order;
-pub(crate) mod cancelling_terms;
 pub(crate) mod floor;
 pub(crate) mod odd_level;
 pub(crate) mod two_terms;

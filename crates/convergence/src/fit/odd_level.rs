@@ -3,7 +3,7 @@
 //! Wherever it lies, an order on the finest window says nothing of it. It is told where no smooth curve goes through all
 //! levels and one goes through all but this.
 
-use crate::fit::cancelling_terms::fit_cancelling;
+use crate::fit::approach_to_limit::fit_cancelling;
 use crate::fit::two_terms::{TwoTerms, fit_two_terms};
 use crate::fit::{Exponent, solve};
 use oedometer_soil::elementary::{exp, ln};

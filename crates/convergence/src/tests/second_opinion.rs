@@ -2,8 +2,7 @@
 //! for exponents, integrals for quantiles, fixed points for orders. Nothing of the first is used here.
 
 use crate::fit::Exponent;
-use crate::fit::approach_to_limit::{Limit, limit_of};
-use crate::fit::cancelling_terms::fit_cancelling;
+use crate::fit::approach_to_limit::{Limit, fit_cancelling, limit_of};
 use crate::fit::floor::fit_floor;
 use crate::fit::two_terms::fit_two_terms;
 use crate::orders::{finest_order, quantile_975, slope};

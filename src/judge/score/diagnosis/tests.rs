@@ -226,7 +226,7 @@ fn another_stress_in_the_place_of_the_pressure_is_named() {
     for off in [0.0, 1e-3, 0.05] {
         only(
             &changed(off, |state| state.pressure = state.effective_stress.iter().map(|s| -s).collect()),
-            &["your p matches the exact effective stress: is it given in the place of the pore pressure?"],
+            &["your p matches the exact effective stress: is it given in place of the pore pressure?"],
         );
         only(
             &changed(off, |state| state.pressure.clone_from(&state.effective_stress)),
@@ -238,7 +238,7 @@ fn another_stress_in_the_place_of_the_pressure_is_named() {
         only(
             &changed(off, |state| state.pressure = total(state)),
             &[
-                "your p matches the exact total stress: is it given in the place of the pore pressure? Or does nothing",
+                "your p matches the exact total stress: is it given in place of the pore pressure? Or does nothing",
             ],
         );
     }

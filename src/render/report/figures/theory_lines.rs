@@ -2,7 +2,7 @@
 
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::measure::theory_curves::{
+use crate::measure::theory::{
     TheoryIsochrone, computed_consolidation, computed_isochrone, constant_recovery_error,
     theory_consolidation, theory_isochrones,
 };
