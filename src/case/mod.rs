@@ -12,6 +12,7 @@ pub mod two_layer_limits;
 pub mod work_estimate;
 
 use crate::case::shared::Shared;
+pub use norm::Norm;
 use oedometer_mpm::explicit::ExplicitSettings;
 use oedometer_mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery, StrainGradient};
 use oedometer_mpm::run::TimeStepRule;
@@ -22,9 +23,11 @@ use oedometer_mpm::scene::column::{Column, column_parameters};
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 use oedometer_soil::wording::words;
+pub use quantity::{Quantity, Sample};
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::sync::Arc;
+pub use tier::Tier;
 
 /// State and operators of a point, bytes.
 const BYTES_A_POINT: f64 = 500.0;

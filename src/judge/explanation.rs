@@ -1,22 +1,19 @@
 //! Where the error of one case comes from: the norm and place that dominate it, its place among the other levels of
 //! its study, and the changes from the golden values.
 
-use crate::case::Case;
-use crate::case::norm::Norm;
+use crate::case::{Case, Norm};
 use crate::golden::compare::{Difference, compare};
 use crate::golden::{GoldenFile, measure_name, values_of};
 use crate::judge::paths::{grouped, level_size, paths};
-use crate::measure::fields::exact_fields::exact_samples;
-use crate::measure::fields::norms::largest_contribution;
+use crate::measure::fields::{exact_samples, largest_contribution};
 use crate::measure::theory::known_reference;
 use crate::record::{ErrorRow, Record};
 use crate::study::expectation::Axis;
 use oedometer_convergence::{Context, ErrorSeries, classify};
-use oedometer_exact::exact_error::ExactError;
-use oedometer_exact::reference::ReferenceKind;
+use oedometer_exact::{ExactError, ReferenceKind};
 use oedometer_soil::wording::{short, typed};
 
-/// The error of one quantity at one kind of places, at the output where it is largest.
+/// The error of one quantity at one kind of sample, at the output where it is largest.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Carrier {
     /// Its L2 error, or the relative one of a settlement.
@@ -25,7 +22,7 @@ pub struct Carrier {
     pub l1: Option<f64>,
     /// Largest error at the same output.
     pub linf: Option<f64>,
-    /// The place that carries most of it; none where the quantity has one place only.
+    /// The place with the largest share of it; `None` where the quantity has a single place.
     pub place: Option<ErrorPlace>,
 }
 
@@ -36,7 +33,7 @@ pub struct LevelSeries {
     pub axis: Axis,
     /// Labels of the levels from coarse to fine.
     pub labels: Vec<String>,
-    /// Errors, where they are known: this case's own, the others' golden ones.
+    /// Errors, where they are known: this case's own and the golden ones of the others.
     pub errors: Vec<Option<f64>>,
     /// Place of this case among them.
     pub own: usize,
@@ -46,18 +43,18 @@ pub struct LevelSeries {
     pub reason: String,
 }
 
-/// Everything said of a case.
+/// The explanation of a case.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Explanation {
     /// Carriers, the largest error first.
     pub carriers: Vec<Carrier>,
     /// Series of the first carrier's error, one an axis that the study refines.
     pub levels: Vec<LevelSeries>,
-    /// What differs from the golden values of this case.
+    /// Differences from the golden values of this case.
     pub differences: Vec<Difference>,
     /// Golden values of this case that agree.
     pub agreeing: usize,
-    /// Whether there are golden values to hold against.
+    /// Whether there are golden values.
     pub has_golden: bool,
 }
 
@@ -99,11 +96,8 @@ fn carriers_of(record: &Record) -> Result<Vec<Carrier>, ExactError> {
         .into_iter()
         .filter_map(|(_, rows)| rows.into_iter().rev().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())))
         .map(|row| {
-            let norm = |norm| {
-                record
-                    .error(row.quantity, row.sample, norm, &row.reference, row.time_factor)
-                    .map(|row| row.value)
-            };
+            let error = |norm| record.error(row.quantity, row.sample, norm, &row.reference, row.time_factor);
+            let norm = |norm| error(norm).map(|row| row.value);
             let place = place_of(record, row)?;
             Ok(Carrier { row: row.clone(), l1: norm(Norm::L1), linf: norm(Norm::Linf), place })
         })
@@ -112,7 +106,7 @@ fn carriers_of(record: &Record) -> Result<Vec<Carrier>, ExactError> {
 
 /// The case's error among the golden ones of the cases that differ from it along one axis only.
 fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &ErrorRow) -> Vec<LevelSeries> {
-    // Paths sort and group records; a sibling that was not run is one with nothing measured.
+    // Paths group records; a sibling that was not run is a record without results.
     let empty = |case: &&Case| Record {
         case: (*case).clone(),
         hash: case.hash(),
@@ -128,6 +122,10 @@ fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &Err
         if is_own(other) { Some(row.value.abs()) } else { golden.values.get(&name).map(|value| value.abs()) }
     };
     let level_series = |axis: Axis| {
+        let label = |case: &Case| match axis {
+            Axis::PointsPerCell => format!("{} points a cell", case.points_per_cell),
+            _ => format!("{} cells", case.cells),
+        };
         let all = paths(&records, axis);
         let path = all.iter().find(|path| path.records.iter().any(|other| is_own(other)))?;
         let errors: Vec<Option<f64>> = path.records.iter().map(|other| error(other)).collect();
@@ -136,7 +134,7 @@ fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &Err
         let found = classify(&ErrorSeries::of(&known.collect::<Vec<_>>()), &Context::default());
         Some(LevelSeries {
             axis,
-            labels: path.records.iter().map(|other| level_label(&other.case, axis)).collect(),
+            labels: path.records.iter().map(|other| label(&other.case)).collect(),
             own: path.records.iter().position(|other| is_own(other)).unwrap_or(0),
             errors,
             class: found.class.name(),
@@ -144,13 +142,6 @@ fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &Err
         })
     };
     [Axis::Cells, Axis::PointsPerCell].into_iter().filter_map(level_series).collect()
-}
-
-fn level_label(case: &Case, axis: Axis) -> String {
-    match axis {
-        Axis::PointsPerCell => format!("{} points a cell", case.points_per_cell),
-        _ => format!("{} cells", case.cells),
-    }
 }
 
 /// Differences from the golden values of this case alone, and how many agree.

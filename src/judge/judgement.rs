@@ -1,7 +1,6 @@
 //! From the paths of a study to verdicts on what it expects.
 
-use crate::case::Case;
-use crate::case::tier::Tier;
+use crate::case::{Case, Tier};
 use crate::golden::GoldenFile;
 use crate::judge::paths::{Path, StudyPaths};
 use crate::judge::verdict::{Beside, Verdict, judge};

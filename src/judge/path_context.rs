@@ -1,20 +1,15 @@
 //! What is known along a path of runs besides the errors: formal order, possible causes of a floor, signs,
 //! mobility, oscillation, and the values of quantities without a reference.
 
-use crate::case::Case;
-use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::{Case, Norm, Quantity, Sample};
 use crate::judge::paths::{Path, level_size};
 use crate::judge::verdict::Beside;
-use crate::measure::fields::exact_fields::exact_samples;
-use crate::measure::fields::norms::relative_error;
-use crate::measure::fields::oscillation::PlaneField;
-use crate::measure::fields::oscillation::reversal;
+use crate::measure::fields::{PlaneField, exact_samples, relative_error, reversal};
 use crate::measure::theory::known_reference;
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
 use oedometer_convergence::{Context, Limiter, LimiterKind, SeriesDemand, ValueSeries};
-use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_exact::{Reference, ReferenceKind};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::scene::column::column_parameters;
 

@@ -1,10 +1,8 @@
 //! From the records of a study to its paths and their series of errors.
 
-use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
-use crate::case::{Case, step_label};
+use crate::case::{Case, Norm, Quantity, Sample, step_label};
 use crate::judge::explanation::place_of_attached;
-use crate::measure::fields::norms::relative_error;
+use crate::measure::fields::relative_error;
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
 use oedometer_convergence::{

@@ -1,4 +1,4 @@
-//! How far two runs scatter that should give equal values.
+//! The differences between two runs that should give equal values.
 
 use crate::golden::tolerance::ROOM;
 use std::collections::BTreeMap;
@@ -15,7 +15,7 @@ pub struct ValueScatter {
     pub source: String,
     /// Values that both runs have.
     pub values: usize,
-    /// Values that one run has and the other has not.
+    /// Values that only one of the runs has.
     pub unpaired: usize,
     /// Values that differ in any bit.
     pub differing: usize,
@@ -29,7 +29,7 @@ pub struct ValueScatter {
 }
 
 impl ValueScatter {
-    /// A relative tolerance that this spread allows, ten times as wide.
+    /// The relative tolerance for this spread, ten times as wide.
     pub fn tolerance(&self) -> f64 {
         ROOM * self.relative
     }
@@ -42,39 +42,32 @@ pub fn spread_of(
     one: &BTreeMap<String, f64>,
     other: &BTreeMap<String, f64>,
 ) -> ValueScatter {
-    let mut spread = ValueScatter {
+    let both = || one.iter().filter_map(|(name, a)| Some((name, *a, *other.get(name)?)));
+    let missing_in = |of: &BTreeMap<String, f64>, from: &BTreeMap<String, f64>| {
+        of.keys().filter(|name| !from.contains_key(*name)).count()
+    };
+    // NaN is the widest spread of all.
+    let relative = |a: f64, b: f64| {
+        let relative = (a - b).abs() / a.abs().max(b.abs());
+        if relative.is_nan() { f64::INFINITY } else { relative }
+    };
+    let differing = || both().filter(|(_, a, b)| a.to_bits() != b.to_bits());
+    // Errors are relative themselves: a value this near zero has no digits left to compare.
+    let compared = differing().filter(|(_, a, b)| !((a - b).abs() <= ROUND_OFF));
+    let worst = compared
+        .map(|(name, a, b)| (name, relative(a, b)))
+        .filter(|(_, relative)| *relative > 0.0)
+        .reduce(|worst, next| if next.1 > worst.1 { next } else { worst });
+    ValueScatter {
         study: study.to_owned(),
         source: source.to_owned(),
-        unpaired: names_missing(one, other) + names_missing(other, one),
-        ..ValueScatter::default()
-    };
-    for (name, a) in one {
-        let Some(b) = other.get(name) else { continue };
-        spread.values += 1;
-        if a.to_bits() == b.to_bits() {
-            continue;
-        }
-        spread.differing += 1;
-        let difference = (a - b).abs();
-        let relative = difference / a.abs().max(b.abs());
-        // What is no number is the widest spread of all.
-        let relative = if relative.is_nan() { f64::INFINITY } else { relative };
-        spread.absolute = spread.absolute.max(difference);
-        // Errors are relative themselves: what is this near zero has no digits left to compare.
-        if difference <= ROUND_OFF {
-            continue;
-        }
-        if relative > spread.relative {
-            spread.relative = relative;
-            spread.place = Some(name.clone());
-        }
+        values: both().count(),
+        unpaired: missing_in(one, other) + missing_in(other, one),
+        differing: differing().count(),
+        absolute: differing().map(|(_, a, b)| (a - b).abs()).fold(0.0, f64::max),
+        relative: worst.map_or(0.0, |(_, relative)| relative),
+        place: worst.map(|(name, _)| name.clone()),
     }
-    spread
-}
-
-/// How many values of one run the other does not name.
-fn names_missing(one: &BTreeMap<String, f64>, other: &BTreeMap<String, f64>) -> usize {
-    one.keys().filter(|name| !other.contains_key(*name)).count()
 }
 
 #[cfg(test)]

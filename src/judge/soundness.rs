@@ -1,7 +1,7 @@
 //! What must hold for every record, whatever a study expects and whatever the golden values are: a lost point, or a
 //! reference that is no better than the result, invalidates any verdict.
 
-use crate::case::quantity::Quantity;
+use crate::case::Quantity;
 use crate::measure::record_checks;
 use crate::record::{Record, Status};
 use crate::study::check::Study;

@@ -1,7 +1,7 @@
-//! A study held against its expectations, its golden values, and what must hold of any record.
+//! A study compared with its expectations, its golden values, and what must hold for any record.
 
 use crate::campaign::run_report::RunError;
-use crate::case::tier::Tier;
+use crate::case::Tier;
 use crate::golden::case_changes::{CaseChange, case_changes};
 use crate::golden::compare::{Change, Difference, compare};
 use crate::golden::difference_groups::{DifferenceGroup, groups_of};
@@ -12,13 +12,13 @@ use crate::judge::judgement::{Absent, Judgement, differing_repeats, judge_study}
 use crate::judge::soundness;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
-use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::ExactError;
 use std::collections::BTreeMap;
 
-/// Wall time over the golden one from which on it is worth a word.
+/// Wall time over the golden one from which on a warning is given.
 const SLOW: f64 = 2.0;
 
-/// A case with what is said of it.
+/// A case with a sentence about it.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct CaseNote {
     /// Label of the case.
@@ -34,19 +34,19 @@ pub struct StudyCheck {
     pub study: String,
     /// Cases that failed, with their sentences.
     pub failed_cases: Vec<CaseNote>,
-    /// Records that cannot be right, whatever they are expected to show.
+    /// Records that cannot be right, whatever the study expects.
     pub unsound: Vec<CaseNote>,
     /// Verdicts on expectations.
     pub judgements: Vec<Judgement>,
-    /// Differences from the golden values, or why there are none to hold against.
+    /// Differences from the golden values, or why there are no golden values.
     pub golden: Result<Vec<Difference>, GoldenError>,
-    /// The same by kind, with what those of a kind have in common.
+    /// The differences by kind, with what those of a kind have in common.
     pub groups: Vec<DifferenceGroup>,
     /// Cases with such differences: accuracy and cost together, the case with the worst first.
     pub changes: Vec<CaseChange>,
     /// Golden values that agree.
     pub agreeing: usize,
-    /// What is odd and fails nothing.
+    /// Warnings, which fail nothing.
     pub warnings: Vec<String>,
 }
 
@@ -91,7 +91,7 @@ impl StudyCheck {
                 let failure = record.status.failure().filter(|_| !is_foreseen);
                 failure.map(ToString::to_string).into_iter().collect()
             }),
-            // What a run that failed leaves behind is no result to complain of.
+            // The remains of a failed run are no result to complain about.
             unsound: notes(&|record| match record.status {
                 Status::Ok => soundness::complaints(record),
                 Status::Failed(_) => Vec::new(),
@@ -102,7 +102,7 @@ impl StudyCheck {
         }
     }
 
-    /// With the places that carry the worst of somebody else's values.
+    /// Adds the places with the largest errors of attached solvers.
     fn with_places(mut self, records: &[Record]) -> Self {
         for group in &mut self.groups {
             let (label, measure) = parts(&group.worst.name);
@@ -116,7 +116,7 @@ impl StudyCheck {
         self
     }
 
-    /// Adds the cases that have no record, a refusing reference or a crash being the reason: they failed.
+    /// Adds the cases that have no record, because a reference refused or a run crashed: they failed.
     #[must_use]
     pub fn with_errors(mut self, errors: &[RunError]) -> Self {
         let notes = errors.iter().filter_map(RunError::of_case);
@@ -138,15 +138,14 @@ impl StudyCheck {
         values: &BTreeMap<String, f64>,
         golden: Result<GoldenFile, GoldenError>,
     ) -> Self {
-        let compared = golden.map(|golden| {
-            let differences = compare(&golden, values);
-            let known =
-                golden.values.keys().chain(values.keys().filter(|name| !golden.values.contains_key(*name)));
-            (groups_of(&differences, known.map(String::as_str)), differences)
-        });
-        let (groups, golden) = match compared {
-            Ok((groups, differences)) => (groups, Ok(differences)),
+        let (groups, golden) = match golden {
             Err(error) => (Vec::new(), Err(error)),
+            Ok(golden) => {
+                let differences = compare(&golden, values);
+                let new = values.keys().filter(|name| !golden.values.contains_key(*name));
+                let known = golden.values.keys().chain(new).map(String::as_str);
+                (groups_of(&differences, known), Ok(differences))
+            }
         };
         let changed =
             golden.as_ref().map_or(values.len(), |all| all.iter().filter(|one| one.found.is_some()).count());
@@ -163,7 +162,7 @@ impl StudyCheck {
         }
     }
 
-    /// Differences from the golden values; none where there is no golden file.
+    /// Differences from the golden values; empty where there is no golden file.
     pub fn differences(&self) -> &[Difference] {
         self.golden.as_deref().unwrap_or_default()
     }
@@ -171,9 +170,9 @@ impl StudyCheck {
     /// Whether a value moved that no better accuracy or lower cost of its case makes up for.
     fn has_moved(&self) -> bool {
         let excused = |name: &str| {
-            let of_case =
-                |change: &&CaseChange| name.rsplit_once(" | ").is_some_and(|parts| parts.0 == change.case);
-            self.changes.iter().find(of_case).is_some_and(CaseChange::is_stale)
+            let case = name.rsplit_once(" | ").map(|parts| parts.0);
+            let change = self.changes.iter().find(|change| Some(change.case.as_str()) == case);
+            change.is_some_and(CaseChange::is_stale)
         };
         self.differences().iter().any(|one| one.change == Change::Moved && !excused(&one.name))
     }
@@ -194,13 +193,13 @@ impl StudyCheck {
     }
 }
 
-/// A word on a wall time far beyond the golden one: machine, load or code, and no verdict.
+/// A warning about a wall time far beyond the golden one, which is no verdict.
 fn slowness(golden: &GoldenFile, seconds: f64) -> Option<String> {
     let before = golden.seconds.filter(|before| *before > 0.0)?;
     (seconds > SLOW * before).then(|| {
         format!(
             "the cases took {seconds:.1} s of wall time in all, {:.1} times the {before:.1} s of the golden run: \
-             the machine, its load or the code; work counters judge, wall time does not",
+             the machine, its load or the code; only work counters are judged",
             seconds / before
         )
     })

@@ -3,8 +3,7 @@
 use crate::case::Case;
 use crate::measure::statistics::largest;
 use crate::record::{Balance, HistoryRow, LayerBalance, StartChecks};
-use oedometer_exact::exact_error::ExactError;
-use oedometer_exact::reference::Reference;
+use oedometer_exact::{ExactError, Reference};
 use oedometer_mpm::run::results::snapshot::Snapshot;
 use oedometer_mpm::scene::column::column_parameters;
 use oedometer_soil::elementary;

@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::record::Groups;
-use oedometer_exact::reference::ReferenceKind;
+use oedometer_exact::ReferenceKind;
 use oedometer_mpm::critical_step::formula;
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};

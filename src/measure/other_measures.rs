@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::record::{Balance, MeasureRow};
-use oedometer_exact::reference::Reference;
+use oedometer_exact::Reference;
 use oedometer_mpm::run::results::snapshot::Snapshot;
 use oedometer_soil::elementary;
 

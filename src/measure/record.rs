@@ -3,14 +3,13 @@
 use crate::case::Case;
 use crate::measure::balances::{balance, curve_gap, start_checks};
 use crate::measure::dimensionless_groups::{groups, inertia_rules};
-use crate::measure::fields::field_errors::{LONG_AFTER, snapshot_errors};
+use crate::measure::fields::{LONG_AFTER, snapshot_errors};
 use crate::measure::other_measures::measures_of;
 use crate::measure::theory::known_reference;
 use crate::record::attached_run::AttachedRun;
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, ErrorRow, HistoryRow, Record, ReferenceUse, SCHEMA, Status};
-use oedometer_exact::exact_error::ExactError;
-use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_exact::{ExactError, Reference, ReferenceKind};
 use oedometer_mpm::critical_step::observed::CriticalStep;
 use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
 use oedometer_mpm::run::results::snapshot::Snapshot;

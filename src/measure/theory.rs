@@ -3,8 +3,7 @@
 
 use crate::case::Case;
 use crate::record::Record;
-use oedometer_exact::exact_error::ExactError;
-use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_exact::{ExactError, Reference, ReferenceKind};
 use oedometer_mpm::scene::column::column_parameters;
 use oedometer_soil::elementary;
 use std::collections::HashMap;

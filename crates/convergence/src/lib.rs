@@ -35,6 +35,11 @@ pub use uncertainty::{
     NumericalUncertainty, ThreeGrids, ValueSeries,
 };
 
+/// The example of the front page, run as a test.
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+struct ReadmeExample;
+
 #[cfg(test)]
 mod tests {
     mod classes;

@@ -2,16 +2,15 @@
 //! stable step and cost; and their errors over the stiffness of the water and of the skeleton, at the start and
 //! through consolidation.
 
-use crate::case::Case;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::{Case, Quantity, Sample};
 use crate::judge::paths::{first_error, first_measure, grouped, paths};
-use crate::measure::fields::oscillation::PlaneField;
+use crate::measure::fields::PlaneField;
 use crate::measure::statistics::{largest, median};
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 use crate::study::expectation::Axis;
 use oedometer_convergence::Class;
-use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::ExactError;
 use oedometer_mpm::critical_step::formula;
 use oedometer_mpm::method::Method;
 use oedometer_soil::material::Material;

@@ -1,10 +1,10 @@
 //! Measurements of other programs on the seed column; `peers.csv` says what was measured and how.
 
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::{Quantity, Sample};
 use crate::judge::comparison::work_precision::TimedRun;
 use crate::judge::paths::first_error;
 use crate::measure::statistics::largest;
-use oedometer_exact::reference::ReferenceKind;
+use oedometer_exact::ReferenceKind;
 use std::sync::LazyLock;
 
 /// Time factors of the comparison.

@@ -1,13 +1,12 @@
 //! Situations: what makes a run hard, derived from its inputs, and how each method of a study performed in them.
 
-use crate::case::Task;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::{Quantity, Sample, Task};
 use crate::judge::comparison::locking::{Standing, standings};
 use crate::judge::paths::{first_error, grouped};
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 use oedometer_convergence::Class;
-use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::ExactError;
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::results::outcome::FailureKind;
 use oedometer_soil::elementary;

@@ -1,7 +1,7 @@
 //! Runs that differ in one input alone: the cost and the benefit of the input.
 
 use crate::case::keys::{Key, Value};
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::{Quantity, Sample};
 use crate::judge::comparison::situation::Situation;
 use crate::judge::paths::{first_error, grouped};
 use crate::measure::statistics::median;

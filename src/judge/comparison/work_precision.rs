@@ -1,6 +1,6 @@
 //! Error against cost: timed runs by error and wall time.
 
-use crate::case::quantity::Quantity;
+use crate::case::Quantity;
 use crate::judge::paths::{Path, first_error, first_measure, paths};
 use crate::measure::statistics::{WallSpread, largest, median, noise_floor, paired_ratio, spread};
 use crate::record::{Record, Status};

@@ -4,9 +4,7 @@ use crate::import::table::SampledState;
 use crate::judge::score::coverage;
 use crate::judge::score::coverage::Bare;
 use crate::judge::score::score_series::time_factors;
-use oedometer_exact::exact_error::ExactError;
-use oedometer_exact::parameters::ColumnParameters;
-use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use oedometer_soil::elementary::ln;
 use oedometer_soil::wording::{short, typed, words};
 

@@ -6,14 +6,12 @@
 
 mod inputs;
 
-use crate::case::quantity::Quantity;
+use crate::case::Quantity;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::units::{LengthUnit, StressUnit, TimeUnit};
 use crate::import::table::SampledState;
-use crate::measure::fields::exact_fields::ExactFields;
-use oedometer_exact::exact_error::ExactError;
-use oedometer_exact::parameters::ColumnParameters;
-use oedometer_exact::reference::{Reference, ReferenceKind};
+use crate::measure::fields::ExactFields;
+use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use oedometer_soil::elementary::powi;
 use oedometer_soil::wording::short;
 use std::borrow::Cow;

@@ -5,18 +5,15 @@ pub mod coverage;
 pub mod diagnosis;
 pub mod score_series;
 
-use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::{Norm, Quantity, Sample};
 use crate::import::table::SampledState;
 use crate::judge::score::completeness::{Finding, Lack};
 use crate::judge::score::score_series::{SeriesRow, time_factors};
-use crate::measure::fields::exact_fields::{ExactFields, SamplePlaces};
-use crate::measure::fields::field_errors::{FieldError, LONG_AFTER, resolution, settlement_error};
-use crate::measure::fields::norms::largest_contribution;
+use crate::measure::fields::{
+    ExactFields, FieldError, LONG_AFTER, SamplePlaces, largest_contribution, resolution, settlement_error,
+};
 use crate::record::ErrorRow;
-use oedometer_exact::exact_error::ExactError;
-use oedometer_exact::parameters::ColumnParameters;
-use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use oedometer_soil::wording::short;
 use std::borrow::Cow;
 use std::collections::HashMap;

@@ -1,14 +1,13 @@
 //! Orders and classes of external results on finer and finer meshes, and which of their times are the same time: no
 //! two programs, and no two meshes of an explicit one, stop at the same instant.
 
-use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::{Norm, Quantity, Sample};
 use crate::import::table::SampledState;
 use crate::judge::paths::grouped;
 use crate::judge::score::{Leaning, Score};
 use crate::record::ErrorRow;
 use oedometer_convergence::{Classification, Context, ErrorSeries, SeriesLevel, classify};
-use oedometer_exact::parameters::ColumnParameters;
+use oedometer_exact::ColumnParameters;
 use std::collections::HashMap;
 
 /// Errors up to this are round-off of a written number.

@@ -1,9 +1,7 @@
 //! The exact fields at the places of samples.
 
-use crate::case::Case;
-use crate::case::quantity::Quantity;
-use oedometer_exact::exact_error::ExactError;
-use oedometer_exact::reference::Reference;
+use crate::case::{Case, Quantity};
+use oedometer_exact::{ExactError, Reference};
 use oedometer_mpm::run::results::snapshot::{PlaneSamples, Samples, WaterSamples};
 use rayon::prelude::*;
 

@@ -1,13 +1,9 @@
 //! Errors of a snapshot's fields and settlement against a reference.
 
-use crate::case::Case;
-use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
-use crate::measure::fields::exact_fields::exact_samples;
-use crate::measure::fields::norms::FieldDifference;
+use crate::case::{Case, Norm, Quantity, Sample};
+use crate::measure::fields::{FieldDifference, exact_samples};
 use crate::record::ErrorRow;
-use oedometer_exact::exact_error::ExactError;
-use oedometer_exact::reference::Reference;
+use oedometer_exact::{ExactError, Reference};
 use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
 
 /// Norms of a field's error.

@@ -4,7 +4,7 @@
 //! every norm here carries its formula, and all are means over the volume: a pointwise `h²` error
 //! has norm `h²` times a constant, whatever the number of samples.
 
-use crate::case::norm::Norm;
+use crate::case::Norm;
 use oedometer_soil::elementary;
 
 /// The error of a field and the exact one, for as many norms as are needed.

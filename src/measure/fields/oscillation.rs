@@ -3,10 +3,10 @@
 //! An error norm cannot tell a checkerboard from a smooth offset of the same size; the variation of the profile
 //! beyond its net changes can.
 
-use crate::measure::fields::exact_fields::exact_samples;
+use crate::measure::fields::exact_samples;
 use crate::measure::theory::{Known, key_of, known_or, known_reference};
 use crate::record::Record;
-use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::ExactError;
 use oedometer_mpm::run::results::snapshot::Samples;
 use std::sync::{Arc, LazyLock, Mutex};
 

@@ -4,10 +4,10 @@
 //! Only a factor or an offset of the time is fitted, and then less error must be left.
 
 use super::{CORRECTED, IMPROVED, INACCURATE, Mistake, Trials, samples_at};
-use crate::case::quantity::Quantity;
+use crate::case::Quantity;
 use crate::import::table::SampledState;
-use crate::measure::fields::exact_fields::ExactFields;
-use oedometer_exact::reference::{Reference, ReferenceKind};
+use crate::measure::fields::ExactFields;
+use oedometer_exact::{Reference, ReferenceKind};
 use oedometer_soil::elementary::{exp, ln};
 use oedometer_soil::wording::short;
 

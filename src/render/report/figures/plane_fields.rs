@@ -1,7 +1,7 @@
 //! What a plane layer shows: pressure fields beside the exact one, and the ranking of the methods.
 
 use crate::judge::comparison::locking::{Standing, standings};
-use crate::measure::fields::oscillation::PlaneField;
+use crate::measure::fields::PlaneField;
 use crate::record::{Record, Status};
 use crate::render::chart::describe::{Chart, ChartAxis, Size};
 use crate::render::chart::field::ColourField;
